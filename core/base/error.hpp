@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace doseki {
+
+/// Physics went wrong: the run must stop. Names the particle and the quantity.
+struct PhysicsFailure : std::runtime_error {
+    PhysicsFailure(const std::string& what, std::int64_t particle, double time)
+        : std::runtime_error(what), particle(particle), time(time) {}
+    std::int64_t particle;
+    double time;
+};
+
+/// A limit of this build was met (more particles than an index can hold).
+struct ResourceFailure : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace doseki

@@ -1,0 +1,55 @@
+#pragma once
+// A Pack is W lanes that act as one number. Physics is written once on a type T: T = double is the
+// scalar oracle (and one CUDA thread), T = Pack<double> is W particles at a time.
+
+#include <algorithm>
+#include <cmath>
+#include <experimental/simd>
+
+#if defined(__CUDACC__)
+#define DOSEKI_FN __host__ __device__ inline
+#else
+// Compilers think a pair term of sixty operations too large to inline; a call per pair costs half
+// the speed.
+#define DOSEKI_FN [[gnu::always_inline]] inline
+#endif
+
+namespace doseki {
+
+namespace stdx = std::experimental;
+
+#if defined(DOSEKI_SCALAR)
+template <class real>
+using Pack = stdx::simd<real, stdx::simd_abi::scalar>;
+#else
+template <class real>
+using Pack = stdx::native_simd<real>;
+#endif
+
+template <class real>
+inline constexpr int lanes = static_cast<int>(Pack<real>::size());
+
+using std::abs;
+using std::max;
+using std::min;
+using std::sqrt;
+
+/// A literal in the precision of T (a Pack takes no implicit narrowing).
+template <class T>
+DOSEKI_FN T number(double literal) {
+    if constexpr (requires { typename T::value_type; }) return T(static_cast<typename T::value_type>(literal));
+    else return static_cast<T>(literal);
+}
+
+/// `mask ? yes : no`, lane by lane; the scalar overload makes one source serve both.
+DOSEKI_FN double select(bool mask, double yes, double no) { return mask ? yes : no; }
+DOSEKI_FN float select(bool mask, float yes, float no) { return mask ? yes : no; }
+
+template <class real, class Abi>
+DOSEKI_FN stdx::simd<real, Abi> select(const stdx::simd_mask<real, Abi>& mask,
+                                    const stdx::simd<real, Abi>& yes, stdx::simd<real, Abi> no) {
+    stdx::where(mask, no) = yes;
+    return no;
+}
+
+}  // namespace doseki

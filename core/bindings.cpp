@@ -1,0 +1,284 @@
+// Python's view of the core: one class per dimension and precision, and the point functions for tests.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <omp.h>
+
+#include <numeric>
+
+#include "simulation.hpp"
+
+namespace nb = nanobind;
+using namespace doseki;
+
+namespace {
+
+template <class T>
+using Array = nb::ndarray<nb::numpy, T>;
+template <class T>
+using Input = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
+
+/// New numpy array of n rows of the given shape.
+template <class T>
+struct Output {
+    explicit Output(std::vector<std::size_t> shape) : shape(std::move(shape)) {
+        data = new T[std::accumulate(this->shape.begin(), this->shape.end(), std::size_t{1}, std::multiplies<>())]();
+    }
+    Array<T> release() {
+        nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+        return Array<T>(data, shape.size(), shape.data(), owner);
+    }
+    std::vector<std::size_t> shape;
+    T* data;
+};
+
+template <class T>
+T get(const nb::dict& dict, const char* key) {
+    return nb::cast<T>(dict[key]);
+}
+
+template <int D>
+Vec<double, D> vector(const nb::handle& sequence) {
+    const auto values = nb::cast<std::vector<double>>(sequence);
+    if (values.size() != D) throw nb::value_error("vector of the wrong length");
+    Vec<double, D> v;
+    for (int a = 0; a < D; ++a) v[a] = values[static_cast<std::size_t>(a)];
+    return v;
+}
+
+Material material(const nb::dict& d) {
+    return {get<std::string>(d, "name"), get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid,
+            get<double>(d, "rho0"), get<double>(d, "speedsound"), get<double>(d, "shear_modulus"), get<double>(d, "nu")};
+}
+
+template <int D>
+Options<D> options(const nb::dict& d) {
+    Options<D> o;
+    o.gravity = vector<D>(d["gravity"]);
+    o.eta = get<double>(d, "eta");
+    o.alpha = get<double>(d, "alpha");
+    o.cflnumber = get<double>(d, "cflnumber");
+    o.cfl_force = get<double>(d, "cfl_force");
+    o.skin = get<double>(d, "skin");
+    o.balsara = get<bool>(d, "balsara");
+    o.sym_grad = get<bool>(d, "sym_grad");
+    const auto tension = get<std::string>(d, "tension");
+    o.tension = tension == "free" ? Tension::free : tension == "clamp_all" ? Tension::clamp_all : Tension::clamp_fluid;
+    o.h_mode = get<std::string>(d, "h_mode") == "eq10" ? SmoothingLengthMode::eq10 : SmoothingLengthMode::constant;
+    return o;
+}
+
+template <int D>
+Domain<D> domain(const nb::dict& d) {
+    Domain<D> box;
+    box.low = vector<D>(d["domain_min"]);
+    box.high = vector<D>(d["domain_max"]);
+    const auto periodic = nb::cast<std::vector<bool>>(d["periodic"]);
+    for (int a = 0; a < D; ++a) box.periodic[a] = periodic.at(static_cast<std::size_t>(a));
+    return box;
+}
+
+template <class real, int D>
+class Bound {
+public:
+    using Sim = Simulation<real, D>;
+
+    Bound(const std::vector<nb::dict>& materials, const nb::dict& o)
+        : sim_(make_materials(materials), options<D>(o), domain<D>(o)) {}
+
+    void add_particles(Input<double> position, Input<double> velocity, Input<double> mass, Input<double> density,
+                       Input<double> smoothing_length, Input<std::int32_t> material, Input<std::int32_t> body,
+                       Input<std::int32_t> motion, Input<std::int64_t> id) {
+        const std::size_t first = sim_.particles.size(), n = mass.size();
+        if (position.size() != n * D || velocity.size() != n * D || id.size() != n)
+            throw nb::value_error("particle arrays of unequal length");
+        auto& particles = sim_.particles;
+        particles.resize(first + n);
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = first + k;
+            for (int a = 0; a < D; ++a) {
+                particles.position[p][a] = position.data()[k * D + a];
+                particles.velocity[p][a] = velocity.data()[k * D + a];
+            }
+            particles.mass[p] = mass.data()[k];
+            particles.density[p] = density.data()[k];
+            particles.smoothing_length[p] = smoothing_length.data()[k];
+            particles.tag[p] = {id.data()[k], body.data()[k], static_cast<std::int16_t>(material.data()[k]),
+                                static_cast<Motion>(motion.data()[k])};
+            sim_.sources.next_id = std::max(sim_.sources.next_id, id.data()[k] + 1);
+        }
+    }
+
+    void add_inflow(const nb::dict& d) {
+        Inflow<D> inflow;
+        for (const auto& row : nb::cast<std::vector<std::vector<double>>>(d["layer"])) {
+            Vec<double, D> x;
+            for (int a = 0; a < D; ++a) x[a] = row.at(static_cast<std::size_t>(a));
+            inflow.layer.push_back(x);
+        }
+        inflow.direction = vector<D>(d["direction"]);
+        inflow.speed = get<double>(d, "speed");
+        inflow.spacing = get<double>(d, "spacing");
+        inflow.buffer_layers = get<int>(d, "buffer_layers");
+        inflow.start = get<double>(d, "start");
+        inflow.stop = get<double>(d, "stop");
+        inflow.mass = get<double>(d, "mass");
+        inflow.density = get<double>(d, "density");
+        inflow.smoothing_length = get<double>(d, "smoothing_length");
+        inflow.material = static_cast<std::int16_t>(get<int>(d, "material"));
+        inflow.body = get<std::int32_t>(d, "body");
+        sim_.sources.inflows.push_back(std::move(inflow));
+    }
+
+    void add_outflow(const std::vector<double>& low, const std::vector<double>& high) {
+        sim_.sources.outflows.push_back({vector<D>(nb::cast(low)), vector<D>(nb::cast(high))});
+    }
+
+    nb::dict state() const {
+        const auto& particles = sim_.particles;
+        const std::size_t n = particles.size();
+        const auto order = id_order();
+        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}), h({n}), c({n}),
+            deviator({n, 3, 3}), stress({n, 3, 3});
+        Output<std::int32_t> material({n}), body({n}), motion({n});
+        Output<std::int64_t> id({n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = order[k];
+            const Tag& tag = particles.tag[p];
+            for (int a = 0; a < D; ++a) {
+                position.data[k * D + a] = particles.position[p][a];
+                velocity.data[k * D + a] = particles.velocity[p][a];
+            }
+            const auto eos = equation_of_state(sim_.rates().materials()[tag.material], particles.density[p], tag.motion, sim_.options().tension);
+            mass.data[k] = particles.mass[p], density.data[k] = particles.density[p];
+            pressure.data[k] = eos.pressure, c.data[k] = eos.sound_speed;
+            h.data[k] = particles.smoothing_length[p];
+            material.data[k] = tag.material, body.data[k] = tag.body;
+            motion.data[k] = static_cast<std::int32_t>(tag.motion), id.data[k] = tag.id;
+            fill_tensor(deviator.data + 9 * k, 0.0, particles.deviatoric_stress[p]);
+            fill_tensor(stress.data + 9 * k, eos.pressure, sim_.rates().deviator(particles, p));
+        }
+        nb::dict d;
+        d["position"] = position.release(), d["velocity"] = velocity.release();
+        d["mass"] = mass.release(), d["density"] = density.release(), d["pressure"] = pressure.release();
+        d["sound_speed"] = c.release(), d["smoothing_length"] = h.release();
+        d["deviatoric_stress"] = deviator.release(), d["stress"] = stress.release();
+        d["material"] = material.release(), d["body"] = body.release(), d["motion"] = motion.release();
+        d["id"] = id.release();
+        return d;
+    }
+
+    nb::dict rates() const {
+        const auto& particles = sim_.particles;
+        const std::size_t n = particles.size();
+        const auto order = id_order();
+        Output<double> acceleration({n, D}), density_rate({n}), stress_rate({n, 3, 3}), balsara({n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = order[k];
+            for (int a = 0; a < D; ++a) acceleration.data[k * D + a] = particles.acceleration[p][a];
+            density_rate.data[k] = particles.density_rate[p];
+            fill_tensor(stress_rate.data + 9 * k, 0.0, particles.deviatoric_stress_rate[p]);
+            balsara.data[k] = static_cast<double>(sim_.rates().stress_records()[p].balsara);
+        }
+        nb::dict d;
+        d["acceleration"] = acceleration.release(), d["density_rate"] = density_rate.release();
+        d["deviatoric_stress_rate"] = stress_rate.release(), d["balsara"] = balsara.release();
+        d["timestep"] = sim_.next_timestep(), d["av_power"] = sim_.rates().av_power();
+        return d;
+    }
+
+    nb::dict totals() const {
+        const auto sum = sim_.totals();
+        const Ledger& ledger = sim_.sources.ledger;
+        nb::dict d;
+        d["mass"] = sum.mass;
+        d["momentum"] = std::vector<double>(sum.momentum.component.begin(), sum.momentum.component.end());
+        d["kinetic_energy"] = sum.kinetic_energy, d["bulk_energy"] = sum.bulk_energy;
+        d["shear_energy"] = sum.shear_energy, d["av_dissipation"] = sim_.av_dissipation();
+        d["mass_initial"] = ledger.initial, d["mass_asked"] = ledger.asked;
+        d["mass_entered"] = ledger.entered, d["mass_left"] = ledger.left;
+        d["count"] = sum.count;
+        return d;
+    }
+
+    void start() { sim_.start(); }
+    void advance(double limit, double pause, std::int64_t max_steps) { sim_.advance(limit, pause, max_steps); }
+    double time() const { return sim_.time(); }
+    double timestep() const { return sim_.last_timestep(); }
+    std::int64_t steps() const { return sim_.steps(); }
+    std::int64_t rebuilds() const { return sim_.rebuilds(); }
+    std::int64_t updates() const { return sim_.updates(); }
+    std::size_t size() const { return sim_.particles.size(); }
+    double bytes_per_particle() const { return sim_.bytes_per_particle(); }
+    double entries_per_particle() const { return double(sim_.neighbours().entries()) / double(size()); }
+
+private:
+    static std::vector<Material> make_materials(const std::vector<nb::dict>& dicts) {
+        std::vector<Material> materials;
+        for (const auto& d : dicts) materials.push_back(material(d));
+        return materials;
+    }
+
+    std::vector<std::size_t> id_order() const {
+        const auto& tag = sim_.particles.tag;
+        std::vector<std::size_t> order(tag.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return tag[p].id < tag[q].id; });
+        return order;
+    }
+
+    static void fill_tensor(double* out, double p, const Deviator<double, D>& S) {
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) out[3 * a + b] = S(std::min(a, b), std::max(a, b));
+        out[8] = S.zz();
+        for (int a = 0; a < 3; ++a) out[4 * a] -= p;
+    }
+
+    Sim sim_;
+};
+
+template <class real, int D>
+void bind_simulation(nb::module_& m, const char* name) {
+    using B = Bound<real, D>;
+    const auto unlocked = nb::call_guard<nb::gil_scoped_release>();
+    nb::class_<B>(m, name)
+        .def(nb::init<const std::vector<nb::dict>&, const nb::dict&>(), nb::arg("materials"), nb::arg("options"))
+        .def("add_particles", &B::add_particles, nb::kw_only(), nb::arg("position"), nb::arg("velocity"),
+             nb::arg("mass"), nb::arg("density"), nb::arg("smoothing_length"), nb::arg("material"), nb::arg("body"),
+             nb::arg("motion"), nb::arg("id"))
+        .def("add_inflow", &B::add_inflow)
+        .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))
+        .def("start", &B::start, unlocked)
+        .def("advance", &B::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"), unlocked)
+        .def("state", &B::state)
+        .def("rates", &B::rates)
+        .def("totals", &B::totals)
+        .def_prop_ro("time", &B::time)
+        .def_prop_ro("timestep", &B::timestep)
+        .def_prop_ro("steps", &B::steps)
+        .def_prop_ro("rebuilds", &B::rebuilds)
+        .def_prop_ro("updates", &B::updates)
+        .def_prop_ro("bytes_per_particle", &B::bytes_per_particle)
+        .def_prop_ro("entries_per_particle", &B::entries_per_particle)
+        .def("__len__", &B::size);
+}
+
+}  // namespace
+
+void bind_physics(nb::module_& m);
+
+NB_MODULE(DOSEKI_MODULE, m) {
+    nb::exception<PhysicsFailure>(m, "PhysicsFailure");
+    nb::exception<ResourceFailure>(m, "ResourceFailure");
+    m.attr("lanes") = lanes<double>;
+    m.def("set_threads", [](int n) { omp_set_num_threads(n); });
+    m.def("threads", [] { return omp_get_max_threads(); });
+    bind_simulation<double, 2>(m, "Simulation2Double");
+    bind_simulation<double, 3>(m, "Simulation3Double");
+    bind_simulation<float, 2>(m, "Simulation2Float");
+    bind_simulation<float, 3>(m, "Simulation3Float");
+    nb::module_ physics = m.def_submodule("physics", "Point functions, each on scalars and on packs.");
+    bind_physics(physics);
+}

@@ -1,0 +1,133 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/vec.hpp"
+#include "list_storage.hpp"
+
+namespace doseki {
+
+/// A box with periodic directions; positions are wrapped into it at each sort.
+template <int D>
+struct Domain {
+    Vec<double, D> low{}, high{};
+    std::array<bool, D> periodic{};
+
+    double length(int a) const { return high[a] - low[a]; }
+    bool any_periodic() const {
+        for (bool p : periodic)
+            if (p) return true;
+        return false;
+    }
+};
+
+/// Entry of a list: particle index and, in the upper bits, through which image of it.
+struct ListEntry {
+    static constexpr int index_bits = 27;
+    static constexpr std::uint32_t index_mask = (1u << index_bits) - 1;
+    static constexpr std::uint32_t max_index = index_mask;
+};
+
+/// The union list of one cluster of W consecutive particles: moving neighbours, then fixed ones.
+struct ClusterList {
+    const std::uint32_t* begin = nullptr;
+    std::uint32_t moving = 0;
+    std::uint32_t fixed = 0;
+};
+
+/// Sorted cells, one wrapped grid for each class of particles (moving or fixed, and per factor two of
+/// the smoothing length). The sort is by class, then cell in Morton order, so that W consecutive
+/// particles sit together. Invariants:
+///  - every pair with |x_i - x_j| < max(R_i, R_j) + skin at the time of the build is listed for i, in
+///    the list of i's cluster; nothing is ever truncated;
+///  - fixed-fixed pairs are not listed: neither moves, so every sum over them vanishes;
+///  - the content of a list does not depend on the number of threads.
+/// Cells wrap around a power-of-two table, so a particle far away costs nothing and loses nothing:
+/// cells that share a table entry only add candidates, which the distance test removes.
+template <int D>
+class Neighbours {
+public:
+    explicit Neighbours(const Domain<D>& domain) : domain_(domain) { fill_image_shifts(); }
+
+    /// Order in which particles are to be stored; `kept` tells which particles go on existing.
+    std::vector<std::uint32_t> sort(std::span<const Vec<double, D>> position,
+                                    std::span<const double> support,
+                                    std::span<const std::uint8_t> is_fixed);
+
+    /// Lists of all clusters of `width` particles, for positions already stored in sorted order.
+    template <int width>
+    void build(std::span<const Vec<double, D>> position, std::span<const double> support,
+               double skin);
+
+    std::span<const ClusterList> clusters() const { return clusters_; }
+    const Vec<double, D>& image_shift(std::uint32_t entry) const {
+        return image_shift_[entry >> ListEntry::index_bits];
+    }
+    const std::vector<Vec<double, D>>& image_shifts() const { return image_shift_; }
+    std::size_t entries() const;
+    std::size_t bytes() const;
+    std::size_t moving() const { return moving_; }
+
+private:
+    /// Particles of one class: a contiguous range in sorted order with its table of cells.
+    struct Grid {
+        bool fixed = false;
+        std::uint32_t first = 0, last = 0;
+        double support = 0.0;                 // largest R of the class
+        Vec<double, D> cell_size{};
+        Vec<double, D> origin{};
+        std::array<std::int64_t, D> cells{};    // power of two, except in periodic directions
+        std::array<std::vector<std::uint32_t>, D> key_part;    // Morton key = OR over directions
+        std::vector<std::uint32_t> cell_start;
+    };
+
+    /// A cell that a search visits, along one direction.
+    struct CellStep {
+        std::uint32_t key_part;
+        std::uint32_t image_part;
+    };
+
+    /// What a thread needs while it searches.
+    struct Scratch {
+        std::vector<std::uint32_t> list;
+        std::array<std::vector<CellStep>, D> steps;
+    };
+
+    struct Bounds {
+        Vec<double, D> low, high;
+        double support;
+    };
+
+    void fill_image_shifts();
+    void size_grid(Grid& grid, std::span<const Vec<double, D>> position,
+                   std::span<const std::uint32_t> members) const;
+    static void fill_key_parts(Grid& grid);
+    static std::int64_t cell_of(const Grid& grid, double x, int a);
+    std::int64_t wrap(const Grid& grid, std::int64_t cell, int a) const;
+    std::uint32_t key_of(const Grid& grid, const Vec<double, D>& x) const;
+
+    static Bounds bounds_of(std::span<const Vec<double, D>> position, std::span<const double> support,
+                            std::size_t first, std::size_t last);
+
+    template <int width>
+    void search(const Grid& grid, const Bounds& bounds, std::uint32_t first, double skin,
+                std::span<const Vec<double, D>> position, std::span<const double> support,
+                Scratch& scratch) const;
+    void fill_steps(const Grid& grid, const Bounds& bounds, double radius, Scratch& scratch) const;
+
+    Domain<D> domain_;
+    std::vector<Vec<double, D>> image_shift_;
+    std::vector<Grid> grids_;
+    std::vector<ClusterList> clusters_;
+    std::vector<ListStorage> storage_;    // one per thread
+    std::size_t moving_ = 0;
+};
+
+}  // namespace doseki
+
+#include "neighbours_sort.hpp"
+#include "neighbours_search.hpp"

@@ -1,0 +1,112 @@
+#pragma once
+// Neighbours, part two: the union lists of clusters.
+
+#include <omp.h>
+
+#include "neighbours.hpp"
+
+namespace doseki {
+
+/// The cells within `radius` of the bounds, direction by direction.
+template <int D>
+void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double radius, Scratch& scratch) const {
+    std::uint32_t weight = 1;
+    for (int a = 0; a < D; ++a, weight *= 3) {
+        const std::int64_t low = cell_of(grid, bounds.low[a] - radius, a);
+        std::int64_t high = cell_of(grid, bounds.high[a] + radius, a);
+        // Around a wrapped table once is everything; twice would list particles twice.
+        if (!domain_.periodic[a]) high = std::min(high, low + grid.cells[a] - 1);
+        scratch.steps[a].clear();
+        for (std::int64_t cell = low; cell <= high; ++cell) {
+            const std::int64_t wrapped = wrap(grid, cell, a);
+            // Cell n of a periodic direction is cell 0 seen one box further.
+            const std::int64_t turns = domain_.periodic[a] ? (cell - wrapped) / grid.cells[a] : 0;
+            scratch.steps[a].push_back({grid.key_part[a][static_cast<std::size_t>(wrapped)],
+                                        weight * static_cast<std::uint32_t>(turns + 1)});
+        }
+    }
+}
+
+template <int D>
+template <int width>
+void Neighbours<D>::search(const Grid& grid, const Bounds& bounds, std::uint32_t first, double skin,
+                           std::span<const Vec<double, D>> position, std::span<const double> support,
+                           Scratch& scratch) const {
+    using Lanes = stdx::fixed_size_simd<double, width>;
+    const auto last = static_cast<std::uint32_t>(position.size() - 1);
+    Vec<Lanes, D> x;
+    for (int a = 0; a < D; ++a)
+        x[a] = Lanes([&](auto l) { return position[std::min<std::uint32_t>(first + l, last)][a]; });
+    const auto reach = Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
+
+    auto visit = [&](std::uint32_t key, std::uint32_t image) {
+        const Vec<double, D>& shift = image_shift_[image];
+        const std::uint32_t code = image << ListEntry::index_bits;
+        for (std::uint32_t j = grid.cell_start[key]; j < grid.cell_start[key + 1]; ++j) {
+            Lanes square = 0.0;
+            for (int a = 0; a < D; ++a) {
+                const Lanes d = x[a] - (position[j][a] + shift[a]);
+                square += d * d;
+            }
+            const Lanes limit = stdx::max(reach, Lanes(support[j])) + skin;
+            if (stdx::any_of(square < limit * limit)) scratch.list.push_back(j | code);
+        }
+    };
+    fill_steps(grid, bounds, std::max(bounds.support, grid.support) + skin, scratch);
+    const auto& steps = scratch.steps;
+    for (const CellStep& y : steps[1])
+        for (const CellStep& x_step : steps[0]) {
+            const std::uint32_t key = x_step.key_part | y.key_part, image = x_step.image_part + y.image_part;
+            if constexpr (D == 2) visit(key, image);
+            else
+                for (const CellStep& z : steps[2]) visit(key | z.key_part, image + z.image_part);
+        }
+}
+
+template <int D>
+template <int width>
+void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<const double> support,
+                          double skin) {
+    const std::size_t n = position.size(), count = (n + width - 1) / width;
+    clusters_.assign(count, {});
+    storage_.resize(static_cast<std::size_t>(omp_get_max_threads()));
+    for (ListStorage& storage : storage_) storage.clear();
+
+#pragma omp parallel
+    {
+        ListStorage& storage = storage_[static_cast<std::size_t>(omp_get_thread_num())];
+        Scratch scratch;
+#pragma omp for schedule(dynamic, 64)
+        for (std::size_t c = 0; c < count; ++c) {
+            const std::size_t first = c * width;
+            const Bounds bounds = bounds_of(position, support, first, std::min(n, first + width));
+            auto search_grids = [&](bool fixed) {
+                for (const Grid& grid : grids_)
+                    if (grid.fixed == fixed)
+                        search<width>(grid, bounds, static_cast<std::uint32_t>(first), skin, position, support, scratch);
+            };
+            scratch.list.clear();
+            search_grids(false);
+            clusters_[c].moving = static_cast<std::uint32_t>(scratch.list.size());
+            if (first < moving_) search_grids(true);
+            clusters_[c].fixed = static_cast<std::uint32_t>(scratch.list.size()) - clusters_[c].moving;
+            clusters_[c].begin = storage.keep(scratch.list);
+        }
+    }
+}
+
+template <int D>
+auto Neighbours<D>::bounds_of(std::span<const Vec<double, D>> position, std::span<const double> support,
+                              std::size_t first, std::size_t last) -> Bounds {
+    Bounds bounds{position[first], position[first], support[first]};
+    for (std::size_t p = first + 1; p < last; ++p) {
+        bounds.support = std::max(bounds.support, support[p]);
+        for (int a = 0; a < D; ++a) {
+            bounds.low[a] = std::min(bounds.low[a], position[p][a]);
+            bounds.high[a] = std::max(bounds.high[a], position[p][a]);
+        }
+    }
+    return bounds;
+}
+
+}  // namespace doseki

@@ -1,0 +1,158 @@
+#pragma once
+// Neighbours, part one: classes, cells and the order in which particles are stored.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "neighbours.hpp"
+
+namespace doseki {
+
+template <int D>
+void Neighbours<D>::fill_image_shifts() {
+    constexpr int images = D == 2 ? 9 : 27;
+    image_shift_.resize(images);
+    for (int code = 0; code < images; ++code) {
+        int digits = code;
+        for (int a = 0; a < D; ++a, digits /= 3)
+            image_shift_[code][a] = (digits % 3 - 1) * (domain_.periodic[a] ? domain_.length(a) : 0.0);
+    }
+}
+
+template <int D>
+std::int64_t Neighbours<D>::cell_of(const Grid& grid, double x, int a) {
+    return static_cast<std::int64_t>(std::floor((x - grid.origin[a]) / grid.cell_size[a]));
+}
+
+template <int D>
+std::int64_t Neighbours<D>::wrap(const Grid& grid, std::int64_t cell, int a) const {
+    const std::int64_t n = grid.cells[a];
+    return domain_.periodic[a] ? ((cell % n) + n) % n : cell & (n - 1);
+}
+
+/// Bits of a Morton key are those of all directions in turn, as long as a direction has some left; so
+/// the key is the OR of one part for each direction.
+template <int D>
+void Neighbours<D>::fill_key_parts(Grid& grid) {
+    std::array<std::vector<int>, D> places;
+    for (int bit = 0, place = 0; bit < 32; ++bit)
+        for (int a = 0; a < D; ++a)
+            if ((std::uint64_t{1} << bit) < static_cast<std::uint64_t>(grid.cells[a])) places[a].push_back(place++);
+    for (int a = 0; a < D; ++a) {
+        grid.key_part[a].assign(static_cast<std::size_t>(grid.cells[a]), 0);
+        for (std::size_t cell = 0; cell < grid.key_part[a].size(); ++cell)
+            for (std::size_t bit = 0; bit < places[a].size(); ++bit)
+                grid.key_part[a][cell] |= static_cast<std::uint32_t>((cell >> bit) & 1) << places[a][bit];
+    }
+}
+
+template <int D>
+std::uint32_t Neighbours<D>::key_of(const Grid& grid, const Vec<double, D>& x) const {
+    std::uint32_t key = 0;
+    for (int a = 0; a < D; ++a)
+        key |= grid.key_part[a][static_cast<std::size_t>(wrap(grid, cell_of(grid, x[a], a), a))];
+    return key;
+}
+
+template <int D>
+void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> position,
+                              std::span<const std::uint32_t> members) const {
+    constexpr double far = std::numeric_limits<double>::max();
+    Vec<double, D> low, high;
+    low.component.fill(far), high.component.fill(-far);
+    for (std::uint32_t p : members)
+        for (int a = 0; a < D; ++a) {
+            low[a] = std::min(low[a], position[p][a]);
+            high[a] = std::max(high[a], position[p][a]);
+        }
+    std::array<std::int64_t, D> cells;
+    for (int a = 0; a < D; ++a) {
+        const double size = 0.5 * grid.support;
+        if (domain_.periodic[a]) {
+            cells[a] = std::max<std::int64_t>(1, static_cast<std::int64_t>(domain_.length(a) / size));
+            grid.origin[a] = domain_.low[a];
+            grid.cell_size[a] = domain_.length(a) / static_cast<double>(cells[a]);
+        } else {
+            const double count = std::min((high[a] - low[a]) / size + 1.0, 1048576.0);
+            cells[a] = std::bit_ceil(static_cast<std::uint64_t>(count));
+            grid.origin[a] = low[a];
+            grid.cell_size[a] = size;
+        }
+    }
+    // A table no larger than the particles warrant; folding a direction only adds candidates.
+    const std::int64_t limit = std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
+    auto table_size = [&] {
+        std::int64_t product = 1;
+        for (int a = 0; a < D; ++a) product *= static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(cells[a])));
+        return product;
+    };
+    while (table_size() > limit) {
+        int longest = -1;
+        for (int a = 0; a < D; ++a)
+            if (!domain_.periodic[a] && cells[a] > 1 && (longest < 0 || cells[a] > cells[longest])) longest = a;
+        if (longest < 0) break;
+        cells[longest] /= 2;
+    }
+    grid.cells = cells;
+    fill_key_parts(grid);
+    grid.cell_start.assign(static_cast<std::size_t>(table_size()) + 1, 0);
+}
+
+template <int D>
+std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> position,
+                                               std::span<const double> support,
+                                               std::span<const std::uint8_t> is_fixed) {
+    if (position.size() > ListEntry::max_index)
+        throw ResourceFailure("more than 2^27 particles on one rank");
+    std::map<std::pair<bool, int>, std::vector<std::uint32_t>> classes;
+    for (std::uint32_t p = 0; p < position.size(); ++p)
+        classes[{is_fixed[p] != 0, std::ilogb(support[p])}].push_back(p);
+
+    std::vector<std::uint32_t> order;
+    order.reserve(position.size());
+    grids_.clear();
+    moving_ = 0;
+    for (auto& [name, members] : classes) {
+        Grid grid;
+        grid.fixed = name.first;
+        grid.first = static_cast<std::uint32_t>(order.size());
+        grid.last = grid.first + static_cast<std::uint32_t>(members.size());
+        for (std::uint32_t p : members) grid.support = std::max(grid.support, support[p]);
+        size_grid(grid, position, members);
+
+        std::vector<std::uint32_t> keys(members.size());
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            keys[k] = key_of(grid, position[members[k]]);
+            ++grid.cell_start[keys[k] + 1];
+        }
+        grid.cell_start[0] = grid.first;
+        for (std::size_t c = 1; c < grid.cell_start.size(); ++c)
+            grid.cell_start[c] += grid.cell_start[c - 1];
+        std::vector<std::uint32_t> next(grid.cell_start.begin(), grid.cell_start.end() - 1);
+        order.resize(grid.last);
+        for (std::size_t k = 0; k < members.size(); ++k) order[next[keys[k]]++] = members[k];
+        if (!grid.fixed) moving_ = grid.last;
+        grids_.push_back(std::move(grid));
+    }
+    return order;
+}
+
+template <int D>
+std::size_t Neighbours<D>::entries() const {
+    std::size_t count = 0;
+    for (const ListStorage& list : storage_) count += list.entries();
+    return count;
+}
+
+template <int D>
+std::size_t Neighbours<D>::bytes() const {
+    std::size_t bytes = clusters_.capacity() * sizeof(ClusterList);
+    for (const ListStorage& list : storage_) bytes += list.bytes();
+    for (const auto& grid : grids_) bytes += grid.cell_start.capacity() * sizeof(std::uint32_t);
+    return bytes;
+}
+
+}  // namespace doseki

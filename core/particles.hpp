@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// How a particle's position changes. Fixed particles give interactions but never move (the paper's
+/// slope); driven ones move with a prescribed velocity (the inflow buffer).
+enum class Motion : std::uint8_t { free, fixed, driven };
+
+/// What a particle is, in one machine word and a half.
+struct Tag {
+    std::int64_t id;
+    std::int32_t body;
+    std::int16_t material;
+    Motion motion;
+};
+
+/// The state of all particles, one array per field, sorted in space by Neighbours. Everything is
+/// double: the precision of a run is that of its pair sums.
+template <int D>
+struct Particles {
+    std::vector<Vec<double, D>> position;        // [m]
+    std::vector<Vec<double, D>> velocity;        // [m/s]
+    std::vector<Vec<double, D>> acceleration;    // [m/s^2]
+    std::vector<double> density;                 // [kg/m^3]
+    std::vector<double> density_rate;            // [kg/m^3/s]
+    std::vector<Deviator<double, D>> deviatoric_stress;         // [Pa]
+    std::vector<Deviator<double, D>> deviatoric_stress_rate;    // [Pa/s]
+    std::vector<double> mass;                // [kg], 2-D: [kg/m]
+    std::vector<double> smoothing_length;    // [m]
+    std::vector<Tag> tag;
+
+    std::size_t size() const { return tag.size(); }
+
+    /// Calls f(array) for every field; the one list from which sorting, growth and checkpoints derive.
+    template <class F>
+    void for_each_field(F&& f) {
+        f(position), f(velocity), f(acceleration), f(density), f(density_rate);
+        f(deviatoric_stress), f(deviatoric_stress_rate), f(mass), f(smoothing_length), f(tag);
+    }
+
+    void resize(std::size_t n) {
+        for_each_field([n](auto& field) { field.resize(n); });
+    }
+
+    /// New particle k is old particle order[k]; particles not named are gone.
+    void reorder(std::span<const std::uint32_t> order) {
+        for_each_field([order](auto& field) {
+            std::remove_reference_t<decltype(field)> sorted(order.size());
+#pragma omp parallel for schedule(static)
+            for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
+            field.swap(sorted);
+        });
+    }
+
+    bool is_free(std::size_t p) const { return tag[p].motion == Motion::free; }
+    bool is_fixed(std::size_t p) const { return tag[p].motion == Motion::fixed; }
+};
+
+}  // namespace doseki

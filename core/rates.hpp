@@ -1,0 +1,248 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/error.hpp"
+#include "material.hpp"
+#include "neighbours.hpp"
+#include "options.hpp"
+#include "particles.hpp"
+#include "physics/equation_of_state.hpp"
+#include "physics/stress.hpp"
+#include "physics/timestep.hpp"
+#include "terms.hpp"
+
+namespace doseki {
+
+/// Pressure and sound speed of a particle as its scheme sees them: Eqs. (8), (17) and the rule on
+/// tension.
+struct Thermodynamics {
+    double pressure, sound_speed, bulk_energy;
+};
+
+inline Thermodynamics equation_of_state(const Material& material, double rho, Motion motion,
+                                        Tension tension) {
+    const auto eos = BirchMurnaghan<double>::at(rho, material.rho0, material.c0);
+    const bool clamped = motion == Motion::fixed || tension == Tension::clamp_all ||
+                         (tension == Tension::clamp_fluid && material.law == Law::fluid);
+    return {clamped ? max(0.0, eos.pressure) : eos.pressure, eos.sound_speed, eos.bulk_energy};
+}
+
+/// The right-hand side: density, stress and velocity rates of all particles.
+template <class real, int D>
+class Rates {
+public:
+    Rates(std::vector<Material> materials, const Options<D>& options, bool periodic)
+        : materials_(std::move(materials)), options_(options), periodic_(periodic) {}
+
+    /// Fills the rates of `particles`, whose density, stress and velocity are half a step behind: the
+    /// values predicted with the old rates over `half_dt` are what enters the sums. Two passes over
+    /// pairs with the stress of each particle between them. Sets timestep() and av_power().
+    /// `new_lists`: neighbours were built since the last call. Where they were not, a particle of the
+    /// bed that nothing comes near has the rates it had: none.
+    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt, bool new_lists) {
+        skip_empty_ = !new_lists;
+        pack_motion(particles, half_dt);
+        stress_.resize(particles.size());
+        sum_velocity_gradient(particles, neighbours, half_dt);
+        sum_momentum(particles, neighbours);
+    }
+
+    double timestep() const { return timestep_; }
+    double av_power() const { return av_power_; }
+    /// A particle whose rates are not finite, or -1.
+    std::int64_t faulty_particle() const { return faulty_; }
+    const std::vector<Material>& materials() const { return materials_; }
+    const std::vector<StressRecord<real, D>>& stress_records() const { return stress_; }
+
+    /// Deviatoric part of the stress of particle p: S of a solid, tau of a fluid (as last summed).
+    Deviator<double, D> deviator(const Particles<D>& particles, std::size_t p) const {
+        Deviator<double, D> tau = particles.deviatoric_stress[p];
+        const Tag& tag = particles.tag[p];
+        if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free) return tau;
+        const StressRecord<real, D>& record = stress_[p];
+        const double rho = static_cast<double>(record.rho);
+        const auto eos = equation_of_state(materials_[tag.material], rho, tag.motion, options_.tension);
+        for (int a = 0; a < D; ++a)
+            for (int b = a; b < D; ++b)
+                if (a < 2 || b < 2)
+                    tau.element[Deviator<double, D>::index(a, b)] =
+                        rho * rho * static_cast<double>(record.stress[Sym<real, D>::index(a, b)]) + (a == b ? eos.pressure : 0.0);
+        return tau;
+    }
+    std::size_t bytes() const {
+        return motion_.capacity() * sizeof(MotionRecord<real, D>) + stress_.capacity() * sizeof(StressRecord<real, D>) +
+               summary_.capacity() * sizeof(ClusterSummary);
+    }
+
+private:
+    /// What a cluster adds to the step's totals, reduced in the order of clusters.
+    struct ClusterSummary {
+        double timestep = std::numeric_limits<double>::max();
+        double av_power = 0.0;
+        std::int64_t faulty = -1;
+    };
+
+    void pack_motion(Particles<D>& particles, double half_dt);
+    double smoothing_length(const Particles<D>& particles, std::size_t p, double rho) const;
+    void update_particle(Particles<D>& particles, std::size_t p, Mat<double, D> L, double half_dt);
+    void sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt);
+    void sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours);
+    void reduce_summaries();
+
+    template <class Term>
+    void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, const Term& term) {
+        const std::span<const MotionRecord<real, D>> records(motion_);
+        if (periodic_) for_each_pair<true>(neighbours, clusters, records, frame_, skip_empty_, term);
+        else for_each_pair<false>(neighbours, clusters, records, frame_, skip_empty_, term);
+    }
+
+    std::vector<Material> materials_;
+    Options<D> options_;
+    bool periodic_;
+    bool equal_h_ = true;
+    bool skip_empty_ = false;
+    CoordinateFrame<real, D> frame_;
+    std::vector<MotionRecord<real, D>> motion_;
+    std::vector<StressRecord<real, D>> stress_;
+    std::vector<ClusterSummary> summary_;
+    double timestep_ = 0.0;
+    double av_power_ = 0.0;
+    std::int64_t faulty_ = -1;
+};
+
+/// Eq. (10), held within a quarter of its value at rest (a solid in tension would grow h for ever).
+template <class real, int D>
+double Rates<real, D>::smoothing_length(const Particles<D>& particles, std::size_t p, double rho) const {
+    if (options_.h_mode == SmoothingLengthMode::constant) return particles.smoothing_length[p];
+    const double mass = particles.mass[p];
+    const double rest = options_.eta * std::pow(mass / materials_[particles.tag[p].material].rho0, 1.0 / D);
+    return std::clamp(options_.eta * std::pow(mass / rho, 1.0 / D), 0.8 * rest, 1.25 * rest);
+}
+
+template <class real, int D>
+void Rates<real, D>::pack_motion(Particles<D>& particles, double half_dt) {
+    const std::size_t n = particles.size();
+    motion_.resize(n);
+    if constexpr (std::is_same_v<real, float>) {
+        Vec<double, D> low = particles.position[0], high = low;
+        for (const auto& x : particles.position)
+            for (int a = 0; a < D; ++a) low[a] = min(low[a], x[a]), high[a] = max(high[a], x[a]);
+        frame_ = CoordinateFrame<real, D>::covering(low, high);
+    }
+    const double h0 = particles.smoothing_length[0];
+    bool equal = options_.h_mode == SmoothingLengthMode::constant;
+#pragma omp parallel for schedule(static) reduction(&& : equal)
+    for (std::size_t p = 0; p < n; ++p) {
+        MotionRecord<real, D>& record = motion_[p];
+        for (int a = 0; a < D; ++a) {
+            record.x[a] = frame_.coordinate(particles.position[p][a], a);
+            record.v[a] = static_cast<real>(particles.velocity[p][a] + half_dt * particles.acceleration[p][a]);
+        }
+        const double rho = particles.density[p] + half_dt * particles.density_rate[p];
+        const double h = smoothing_length(particles, p, rho);
+        particles.smoothing_length[p] = h;
+        record.mass = static_cast<real>(particles.mass[p]);
+        record.inverse_support = static_cast<real>(1.0 / (WendlandC6<D>::support * h));
+        equal = equal && h == h0;
+    }
+    equal_h_ = equal;
+}
+
+/// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
+template <class real, int D>
+void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat<double, D> L, double half_dt) {
+    const Tag& tag = particles.tag[p];
+    const Material& material = materials_[tag.material];
+    const double rho = particles.density[p] + half_dt * particles.density_rate[p];
+    for (double& element : L.element) element /= rho;
+
+    const auto eos = equation_of_state(material, rho, tag.motion, options_.tension);
+    Deviator<double, D> stress{}, rate{};
+    if (tag.motion == Motion::free) {
+        if (material.law == Law::fluid) {
+            stress = newtonian_stress(L, rho, material.nu);
+        } else if (material.shear_modulus > 0.0) {
+            stress = particles.deviatoric_stress[p];
+            add_scaled(stress, half_dt, particles.deviatoric_stress_rate[p]);
+            rate = elastic_stress_rate(L, stress, material.shear_modulus);
+        }
+    }
+    particles.density_rate[p] = -rho * trace(L);
+    particles.deviatoric_stress_rate[p] = rate;
+
+    const auto scaled = stress_over_rho_squared(eos.pressure, stress, rho);
+    StressRecord<real, D>& record = stress_[p];
+    for (int k = 0; k < Sym<real, D>::size; ++k) record.stress[k] = static_cast<real>(scaled.element[k]);
+    record.rho = static_cast<real>(rho);
+    record.c = static_cast<real>(eos.sound_speed);
+    record.balsara = static_cast<real>(
+        options_.balsara ? balsara_switch(L, eos.sound_speed, particles.smoothing_length[p]) : 1.0);
+}
+
+template <class real, int D>
+void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt) {
+    auto update = [&](std::size_t p, const Mat<double, D>& gradient) {
+        update_particle(particles, p, gradient, half_dt);
+    };
+    const std::span<const MotionRecord<real, D>> motion(motion_);
+    using Update = decltype(update);
+    if (options_.sym_grad && !equal_h_)
+        sum_over_pairs(neighbours, neighbours.clusters(),
+                       VelocityGradientTerm<GradientOf::mean_h, real, D, Update>{motion, update});
+    else
+        sum_over_pairs(neighbours, neighbours.clusters(),
+                       VelocityGradientTerm<GradientOf::own_h, real, D, Update>{motion, update});
+}
+
+template <class real, int D>
+void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours) {
+    constexpr std::size_t width = lanes<real>;
+    const auto clusters = neighbours.clusters().first((neighbours.moving() + width - 1) / width);
+    summary_.assign(clusters.size(), {});
+    std::fill(particles.acceleration.begin() + static_cast<std::ptrdiff_t>(neighbours.moving()),
+              particles.acceleration.end(), Vec<double, D>{});
+
+    auto finish = [&](std::size_t p, const auto& sums) {
+        if (!particles.is_free(p)) {
+            particles.acceleration[p] = {};
+            return;
+        }
+        const Vec<double, D> a = sums.acceleration + options_.gravity;
+        particles.acceleration[p] = a;
+        const double v_sig = max(sums.max_v_sig, 2.0 * static_cast<double>(stress_[p].c));
+        ClusterSummary& summary = summary_[p / width];
+        summary.av_power += particles.mass[p] * sums.av_power;
+        summary.timestep = min(summary.timestep,
+                               doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
+                                                options_.cflnumber, options_.cfl_force));
+        if (!std::isfinite(dot(a, a) + particles.density_rate[p])) summary.faulty = static_cast<std::int64_t>(p);
+    };
+    const std::span<const MotionRecord<real, D>> motion(motion_);
+    const std::span<const StressRecord<real, D>> stress(stress_);
+    const real alpha = static_cast<real>(options_.alpha);
+    using Finish = decltype(finish);
+    if (equal_h_)
+        sum_over_pairs(neighbours, clusters,
+                       MomentumTerm<GradientOf::own_h, real, D, Finish>{motion, stress, alpha, finish});
+    else
+        sum_over_pairs(neighbours, clusters,
+                       MomentumTerm<GradientOf::mean_h, real, D, Finish>{motion, stress, alpha, finish});
+    reduce_summaries();
+}
+
+template <class real, int D>
+void Rates<real, D>::reduce_summaries() {
+    timestep_ = std::numeric_limits<double>::max();
+    av_power_ = 0.0;
+    faulty_ = -1;
+    for (const ClusterSummary& summary : summary_) {
+        timestep_ = min(timestep_, summary.timestep);
+        av_power_ += summary.av_power;
+        if (faulty_ < 0) faulty_ = summary.faulty;
+    }
+}
+
+}  // namespace doseki

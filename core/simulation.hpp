@@ -1,0 +1,188 @@
+#pragma once
+#include <cmath>
+#include <string>
+
+#include "diagnostics.hpp"
+#include "integrate.hpp"
+#include "rates.hpp"
+#include "sources.hpp"
+
+namespace doseki {
+
+/// A run: state, right-hand side and clock. Owned by Python, which says until when to go on.
+template <class real, int D>
+class Simulation {
+public:
+    static constexpr int width = lanes<real>;
+
+    Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
+        : options_(options), domain_(domain), neighbours_(domain),
+          rates_(std::move(materials), options, domain.any_periodic()) {}
+
+    Particles<D> particles;
+    Sources<D> sources;
+
+    /// Sorts, builds lists and takes the first rates. Call once, after the particles are in.
+    void start() {
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            if (particles.is_free(p)) sources.ledger.initial += particles.mass[p];
+        sources.feed(particles, time_);
+        rebuild_neighbours();
+        update_rates(0.0);
+    }
+
+    /// Steps until `limit` (met exactly), or returns early at the first step at or past `pause`, or
+    /// after `max_steps`.
+    void advance(double limit, double pause, std::int64_t max_steps) {
+        for (std::int64_t n = 0; n < max_steps && time_ < limit && time_ < pause; ++n) step(limit);
+    }
+
+    double time() const { return time_; }
+    double last_timestep() const { return last_dt_; }
+    double next_timestep() const { return rates_.timestep(); }
+    double av_dissipation() const { return av_dissipation_; }
+    std::int64_t steps() const { return steps_; }
+    std::int64_t rebuilds() const { return rebuilds_; }
+    /// Particles stepped, summed over the steps.
+    std::int64_t updates() const { return updates_; }
+    const Neighbours<D>& neighbours() const { return neighbours_; }
+    const Rates<real, D>& rates() const { return rates_; }
+    const Options<D>& options() const { return options_; }
+
+    Totals<D> totals() const { return doseki::totals(particles, rates_.materials(), options_.tension); }
+
+    /// Bytes held per particle: state, records, lists.
+    double bytes_per_particle() const;
+
+private:
+    void step(double limit);
+    void update_neighbours(double moved);
+    void rebuild_neighbours();
+    void update_rates(double half_dt);
+    void wrap_positions();
+    void drop_removed();
+    std::vector<double> support_radii() const;
+    [[noreturn]] void report_failure(std::size_t p) const;
+
+    Options<D> options_;
+    Domain<D> domain_;
+    Neighbours<D> neighbours_;
+    Rates<real, D> rates_;
+    double time_ = 0.0, last_dt_ = 0.0;
+    double av_dissipation_ = 0.0;
+    double moved_ = 0.0;           // since the lists were built
+    double skin_width_ = 0.0;      // [m]
+    std::int64_t steps_ = 0, rebuilds_ = 0, updates_ = 0;
+};
+
+template <class real, int D>
+void Simulation<real, D>::step(double limit) {
+    const double end = min(limit, sources.next_event() > time_ ? sources.next_event() : limit);
+    const double dt = min(rates_.timestep(), end - time_), old_power = rates_.av_power();
+    kick(particles, 0.5 * dt);
+    const double moved = drift(particles, dt);
+    time_ = dt < end - time_ ? time_ + dt : end;
+    update_neighbours(moved);
+    update_rates(0.5 * dt);
+    kick(particles, 0.5 * dt);
+    av_dissipation_ += 0.5 * dt * (old_power + rates_.av_power());
+    last_dt_ = dt;
+    ++steps_;
+    updates_ += static_cast<std::int64_t>(particles.size());
+}
+
+/// Lists hold as long as no two particles can have come nearer by more than the skin.
+template <class real, int D>
+void Simulation<real, D>::update_neighbours(double moved) {
+    moved_ += moved;
+    const bool changed = sources.feed(particles, time_);
+    if (changed || !(2.0 * moved_ < skin_width_)) rebuild_neighbours();
+}
+
+template <class real, int D>
+void Simulation<real, D>::rebuild_neighbours() {
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        for (double x : particles.position[p].component)
+            if (!(std::abs(x) < 1e9)) report_failure(p);
+    wrap_positions();
+    sources.drain(particles);
+    drop_removed();
+    if (particles.size() == 0) throw PhysicsFailure("no particle is left in the domain", -1, time_);
+
+    std::vector<std::uint8_t> fixed(particles.size());
+    for (std::size_t p = 0; p < particles.size(); ++p) fixed[p] = particles.is_fixed(p);
+    const auto support = support_radii();
+    skin_width_ = options_.skin * *std::min_element(support.begin(), support.end());
+    particles.reorder(neighbours_.sort(particles.position, support, fixed));
+    neighbours_.template build<width>(particles.position, support_radii(), skin_width_);
+    moved_ = 0.0;
+    ++rebuilds_;
+}
+
+template <class real, int D>
+void Simulation<real, D>::drop_removed() {
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t p = 0; p < particles.size(); ++p)
+        if (!sources.removed[p]) kept.push_back(p);
+    if (kept.size() < particles.size()) particles.reorder(kept);
+    sources.removed.clear();
+}
+
+template <class real, int D>
+std::vector<double> Simulation<real, D>::support_radii() const {
+    std::vector<double> support(particles.size());
+    const bool grows = options_.h_mode == SmoothingLengthMode::eq10;
+    for (std::size_t p = 0; p < support.size(); ++p) {
+        double h = particles.smoothing_length[p];
+        if (grows) {
+            const double rho0 = rates_.materials()[particles.tag[p].material].rho0;
+            h = max(h, 1.25 * options_.eta * std::pow(particles.mass[p] / rho0, 1.0 / D));
+        }
+        support[p] = WendlandC6<D>::support * h;
+    }
+    return support;
+}
+
+template <class real, int D>
+void Simulation<real, D>::wrap_positions() {
+    for (int a = 0; a < D; ++a) {
+        if (!domain_.periodic[a]) continue;
+        const double length = domain_.length(a);
+        for (auto& x : particles.position) x[a] -= length * std::floor((x[a] - domain_.low[a]) / length);
+    }
+}
+
+template <class real, int D>
+void Simulation<real, D>::update_rates(double half_dt) {
+    rates_.compute(particles, neighbours_, half_dt, moved_ == 0.0);
+    if (rates_.faulty_particle() >= 0) report_failure(static_cast<std::size_t>(rates_.faulty_particle()));
+}
+
+template <class real, int D>
+void Simulation<real, D>::report_failure(std::size_t p) const {
+    const Tag& tag = particles.tag[p];
+    const Material& material = rates_.materials()[tag.material];
+    auto text = [](double value) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof buffer, "%.6g", value);
+        return std::string(buffer);
+    };
+    std::string where;
+    for (int a = 0; a < D; ++a) where += (a ? ", " : "") + text(particles.position[p][a]);
+    const double speed = sqrt(dot(particles.velocity[p], particles.velocity[p]));
+    throw PhysicsFailure("at t = " + text(time_) + " s, step " + std::to_string(steps_ + 1) + ": particle " +
+                             std::to_string(tag.id) + " (" + material.name + ") at (" + where +
+                             ") m has speed " + text(speed) + " m/s, density " + text(particles.density[p]) +
+                             " kg/m^3 (at rest " + text(material.rho0) + ")",
+                         tag.id, time_);
+}
+
+template <class real, int D>
+double Simulation<real, D>::bytes_per_particle() const {
+    std::size_t bytes = neighbours_.bytes() + rates_.bytes();
+    auto& fields = const_cast<Particles<D>&>(particles);
+    fields.for_each_field([&bytes](const auto& field) { bytes += field.capacity() * sizeof(field[0]); });
+    return static_cast<double>(bytes) / static_cast<double>(max<std::size_t>(1, particles.size()));
+}
+
+}  // namespace doseki

@@ -1,0 +1,158 @@
+#pragma once
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "particles.hpp"
+
+namespace doseki {
+
+/// An inflow section: layers of particles, dp apart, pushed through it at a constant speed. Behind the
+/// section a buffer of driven layers carries the flow's pressure upstream; a layer that has crossed the
+/// section is set free and a new one joins at the back. The rate is therefore exact to one layer.
+template <int D>
+struct Inflow {
+    std::vector<Vec<double, D>> layer;    // positions of one layer in the plane of the section
+    Vec<double, D> direction{};           // unit vector of the flow
+    double speed = 0.0;                   // [m/s]
+    double spacing = 0.0;                 // between layers [m]
+    int buffer_layers = 4;
+    double start = 0.0, stop = 0.0;       // [s]
+    double mass = 0.0, density = 0.0, smoothing_length = 0.0;    // of one particle
+    std::int16_t material = 0;
+    std::int32_t body = 0;
+
+    // State: layers set free so far, and whether the buffer exists.
+    std::int64_t released = 0;
+    bool open = false, closed = false;
+
+    double mass_per_layer() const { return mass * static_cast<double>(layer.size()); }
+    double rate() const { return mass_per_layer() * speed / spacing; }
+    double asked(double t) const { return rate() * std::clamp(t - start, 0.0, stop - start); }
+
+    /// The next time at which particles appear, are set free or vanish.
+    double next_event() const {
+        if (closed) return std::numeric_limits<double>::infinity();
+        if (!open) return start;
+        return min(stop, start + (static_cast<double>(released) + 0.5) * spacing / speed);
+    }
+
+    /// Distance of layer k beyond the section at time t (< 0: still in the buffer).
+    double advance(std::int64_t k, double t) const {
+        return speed * (t - start) - (static_cast<double>(k) + 0.5) * spacing;
+    }
+};
+
+/// Particles inside the box are removed and counted.
+template <int D>
+struct Outflow {
+    Vec<double, D> low{}, high{};
+    bool contains(const Vec<double, D>& x) const {
+        for (int a = 0; a < D; ++a)
+            if (x[a] < low[a] || x[a] > high[a]) return false;
+        return true;
+    }
+};
+
+struct Ledger {
+    double initial = 0.0, asked = 0.0, entered = 0.0, left = 0.0;    // [kg], 2-D: [kg/m]
+};
+
+/// Everything that adds or removes particles, with its account.
+template <int D>
+class Sources {
+public:
+    std::vector<Inflow<D>> inflows;
+    std::vector<Outflow<D>> outflows;
+    Ledger ledger;
+    std::int64_t next_id = 0;
+
+    double next_event() const {
+        double next = std::numeric_limits<double>::infinity();
+        for (const Inflow<D>& inflow : inflows) next = min(next, inflow.next_event());
+        return next;
+    }
+
+    /// Carries out all events up to time t; true if particles came or changed their motion, so that
+    /// neighbours must be sorted anew. Particles to remove are left in `removed`.
+    bool feed(Particles<D>& particles, double t);
+
+    /// Free particles inside an outflow, to be dropped at the next sort.
+    void drain(const Particles<D>& particles);
+
+    std::vector<std::uint8_t> removed;
+
+private:
+    void add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t);
+    void release(Particles<D>& particles, Inflow<D>& inflow, double t);
+};
+
+template <int D>
+void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t) {
+    const std::size_t first = particles.size();
+    particles.resize(first + inflow.layer.size());
+    for (std::size_t row = 0; row < inflow.layer.size(); ++row) {
+        const std::size_t p = first + row;
+        particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
+        particles.velocity[p] = inflow.speed * inflow.direction;
+        particles.acceleration[p] = {};
+        particles.density[p] = inflow.density;
+        particles.density_rate[p] = 0.0;
+        particles.deviatoric_stress[p] = particles.deviatoric_stress_rate[p] = {};
+        particles.mass[p] = inflow.mass;
+        particles.smoothing_length[p] = inflow.smoothing_length;
+        particles.tag[p] = {next_id++, inflow.body, inflow.material, Motion::driven};
+    }
+}
+
+template <int D>
+void Sources<D>::release(Particles<D>& particles, Inflow<D>& inflow, double t) {
+    for (; inflow.advance(inflow.released, t) >= 0.0; ++inflow.released)
+        add_layer(particles, inflow, inflow.released + inflow.buffer_layers, t);
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        Tag& tag = particles.tag[p];
+        if (tag.motion != Motion::driven || tag.body != inflow.body) continue;
+        const double beyond = dot(particles.position[p] - inflow.layer[0], inflow.direction);
+        if (beyond >= -1e-9 * inflow.spacing) {
+            tag.motion = Motion::free;
+            ledger.entered += particles.mass[p];
+        }
+    }
+}
+
+template <int D>
+bool Sources<D>::feed(Particles<D>& particles, double t) {
+    bool changed = false;
+    for (Inflow<D>& inflow : inflows) {
+        if (t < inflow.next_event()) continue;
+        changed = true;
+        if (!inflow.open) {
+            inflow.open = true;
+            for (std::int64_t k = 0; k < inflow.buffer_layers; ++k) add_layer(particles, inflow, k, t);
+        }
+        release(particles, inflow, min(t, inflow.stop));
+        if (t >= inflow.stop) {
+            inflow.closed = true;
+            removed.resize(particles.size(), 0);
+            for (std::size_t p = 0; p < particles.size(); ++p)
+                if (particles.tag[p].motion == Motion::driven && particles.tag[p].body == inflow.body)
+                    removed[p] = 1;
+        }
+    }
+    ledger.asked = 0.0;
+    for (const Inflow<D>& inflow : inflows) ledger.asked += inflow.asked(t);
+    return changed;
+}
+
+template <int D>
+void Sources<D>::drain(const Particles<D>& particles) {
+    removed.resize(particles.size(), 0);
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        for (const Outflow<D>& outflow : outflows)
+            if (!removed[p] && particles.is_free(p) && outflow.contains(particles.position[p])) {
+                removed[p] = 1;
+                ledger.left += particles.mass[p];
+            }
+}
+
+}  // namespace doseki

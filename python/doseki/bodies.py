@@ -1,0 +1,182 @@
+"""Bodies of a scenario, turned into particles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .errors import ResourceError
+from .expressions import ExpressionError, evaluate_at, is_expression
+from .lattice import ball_measure, box_counts, box_lattice, disc_lattice, rotated
+from .memory import available_bytes
+from .overlaps import describe_overlaps
+from .particle_checks import check_particles
+from .particles import FIXED, FREE, ParticleSet, concatenate
+from .scenario import Scenario
+from .schema import Box, Disc, LatticeBody, ParticleFile, Points, ShapedBody
+
+MAX_PARTICLES = 2_000_000_000
+BYTES_PER_PARTICLE = 500  # what a run holds, lists included
+
+
+def build_bodies(scenario: Scenario) -> tuple[ParticleSet, list[str]]:
+    """The particles of all bodies, and the names their `body` indices stand for.
+
+    The names of the inflows come last; no particle has them yet.  Overlaps are reported in
+    `scenario.warnings`.  Raises UserError, or ResourceError when there are too many particles.
+    """
+    _check_size(scenario)
+    names = _body_names(scenario)
+    parts = [
+        _from_file(scenario, name, names)
+        if isinstance(body, ParticleFile)
+        else _from_shape(scenario, name, names)
+        for name, body in scenario.body.items()
+    ]
+    particles = concatenate(parts, scenario.dim)
+    check_particles(scenario, particles, names)
+    scenario.warnings.extend(describe_overlaps(particles, names))
+    return particles, names
+
+
+def _body_names(scenario: Scenario) -> list[str]:
+    """Bodies first, a file's own body names in place of the name of the file's body."""
+    names: list[str] = []
+    for name in scenario.body:
+        table = scenario.particle_tables.get(name)
+        names += table.body_names if table is not None and table.body is not None else [name]
+    return list(dict.fromkeys([*names, *scenario.inflow]))
+
+
+def _check_size(scenario: Scenario) -> None:
+    """Refuse what cannot be held, before anything is allocated."""
+    counts = {name: _count(scenario, name) for name in scenario.body}
+    total, free = sum(counts.values()), available_bytes()
+    if total > MAX_PARTICLES or total * BYTES_PER_PARTICLE > free:
+        largest = max(counts, key=lambda name: counts[name])
+        raise ResourceError(
+            f"the scenario asks for {total:.3g} particles ({counts[largest]:.3g} of them in "
+            f"body.{largest}), about {total * BYTES_PER_PARTICLE / 2**30:.3g} GiB; at most "
+            f"{min(MAX_PARTICLES, free / BYTES_PER_PARTICLE):.3g} fit: increase dp"
+        )
+
+
+def _count(scenario: Scenario, name: str) -> float:
+    """How many particles a body will have (a disc on a lattice: its bounding box)."""
+    body = scenario.body[name]
+    if isinstance(body, Box):
+        full = float(np.prod(box_counts(body.min, body.max, body.dp or scenario.dp)))
+        return min(full, body.count or full)
+    if isinstance(body, Disc):
+        across = 2 * body.radius / (body.dp or scenario.dp) + 3
+        return across**scenario.dim if body.fill == "lattice" else 1
+    if isinstance(body, Points):
+        return len(body.position)
+    return len(scenario.particle_tables[name])
+
+
+def _from_shape(scenario: Scenario, name: str, names: list[str]) -> ParticleSet:
+    """Particles of a box, a disc or points, at reference density."""
+    body = scenario.body[name]
+    rho0 = scenario.materials[body.material].rho0
+    position, mass = _fill(scenario, name, body, rho0)
+    n = len(position)
+    masses, density = np.full(n, mass), np.full(n, rho0)
+    return ParticleSet(
+        position=position,
+        velocity=_velocity(scenario, name, body, position),
+        mass=masses,
+        density=density,
+        smoothing_length=smoothing_length(scenario, masses, density),
+        material=np.full(n, scenario.material_names.index(body.material), np.int32),
+        body=np.full(n, names.index(name), np.int32),
+        motion=np.full(n, FIXED if body.fixed else FREE, np.int32),
+        id=np.arange(n, dtype=np.int64),
+    )
+
+
+def _fill(scenario: Scenario, name: str, body: ShapedBody, rho0: float) -> tuple[np.ndarray, float]:
+    """Positions (N, dim) and the mass of each particle."""
+    if isinstance(body, Points):
+        return np.array(body.position), body.mass
+    spacing = body.dp or scenario.dp
+    mass = rho0 * spacing**scenario.dim
+    if isinstance(body, Box):
+        position, pivot = _box(scenario, name, body, spacing), body.min
+    elif body.fill == "lattice":
+        position, pivot = disc_lattice(body.centre, body.radius, spacing), body.centre
+    else:
+        position, pivot = body.centre[None, :].copy(), body.centre
+        mass = rho0 * ball_measure(body.radius, scenario.dim)
+    return _rotated(scenario, name, body, position, pivot), body.mass_per_particle or mass
+
+
+def _box(scenario: Scenario, name: str, body: Box, spacing: float) -> np.ndarray:
+    counts = box_counts(body.min, body.max, spacing)
+    if not (counts >= 1).all():
+        raise scenario.where.error(
+            ("body", name, "max"),
+            f"body.{name}: the box from {body.min.tolist()} to {body.max.tolist()} is less than "
+            f"one particle thick (dp = {spacing:g} m)",
+        )
+    full = int(np.prod(counts))
+    if body.count is not None and body.count > full:
+        raise scenario.where.error(
+            ("body", name, "count"),
+            f"body.{name}.count = {body.count}: the box holds only {full} particles",
+        )
+    return box_lattice(body.min, counts, spacing, body.count or full)
+
+
+def _rotated(
+    scenario: Scenario, name: str, body: LatticeBody, position: np.ndarray, pivot: np.ndarray
+) -> np.ndarray:
+    axis = body.rotate_axis
+    if axis is not None and (scenario.dim == 2 or not np.any(axis)):
+        raise scenario.where.error(
+            ("body", name, "rotate_axis"),
+            f"body.{name}.rotate_axis = {axis.tolist()}: only a 3-D run has one, other than zero",
+        )
+    return rotated(position, body.rotate, pivot if body.pivot is None else body.pivot, axis)
+
+
+def _velocity(scenario: Scenario, name: str, body: ShapedBody, position: np.ndarray) -> np.ndarray:
+    """Initial velocities (N, dim): numbers, or expressions of the position."""
+    velocity = np.zeros_like(position)
+    for axis, entry in enumerate(body.velocity or []):
+        if not is_expression(entry):
+            velocity[:, axis] = entry
+            continue
+        try:
+            velocity[:, axis] = evaluate_at(entry, scenario.constants, position)
+        except ExpressionError as error:
+            keys = ("body", name, "velocity")
+            raise scenario.where.error(keys, f"body.{name}.velocity: {error}") from None
+    return velocity
+
+
+def _from_file(scenario: Scenario, name: str, names: list[str]) -> ParticleSet:
+    """Particles as a file gives them; smoothing lengths by eq. 10 where it gives none."""
+    table, index = scenario.particle_tables[name], {b: i for i, b in enumerate(names)}
+    n = len(table)
+    materials = np.array([scenario.material_names.index(m) for m in table.material_names])
+    bodies, body = [name], np.zeros(n, np.int32)
+    if table.body is not None:
+        bodies, body = table.body_names, table.body
+    fixed = np.full(n, scenario.body[name].fixed) if table.fixed is None else table.fixed
+    h = table.smoothing_length
+    return ParticleSet(
+        position=table.position,
+        velocity=table.velocity,
+        mass=table.mass,
+        density=table.density,
+        smoothing_length=smoothing_length(scenario, table.mass, table.density) if h is None else h,
+        material=materials[table.material].astype(np.int32),
+        body=np.array([index[b] for b in bodies], np.int32)[body],
+        motion=np.where(fixed, FIXED, FREE).astype(np.int32),
+        id=np.arange(n, dtype=np.int64),
+    )
+
+
+def smoothing_length(scenario: Scenario, mass: np.ndarray, density: np.ndarray) -> np.ndarray:
+    """h = eta (m/rho)^(1/dim) (eq. 10)."""
+    return scenario.eta * (mass / density) ** (1 / scenario.dim)

@@ -1,0 +1,98 @@
+"""The names of the files in the output folder of a run, and the reading of its plain files."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """Where everything about one run stands on the disk."""
+
+    path: Path
+
+    @property
+    def scenario(self) -> Path:
+        """The effective scenario."""
+        return self.path / "scenario.toml"
+
+    @property
+    def history(self) -> Path:
+        """The table of diagnostics."""
+        return self.path / "history.csv"
+
+    @property
+    def summary(self) -> Path:
+        """What the run came to, for programs."""
+        return self.path / "summary.json"
+
+    @property
+    def summary_text(self) -> Path:
+        """What the run came to, for people."""
+        return self.path / "summary.txt"
+
+    @property
+    def series(self) -> Path:
+        """The index of the snapshots that ParaView opens as one animation."""
+        return self.path / "snapshots.vtkhdf.series"
+
+    @property
+    def log(self) -> Path:
+        """The messages of the run."""
+        return self.path / "log"
+
+    @property
+    def snapshots(self) -> Path:
+        """The folder of the snapshots."""
+        return self.path / "snapshots"
+
+    @property
+    def figures(self) -> Path:
+        """The folder of the pictures."""
+        return self.path / "figures"
+
+    def is_run(self) -> bool:
+        """Whether a run was recorded here."""
+        return self.scenario.is_file() and self.snapshots.is_dir()
+
+    def snapshot(self, number: int) -> Path:
+        """File of snapshot `number`, counted from 0."""
+        return self.snapshots / f"{number:06d}.vtkhdf"
+
+    def snapshot_files(self) -> list[Path]:
+        """The snapshots on the disk, in order of time."""
+        files = self.snapshots.glob("*.vtkhdf")
+        return sorted((f for f in files if re.fullmatch(r"\d{6,}", f.stem)), key=_number)
+
+    def written_files(self) -> list[Path]:
+        """Every file that a run may have left here."""
+        plain = (
+            self.scenario,
+            self.history,
+            self.summary,
+            self.summary_text,
+            self.series,
+            self.log,
+        )
+        return [
+            *(file for file in plain if file.exists()),
+            *self.snapshot_files(),
+            *self.figures.glob("*.png"),
+        ]
+
+
+def _number(file: Path) -> int:
+    return int(file.stem)
+
+
+def read_history(path: Path) -> tuple[list[str], list[list[str]]]:
+    """Column names and rows of a history file; a last row cut short by a kill is left out."""
+    if not path.is_file():
+        return [], []
+    text = path.read_text(encoding="utf-8")
+    whole_lines = text[: text.rfind("\n") + 1].splitlines()
+    rows = list(csv.reader(whole_lines))
+    return (rows[0], rows[1:]) if rows else ([], [])

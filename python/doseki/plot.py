@@ -1,0 +1,111 @@
+"""The figures of a run: those its scenario asks for, and those every run gets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .errors import UserError
+from .figure_flow import draw_flow
+from .figure_histogram import SpeedHistogram, draw_histogram
+from .figure_series import ENERGIES, MASSES, draw_history
+from .figure_snapshot import SnapshotFigure, draw_snapshots
+from .flow import measure_flow
+from .load import Run, Snapshot, load
+from .storage import clear_errors, write_whole
+from .views import View, before_flow, named_window, tables, tilt, whole_space, with_flow
+
+FEW = 2000  # a run of no more particles is also drawn with the support, as Figs. 3 and 4
+MANY = 6  # most panels below each other
+
+
+def plot_run(directory: str | Path) -> list[Path]:
+    """Draw every figure of the run in `directory` into DIR/figures; returns the PNG files.
+
+    Raises UserError when there is no run, no snapshot, or a figure that cannot be drawn.
+    """
+    run = load(directory)
+    if not len(run):
+        raise UserError(f"{directory}: the run has no snapshot to draw")
+    return [_save(figure, run, name) for name, figure in figures(run).items()]
+
+
+def figures(run: Run) -> dict[str, Figure]:
+    """Every figure of a run by name; one of the scenario replaces a general one of that name."""
+    draw = {"snapshot": _snapshot_figure, "histogram": _histogram_figure, "series": _series_figure}
+    asked = {name: draw[table.kind](run, table) for name, table in tables(run, "figure").items()}
+    return {name: make(run) for name, make in _general(run).items() if name not in asked} | asked
+
+
+def _general(run: Run) -> dict[str, Callable[[Run], Figure]]:
+    """The figures every run gets, as far as its history and materials allow."""
+    columns = set(run.history.columns)
+    makers: dict[str, Callable[[Run], Figure]] = {"overview": _overview}
+    if columns.issuperset(ENERGIES):
+        makers["energy"] = lambda run: draw_history(run, ENERGIES, "Energy")
+    if columns.issuperset(MASSES):
+        makers["mass"] = lambda run: draw_history(run, MASSES, "Mass ledger")
+    if flow := measure_flow(run):
+        makers["flow"] = lambda run: draw_flow(run, flow)
+    return makers
+
+
+def _overview(run: Run) -> Figure:
+    """The whole domain at the start, in the middle and at the end, gravity pointing down."""
+    view = whole_space(run.scenario["dim"], rotate=-tilt(run))
+    what = SnapshotFigure(view, ["material"], run.scenario.get("title", ""))
+    return draw_snapshots(run, _spread(run, 3), what)
+
+
+def _snapshot_figure(run: Run, table: Any) -> Figure:
+    view = named_window(run, table.window)
+    snapshots = _chosen(run, table, view)
+    few = table.window is None and max(len(s["id"]) for s in snapshots) <= FEW
+    sizes = ("support", "grain") if few else ("grain",)
+    title = table.title or view.title
+    what = SnapshotFigure(view, table.colour, title, sizes, table.material)
+    return draw_snapshots(run, snapshots, what)
+
+
+def _histogram_figure(run: Run, table: Any) -> Figure:
+    view = named_window(run, table.window)
+    title = table.title or view.title
+    what = SpeedHistogram(view, table.material, table.bin_width, table.sample, title)
+    return draw_histogram(run, _chosen(run, table, view), what)
+
+
+def _series_figure(run: Run, table: Any) -> Figure:
+    return draw_history(run, table.columns, table.title)
+
+
+def _chosen(run: Run, table: Any, view: View) -> list[Snapshot]:
+    """The snapshots a figure table asks for, in order of time, none twice."""
+    if table.times:
+        indices = [int(np.argmin(np.abs(run.times - time))) for time in table.times]
+        return [run[index] for index in sorted(set(indices))]
+    choose = {
+        "all": lambda: _spread(run, MANY),
+        "first": lambda: [run[0]],
+        "last": lambda: [run[-1]],
+        "before_flow": lambda: [run[before_flow(run, view)]],
+        "with_flow": lambda: [run[with_flow(run, view)]],
+    }
+    return choose[table.when]()
+
+
+def _spread(run: Run, most: int) -> list[Snapshot]:
+    """At most `most` snapshots, evenly spread from the first to the last."""
+    indices = np.linspace(0, len(run) - 1, min(most, len(run))).round().astype(int)
+    return [run[index] for index in indices]
+
+
+def _save(figure: Figure, run: Run, name: str) -> Path:
+    path = run.folder.figures / f"{name}.png"
+    with clear_errors(path):
+        path.parent.mkdir(exist_ok=True)
+    write_whole(path, lambda temporary: figure.savefig(temporary, format="png"))
+    return path

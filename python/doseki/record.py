@@ -1,0 +1,182 @@
+"""The record of a run: an output folder that grows while the run goes on."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from . import vtkhdf
+from .errors import UserError
+from .folder import RunFolder, read_history
+from .storage import clear_errors, write_whole, write_whole_text
+
+
+class Recorder:
+    """Writes the folder of a run: scenario, snapshots, history, summary.
+
+    Each snapshot is whole or absent, each history row is flushed: a run that is killed leaves a
+    folder that can be loaded.  Every method raises ResourceError when the disk is full and
+    UserError when it may not be written to.
+    """
+
+    def __init__(
+        self,
+        directory: str | Path,
+        scenario_text: str,
+        material_names: Sequence[str],
+        body_names: Sequence[str],
+        dim: int,
+        overwrite: bool = False,
+    ) -> None:
+        """Start a new record in `directory`; raises UserError if something is there already.
+
+        `scenario_text` is the effective scenario; the names are those that the fields `material`
+        and `body` of the snapshots index.  With `overwrite` an earlier run is removed first.
+        """
+        folder = RunFolder(Path(directory))
+        _make_room(folder, overwrite)
+        write_whole_text(folder.scenario, scenario_text)
+        self._attach(folder, material_names, body_names, dim)
+
+    @classmethod
+    def reopen(cls, directory: str | Path, time: float) -> Recorder:
+        """Go on with the record of a run that resumes at `time`, s: drop all that is later."""
+        folder = RunFolder(Path(directory))
+        files = folder.snapshot_files()
+        if not files:
+            raise UserError(f"{directory}: holds no snapshot from which a run could go on")
+        headers = {file: vtkhdf.read_header(file) for file in files}
+        first = headers[files[0]]
+        recorder = cls.__new__(cls)
+        recorder._attach(folder, first.material_names, first.body_names, first.dim)
+        with clear_errors(folder.path):
+            for file in (folder.summary, folder.summary_text):
+                file.unlink(missing_ok=True)
+            for file, header in headers.items():
+                if header.time > time:
+                    file.unlink()
+                else:
+                    recorder._index.append((file.name, header.time))
+        recorder._write_series()
+        recorder._truncate_history(time)
+        return recorder
+
+    def _attach(
+        self,
+        folder: RunFolder,
+        material_names: Sequence[str],
+        body_names: Sequence[str],
+        dim: int,
+    ) -> None:
+        self._folder = folder
+        self._material_names = tuple(material_names)
+        self._body_names = tuple(body_names)
+        self._dim = dim
+        self._index: list[tuple[str, float]] = []  # file name and time of each snapshot
+        self._columns: list[str] = []
+        self._history_file: TextIO | None = None
+
+    @property
+    def directory(self) -> Path:
+        """The folder that is written."""
+        return self._folder.path
+
+    def snapshot(
+        self, state: Mapping[str, np.ndarray], *, time: float, step: int, dt: float
+    ) -> Path:
+        """Write one snapshot and return its file.
+
+        `state` holds every field of fields.FIELDS under its Python name and shape, SI units;
+        `time` and `dt` are in s.
+        """
+        header = vtkhdf.Header(time, step, dt, self._dim, self._material_names, self._body_names)
+        file = self._folder.snapshot(len(self._index))
+        write_whole(file, lambda temporary: vtkhdf.write(temporary, state, header))
+        self._index.append((file.name, float(time)))
+        self._write_series()
+        return file
+
+    def history(self, row: Mapping[str, float]) -> None:
+        """Append one row; the first row gives the columns, the others must have the same ones."""
+        with clear_errors(self._folder.history):
+            if not self._columns:
+                self._columns = list(row)
+                self._append(self._columns)
+            if list(row) != self._columns:
+                raise ValueError(f"history columns changed from {self._columns} to {list(row)}")
+            self._append([_number_text(value) for value in row.values()])
+
+    def close(self, summary: Mapping[str, Any]) -> None:
+        """Write `summary` (numbers, words, lists and dicts of them) and close the files."""
+        text = json.dumps(_jsonable(summary), indent=2, allow_nan=False) + "\n"
+        write_whole_text(self._folder.summary, text)
+        if self._history_file is not None:
+            with clear_errors(self._folder.history):
+                self._history_file.close()
+            self._history_file = None
+
+    def _append(self, cells: Sequence[str]) -> None:
+        if self._history_file is None:
+            self._history_file = self._folder.history.open("a", encoding="utf-8")
+        self._history_file.write(",".join(cells) + "\n")
+        self._history_file.flush()
+
+    def _write_series(self) -> None:
+        names = self._folder.snapshots.name
+        files = [{"name": f"{names}/{name}", "time": time} for name, time in self._index]
+        index = {"file-series-version": "1.0", "files": files}
+        write_whole_text(self._folder.series, json.dumps(index, indent=1) + "\n")
+
+    def _truncate_history(self, time: float) -> None:
+        self._columns, rows = read_history(self._folder.history)
+        if not self._columns:
+            return
+        clock = self._columns.index("time")
+        kept = [self._columns, *(row for row in rows if float(row[clock]) <= time)]
+        write_whole_text(self._folder.history, "".join(",".join(row) + "\n" for row in kept))
+
+
+def _make_room(folder: RunFolder, overwrite: bool) -> None:
+    """Create the folder, or empty it of an earlier run if that is wanted."""
+    with clear_errors(folder.path):
+        if folder.path.exists() and not folder.path.is_dir():
+            raise UserError(f"{folder.path}: is a file, not a folder")
+        if folder.path.is_dir() and any(folder.path.iterdir()):
+            _refuse_to_overwrite(folder, overwrite)
+            for file in folder.written_files():
+                file.unlink()
+        folder.snapshots.mkdir(parents=True, exist_ok=True)
+
+
+def _refuse_to_overwrite(folder: RunFolder, overwrite: bool) -> None:
+    if not overwrite:
+        raise UserError(
+            f"{folder.path}: exists and is not empty; give another folder or --overwrite"
+        )
+    if not folder.is_run():
+        raise UserError(f"{folder.path}: is not the folder of a run, so it is not overwritten")
+
+
+def _number_text(value: float) -> str:
+    """Shortest text that reads back as the same number."""
+    return str(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
+
+
+def _jsonable(value: Any) -> Any:
+    """The same in types that JSON has; a number that is not finite becomes null."""
+    if isinstance(value, Mapping):
+        return {str(key): _jsonable(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [_jsonable(entry) for entry in value]
+    if isinstance(value, np.generic):
+        return _jsonable(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, Path):
+        return str(value)
+    return value

@@ -1,0 +1,87 @@
+"""Checks of a scenario's tables against one another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .errors import UserError
+from .nearest import suggestion
+from .quantities import check_quantity
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
+
+MAX_OUTPUTS = 1e6
+
+
+def check_scenario(scenario: Scenario) -> None:
+    """Raise UserError where tables that are right by themselves do not fit together."""
+    _check_references(scenario)
+    _check_colours(scenario)
+    _check_outputs(scenario)
+    _check_periodic(scenario)
+
+
+def _check_references(scenario: Scenario) -> None:
+    """Every material and window that is named must exist, and there must be something to run."""
+    if not scenario.body and not scenario.inflow:
+        raise scenario.where.error((), "a scenario needs at least one [body.NAME] or [inflow.NAME]")
+    for section in ("body", "inflow", "figure"):
+        for name, part in getattr(scenario, section).items():
+            _check_known(scenario, (section, name, "material"), part.material, scenario.materials)
+    for name, figure in scenario.figure.items():
+        _check_known(scenario, ("figure", name, "window"), figure.window, scenario.window)
+    for name, particles in scenario.particle_tables.items():
+        for material in particles.material_names:
+            _check_known(scenario, ("body", name, "file"), material, scenario.materials)
+
+
+def _check_known(
+    scenario: Scenario, keys: tuple[str, ...], name: str | None, known: dict[str, Any]
+) -> None:
+    if name is not None and name not in known:
+        path = ".".join(keys)
+        if keys[-1] == "file":
+            message = f'{path}: the file names the unknown material "{name}"'
+        else:
+            message = f'{path} = "{name}" is not a known {keys[-1]}'
+        raise scenario.where.error(keys, message + suggestion(name, known))
+
+
+def _check_colours(scenario: Scenario) -> None:
+    """A figure must not fail at the end of a long run."""
+    for name, figure in scenario.figure.items():
+        for colour in figure.colour:
+            try:
+                check_quantity(colour, scenario.dim)
+            except UserError as error:
+                keys = ("figure", name, "colour")
+                raise scenario.where.error(keys, f"figure.{name}.colour: {error}") from None
+
+
+def _check_outputs(scenario: Scenario) -> None:
+    """An interval that is far too short would fill the disk."""
+    for key, interval in (("time_out", scenario.time_out), ("time_history", scenario.time_history)):
+        if scenario.time_max / interval > MAX_OUTPUTS:
+            raise scenario.where.error(
+                (key,),
+                f"{key} = {interval:g} s is too short for time_max = {scenario.time_max:g} s; "
+                f"at most {MAX_OUTPUTS:g} outputs are made",
+            )
+
+
+def _check_periodic(scenario: Scenario) -> None:
+    """Periodic axes need a domain, wide enough that a particle never meets its own image."""
+    where, low, high = scenario.where, scenario.domain_min, scenario.domain_max
+    for axis in scenario.periodic:
+        index = "xyz".index(axis)
+        if index >= scenario.dim:
+            raise where.error(("periodic",), f'periodic: a 2-D run has no axis "{axis}"')
+        if low is None or high is None:
+            raise where.error(("periodic",), "periodic needs domain_min and domain_max")
+        if high[index] - low[index] < 2 * scenario.support:
+            raise where.error(
+                ("domain_max",),
+                f"domain_max: the domain is {high[index] - low[index]:g} m long along {axis}; "
+                f"a periodic axis needs at least twice the support, {2 * scenario.support:g} m",
+            )

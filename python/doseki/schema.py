@@ -1,0 +1,356 @@
+"""The tables of a scenario file: keys, types, units and bounds, each declared once."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    ValidationInfo,
+    create_model,
+    model_validator,
+)
+
+from .expressions import is_expression
+from .materials import LAWS, LIMIT, MATERIAL_PARAMETERS, MaterialParameter
+
+# A length beyond these is a slip of the keyboard, and would overflow further on.
+SMALLEST, LARGEST = 1e-12, 1e12
+RATE_UNITS = {"m3/s": 1.0, "m^3/s": 1.0, "L/s": 1e-3, "l/s": 1e-3}
+
+
+def _of_dimension(vector: list[Any], info: ValidationInfo) -> list[Any]:
+    dim = info.context["dim"]
+    if len(vector) != dim:
+        raise ValueError(f"a {dim}-D run needs {dim} entries here, not {len(vector)}")
+    return vector
+
+
+def _numbers_or_expressions(vector: list[Any]) -> list[Any]:
+    for entry in vector:
+        number = isinstance(entry, int | float) and not isinstance(entry, bool)
+        if not (is_expression(entry) or (number and abs(entry) <= LARGEST)):
+            raise ValueError(f'entries must be finite numbers or "= expression", not {entry!r}')
+    return vector
+
+
+def _bound(value: Any) -> Any:
+    """TOML can write inf; the strings "inf" and "-inf" mean the same."""
+    return float(value) if value in ("inf", "+inf", "-inf") else value
+
+
+def _not_nan(value: float) -> float:
+    if math.isnan(value):
+        raise ValueError("nan is not a position")
+    return value
+
+
+def _rate(value: Any) -> Any:
+    """A rate in m3/s from a number, or from a string with its unit such as "3 L/s"."""
+    if not isinstance(value, str):
+        return value
+    found = re.fullmatch(r"\s*([-+.\deE]+)\s*(\S+)\s*", value)
+    if not found or found[2] not in RATE_UNITS:
+        raise ValueError('a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"')
+    try:
+        return float(found[1]) * RATE_UNITS[found[2]]
+    except ValueError:
+        raise ValueError(f"{found[1]!r} is not a number") from None
+
+
+Positive = Annotated[float, Field(gt=0)]
+Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(ge=0)]
+AsArray = (
+    AfterValidator(_of_dimension),
+    AfterValidator(np.array),
+    PlainSerializer(np.ndarray.tolist, return_type=list),
+)
+Vector = Annotated[list[Coordinate], *AsArray]
+VelocityField = Annotated[
+    list[Any], AfterValidator(_of_dimension), AfterValidator(_numbers_or_expressions)
+]
+Bound = Annotated[
+    float, Field(allow_inf_nan=True), BeforeValidator(_bound), AfterValidator(_not_nan)
+]
+Corner = Annotated[list[Bound], *AsArray]
+Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
+Axis = Literal["x", "y", "z"]
+
+
+class Table(BaseModel):
+    """A table of a scenario file: no unknown key, no silent conversion, finite numbers."""
+
+    model_config = ConfigDict(
+        extra="forbid", strict=True, allow_inf_nan=False, arbitrary_types_allowed=True
+    )
+
+
+class Part(Table):
+    """A named table that can be switched off."""
+
+    enabled: bool = Field(True, description="false: as if the table were not there")
+
+
+class Parameter(Table):
+    """A number or word of the scenario itself, to be set by name and used in expressions."""
+
+    value: Any = Field(description="a number, true/false or a word")
+    min: float | None = Field(None, description="least allowed value")
+    max: float | None = Field(None, description="greatest allowed value")
+    choices: list[Any] | None = Field(None, description="the allowed values")
+    unit: str = Field("", description="unit of the value")
+    help: str = Field("", description="what it is")
+
+    @model_validator(mode="after")
+    def _allowed(self) -> Parameter:
+        value = self.value
+        if not isinstance(value, int | float | str):
+            raise ValueError("must be a number, true/false or a word")
+        if self.choices is not None and value not in self.choices:
+            raise ValueError(f"{value!r} is not one of {', '.join(map(str, self.choices))}")
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and not abs(value) <= sys.float_info.max:
+            raise ValueError("must be finite")
+        if (self.min is not None or self.max is not None) and not number:
+            raise ValueError(f"must be a number, not {value!r}")
+        if self.min is not None and value < self.min:
+            raise ValueError(f"{value!r} is out of range; must be {self.min:g} {self.unit} or more")
+        if self.max is not None and value > self.max:
+            raise ValueError(f"{value!r} is out of range; must be {self.max:g} {self.unit} or less")
+        return self
+
+
+def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
+    description = f"{parameter.doc}, {parameter.unit}"
+    return (
+        float | None,
+        Field(None, gt=parameter.above, ge=parameter.least, lt=LIMIT, description=description),
+    )
+
+
+MaterialTable = create_model(
+    "MaterialTable",
+    __base__=Table,
+    law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    based_on=(str | None, Field(None, description="material that supplies what is not given")),
+    **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},
+)
+
+
+class ShapedBody(Part):
+    """What every body with a shape has."""
+
+    material: str = Field(description="name of its material")
+    fixed: bool = Field(False, description="true: interacts but never moves")
+    velocity: VelocityField | None = Field(
+        None, description="initial velocity, m/s; expressions may use x, y, z"
+    )
+
+
+class LatticeBody(ShapedBody):
+    """A body filled with particles on a lattice, which can be rotated."""
+
+    dp: Length | None = Field(None, description="particle spacing, m (default: the run's)")
+    mass_per_particle: Positive | None = Field(None, description="kg; default rho0 dp^dim")
+    rotate: float = Field(0.0, description="degrees, from the first axis towards the last")
+    rotate_axis: Vector | None = Field(None, description="3-D: axis of a right-handed rotation")
+    pivot: Vector | None = Field(None, description="point about which it is rotated, m")
+
+
+class Box(LatticeBody):
+    """Particles at min + (k + 1/2) dp, round(length/dp) of them along each side."""
+
+    shape: Literal["box"]
+    min: Vector = Field(description="lower corner before rotation, m")
+    max: Vector = Field(description="upper corner before rotation, m")
+    count: int | None = Field(
+        None, gt=0, description="keep this many particles, filled row by row from below"
+    )
+
+
+class Disc(LatticeBody):
+    """A disc (2-D) or sphere (3-D) on a lattice centred on a particle, or one single particle."""
+
+    shape: Literal["disc", "sphere"]
+    centre: Vector = Field(description="its centre, m")
+    radius: Length = Field(description="its radius, m")
+    fill: Literal["lattice", "single"] = Field(
+        "lattice", description="lattice: particles nearer than radius; single: one with its mass"
+    )
+
+
+class Points(ShapedBody):
+    """Particles at given positions."""
+
+    shape: Literal["points"]
+    position: list[Vector] = Field(description="one vector per particle, m", min_length=1)
+    mass: Positive = Field(description="mass of each particle, kg (2-D: kg/m)")
+
+
+class ParticleFile(Part):
+    """Particles read from a CSV or HDF5 file."""
+
+    shape: Literal["file"]
+    file: str = Field(description="path, relative to this scenario file")
+    fixed: bool = Field(False, description="where the file has no column `fixed`")
+    material: str | None = Field(None, description="where the file has no column `material`")
+
+
+BodyTable = Annotated[Box | Disc | Points | ParticleFile, Field(discriminator="shape")]
+BODY_TABLES = {
+    "box": Box,
+    "disc": Disc,
+    "sphere": Disc,
+    "points": Points,
+    "file": ParticleFile,
+}
+
+
+class Inflow(Part):
+    """A section through which particles enter at a constant rate."""
+
+    material: str = Field(description="name of the material that enters")
+    rate: Rate = Field(description='m3/s, or a string such as "3 L/s"')
+    width: Length = Field(description="m; a 2-D run enters rate/width")
+    position: Vector = Field(description="bottom point of the section, m")
+    direction: Vector = Field(description="direction of the flow")
+    depth: Length = Field(description="m, extent along the section's upward normal")
+    start: NonNegative = Field(0.0, description="s")
+    duration: Positive = Field(description="s")
+
+    @model_validator(mode="after")
+    def _has_direction(self) -> Inflow:
+        if not np.any(self.direction):
+            raise ValueError("direction must not be the zero vector")
+        return self
+
+
+class Region(Part):
+    """An axis-aligned box; its sides may be at infinity."""
+
+    min: Corner = Field(description="lower corner, m")
+    max: Corner = Field(description="upper corner, m")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Region:
+        if not np.all(self.min < self.max):
+            raise ValueError("every entry of min must be below that of max")
+        return self
+
+
+class Outflow(Region):
+    """A region in which free particles are removed and counted."""
+
+
+class Window(Region):
+    """A region that figures and histograms look at."""
+
+    title: str = Field("", description="caption")
+    rotate: float = Field(
+        0.0, description="degrees about the origin, from the first axis towards the last"
+    )
+
+
+class Figure(Part):
+    """A picture made from the record of a run."""
+
+    kind: Literal["snapshot", "histogram", "series"] = Field(description="what is drawn")
+    title: str = Field("", description="caption")
+    window: str | None = Field(None, description="name of a [window.NAME]; default: everything")
+    times: list[float] = Field(
+        default_factory=list, description="s; nearest snapshots; default: see `when`"
+    )
+    when: Literal["all", "first", "last", "before_flow", "with_flow"] = Field(
+        "last",
+        description="which snapshots, where no times are given: before_flow is the last one with "
+        "no fluid in the window, with_flow the first one with fluid across all of it",
+    )
+    colour: list[str] = Field(
+        default_factory=lambda: ["material"],
+        description="one panel each: material, body, speed, velocity_x, pressure, density ...",
+    )
+    material: str | None = Field(None, description="count or draw only this material")
+    bin_width: Positive = Field(0.1, description="histogram bins, m/s")
+    sample: int = Field(30, gt=0, description="size of a random sample of particles")
+    columns: list[str] = Field(default_factory=list, description="series: columns of the history")
+
+
+class ScenarioTable(Table):
+    """A whole scenario file, every expression evaluated."""
+
+    schema_version: Literal[1] = Field(1, alias="schema", description="version of this format")
+    title: str = Field("", description="one line")
+    description: str = Field("", description="what it is and where it comes from")
+    dim: Literal[2, 3] = Field(description="number of space dimensions")
+    dp: Length = Field(description="particle spacing, m")
+    time_max: Positive = Field(description="end of the run, s")
+    time_out: Positive = Field(description="time between snapshots, s")
+    time_history: Positive | None = Field(None, description="s between history rows")
+    scheme: Literal["ueta2022"] = Field("ueta2022", description="the list of terms")
+    precision: Literal["double", "float"] = Field("double", description="of the pair arithmetic")
+    gravity: Vector | None = Field(None, description="m/s2; excludes slope")
+    slope: float | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
+    g: Positive = Field(9.8, description="gravity on a slope and in eq. 19, m/s2")
+    eta: float = Field(1.2, ge=0.8, le=3, description="smoothing length over spacing (eq. 10)")
+    alpha: NonNegative = Field(1.0, description="artificial viscosity (eq. 13)")
+    balsara: bool = Field(True, description="Balsara switch")
+    strength: bool = Field(True, description="elastic deviatoric stress of solids")
+    tension: Literal["free", "clamp_fluid", "clamp_all"] = Field(
+        "clamp_fluid", description="where negative pressure is set to zero"
+    )
+    h_mode: Literal["constant", "eq10"] = Field("constant", description="smoothing length in time")
+    sym_grad: bool = Field(False, description="mean kernel gradient also in eqs. 9 and 11")
+    cflnumber: float = Field(0.1, gt=0, le=1, description="C_CFL of eq. 18")
+    cfl_force: float = Field(0.1, gt=0, le=1, description="C_f of eq. 18")
+    xi: Positive | None = Field(None, description="reduction factor (eq. 19); excludes xi_height")
+    xi_height: Length | None = Field(None, description="H of eq. 19, m; excludes xi")
+    skin: float = Field(0.1, ge=0, le=1, description="margin of the lists over the support")
+    periodic: list[Axis] = Field(default_factory=list, description="periodic axes")
+    domain_min: Vector | None = Field(None, description="lower corner of the periodic domain, m")
+    domain_max: Vector | None = Field(None, description="upper corner of the periodic domain, m")
+    parameters: dict[str, Parameter] = Field(default_factory=dict)
+    material: dict[str, MaterialTable] = Field(default_factory=dict)
+    body: dict[str, BodyTable] = Field(default_factory=dict)
+    inflow: dict[str, Inflow] = Field(default_factory=dict)
+    outflow: dict[str, Outflow] = Field(default_factory=dict)
+    window: dict[str, Window] = Field(default_factory=dict)
+    figure: dict[str, Figure] = Field(default_factory=dict)
+
+
+TOP_LEVEL_KEYS = {field.alias or name for name, field in ScenarioTable.model_fields.items()}
+ALIASES = {"hdp": "eta"}  # names people already type
+EXCLUSIVE = (("gravity", "slope"), ("xi", "xi_height"))
+SECTIONS = {
+    "parameters": Parameter,
+    "material": MaterialTable,
+    "body": None,  # its keys depend on the shape
+    "inflow": Inflow,
+    "outflow": Outflow,
+    "window": Window,
+    "figure": Figure,
+}
+
+
+def table_at(keys: tuple[str | int, ...], table: Any) -> type[Table] | None:
+    """The kind of table that stands at `keys` (top level: empty) of the scenario `table`."""
+    if not keys:
+        return ScenarioTable
+    if len(keys) != 2 or keys[0] not in SECTIONS:
+        return None
+    if keys[0] != "body":
+        return SECTIONS[str(keys[0])]
+    try:
+        return BODY_TABLES.get(table["body"][keys[1]]["shape"], ShapedBody)
+    except (KeyError, TypeError):
+        return ShapedBody

@@ -1,0 +1,117 @@
+"""What a figure looks at: the windows of a scenario, and the snapshots that matter in them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import measure, schema
+from .errors import UserError
+from .load import Run, Snapshot
+from .materials import complete_materials
+from .nearest import suggestion
+
+
+@dataclass(frozen=True)
+class View:
+    """A box in axes turned by `rotate` degrees about the origin; bounds may be infinite."""
+
+    lower: np.ndarray
+    upper: np.ndarray
+    rotate: float = 0.0
+    title: str = ""
+
+    def coordinates(self, position: np.ndarray) -> np.ndarray:
+        """Positions (N, dim) in the axes of the view."""
+        return measure.to_frame(position, self.rotate)
+
+    def contains(self, position: np.ndarray) -> np.ndarray:
+        """Whether each particle (N,) is in the view."""
+        return measure.in_window(position, self.lower, self.upper, self.rotate)
+
+
+def whole_space(dim: int, rotate: float = 0.0) -> View:
+    """The view that shows everything."""
+    return View(np.full(dim, -math.inf), np.full(dim, math.inf), rotate)
+
+
+def tables(run: Run, section: str) -> dict[str, Any]:
+    """The enabled tables [section.NAME] of a run's scenario by name, checked, defaults filled."""
+    model = {"window": schema.Window, "figure": schema.Figure}[section]
+    dim = run.scenario["dim"]
+    found = {
+        name: model.model_validate(table, context={"dim": dim})
+        for name, table in run.scenario.get(section, {}).items()
+    }
+    return {name: table for name, table in found.items() if table.enabled}
+
+
+def windows(run: Run) -> dict[str, View]:
+    """The windows of a run's scenario."""
+    return {
+        name: View(table.min, table.max, table.rotate, table.title)
+        for name, table in tables(run, "window").items()
+    }
+
+
+def named_window(run: Run, name: str | None) -> View:
+    """The window of this name, or all space for None; raises UserError for an unknown name."""
+    if name is None:
+        return whole_space(run.scenario["dim"])
+    known = windows(run)
+    if name not in known:
+        raise UserError(f"{run.directory}: no window is called {name!r}{suggestion(name, known)}")
+    return known[name]
+
+
+def fluid_names(run: Run) -> set[str]:
+    """The materials that flow."""
+    materials = complete_materials(run.scenario.get("material", {}))
+    return {name for name, material in materials.items() if material.law == "fluid"}
+
+
+def tilt(run: Run) -> float:
+    """Angle of the slope, degrees: how far the last axis leans from the vertical."""
+    gravity = run.scenario.get("gravity", [0.0])
+    return math.degrees(math.atan2(-gravity[0], -gravity[-1])) if any(gravity) else 0.0
+
+
+def flow_direction(run: Run) -> int:
+    """+1 or -1: the way along the first axis that gravity, or else nothing, drives a flow."""
+    gravity = run.scenario.get("gravity", [0.0])
+    return -1 if gravity[0] < 0 else 1
+
+
+def select(snapshot: Snapshot, view: View, materials: set[str] | None = None) -> np.ndarray:
+    """Mask (N,) of the particles that can move, are in the view and of one of the materials."""
+    mask = view.contains(snapshot["position"]) & ~snapshot["fixed"]
+    if materials is not None:
+        mask &= np.isin(snapshot["material"], sorted(materials))
+    return mask
+
+
+def before_flow(run: Run, view: View) -> int:
+    """Index of the last snapshot before any fluid is in the view (0 if it is there at once)."""
+    fluids = fluid_names(run)
+    for index, snapshot in enumerate(run):
+        if np.any(select(snapshot, view, fluids)):
+            return max(index - 1, 0)
+    return len(run) - 1
+
+
+def with_flow(run: Run, view: View) -> int:
+    """Index of the first snapshot with fluid along all of the view, or along most of it."""
+    fluids = fluid_names(run)
+    filled = [_filled(snapshot, view, fluids) for snapshot in run]
+    return int(np.argmax(filled)) if any(filled) else len(run) - 1
+
+
+def _filled(snapshot: Snapshot, view: View, fluids: set[str]) -> float:
+    position = snapshot["position"][select(snapshot, view, fluids)]
+    start, end = view.lower[0], view.upper[0]
+    if not (math.isfinite(start) and math.isfinite(end)):
+        return float(len(position) > 0)
+    return measure.filled_fraction(view.coordinates(position)[:, 0], start, end)

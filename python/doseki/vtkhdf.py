@@ -1,0 +1,103 @@
+"""One snapshot as a VTKHDF file: PolyData with one vertex per particle (ParaView, VTK, h5py)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from .fields import FIELDS, ParticleField
+
+VERSION = (2, 0)  # of the VTKHDF format: PolyData is read by VTK >= 9.3, ParaView >= 5.12
+# gzip, because VTK's own HDF5 library can undo it; level 1 costs 1-2 s for a million particles.
+COMPRESSION = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
+
+
+@dataclass(frozen=True)
+class Header:
+    """What a snapshot file says besides its fields; the names are indexed by material and body."""
+
+    time: float
+    step: int
+    dt: float
+    dim: int
+    material_names: tuple[str, ...]
+    body_names: tuple[str, ...]
+
+
+def write(path: Path, state: Mapping[str, np.ndarray], header: Header) -> None:
+    """Write every field of FIELDS from `state`; raises OSError or RuntimeError from HDF5."""
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = VERSION
+        root.attrs["Type"] = np.bytes_("PolyData")
+        _write_header(root, header)
+        _write_cells(root, len(state["position"]))
+        root.create_group("PointData")
+        for field in FIELDS:
+            _write_array(root, _location(field), field.encode(state[field.key]), field.unit)
+
+
+def read_header(path: Path) -> Header:
+    """Read what `write` stored beside the fields; raises OSError or KeyError for other files."""
+    with h5py.File(path, "r") as file:
+        root = file["VTKHDF"]
+        return Header(
+            time=float(root["FieldData/Time"][0]),
+            step=int(root["FieldData/Step"][0]),
+            dt=float(root["FieldData/TimeStep"][0]),
+            dim=int(root.attrs["Dimension"]),
+            material_names=tuple(root.attrs["MaterialNames"]),
+            body_names=tuple(root.attrs["BodyNames"]),
+        )
+
+
+def read_field(path: Path, field: ParticleField, dim: int) -> np.ndarray:
+    """Read one field, shaped as in Python."""
+    with h5py.File(path, "r") as file:
+        return field.decode(file["VTKHDF"][_location(field)][...], dim)
+
+
+def _location(field: ParticleField) -> str:
+    return field.file_name if field.key == "position" else f"PointData/{field.file_name}"
+
+
+def _write_header(root: h5py.Group, header: Header) -> None:
+    root.attrs["Dimension"] = header.dim
+    _write_names(root, "MaterialNames", header.material_names)
+    _write_names(root, "BodyNames", header.body_names)
+    data = root.create_group("FieldData")
+    for name, value, unit in (
+        ("Time", header.time, "s"),
+        ("Step", header.step, ""),
+        ("TimeStep", header.dt, "s"),
+    ):
+        _write_array(data, name, np.array([value]), unit)
+
+
+def _write_names(root: h5py.Group, attribute: str, names: Sequence[str]) -> None:
+    root.attrs.create(attribute, list(names), (len(names),), h5py.string_dtype())
+
+
+def _write_cells(root: h5py.Group, n: int) -> None:
+    """One vertex per particle, so that filters on cells (threshold, clip) see single particles."""
+    root.create_dataset("NumberOfPoints", data=[n])
+    for kind in CELL_KINDS:
+        count = n if kind == "Vertices" else 0
+        cells = root.create_group(kind)
+        cells.create_dataset("NumberOfCells", data=[count])
+        cells.create_dataset("NumberOfConnectivityIds", data=[count])
+        _write_array(cells, "Connectivity", np.arange(count))
+        _write_array(cells, "Offsets", np.arange(count + 1))
+
+
+def _write_array(group: h5py.Group, name: str, values: np.ndarray, unit: str = "") -> None:
+    options: dict[str, Any] = COMPRESSION if values.size > 1 else {}
+    dataset = group.create_dataset(name, data=values, **options)
+    if unit:
+        dataset.attrs["units"] = unit

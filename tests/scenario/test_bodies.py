@@ -1,0 +1,96 @@
+"""From shapes to particles: how many, where, how heavy."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from doseki.bodies import build_bodies
+from doseki.lattice import rotated
+from doseki.particles import FIXED, FREE, concatenate
+from doseki.scenario import load_scenario
+
+from .conftest import BLOCK
+
+
+def build(path, *overrides):
+    return build_bodies(load_scenario(path, overrides))[0]
+
+
+def test_box_is_a_lattice_half_a_spacing_inside(write):
+    particles = build(write())
+    assert len(particles) == 50
+    np.testing.assert_allclose(particles.position.min(axis=0), [0.05, 0.05])
+    np.testing.assert_allclose(particles.position.max(axis=0), [0.95, 0.45])
+    np.testing.assert_allclose(particles.mass, 1000 * 0.1**2)
+    np.testing.assert_allclose(particles.smoothing_length, 1.2 * 0.1)
+    np.testing.assert_array_equal(particles.id, np.arange(50))
+
+
+def test_count_fills_rows_from_below(write):
+    position = build(write(), "body.block.count=23").position
+    assert len(position) == 23
+    np.testing.assert_allclose(np.unique(position[:20, 1]), [0.05, 0.15])
+    np.testing.assert_allclose(position[20:], [[0.05, 0.25], [0.15, 0.25], [0.25, 0.25]])
+
+
+def test_rotation_keeps_the_pivot_and_turns_x_towards_the_last_axis():
+    for dim in (2, 3):
+        pivot = np.arange(1.0, dim + 1)
+        turned = rotated(pivot + np.eye(dim), 90, pivot)
+        np.testing.assert_allclose(turned[0], pivot + np.eye(dim)[-1], atol=1e-15)
+        np.testing.assert_allclose(turned[-1], pivot - np.eye(dim)[0], atol=1e-15)
+
+
+def test_rotation_about_a_given_axis_is_right_handed():
+    turned = rotated(np.array([[1.0, 0, 0]]), 90, np.zeros(3), np.array([0, 0, 2.0]))
+    np.testing.assert_allclose(turned, [[0, 1, 0]], atol=1e-15)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-720, 720), st.integers(2, 3))
+def test_rotation_keeps_distances(degrees, dim):
+    points = np.random.default_rng(0).normal(size=(5, dim))
+    turned = rotated(points, degrees, np.ones(dim))
+    for a, b in ((0, 1), (2, 4)):
+        gap = np.linalg.norm(turned[a] - turned[b])
+        assert gap == pytest.approx(np.linalg.norm(points[a] - points[b]))
+
+
+def test_disc_and_single_particle_have_the_same_mass_to_the_lattice(write):
+    tables = (
+        "[body.d]\nshape = 'disc'\nmaterial = 'water'\ncentre = [0, 0]\nradius = 1\ndp = 0.0625\n"
+    )
+    lattice, single = (build(write(tables=tables), *o) for o in ([], ["body.d.fill=single"]))
+    assert (len(lattice), len(single)) == (793, 1)
+    assert single.mass[0] == pytest.approx(1000 * np.pi)
+    assert lattice.mass.sum() == pytest.approx(single.mass[0], rel=0.02)
+
+
+def test_points_fixed_and_velocity(write):
+    tables = "[body.p]\nshape = 'points'\nmaterial = 'water'\nposition = [[0, 0], [1, 2]]\nmass = 3"
+    particles = build(write(tables=tables), "body.p.fixed=true", "body.p.velocity=['= x + 2*y', 4]")
+    np.testing.assert_array_equal(particles.position, [[0, 0], [1, 2]])
+    np.testing.assert_array_equal(particles.velocity, [[0, 4], [5, 4]])
+    np.testing.assert_array_equal(particles.mass, 3)
+    np.testing.assert_array_equal(particles.motion, FIXED)
+
+
+def test_overlap_is_a_warning(write):
+    scenario = load_scenario(write(tables=BLOCK + BLOCK.replace("block", "other")))
+    build_bodies(scenario)
+    assert len(scenario.warnings) == 1
+    assert "block overlaps other" in scenario.warnings[0]
+
+
+def test_bodies_that_touch_do_not_overlap(write):
+    beside = BLOCK.replace("block", "other").replace("[1, 0.5]", "[2, 1]").replace("[0,", "[1,")
+    scenario = load_scenario(write(tables=BLOCK + beside))
+    particles, names = build_bodies(scenario)
+    assert (len(particles), names, scenario.warnings) == (150, ["block", "other"], [])
+    assert set(particles.motion) == {FREE}
+
+
+def test_nothing_at_all_is_an_empty_set():
+    empty = concatenate([], dim=3)
+    assert (len(empty), empty.dim, empty.body.dtype) == (0, 3, np.int32)
