@@ -2,12 +2,15 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
 #include <numeric>
 
+#include "checkpoint.hpp"
+#include "pair_probe.hpp"
 #include "simulation.hpp"
 
 namespace nb = nanobind;
@@ -39,6 +42,11 @@ T get(const nb::dict& dict, const char* key) {
     return nb::cast<T>(dict[key]);
 }
 
+template <class T>
+T get(const nb::dict& dict, const char* key, T otherwise) {
+    return dict.contains(key) ? get<T>(dict, key) : otherwise;
+}
+
 template <int D>
 Vec<double, D> vector(const nb::handle& sequence) {
     const auto values = nb::cast<std::vector<double>>(sequence);
@@ -62,6 +70,8 @@ Options<D> options(const nb::dict& d) {
     o.cflnumber = get<double>(d, "cflnumber");
     o.cfl_force = get<double>(d, "cfl_force");
     o.skin = get<double>(d, "skin");
+    o.auto_skin = get(d, "auto_skin", false);
+    o.fixed_limits_dt = get(d, "fixed_limits_dt", true);
     o.balsara = get<bool>(d, "balsara");
     o.sym_grad = get<bool>(d, "sym_grad");
     const auto tension = get<std::string>(d, "tension");
@@ -122,6 +132,7 @@ public:
         inflow.speed = get<double>(d, "speed");
         inflow.spacing = get<double>(d, "spacing");
         inflow.buffer_layers = get<int>(d, "buffer_layers");
+        inflow.jitter = get<double>(d, "jitter");
         inflow.start = get<double>(d, "start");
         inflow.stop = get<double>(d, "stop");
         inflow.mass = get<double>(d, "mass");
@@ -203,18 +214,66 @@ public:
         return d;
     }
 
-    void start() { sim_.start(); }
-    void advance(double limit, double pause, std::int64_t max_steps) { sim_.advance(limit, pause, max_steps); }
+    nb::dict checkpoint() {
+        SavingArchive archive;
+        int width = Sim::width;
+        archive("lanes", width);
+        sim_.serialise(archive);
+        return archive.arrays;
+    }
+
+    /// False where lists had to be made anew, because this module has clusters of another width.
+    bool restore(const nb::dict& arrays) {
+        LoadingArchive archive(arrays);
+        int width = 0;
+        archive("lanes", width);
+        sim_.serialise(archive);
+        if (width == Sim::width) return true;
+        sim_.renew_lists();
+        return false;
+    }
+
+    void start() { guarded([&] { sim_.start(); }); }
+    void advance(double limit, double pause, std::int64_t max_steps) {
+        guarded([&] { sim_.advance(limit, pause, max_steps); });
+    }
+    /// Kind and particle of the failure that ended the last call; "" and -1 without one.
+    std::pair<std::string, std::int64_t> failure() const { return failure_; }
     double time() const { return sim_.time(); }
     double timestep() const { return sim_.last_timestep(); }
     std::int64_t steps() const { return sim_.steps(); }
     std::int64_t rebuilds() const { return sim_.rebuilds(); }
     std::int64_t updates() const { return sim_.updates(); }
     std::size_t size() const { return sim_.particles.size(); }
+    double skin() const { return sim_.skin(); }
     double bytes_per_particle() const { return sim_.bytes_per_particle(); }
     double entries_per_particle() const { return double(sim_.neighbours().entries()) / double(size()); }
 
+    void time_phases(bool on) { sim_.phases().restart(on); }
+    nb::dict phase_seconds() {
+        const auto seconds = sim_.phases().seconds(omp_get_max_threads());
+        nb::dict d;
+        for (std::size_t k = 0; k < phase_names.size(); ++k) d[phase_names[k]] = seconds[k];
+        return d;
+    }
+    double interacting_pairs() const { return probe().interacting_pairs(); }
+    double bare_pair_rate(double seconds) const { return probe().bare_rate(seconds); }
+
 private:
+    auto probe() const { return PairProbe(sim_.rates(), sim_.neighbours()); }
+
+    /// Python's exceptions carry only a text; what else a failure says is kept here.
+    template <class F>
+    void guarded(F&& work) {
+        failure_ = {"", -1};
+        try {
+            work();
+        } catch (const PhysicsFailure& failure) {
+            failure_ = {failure.kind, failure.particle};
+            throw;
+        }
+    }
+
     static std::vector<Material> make_materials(const std::vector<nb::dict>& dicts) {
         std::vector<Material> materials;
         for (const auto& d : dicts) materials.push_back(material(d));
@@ -237,6 +296,7 @@ private:
     }
 
     Sim sim_;
+    std::pair<std::string, std::int64_t> failure_{"", -1};
 };
 
 template <class real, int D>
@@ -252,6 +312,17 @@ void bind_simulation(nb::module_& m, const char* name) {
         .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))
         .def("start", &B::start, unlocked)
         .def("advance", &B::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"), unlocked)
+        .def("checkpoint", &B::checkpoint, "The whole state as arrays in storage order.")
+        .def("restore", &B::restore, nb::arg("arrays"),
+             "Go on from what checkpoint() gave; false where that changes the order of sums.")
+        .def_prop_ro("failure", &B::failure)
+        .def("time_phases", &B::time_phases, nb::arg("on"), "Start timing the phases of steps from zero, or stop.")
+        .def("phase_seconds", &B::phase_seconds)
+        .def("interacting_pairs", &B::interacting_pairs, unlocked,
+             "Ordered pairs of different particles within support; fixed-fixed ones not counted.")
+        .def("bare_pair_rate", &B::bare_pair_rate, nb::arg("seconds"), unlocked,
+             "Such pairs per second in both sums of one thread over clusters that stay in cache.")
+        .def_prop_ro("skin", &B::skin)
         .def("state", &B::state)
         .def("rates", &B::rates)
         .def("totals", &B::totals)

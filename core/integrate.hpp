@@ -1,4 +1,5 @@
 #pragma once
+#include "base/parallel.hpp"
 #include "particles.hpp"
 
 namespace doseki {
@@ -7,7 +8,7 @@ namespace doseki {
 template <int D>
 void kick(Particles<D>& particles, double half_dt) {
     const std::size_t n = particles.size();
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
         for (int a = 0; a < D; ++a) particles.velocity[p][a] += half_dt * particles.acceleration[p][a];
         particles.density[p] += half_dt * particles.density_rate[p];
@@ -20,8 +21,10 @@ template <int D>
 double drift(Particles<D>& particles, double dt) {
     const std::size_t n = particles.size();
     double fastest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : fastest)
+#pragma omp parallel for schedule(static) reduction(max : fastest) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
+        // A fixed particle may have a velocity, as a belt has: it acts on others, nothing moves.
+        if (particles.is_fixed(p)) continue;
         const Vec<double, D>& v = particles.velocity[p];
         for (int a = 0; a < D; ++a) particles.position[p][a] += dt * v[a];
         fastest = max(fastest, dot(v, v));

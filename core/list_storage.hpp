@@ -15,7 +15,7 @@ public:
     /// Keeps a copy of `list`; the result is valid until clear().
     const std::uint32_t* keep(std::span<const std::uint32_t> list) {
         while (block_ < blocks_.size() && blocks_[block_].size() - used_ < list.size()) ++block_, used_ = 0;
-        if (block_ == blocks_.size()) blocks_.emplace_back(std::max(block_size, list.size()));
+        if (block_ == blocks_.size()) blocks_.emplace_back(std::max(list.size(), std::min(largest_block, smallest_block << block_)));
         std::uint32_t* const start = blocks_[block_].data() + used_;
         std::copy(list.begin(), list.end(), start);
         used_ += list.size();
@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t block_size = std::size_t{1} << 16;
+    static constexpr std::size_t smallest_block = 1024, largest_block = 65536;    // entries
     std::vector<std::vector<std::uint32_t>> blocks_;
     std::size_t block_ = 0, used_ = 0, entries_ = 0;
 };

@@ -72,7 +72,25 @@ public:
     std::size_t bytes() const;
     std::size_t moving() const { return moving_; }
 
+    /// The lists as they are; the grids are used only while lists are built.
+    template <class Archive>
+    void serialise(Archive& archive) {
+        FlatLists flat;
+        if constexpr (!Archive::loading) flat = flatten();
+        archive("lists_moving", flat.moving), archive("lists_fixed", flat.fixed);
+        archive("lists_entries", flat.entries), archive("moving_particles", moving_);
+        if constexpr (Archive::loading) unflatten(flat);
+    }
+
 private:
+    /// All lists in one array, with their lengths.
+    struct FlatLists {
+        std::vector<std::uint32_t> moving, fixed, entries;
+    };
+
+    FlatLists flatten() const;
+    void unflatten(const FlatLists& flat);
+
     /// Particles of one class: a contiguous range in sorted order with its table of cells.
     struct Grid {
         bool fixed = false;

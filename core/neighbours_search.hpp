@@ -3,6 +3,7 @@
 
 #include <omp.h>
 
+#include "base/parallel.hpp"
 #include "neighbours.hpp"
 
 namespace doseki {
@@ -72,7 +73,7 @@ void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<co
     storage_.resize(static_cast<std::size_t>(omp_get_max_threads()));
     for (ListStorage& storage : storage_) storage.clear();
 
-#pragma omp parallel
+#pragma omp parallel if (count > pair_loop)
     {
         ListStorage& storage = storage_[static_cast<std::size_t>(omp_get_thread_num())];
         Scratch scratch;

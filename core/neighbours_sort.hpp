@@ -141,6 +141,29 @@ std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> p
 }
 
 template <int D>
+auto Neighbours<D>::flatten() const -> FlatLists {
+    FlatLists flat;
+    for (const ClusterList& list : clusters_) {
+        flat.moving.push_back(list.moving), flat.fixed.push_back(list.fixed);
+        flat.entries.insert(flat.entries.end(), list.begin, list.begin + list.moving + list.fixed);
+    }
+    return flat;
+}
+
+template <int D>
+void Neighbours<D>::unflatten(const FlatLists& flat) {
+    storage_.assign(1, {});
+    clusters_.assign(flat.moving.size(), {});
+    std::span<const std::uint32_t> rest(flat.entries);
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+        const std::size_t length = flat.moving[c] + flat.fixed.at(c);
+        if (length > rest.size()) throw ResourceFailure("neighbour lists cut short");
+        clusters_[c] = {storage_[0].keep(rest.first(length)), flat.moving[c], flat.fixed[c]};
+        rest = rest.subspan(length);
+    }
+}
+
+template <int D>
 std::size_t Neighbours<D>::entries() const {
     std::size_t count = 0;
     for (const ListStorage& list : storage_) count += list.entries();

@@ -8,6 +8,7 @@
 //     Point<Pack> load_one(std::uint32_t j) const;                 // one j in all lanes
 //     void add(Sums<T>&, const Pair<T, D>&, const Point<T>& i, const Point<T>& j) const;
 //     void moving_done(Sums<T>&) const;      // between moving and fixed neighbours
+//     void add_fixed(...) const;             // as add, of a fixed j
 //     void finish(std::uint32_t first, int count, const Sums<T>&) const;
 //   };
 //
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "neighbours.hpp"
 #include "records.hpp"
 
@@ -71,7 +73,7 @@ void for_each_pair(const Neighbours<D>& neighbours, std::span<const ClusterList>
     const auto shifts = image_shifts(neighbours, frame);
     const real unit = static_cast<real>(frame.unit);
 
-#pragma omp parallel for schedule(dynamic, 16)
+#pragma omp parallel for schedule(dynamic, 16) if (clusters.size() > pair_loop)
     for (std::size_t c = 0; c < clusters.size(); ++c) {
         const ClusterList& list = clusters[c];
         if (skip_empty && list.moving + list.fixed == 0) continue;
@@ -80,18 +82,19 @@ void for_each_pair(const Neighbours<D>& neighbours, std::span<const ClusterList>
         const auto i = term.load(first);
         typename Term::template Sums<Pack<real>> sums{};
 
-        auto add_entries = [&](const std::uint32_t* entry, const std::uint32_t* end) __attribute__((always_inline)) {
+        auto add_entries = [&](const std::uint32_t* entry, const std::uint32_t* end, auto is_fixed) __attribute__((always_inline)) {
             for (; entry != end; ++entry) {
                 const std::uint32_t j = *entry & ListEntry::index_mask;
                 auto x_j = records[j].x;
                 if constexpr (periodic)
                     for (int a = 0; a < D; ++a) x_j[a] += shifts[*entry >> ListEntry::index_bits][a];
-                term.add(sums, x.pair(x_j, unit), i, term.load_one(j));
+                if constexpr (is_fixed) term.add_fixed(sums, x.pair(x_j, unit), i, term.load_one(j));
+                else term.add(sums, x.pair(x_j, unit), i, term.load_one(j));
             }
         };
-        add_entries(list.begin, list.begin + list.moving);
+        add_entries(list.begin, list.begin + list.moving, std::false_type{});
         term.moving_done(sums);
-        add_entries(list.begin + list.moving, list.begin + list.moving + list.fixed);
+        add_entries(list.begin + list.moving, list.begin + list.moving + list.fixed, std::true_type{});
         term.finish(first, static_cast<int>(std::min<std::uint32_t>(width, last - first + 1)), sums);
     }
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "base/vec.hpp"
 
 namespace doseki {
@@ -36,11 +37,19 @@ struct Particles {
 
     std::size_t size() const { return tag.size(); }
 
-    /// Calls f(array) for every field; the one list from which sorting, growth and checkpoints derive.
+    /// Calls f(name, array) for every field; the one list from which sorting, growth and checkpoints
+    /// derive.
+    template <class F>
+    void serialise(F&& f) {
+        f("position", position), f("velocity", velocity), f("acceleration", acceleration);
+        f("density", density), f("density_rate", density_rate);
+        f("deviatoric_stress", deviatoric_stress), f("deviatoric_stress_rate", deviatoric_stress_rate);
+        f("mass", mass), f("smoothing_length", smoothing_length), f("tag", tag);
+    }
+
     template <class F>
     void for_each_field(F&& f) {
-        f(position), f(velocity), f(acceleration), f(density), f(density_rate);
-        f(deviatoric_stress), f(deviatoric_stress_rate), f(mass), f(smoothing_length), f(tag);
+        serialise([&f](const char*, auto& field) { f(field); });
     }
 
     void resize(std::size_t n) {
@@ -51,7 +60,7 @@ struct Particles {
     void reorder(std::span<const std::uint32_t> order) {
         for_each_field([order](auto& field) {
             std::remove_reference_t<decltype(field)> sorted(order.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (order.size() > light_loop)
             for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
             field.swap(sorted);
         });

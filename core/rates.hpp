@@ -5,16 +5,22 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "material.hpp"
 #include "neighbours.hpp"
 #include "options.hpp"
 #include "particles.hpp"
+#include "phase_timer.hpp"
+#include "poison.hpp"
 #include "physics/equation_of_state.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
 #include "terms.hpp"
 
 namespace doseki {
+
+template <class real, int D>
+class PairProbe;
 
 /// Pressure and sound speed of a particle as its scheme sees them: Eqs. (8), (17) and the rule on
 /// tension.
@@ -30,6 +36,14 @@ inline Thermodynamics equation_of_state(const Material& material, double rho, Mo
     return {clamped ? max(0.0, eos.pressure) : eos.pressure, eos.sound_speed, eos.bulk_energy};
 }
 
+/// Eq. (11), drho/dt = -rho div v. Driven particles bring their density along; voids do not expand.
+template <int D>
+double density_rate(const Material& material, Motion motion, double rho, const Mat<double, D>& L) {
+    if (motion == Motion::driven) return 0.0;
+    const double rate = -rho * trace(L);
+    return rho < void_ratio * material.rho0 ? max(0.0, rate) : rate;
+}
+
 /// The right-hand side: density, stress and velocity rates of all particles.
 template <class real, int D>
 class Rates {
@@ -43,17 +57,33 @@ public:
     /// `new_lists`: neighbours were built since the last call. Where they were not, a particle of the
     /// bed that nothing comes near has the rates it had: none.
     void compute(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt, bool new_lists) {
-        skip_empty_ = !new_lists;
+        const bool poisoned = is_poisoned_run();
+        skip_empty_ = !new_lists && !poisoned;
+        if (poisoned) poison<real>(motion_);
         pack_motion(particles, half_dt);
         stress_.resize(particles.size());
+        summary_.assign(neighbours.clusters().size(), {});
+        if (poisoned) poison<real>(stress_), poison<double>(particles.acceleration);
         sum_velocity_gradient(particles, neighbours, half_dt);
         sum_momentum(particles, neighbours);
+        reduce_summaries();
+        if (poisoned) find_survivor(particles);
     }
 
     double timestep() const { return timestep_; }
     double av_power() const { return av_power_; }
-    /// A particle whose rates are not finite, or -1.
+    PhaseTimer& phases() { return phases_; }
+    /// A particle whose density is absurd or whose rates are not finite, or -1.
     std::int64_t faulty_particle() const { return faulty_; }
+    /// The particle that allows the shortest timestep, or -1.
+    std::int64_t limiting_particle() const { return limiting_; }
+    /// Density over density at rest beyond which a state is no longer one of matter. Where tension is
+    /// clamped away, nothing pulls the density of spray back; that of a bed may sink without effect.
+    static constexpr double most_compression = 10.0;
+    static double least_compression(Motion motion, double pressure) {
+        if (motion != Motion::free) return -std::numeric_limits<double>::max();
+        return pressure == 0.0 ? 1e-4 : 0.1;
+    }
     const std::vector<Material>& materials() const { return materials_; }
     const std::vector<StressRecord<real, D>>& stress_records() const { return stress_; }
 
@@ -61,7 +91,7 @@ public:
     Deviator<double, D> deviator(const Particles<D>& particles, std::size_t p) const {
         Deviator<double, D> tau = particles.deviatoric_stress[p];
         const Tag& tag = particles.tag[p];
-        if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free) return tau;
+        if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free || stress_.size() <= p) return tau;
         const StressRecord<real, D>& record = stress_[p];
         const double rho = static_cast<double>(record.rho);
         const auto eos = equation_of_state(materials_[tag.material], rho, tag.motion, options_.tension);
@@ -72,17 +102,25 @@ public:
                         rho * rho * static_cast<double>(record.stress[Sym<real, D>::index(a, b)]) + (a == b ? eos.pressure : 0.0);
         return tau;
     }
+    /// Stress records are kept from step to step where nothing is near (see compute).
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("stress_record", stress_), archive("next_timestep", timestep_), archive("av_power", av_power_);
+    }
+
     std::size_t bytes() const {
         return motion_.capacity() * sizeof(MotionRecord<real, D>) + stress_.capacity() * sizeof(StressRecord<real, D>) +
                summary_.capacity() * sizeof(ClusterSummary);
     }
 
 private:
+    friend class PairProbe<real, D>;
+
     /// What a cluster adds to the step's totals, reduced in the order of clusters.
     struct ClusterSummary {
         double timestep = std::numeric_limits<double>::max();
         double av_power = 0.0;
-        std::int64_t faulty = -1;
+        std::int64_t faulty = -1, limiting = -1;
     };
 
     void pack_motion(Particles<D>& particles, double half_dt);
@@ -91,12 +129,18 @@ private:
     void sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt);
     void sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours);
     void reduce_summaries();
+    void find_survivor(Particles<D>& particles);
 
     template <class Term>
     void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, const Term& term) {
         const std::span<const MotionRecord<real, D>> records(motion_);
         if (periodic_) for_each_pair<true>(neighbours, clusters, records, frame_, skip_empty_, term);
         else for_each_pair<false>(neighbours, clusters, records, frame_, skip_empty_, term);
+    }
+
+    template <class Term>
+    auto timed(const Term& term) {
+        return TimedFinish<Term, lanes<real>>{term, phases_};
     }
 
     std::vector<Material> materials_;
@@ -108,9 +152,10 @@ private:
     std::vector<MotionRecord<real, D>> motion_;
     std::vector<StressRecord<real, D>> stress_;
     std::vector<ClusterSummary> summary_;
+    PhaseTimer phases_;
     double timestep_ = 0.0;
     double av_power_ = 0.0;
-    std::int64_t faulty_ = -1;
+    std::int64_t faulty_ = -1, limiting_ = -1;
 };
 
 /// Eq. (10), held within a quarter of its value at rest (a solid in tension would grow h for ever).
@@ -124,6 +169,7 @@ double Rates<real, D>::smoothing_length(const Particles<D>& particles, std::size
 
 template <class real, int D>
 void Rates<real, D>::pack_motion(Particles<D>& particles, double half_dt) {
+    const auto timing = phases_.measure(Phase::pack);
     const std::size_t n = particles.size();
     motion_.resize(n);
     if constexpr (std::is_same_v<real, float>) {
@@ -134,7 +180,7 @@ void Rates<real, D>::pack_motion(Particles<D>& particles, double half_dt) {
     }
     const double h0 = particles.smoothing_length[0];
     bool equal = options_.h_mode == SmoothingLengthMode::constant;
-#pragma omp parallel for schedule(static) reduction(&& : equal)
+#pragma omp parallel for schedule(static) reduction(&& : equal) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
         MotionRecord<real, D>& record = motion_[p];
         for (int a = 0; a < D; ++a) {
@@ -160,6 +206,9 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
     for (double& element : L.element) element /= rho;
 
     const auto eos = equation_of_state(material, rho, tag.motion, options_.tension);
+    const double compression = rho / material.rho0;
+    if (!(compression > least_compression(tag.motion, eos.pressure) && compression < most_compression))
+        summary_[p / lanes<real>].faulty = static_cast<std::int64_t>(p);
     Deviator<double, D> stress{}, rate{};
     if (tag.motion == Motion::free) {
         if (material.law == Law::fluid) {
@@ -170,7 +219,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
             rate = elastic_stress_rate(L, stress, material.shear_modulus);
         }
     }
-    particles.density_rate[p] = -rho * trace(L);
+    particles.density_rate[p] = density_rate(material, tag.motion, rho, L);
     particles.deviatoric_stress_rate[p] = rate;
 
     const auto scaled = stress_over_rho_squared(eos.pressure, stress, rho);
@@ -184,6 +233,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
 
 template <class real, int D>
 void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt) {
+    const auto timing = phases_.measure(Phase::pass_1);
     auto update = [&](std::size_t p, const Mat<double, D>& gradient) {
         update_particle(particles, p, gradient, half_dt);
     };
@@ -191,17 +241,17 @@ void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighb
     using Update = decltype(update);
     if (options_.sym_grad && !equal_h_)
         sum_over_pairs(neighbours, neighbours.clusters(),
-                       VelocityGradientTerm<GradientOf::mean_h, real, D, Update>{motion, update});
+                       timed(VelocityGradientTerm<GradientOf::mean_h, real, D, Update>{motion, update}));
     else
         sum_over_pairs(neighbours, neighbours.clusters(),
-                       VelocityGradientTerm<GradientOf::own_h, real, D, Update>{motion, update});
+                       timed(VelocityGradientTerm<GradientOf::own_h, real, D, Update>{motion, update}));
 }
 
 template <class real, int D>
 void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours) {
+    const auto timing = phases_.measure(Phase::pass_2);
     constexpr std::size_t width = lanes<real>;
     const auto clusters = neighbours.clusters().first((neighbours.moving() + width - 1) / width);
-    summary_.assign(clusters.size(), {});
     std::fill(particles.acceleration.begin() + static_cast<std::ptrdiff_t>(neighbours.moving()),
               particles.acceleration.end(), Vec<double, D>{});
 
@@ -215,34 +265,41 @@ void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& 
         const double v_sig = max(sums.max_v_sig, 2.0 * static_cast<double>(stress_[p].c));
         ClusterSummary& summary = summary_[p / width];
         summary.av_power += particles.mass[p] * sums.av_power;
-        summary.timestep = min(summary.timestep,
-                               doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
-                                                options_.cflnumber, options_.cfl_force));
+        const double dt = doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
+                                           options_.cflnumber, options_.cfl_force);
+        if (dt < summary.timestep) summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
         if (!std::isfinite(dot(a, a) + particles.density_rate[p])) summary.faulty = static_cast<std::int64_t>(p);
     };
     const std::span<const MotionRecord<real, D>> motion(motion_);
     const std::span<const StressRecord<real, D>> stress(stress_);
-    const real alpha = static_cast<real>(options_.alpha);
+    const MomentumOptions<real> constants{static_cast<real>(options_.alpha), options_.fixed_limits_dt};
     using Finish = decltype(finish);
     if (equal_h_)
         sum_over_pairs(neighbours, clusters,
-                       MomentumTerm<GradientOf::own_h, real, D, Finish>{motion, stress, alpha, finish});
+                       MomentumTerm<GradientOf::own_h, real, D, Finish>{motion, stress, constants, finish});
     else
         sum_over_pairs(neighbours, clusters,
-                       MomentumTerm<GradientOf::mean_h, real, D, Finish>{motion, stress, alpha, finish});
-    reduce_summaries();
+                       MomentumTerm<GradientOf::mean_h, real, D, Finish>{motion, stress, constants, finish});
 }
 
 template <class real, int D>
 void Rates<real, D>::reduce_summaries() {
     timestep_ = std::numeric_limits<double>::max();
     av_power_ = 0.0;
-    faulty_ = -1;
+    faulty_ = limiting_ = -1;
     for (const ClusterSummary& summary : summary_) {
-        timestep_ = min(timestep_, summary.timestep);
+        if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
         av_power_ += summary.av_power;
         if (faulty_ < 0) faulty_ = summary.faulty;
     }
+}
+
+/// In float, coordinates are whole numbers, which may look like NaN: only double motion is looked at.
+template <class real, int D>
+void Rates<real, D>::find_survivor(Particles<D>& particles) {
+    const std::int64_t motion = std::is_same_v<real, double> ? survivor<real>(motion_) : -1;
+    for (const std::int64_t p : {motion, survivor<real>(stress_), survivor<double>(particles.acceleration)})
+        if (faulty_ < 0) faulty_ = p;
 }
 
 }  // namespace doseki

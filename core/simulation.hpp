@@ -5,6 +5,7 @@
 #include "diagnostics.hpp"
 #include "integrate.hpp"
 #include "rates.hpp"
+#include "skin.hpp"
 #include "sources.hpp"
 
 namespace doseki {
@@ -17,7 +18,9 @@ public:
 
     Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
         : options_(options), domain_(domain), neighbours_(domain),
-          rates_(std::move(materials), options, domain.any_periodic()) {}
+          rates_(std::move(materials), options, domain.any_periodic()) {
+        for (const Material& material : rates_.materials()) sound_speed_ = max(sound_speed_, material.c0);
+    }
 
     Particles<D> particles;
     Sources<D> sources;
@@ -37,6 +40,26 @@ public:
         for (std::int64_t n = 0; n < max_steps && time_ < limit && time_ < pause; ++n) step(limit);
     }
 
+    /// What must be kept for the run to go on as if it had not been interrupted.
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
+        archive("rebuilds", rebuilds_), archive("updates", updates_);
+        archive("av_dissipation", av_dissipation_);
+        archive("moved", moved_), archive("skin_width", skin_width_), archive("skin", skin_), archive("rebuild_step", rebuild_step_), archive("least_timestep", least_timestep_);
+        particles.serialise(archive);
+        sources.serialise(archive);
+        rates_.serialise(archive);
+        neighbours_.serialise(archive);
+    }
+
+    /// Makes lists anew, for a state that was saved with clusters of another width. The run goes on
+    /// with sums in another order.
+    void renew_lists() {
+        rebuild_neighbours();
+        update_rates(0.0);
+    }
+
     double time() const { return time_; }
     double last_timestep() const { return last_dt_; }
     double next_timestep() const { return rates_.timestep(); }
@@ -48,6 +71,9 @@ public:
     const Neighbours<D>& neighbours() const { return neighbours_; }
     const Rates<real, D>& rates() const { return rates_; }
     const Options<D>& options() const { return options_; }
+    PhaseTimer& phases() { return rates_.phases(); }
+    /// Margin of the lists over the smallest support radius, as a fraction of it.
+    double skin() const { return skin_; }
 
     Totals<D> totals() const { return doseki::totals(particles, rates_.materials(), options_.tension); }
 
@@ -56,13 +82,22 @@ public:
 
 private:
     void step(double limit);
+    void kick(double half_dt);
+    double drift(double dt);
+    double cheapest_skin(double smallest_support) const;
     void update_neighbours(double moved);
     void rebuild_neighbours();
     void update_rates(double half_dt);
     void wrap_positions();
     void drop_removed();
     std::vector<double> support_radii() const;
-    [[noreturn]] void report_failure(std::size_t p) const;
+    void check_positions() const;
+    std::size_t fastest_particle() const;
+    [[noreturn]] void report_failure(const char* kind, std::size_t p) const;
+
+    /// Beyond these nothing is believed: speeds over the largest sound speed, timesteps over the one
+    /// that matter at rest allows.
+    static constexpr double largest_mach = 10.0, smallest_timestep = 1e-4;
 
     Options<D> options_;
     Domain<D> domain_;
@@ -71,24 +106,50 @@ private:
     double time_ = 0.0, last_dt_ = 0.0;
     double av_dissipation_ = 0.0;
     double moved_ = 0.0;           // since the lists were built
+    double skin_ = 0.0;            // of the smallest support radius
     double skin_width_ = 0.0;      // [m]
+    double sound_speed_ = 0.0;     // of the stiffest material at rest [m/s]
+    double least_timestep_ = 0.0;  // [s]
     std::int64_t steps_ = 0, rebuilds_ = 0, updates_ = 0;
+    std::int64_t rebuild_step_ = 0;    // when the lists were built
 };
 
 template <class real, int D>
 void Simulation<real, D>::step(double limit) {
     const double end = min(limit, sources.next_event() > time_ ? sources.next_event() : limit);
     const double dt = min(rates_.timestep(), end - time_), old_power = rates_.av_power();
-    kick(particles, 0.5 * dt);
-    const double moved = drift(particles, dt);
+    kick(0.5 * dt);
+    const double moved = drift(dt);
     time_ = dt < end - time_ ? time_ + dt : end;
+    if (moved > largest_mach * sound_speed_ * dt) report_failure("speed", fastest_particle());
     update_neighbours(moved);
     update_rates(0.5 * dt);
-    kick(particles, 0.5 * dt);
+    kick(0.5 * dt);
     av_dissipation_ += 0.5 * dt * (old_power + rates_.av_power());
     last_dt_ = dt;
     ++steps_;
     updates_ += static_cast<std::int64_t>(particles.size());
+}
+
+template <class real, int D>
+void Simulation<real, D>::kick(double half_dt) {
+    const auto timing = phases().measure(Phase::integrate);
+    doseki::kick(particles, half_dt);
+}
+
+template <class real, int D>
+double Simulation<real, D>::drift(double dt) {
+    const auto timing = phases().measure(Phase::integrate);
+    return doseki::drift(particles, dt);
+}
+
+/// From what the lists that end now have lasted.
+template <class real, int D>
+double Simulation<real, D>::cheapest_skin(double smallest_support) const {
+    const std::int64_t lasted = steps_ - rebuild_step_;
+    if (!options_.auto_skin || skin_ == 0.0) return options_.skin;
+    if (lasted == 0) return skin_;
+    return CheapestSkin<D>::at(moved_ / (static_cast<double>(lasted) * smallest_support));
 }
 
 /// Lists hold as long as no two particles can have come nearer by more than the skin.
@@ -101,22 +162,28 @@ void Simulation<real, D>::update_neighbours(double moved) {
 
 template <class real, int D>
 void Simulation<real, D>::rebuild_neighbours() {
-    for (std::size_t p = 0; p < particles.size(); ++p)
-        for (double x : particles.position[p].component)
-            if (!(std::abs(x) < 1e9)) report_failure(p);
+    check_positions();
     wrap_positions();
     sources.drain(particles);
     drop_removed();
-    if (particles.size() == 0) throw PhysicsFailure("no particle is left in the domain", -1, time_);
+    if (particles.size() == 0) throw PhysicsFailure("no particle is left in the domain", "empty", -1);
 
     std::vector<std::uint8_t> fixed(particles.size());
     for (std::size_t p = 0; p < particles.size(); ++p) fixed[p] = particles.is_fixed(p);
     const auto support = support_radii();
-    skin_width_ = options_.skin * *std::min_element(support.begin(), support.end());
-    particles.reorder(neighbours_.sort(particles.position, support, fixed));
+    const double least_support = *std::min_element(support.begin(), support.end());
+    skin_ = cheapest_skin(least_support);
+    skin_width_ = skin_ * least_support;
+    least_timestep_ = smallest_timestep * options_.cflnumber * least_support / (WendlandC6<D>::support * sound_speed_);
+    {
+        const auto timing = phases().measure(Phase::sort);
+        particles.reorder(neighbours_.sort(particles.position, support, fixed));
+    }
+    const auto timing = phases().measure(Phase::list_build);
     neighbours_.template build<width>(particles.position, support_radii(), skin_width_);
     moved_ = 0.0;
     ++rebuilds_;
+    rebuild_step_ = steps_;
 }
 
 template <class real, int D>
@@ -155,11 +222,38 @@ void Simulation<real, D>::wrap_positions() {
 template <class real, int D>
 void Simulation<real, D>::update_rates(double half_dt) {
     rates_.compute(particles, neighbours_, half_dt, moved_ == 0.0);
-    if (rates_.faulty_particle() >= 0) report_failure(static_cast<std::size_t>(rates_.faulty_particle()));
+    if (rates_.faulty_particle() >= 0) {
+        const auto p = static_cast<std::size_t>(rates_.faulty_particle());
+        const double rho = particles.density[p] + half_dt * particles.density_rate[p];
+        report_failure(std::isfinite(rho) && std::isfinite(particles.acceleration[p][0]) ? "density" : "not_finite", p);
+    }
+    if (rates_.timestep() < least_timestep_ && rates_.limiting_particle() >= 0)
+        report_failure("timestep", static_cast<std::size_t>(rates_.limiting_particle()));
+}
+
+/// No particle may be lost: outside the world, or a whole box away from a domain that is given.
+template <class real, int D>
+void Simulation<real, D>::check_positions() const {
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        for (int a = 0; a < D; ++a) {
+            const double x = particles.position[p][a], length = domain_.length(a);
+            const bool bounded = !domain_.periodic[a] && length > 0.0;
+            if (!(std::abs(x) < 1e9)) report_failure("outside", p);
+            if (bounded && (x < domain_.low[a] - length || x > domain_.high[a] + length)) report_failure("outside", p);
+        }
 }
 
 template <class real, int D>
-void Simulation<real, D>::report_failure(std::size_t p) const {
+std::size_t Simulation<real, D>::fastest_particle() const {
+    std::size_t fastest = 0;
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (dot(particles.velocity[p], particles.velocity[p]) > dot(particles.velocity[fastest], particles.velocity[fastest]))
+            fastest = p;
+    return fastest;
+}
+
+template <class real, int D>
+void Simulation<real, D>::report_failure(const char* kind, std::size_t p) const {
     const Tag& tag = particles.tag[p];
     const Material& material = rates_.materials()[tag.material];
     auto text = [](double value) {
@@ -174,7 +268,7 @@ void Simulation<real, D>::report_failure(std::size_t p) const {
                              std::to_string(tag.id) + " (" + material.name + ") at (" + where +
                              ") m has speed " + text(speed) + " m/s, density " + text(particles.density[p]) +
                              " kg/m^3 (at rest " + text(material.rho0) + ")",
-                         tag.id, time_);
+                         kind, tag.id);
 }
 
 template <class real, int D>

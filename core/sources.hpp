@@ -1,11 +1,22 @@
 #pragma once
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "particles.hpp"
 
 namespace doseki {
+
+/// A number in (-1, 1) that depends on its arguments alone, so that a run can be repeated and resumed
+/// (the finaliser of SplitMix64, Steele et al. 2014).
+inline double symmetric_noise(std::int64_t id, int axis) {
+    auto z = static_cast<std::uint64_t>(id) * 4 + static_cast<std::uint64_t>(axis) + 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return static_cast<double>(static_cast<std::int64_t>(z)) * 0x1p-63;
+}
 
 /// An inflow section: layers of particles, dp apart, pushed through it at a constant speed. Behind the
 /// section a buffer of driven layers carries the flow's pressure upstream; a layer that has crossed the
@@ -17,6 +28,7 @@ struct Inflow {
     double speed = 0.0;                   // [m/s]
     double spacing = 0.0;                 // between layers [m]
     int buffer_layers = 4;
+    double jitter = 0.0;                  // random displacement of a particle, in spacings (< 1/2)
     double start = 0.0, stop = 0.0;       // [s]
     double mass = 0.0, density = 0.0, smoothing_length = 0.0;    // of one particle
     std::int16_t material = 0;
@@ -35,6 +47,11 @@ struct Inflow {
         if (closed) return std::numeric_limits<double>::infinity();
         if (!open) return start;
         return min(stop, start + (static_cast<double>(released) + 0.5) * spacing / speed);
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("inflow_released", released), archive("inflow_open", open), archive("inflow_closed", closed);
     }
 
     /// Distance of layer k beyond the section at time t (< 0: still in the buffer).
@@ -82,6 +99,15 @@ public:
 
     std::vector<std::uint8_t> removed;
 
+    /// What changes during a run; `removed` is empty between steps.
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("mass_initial", ledger.initial), archive("mass_asked", ledger.asked);
+        archive("mass_entered", ledger.entered), archive("mass_left", ledger.left);
+        archive("next_id", next_id);
+        for (std::size_t k = 0; k < inflows.size(); ++k) archive.nested(std::to_string(k) + "_", inflows[k]);
+    }
+
 private:
     void add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t);
     void release(Particles<D>& particles, Inflow<D>& inflow, double t);
@@ -94,6 +120,8 @@ void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std
     for (std::size_t row = 0; row < inflow.layer.size(); ++row) {
         const std::size_t p = first + row;
         particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
+        for (int a = 0; a < D; ++a)
+            particles.position[p][a] += inflow.jitter * inflow.spacing * symmetric_noise(next_id, a);
         particles.velocity[p] = inflow.speed * inflow.direction;
         particles.acceleration[p] = {};
         particles.density[p] = inflow.density;
@@ -113,7 +141,8 @@ void Sources<D>::release(Particles<D>& particles, Inflow<D>& inflow, double t) {
         Tag& tag = particles.tag[p];
         if (tag.motion != Motion::driven || tag.body != inflow.body) continue;
         const double beyond = dot(particles.position[p] - inflow.layer[0], inflow.direction);
-        if (beyond >= -1e-9 * inflow.spacing) {
+        // Half the way to the next layer at most: a layer is set free as a whole.
+        if (beyond >= -(inflow.jitter + 1e-9) * inflow.spacing) {
             tag.motion = Motion::free;
             ledger.entered += particles.mass[p];
         }

@@ -68,6 +68,11 @@ struct VelocityGradientTerm {
     void moving_done(Mat<T, D>&) const {}
 
     template <class T>
+    DOSEKI_FN void add_fixed(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        add(gradient, pair, i, j);
+    }
+
+    template <class T>
     void finish(std::uint32_t first, int count, const Mat<T, D>& gradient) const {
         for (int l = 0; l < count; ++l) {
             Mat<double, D> lane;
@@ -75,6 +80,12 @@ struct VelocityGradientTerm {
             finish_particle(first + l, lane);
         }
     }
+};
+
+template <class real>
+struct MomentumOptions {
+    real alpha;
+    bool fixed_limits_dt;    // false: in Eq. (18) a fixed j has at most the sound speed of i
 };
 
 /// Eqs. (12)-(16), with the largest signal velocity for Eq. (18) and the power that the artificial
@@ -93,7 +104,7 @@ struct MomentumTerm {
 
     std::span<const MotionRecord<real, D>> motion;
     std::span<const StressRecord<real, D>> stress;
-    real alpha;
+    MomentumOptions<real> options;
     const Finish& finish_particle;
 
     auto load(std::uint32_t first) const {
@@ -122,15 +133,27 @@ struct MomentumTerm {
 
     template <class T>
     DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        add(sums, pair, i, j, T(0));
+    }
+
+    template <class T>
+    DOSEKI_FN void add_fixed(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        add(sums, pair, i, j, options.fixed_limits_dt ? T(0) : max(T(0), j.c - i.c));
+    }
+
+    /// `spared`: the part of the signal velocity that does not limit the timestep.
+    template <class T>
+    DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j,
+                       const T& spared) const {
         const T F = gradient_factor<of>(pair.r, i.motion, j.motion);
         const T v_dot_r = dot(i.motion.v - j.motion.v, pair.r_ij);
         const T w_ij = approach_speed(v_dot_r, pair.r);
         const T v_sig = signal_velocity(i.c, j.c, w_ij);
         const T switched = number<T>(0.5) * (i.balsara + j.balsara);
-        const T Pi_ij = switched * artificial_viscosity(T(alpha), v_sig, w_ij, i.rho, j.rho);
+        const T Pi_ij = switched * artificial_viscosity(T(options.alpha), v_sig, w_ij, i.rho, j.rho);
         add_acceleration(sums.acceleration, j.motion.mass, i.stress + j.stress, Pi_ij, F, pair.r_ij);
         sums.av_power += (j.motion.mass * F) * (Pi_ij * v_dot_r);
-        sums.max_v_sig = max(sums.max_v_sig, select(F < T(0), v_sig, T(0)));
+        sums.max_v_sig = max(sums.max_v_sig, select(F < T(0), v_sig - spared, T(0)));
     }
 
     /// A pair of moving particles is met twice, one with a fixed particle once.

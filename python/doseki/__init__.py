@@ -7,7 +7,7 @@ __version__ = "0.1.0"
 
 # Imported on first use: reading a scenario or a record must not wait for the compiled core.
 _LAZY = {
-    "load": "load",
+    "load": "loading",
     "load_scenario": "scenario",
     "run_scenario": "run",
     "UserError": "errors",

@@ -13,6 +13,7 @@ from .particle_checks import check_particles
 from .particles import FIXED, FREE, ParticleSet, concatenate
 from .scenario import Scenario
 from .schema import Box, Disc, LatticeBody, ParticleFile, Points, ShapedBody
+from .wetting import covered_share
 
 MAX_PARTICLES = 2_000_000_000
 BYTES_PER_PARTICLE = 500  # what a run holds, lists included
@@ -80,13 +81,13 @@ def _from_shape(scenario: Scenario, name: str, names: list[str]) -> ParticleSet:
     rho0 = scenario.materials[body.material].rho0
     position, mass = _fill(scenario, name, body, rho0)
     n = len(position)
-    masses, density = np.full(n, mass), np.full(n, rho0)
+    masses, rest = np.full(n, mass), np.full(n, rho0)
     return ParticleSet(
         position=position,
         velocity=_velocity(scenario, name, body, position),
         mass=masses,
-        density=density,
-        smoothing_length=smoothing_length(scenario, masses, density),
+        density=rest - _missing_cover(scenario, body, n),
+        smoothing_length=smoothing_length(scenario, masses, rest),
         material=np.full(n, scenario.material_names.index(body.material), np.int32),
         body=np.full(n, names.index(name), np.int32),
         motion=np.full(n, FIXED if body.fixed else FREE, np.int32),
@@ -107,7 +108,20 @@ def _fill(scenario: Scenario, name: str, body: ShapedBody, rho0: float) -> tuple
     else:
         position, pivot = body.centre[None, :].copy(), body.centre
         mass = rho0 * ball_measure(body.radius, scenario.dim)
+    if body.jitter:
+        random = np.random.default_rng(body.random_seed)
+        position += body.jitter * spacing * random.uniform(-1.0, 1.0, position.shape)
     return _rotated(scenario, name, body, position, pivot), body.mass_per_particle or mass
+
+
+def _missing_cover(scenario: Scenario, body: ShapedBody, n: int) -> np.ndarray:
+    """What the cover of a wetted box, not there yet, will add to the density of its particles."""
+    if not isinstance(body, Box) or body.wetted_by is None:
+        return np.zeros(n)
+    spacing = body.dp or scenario.dp
+    upright = box_lattice(body.min, box_counts(body.min, body.max, spacing), spacing, n)
+    share = covered_share(body.max[-1] - upright[:, -1], spacing, scenario.support, scenario.dim)
+    return scenario.materials[body.wetted_by].rho0 * share
 
 
 def _box(scenario: Scenario, name: str, body: Box, spacing: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The command line: doseki run | plot | export | list."""
+"""The command line: doseki run | plot | export | list | bench."""
 
 from __future__ import annotations
 
@@ -23,6 +23,19 @@ app = typer.Typer(
     epilog="Exit codes: 0 done, 2 bad input, 3 physics went wrong, 4 out of memory or disk.",
 )
 
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scenario; repeatable."),
+]
+Threads = Annotated[int | None, typer.Option(min=1, max=4096, help="Threads [all cores].")]
+CheckpointEvery = Annotated[
+    float | None, typer.Option(min=1e-12, metavar="SECONDS", help="Simulated time between checkpoints.")
+]
+CheckpointMinutes = Annotated[
+    float, typer.Option(min=0.0, metavar="M", help="Wall time between checkpoints.")
+]
+Figures = Annotated[bool, typer.Option(help="Draw the figures at the end.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")]
 
 
@@ -54,29 +67,35 @@ def run(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="Output folder [runs/NAME].")
     ] = None,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scenario; repeatable."),
-    ] = None,
-    threads: Annotated[int | None, typer.Option(min=1, max=4096, help="Threads [all cores].")] = None,
+    settings: Settings = None,
+    threads: Threads = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")] = False,
-    figures: Annotated[bool, typer.Option(help="Draw the figures at the end.")] = True,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+    checkpoint_every: CheckpointEvery = None,
+    checkpoint_minutes: CheckpointMinutes = 10.0,
+    figures: Figures = True,
+    as_json: AsJson = False,
 ) -> None:
     """Run a scenario; the record, figures and a one-screen summary go to DIR."""
-    from .load import load
-    from .plot import plot_run
     from .progress import progress_bar
     from .run import RunOptions, run_scenario
     from .scenario import load_scenario
-    from .summary import summary_text
 
     loaded = load_scenario(scenario, settings or [])
     directory = output or _free_directory(scenario)
+    with progress_bar(loaded.title, loaded.time_max) as progress:
+        options = RunOptions(threads, overwrite, progress, checkpoint_every, checkpoint_minutes)
+        summary = run_scenario(loaded, directory, options)
     for warning in loaded.warnings:
         typer.echo(f"warning: {warning}", err=True)
-    with progress_bar(loaded.title, loaded.time_max) as progress:
-        summary = run_scenario(loaded, directory, RunOptions(threads, overwrite, progress))
+    _report(directory, summary, figures, as_json)
+
+
+def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
+    """Figures and the summary on one screen, or as JSON."""
+    from .loading import load
+    from .plot import plot_run
+    from .summary import summary_text
+
     pictures = plot_run(directory) if figures else []
     text = summary_text(load(directory))
     (directory / "summary.txt").write_text(text + "\n")
@@ -90,6 +109,40 @@ def run(
 
 
 @app.command()
+def resume(
+    directory: Directory,
+    settings: Settings = None,
+    threads: Threads = None,
+    checkpoint_every: CheckpointEvery = None,
+    checkpoint_minutes: CheckpointMinutes = 10.0,
+    figures: Figures = True,
+    as_json: AsJson = False,
+) -> None:
+    """Go on with a run that was stopped, killed or failed, from its last checkpoint."""
+    from .loading import load
+    from .progress import progress_bar
+    from .resume import resume_run
+    from .run import RunOptions
+
+    scenario = load(directory).scenario
+    with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
+        options = RunOptions(threads, False, progress, checkpoint_every, checkpoint_minutes)
+        summary, notes = resume_run(directory, settings or [], options)
+    for note in notes:
+        typer.echo(f"warning: {note}", err=True)
+    _report(directory, summary, figures, as_json)
+
+
+@app.command()
+def explain(directory: Directory) -> None:
+    """Say why a run failed, and what to change."""
+    from .failure import explanation
+    from .loading import load
+
+    typer.echo(explanation(load(directory).folder))
+
+
+@app.command()
 def plot(
     directory: Directory,
     movie: Annotated[
@@ -98,7 +151,7 @@ def plot(
     colour: Annotated[str, typer.Option(help="Colour of the movie: material, velocity_x ...")] = "material",
 ) -> None:
     """Draw the figures of a run (and a movie on request)."""
-    from .load import load
+    from .loading import load
     from .movie import make_movie
     from .plot import plot_run
 
@@ -116,7 +169,7 @@ def export(
 ) -> None:
     """Write the snapshots of a run in another format."""
     from .export import export_vtu
-    from .load import load
+    from .loading import load
 
     if not vtu:
         raise UserError("say which format to export to: --vtu")
@@ -132,6 +185,28 @@ def list_command() -> None:
     for name, title, _path in list_scenarios():
         table.add_row(name, title)
     Console().print(table)
+
+
+@app.command()
+def bench(
+    quick: Annotated[bool, typer.Option("--quick", help="Smaller and fewer: under a minute.")] = False,
+    sizes: Annotated[str | None, typer.Option(metavar="N,...", help="Particles, e.g. 1e4,1e6.")] = None,
+    dims: Annotated[str | None, typer.Option(metavar="2,3", help="Dimensions.")] = None,
+    precision: Annotated[str | None, typer.Option(metavar="double,float", help="Of the pairs.")] = None,
+    threads: Annotated[str | None, typer.Option(metavar="T,...", help="Threads [1, 2, all].")] = None,
+    isa: Annotated[
+        str | None, typer.Option(metavar="v4,...", help="Instruction sets [best; others at one size].")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
+    append: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also append the rows to FILE, one line a run.")
+    ] = None,
+) -> None:
+    """Measure speed and memory here; exit code 4 when memory is over its limit."""
+    from .bench import bench_command, make_plan
+
+    plan = make_plan({"--sizes": sizes, "--dims": dims, "--precision": precision, "--threads": threads, "--isa": isa}, quick)
+    bench_command(plan, as_json, append)
 
 
 def main(arguments: list[str] | None = None) -> Any:

@@ -11,7 +11,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.patches import Patch
 
 from .layout import PanelGrid
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .quantities import CATEGORIES, check_quantity, quantity, quantity_label
 from .views import View, fluid_names, select
 
@@ -31,6 +31,7 @@ class CategoryColours:
     def __init__(self, run: Run, snapshots: Sequence[Snapshot], name: str) -> None:
         """`name` is "material" or "body"."""
         self._name = name
+        self.heading = ""
         free, fixed = set(), set()
         for snapshot in snapshots:
             free |= set(snapshot[name][~snapshot["fixed"]].tolist())
@@ -69,6 +70,7 @@ class ScaleColours:
     def __init__(self, snapshots: Sequence[Snapshot], name: str, view: View) -> None:
         """The scale spans what the particles that can move have in `view`."""
         self._name = name
+        self.heading = quantity_label(name)
         values = [quantity(s, name)[select(s, view)] for s in snapshots]
         self._norm = colors.Normalize(*_limits(np.concatenate(values)))
 
@@ -79,15 +81,14 @@ class ScaleColours:
         return colours
 
     def legend_entries(self) -> list[tuple[str, str]]:
-        """(label, colour) of the ends of the scale."""
-        ends = ((self._norm.vmin, 0.0), (self._norm.vmax, 1.0))
-        label = quantity_label(self._name)
-        return [(f"{v:.3g} {label}", colors.to_hex(colormaps[SCALE](at))) for v, at in ends]
+        """(label, colour) of a few values of the scale."""
+        values = np.linspace(self._norm.vmin, self._norm.vmax, 5)
+        return [(f"{v:.3g}", colors.to_hex(colormaps[SCALE](self._norm(v)))) for v in values]
 
     def add_key(self, grid: PanelGrid, axes: Axes, first: bool) -> None:
         """Explain the colours by a bar to the right of the panel `axes`, `first` or not."""
         bar = grid.figure.colorbar(ScalarMappable(self._norm, SCALE), cax=grid.beside(axes))
-        bar.set_label(quantity_label(self._name))
+        bar.set_label(self.heading, fontsize="small")
 
 
 Colouring = CategoryColours | ScaleColours

@@ -1,77 +1,33 @@
-"""The compiled core: which instruction set runs, and a simulation made from a scenario."""
+"""A simulation of the compiled core, made from a scenario."""
 
 from __future__ import annotations
 
-import os
-import platform
 from dataclasses import asdict
-from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from .bodies import build_bodies
-from .errors import UserError
+from .core_modules import available_instruction_sets, load_core
 from .inflows import InflowSection, build_inflows
 from .scenario import Scenario
 
-# What a module was compiled for, and the processor flags that must be there for it.
-INSTRUCTION_SETS = {
-    "v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
-    "v3": {"avx2", "fma", "bmi1", "bmi2", "f16c"},
-    "native": set(),
-    "scalar": set(),
-}
+__all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 
-
-def _processor_flags() -> set[str]:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return set()
-    return next((set(line.split()) for line in lines if line.startswith("flags")), set())
-
-
-def available_instruction_sets() -> list[str]:
-    """Instruction sets that were built and that this processor has, fastest first."""
-    flags = _processor_flags()
-    return [
-        isa
-        for isa, needed in INSTRUCTION_SETS.items()
-        if needed <= flags and find_spec(f"doseki._core_{isa}") is not None
-    ]
-
-
-@cache
-def load_core(isa: str | None = None) -> ModuleType:
-    """The extension module for an instruction set.
-
-    `isa` is "v4" (AVX-512), "v3" (AVX2), "native" (other processors) or "scalar" (one lane, the
-    reference); by default the environment variable DOSEKI_ISA, else the fastest one available.
-    Raises UserError when it is not available here.
-    """
-    available = available_instruction_sets()
-    chosen = isa or os.environ.get("DOSEKI_ISA") or (available[0] if available else None)
-    if chosen not in available:
-        raise UserError(
-            f"instruction set {chosen!r} is not available on this {platform.machine()} processor;"
-            f" built and usable here: {', '.join(available) or 'none (is the core built?)'}"
-        )
-    return import_module(f"doseki._core_{chosen}")
+# Margin of the first lists of a run that chooses its own.
+FIRST_SKIN = 0.05
 
 
 def core_options(scenario: Scenario) -> dict[str, Any]:
     """The parameters of the scheme, as the core reads them."""
-    names = "eta alpha cflnumber cfl_force skin balsara sym_grad tension h_mode".split()
+    names = "eta alpha cflnumber cfl_force fixed_limits_dt balsara sym_grad tension h_mode".split()
     axes = "xyz"[: scenario.dim]
     zeros = [0.0] * scenario.dim
     low, high = scenario.domain_min, scenario.domain_max
     return {name: getattr(scenario, name) for name in names} | {
         "gravity": list(scenario.gravity),
+        "skin": FIRST_SKIN if scenario.skin == "auto" else scenario.skin,
+        "auto_skin": scenario.skin == "auto",
         "periodic": [axis in scenario.periodic for axis in axes],
         "domain_min": zeros if low is None else list(low),
         "domain_max": zeros if high is None else list(high),
@@ -95,7 +51,7 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
         "direction": list(section.direction),
         **{
             name: getattr(section, name)
-            for name in "speed spacing mass density smoothing_length start stop".split()
+            for name in "speed spacing jitter mass density smoothing_length start stop".split()
         },
         "buffer_layers": int(section.buffer_layers),
         "material": int(section.material),
@@ -103,16 +59,28 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
     }
 
 
-def build_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, list[str]]:
-    """A started core simulation of `scenario`, and the names of its bodies."""
+def empty_simulation(scenario: Scenario, body_names: list[str], isa: str | None = None) -> Any:
+    """A core simulation of `scenario` without particles, to be filled or restored."""
     core = load_core(isa)
-    particles, body_names = build_bodies(scenario)
     kind = getattr(core, f"Simulation{scenario.dim}{scenario.precision.capitalize()}")
     simulation = kind(core_materials(scenario), core_options(scenario))
-    simulation.add_particles(**{name: np.ascontiguousarray(v) for name, v in vars(particles).items()})
     for section in build_inflows(scenario, body_names):
         simulation.add_inflow(_inflow_table(section))
     for outflow in scenario.outflow.values():
         simulation.add_outflow(list(outflow.min), list(outflow.max))
+    return simulation
+
+
+def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, list[str]]:
+    """A core simulation of `scenario` that is yet to be started, and the names of its bodies."""
+    particles, body_names = build_bodies(scenario)
+    simulation = empty_simulation(scenario, body_names, isa)
+    simulation.add_particles(**{name: np.ascontiguousarray(v) for name, v in vars(particles).items()})
+    return simulation, body_names
+
+
+def build_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, list[str]]:
+    """A started core simulation of `scenario`, and the names of its bodies."""
+    simulation, body_names = filled_simulation(scenario, isa)
     simulation.start()
     return simulation, body_names

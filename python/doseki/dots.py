@@ -11,15 +11,16 @@ from matplotlib.collections import EllipseCollection
 
 from .colouring import Colouring
 from .layout import Extent
-from .load import Snapshot
+from .loading import Snapshot
+from .particles import SUPPORT
 from .raster import coloured, splat
 from .views import View
 
-SUPPORT = 2.5  # H of the paper: a particle acts out to H h
+MARGIN = 0.02  # of the size of the picture, around all particles
 FEW_CIRCLES = 100
 MAX_CIRCLES = 200_000  # more particles than this are drawn as pixels
 RASTER_WIDTH = 2000
-TRIM = 0.05  # per cent of the particles at each side that need not fit into a picture of all
+TRIM = 0.05  # per cent of the particles at each end that may be far from all others
 WHITE = (255, 255, 255)
 
 
@@ -77,14 +78,23 @@ def extent_of(snapshots: Sequence[Snapshot], view: View, size: str = "grain") ->
     shown = [d for d in (dots(s, view, size) for s in snapshots) if len(d.index)]
     low, high = view.lower[[0, -1]], view.upper[[0, -1]]
     if shown:
-        margin = 1.05 * max(d.radius.max() for d in shown)
-        points = np.concatenate([d.points for d in shown])
-        trim = TRIM if len(points) > 2000 else 0.0
-        ends = np.percentile(points, (trim, 100 - trim), axis=0)
+        ends = _ends(np.concatenate([d.points for d in shown]))
+        margin = max(d.radius.max() for d in shown) + MARGIN * np.max(ends[1] - ends[0])
         low = np.where(np.isfinite(low), low, ends[0] - margin)
         high = np.where(np.isfinite(high), high, ends[1] + margin)
     low, high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 1.0)
     return low[0], high[0], low[1], high[1]
+
+
+def _ends(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates, without the few particles that fly far from all others."""
+    low, high = np.percentile(points, (TRIM, 100 - TRIM), axis=0)
+    near = 0.1 * (high - low)
+    least, greatest = points.min(axis=0), points.max(axis=0)
+    return (
+        np.where(least > low - near, least, low),
+        np.where(greatest < high + near, greatest, high),
+    )
 
 
 def draw_particles(
@@ -112,5 +122,5 @@ def _circles(axes: Axes, shown: Dots, rgba: np.ndarray) -> EllipseCollection:
     return EllipseCollection(
         2 * shown.radius, 2 * shown.radius, np.zeros(len(shown.index)), units="xy",
         offsets=shown.points, offset_transform=axes.transData, facecolors=rgba,
-        edgecolors="black" if few else "none", linewidths=0.5, alpha=0.7 if few else 1.0,
+        edgecolors="black" if few else "none", linewidths=0.5, alpha=0.8 if few else 1.0,
     )  # fmt: skip

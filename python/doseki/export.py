@@ -11,7 +11,7 @@ import numpy as np
 
 from .errors import UserError
 from .fields import FIELDS
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .storage import clear_errors, write_whole, write_whole_text
 
 VTK_VERTEX = 1

@@ -1,7 +1,7 @@
 """Arithmetic written in a scenario file: strings that begin with "=".
 
 Only numbers, names, arithmetic, comparisons, `a if c else b` and the functions below exist; there
-are no attributes, subscripts or strings operations, so a scenario file cannot run code.
+are no attributes, subscripts or operations on strings, so a scenario file cannot run code.
 """
 
 from __future__ import annotations

@@ -46,12 +46,6 @@ class ParticleField:
             return tensor
         return stored
 
-    @property
-    def label(self) -> str:
-        """What stands on an axis or a colour bar: the name and its unit."""
-        name = self.key.replace("_", " ")
-        return f"{name} ({self.unit})" if self.unit else name
-
 
 FIELDS = (
     ParticleField("position", "Points", "x", "m", "vector", "position"),

@@ -8,27 +8,33 @@ from matplotlib.figure import Figure
 from .figure_series import draw_curves
 from .flow import Flow
 from .layout import chart_grid
-from .load import Run
+from .loading import Run
+
+MEASURES = (  # attribute of WindowFlow, what it is, its unit (3-D, 2-D)
+    ("fluid_velocity", "mean velocity x of the fluid", "m/s", "m/s"),
+    ("grain_speed", "mean speed of grains", "m/s", "m/s"),
+    ("grain_mass", "mass of grains", "kg", "kg/m"),
+    ("passed_mass", "grains passed", "kg", "kg/m"),
+)
 
 
 def draw_flow(run: Run, flow: Flow) -> Figure:
     """One panel for the front, and one for each thing that windows show."""
-    per_metre = "/m" if run.scenario["dim"] == 2 else ""
-    panels = {"front of the fluid, x (m)": {"front": flow.front}}
-    for label, attribute in (
-        ("mean $v_x$ of the fluid (m/s)", "fluid_velocity"),
-        ("mean speed of grains (m/s)", "grain_speed"),
-        (f"mass of grains (kg{per_metre})", "grain_mass"),
-        (f"grains passed (kg{per_metre})", "passed_mass"),
-    ):
-        curves = {name: np.array(getattr(w, attribute)) for name, w in flow.windows.items()}
-        panels[label] = {
-            name: curve for name, curve in curves.items() if np.nansum(np.abs(curve)) > 0
-        }
-    panels = {label: curves for label, curves in panels.items() if curves}
-    figure, grid = chart_grid(len(panels), 1, (7.0, 1.8), "The flow over time")
+    panels = {"front of the fluid (m)": {"": flow.front}} | _window_panels(run, flow)
+    figure, grid = chart_grid(len(panels), 1, (7.0, 2.0), "The flow over time")
     for axes, (label, curves) in zip(grid[:, 0], panels.items(), strict=True):
         draw_curves(axes, flow.times, curves)
         axes.set_ylabel(label, fontsize="small")
     grid[-1, 0].set_xlabel("time (s)")
     return figure
+
+
+def _window_panels(run: Run, flow: Flow) -> dict[str, dict[str, np.ndarray]]:
+    """Curves of every window (so that each has one colour throughout) by the label of the axis."""
+    panels = {}
+    for attribute, meaning, unit, unit_in_2d in MEASURES:
+        curves = {name: np.array(getattr(w, attribute)) for name, w in flow.windows.items()}
+        if any(np.any(np.isfinite(curve)) for curve in curves.values()):
+            label = f"{meaning} ({unit_in_2d if run.scenario['dim'] == 2 else unit})"
+            panels[label] = curves
+    return panels

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from . import measure
 from .layout import chart_grid, time_text
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .views import View, select
 
 ALL_COLOUR, SAMPLE_COLOUR = "#d7301f", "#8c8c8c"
@@ -39,24 +39,27 @@ def draw_histogram(run: Run, snapshots: Sequence[Snapshot], what: SpeedHistogram
     for row, snapshot in zip(grid, snapshots, strict=True):
         speeds = what.speeds(snapshot)
         time = time_text(snapshot.time, run.times[-1])
-        _draw_all(row[0], speeds, what, f"{time}: all {len(speeds)} in the window")
+        name = what.material or "particles"
+        if len(speeds) == 0:
+            row[0].text(0.0, 0.5, f"{time}: no {name} in the window")
+            row[0].set_axis_off()
+            row[1].set_axis_off()
+            continue
+        _draw_all(row[0], speeds, what.bin_width)
         _draw_samples(row[1], speeds, what)
+        row[0].set_title(f"{time}: all {len(speeds)}", fontsize="small", loc="left")
+        row[0].set_ylabel(f"{name} per {what.bin_width:g} m/s")
     for axes in grid[-1]:
         axes.set_xlabel("speed (m/s)")
     return figure
 
 
-def _draw_all(axes: Axes, speeds: np.ndarray, what: SpeedHistogram, title: str) -> None:
-    edges, counts = measure.speed_histogram(speeds, what.bin_width)
+def _draw_all(axes: Axes, speeds: np.ndarray, bin_width: float) -> None:
+    edges, counts = measure.speed_histogram(speeds, bin_width)
     axes.stairs(counts, edges, fill=True, color=ALL_COLOUR, alpha=0.85)
-    axes.set_title(title, fontsize="small", loc="left")
-    axes.set_ylabel(f"{what.material or 'particles'} per {what.bin_width:g} m/s")
-    if len(speeds):
-        mean = float(speeds.mean())
-        axes.axvline(mean, color="black", linewidth=1, linestyle="--", label=f"mean {mean:.2f} m/s")
-        axes.legend(fontsize="small", frameon=False)
-    else:
-        axes.text(0.5, 0.5, "none", ha="center", transform=axes.transAxes)
+    mean = float(speeds.mean())
+    axes.axvline(mean, color="black", linewidth=1, linestyle="--", label=f"mean {mean:.2f} m/s")
+    axes.legend(fontsize="small", frameon=False)
 
 
 def _draw_samples(axes: Axes, speeds: np.ndarray, what: SpeedHistogram) -> None:

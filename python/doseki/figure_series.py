@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from .errors import UserError
 from .layout import chart_grid
-from .load import Run
+from .loading import Run
 from .nearest import suggestion
 
 ENERGIES = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
@@ -40,11 +40,11 @@ def draw_history(run: Run, columns: Sequence[str], title: str) -> Figure:
 
 
 def draw_curves(axes: Axes, times: np.ndarray, curves: Mapping[str, np.ndarray]) -> None:
-    """Named curves over time with a legend beside them."""
+    """Named curves over time with a legend beside them; a curve called "" is not named."""
     for number, (name, values) in enumerate(curves.items()):
         axes.plot(times, values, STYLES[number % len(STYLES)], label=name, linewidth=1.5)
     axes.grid(alpha=0.3)
-    if len(curves) > 1:
+    if any(curves):
         axes.legend(
             loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, frameon=False,
             fontsize="small",

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from .colouring import colouring
 from .dots import dots, draw_particles, extent_of
 from .layout import Extent, PanelGrid, name_axes, time_text
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .views import View
 
 FLAT = 0.5  # panels flatter than this stand one below the other

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import measure
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .views import View, flow_direction, fluid_names, select, whole_space, windows
 
 

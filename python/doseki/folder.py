@@ -45,6 +45,16 @@ class RunFolder:
         return self.path / "log"
 
     @property
+    def checkpoints(self) -> Path:
+        """The folder of the states from which the run can go on."""
+        return self.path / "checkpoints"
+
+    @property
+    def failure(self) -> Path:
+        """Why the run failed, for programs."""
+        return self.path / "failure.json"
+
+    @property
     def snapshots(self) -> Path:
         """The folder of the snapshots."""
         return self.path / "snapshots"
@@ -76,11 +86,13 @@ class RunFolder:
             self.summary_text,
             self.series,
             self.log,
+            self.failure,
         )
         return [
             *(file for file in plain if file.exists()),
             *self.snapshot_files(),
             *self.figures.glob("*.png"),
+            *self.checkpoints.glob("*.h5"),
         ]
 
 

@@ -10,8 +10,6 @@ from .lattice import ROUNDING
 from .scenario import Scenario
 from .schema import Inflow
 
-LEAST_BUFFER_LAYERS = 4
-
 
 @dataclass(frozen=True)
 class InflowSection:
@@ -36,6 +34,7 @@ class InflowSection:
     stop: float
     rate_mass: float  # kg/s (2-D: kg/s/m)
     buffer_layers: int
+    jitter: float  # random displacement of a particle, in spacings
 
 
 def build_inflows(scenario: Scenario, body_names: list[str]) -> list[InflowSection]:
@@ -65,6 +64,7 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
         stop=inflow.start + inflow.duration,
         rate_mass=material.rho0 * rate,
         buffer_layers=_buffer_layers(scenario),
+        jitter=inflow.jitter,
     )
 
 
@@ -114,6 +114,9 @@ def section_axes(
 
 
 def _buffer_layers(scenario: Scenario) -> int:
-    """Enough layers to fill the support of a particle at the section, and one more."""
+    """Enough that layers appear out of sight of a bed that ends one support before the section.
+
+    A bed that saw particles appear without having come would take them for a steady divergence.
+    """
     reach = int(np.ceil(scenario.support / scenario.dp - ROUNDING))
-    return max(LEAST_BUFFER_LAYERS, reach + 1)
+    return 2 * reach + 2

@@ -27,16 +27,12 @@ def box_lattice(low: np.ndarray, counts: np.ndarray, spacing: float, keep: int) 
 
 def disc_lattice(centre: np.ndarray, radius: float, spacing: float) -> np.ndarray:
     """Lattice points nearer to `centre` than `radius`; one of them is the centre itself."""
-    reach = np.arange(-disc_reach(radius, spacing), disc_reach(radius, spacing) + 1)
+    rim = int(np.ceil(radius / spacing))
+    reach = np.arange(-rim, rim + 1)
     cells = np.stack(np.meshgrid(*[reach] * len(centre), indexing="ij"), axis=-1)
     cells = cells.reshape(-1, len(centre))
     inside = (cells**2).sum(axis=1) < (radius / spacing) ** 2 * (1 - ROUNDING)
     return centre + cells[inside] * spacing
-
-
-def disc_reach(radius: float, spacing: float) -> int:
-    """Lattice steps from the centre to beyond the rim."""
-    return int(np.ceil(radius / spacing))
 
 
 def ball_measure(radius: float, dim: int) -> float:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 DPI = 150
-WIDTH = 8.0  # inches for all panels of a row
+WIDTH, HEIGHT = 8.0, 12.0  # inches for all panels of a row, of a column
 LEFT, BOTTOM, ABOVE, TITLE = 0.95, 0.55, 0.35, 0.35  # inches around the panels
 GAP, KEY_SLOT = 0.25, 1.6  # inches to the right of a panel
 
@@ -29,7 +29,7 @@ class PanelGrid:
         ratio = (extent[3] - extent[2]) / (extent[1] - extent[0])
         widest = WIDTH / len(key_after)
         self._rows = rows
-        self._panel_height = min(max(widest * ratio, 0.8), 5.0)
+        self._panel_height = min(max(widest * ratio, 0.8), 5.0, HEIGHT / rows)
         self._panel_width = min(widest, max(self._panel_height / ratio, 1.5))
         self._right_of = [KEY_SLOT if key else GAP for key in key_after]
         width = LEFT + len(key_after) * self._panel_width + sum(self._right_of)

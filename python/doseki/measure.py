@@ -93,10 +93,11 @@ class PassedMass:
         """The section x = `section`, m; the flow runs along `direction` (+1 or -1)."""
         self._section = section
         self._direction = direction
-        self._mass_by_id: dict[int, float] = {}
+        self._seen: dict[int, float] = {}  # mass by id of all that was ever upstream
 
     def update(self, x: np.ndarray, mass: np.ndarray, ids: np.ndarray) -> float:
         """Take one snapshot of the material in question; returns the mass passed so far, kg."""
         upstream = self._direction * (x - self._section) < 0
-        self._mass_by_id.update(zip(ids[upstream].tolist(), mass[upstream].tolist(), strict=True))
-        return sum(self._mass_by_id.values()) - float(mass[upstream].sum())
+        there = dict(zip(ids[upstream].tolist(), mass[upstream].tolist(), strict=True))
+        self._seen |= there
+        return math.fsum(mass for id_, mass in self._seen.items() if id_ not in there)

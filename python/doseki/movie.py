@@ -13,12 +13,13 @@ from .colouring import Colouring, colouring
 from .dots import WHITE, dots, extent_of, picture
 from .errors import UserError
 from .layout import time_text
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .storage import clear_errors, write_whole
 from .views import View, named_window, tilt, whole_space
 
 WIDTH = 1200  # pixels
 HEADER = 40  # pixels above the particles for time and key
+KEY_LEFT = 140  # pixels to the left of the key
 SAMPLES = 20  # snapshots looked at to choose the limits of the picture and of the colours
 
 
@@ -86,10 +87,11 @@ def _write_header(frame: Image.Image, text: str, colours: Colouring) -> None:
     draw = ImageDraw.Draw(frame)
     font = ImageFont.load_default(size=18)
     draw.text((10, 8), text, "black", font)
-    left = 160
+    draw.text((KEY_LEFT, 8), colours.heading, "black", font)
+    left = KEY_LEFT + int(draw.textlength(colours.heading, font)) + 12
     for label, colour in colours.legend_entries():
         draw.rectangle((left, 12, left + 16, 28), fill=colour)
-        draw.text((left + 24, 8), label.replace("$", ""), "black", font)
+        draw.text((left + 24, 8), label, "black", font)
         left += 50 + int(draw.textlength(label, font))
 
 

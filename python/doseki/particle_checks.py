@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .particles import ParticleSet
+from .lattice import ROUNDING
+from .particles import SUPPORT, ParticleSet
 from .scenario import Scenario
-from .schema import LARGEST, SMALLEST
-from .smoothing import SUPPORT_RADIUS
+from .value_types import LARGEST, SMALLEST
 
 
 def check_particles(scenario: Scenario, particles: ParticleSet, names: list[str]) -> None:
@@ -35,8 +35,8 @@ def _check_spacing(scenario: Scenario, particles: ParticleSet, names: list[str])
 def _check_period(scenario: Scenario, particles: ParticleSet, axis: int) -> None:
     """A particle must not meet its own image, nor a neighbour twice."""
     length = scenario.domain_max[axis] - scenario.domain_min[axis]
-    support = SUPPORT_RADIUS * max(particles.smoothing_length.max(initial=0.0), scenario.eta * scenario.dp)
-    if length < 2 * support:
+    support = max(SUPPORT * particles.smoothing_length.max(initial=0.0), scenario.support)
+    if length < 2 * support * (1 - ROUNDING):
         raise scenario.where.error(
             ("domain_max",),
             f"domain_max: the domain is {length:g} m long along {'xyz'[axis]}; a periodic axis "
@@ -44,9 +44,7 @@ def _check_period(scenario: Scenario, particles: ParticleSet, axis: int) -> None
         )
 
 
-def _check_inside(
-    scenario: Scenario, particles: ParticleSet, names: list[str], axis: int
-) -> None:
+def _check_inside(scenario: Scenario, particles: ParticleSet, names: list[str], axis: int) -> None:
     """Along a periodic axis every particle must start inside the domain."""
     low, high = scenario.domain_min[axis], scenario.domain_max[axis]
     x = particles.position[:, axis]

@@ -12,8 +12,8 @@ from .columns_csv import read_csv_columns
 from .columns_hdf5 import is_hdf5, read_hdf5_columns
 from .errors import UserError
 from .nearest import suggestion
-from .schema import LARGEST
 from .toml_source import check_regular_file
+from .value_types import LARGEST
 
 TRUTH = {"0": False, "1": True, "false": False, "true": True, "0.0": False, "1.0": True}
 

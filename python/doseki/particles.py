@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 FREE, FIXED, DRIVEN = 0, 1, 2
+SUPPORT = 2.5  # H of the paper: a particle acts out to H h
 
 
 @dataclass

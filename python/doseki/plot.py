@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +15,19 @@ from .figure_histogram import SpeedHistogram, draw_histogram
 from .figure_series import ENERGIES, MASSES, draw_history
 from .figure_snapshot import SnapshotFigure, draw_snapshots
 from .flow import measure_flow
-from .load import Run, Snapshot, load
+from .loading import Run, Snapshot, load
 from .storage import clear_errors, write_whole
-from .views import View, before_flow, named_window, tables, tilt, whole_space, with_flow
+from .views import (
+    View,
+    before_flow,
+    fluid_names,
+    named_window,
+    select,
+    tables,
+    tilt,
+    whole_space,
+    with_flow,
+)
 
 FEW = 2000  # a run of no more particles is also drawn with the support, as Figs. 3 and 4
 MANY = 6  # most panels below each other
@@ -31,27 +41,35 @@ def plot_run(directory: str | Path) -> list[Path]:
     run = load(directory)
     if not len(run):
         raise UserError(f"{directory}: the run has no snapshot to draw")
-    return [_save(figure, run, name) for name, figure in figures(run).items()]
+    return [_save(figure, run, name) for name, figure in figures(run)]
 
 
-def figures(run: Run) -> dict[str, Figure]:
-    """Every figure of a run by name; one of the scenario replaces a general one of that name."""
-    draw = {"snapshot": _snapshot_figure, "histogram": _histogram_figure, "series": _series_figure}
-    asked = {name: draw[table.kind](run, table) for name, table in tables(run, "figure").items()}
-    return {name: make(run) for name, make in _general(run).items() if name not in asked} | asked
+def figures(run: Run) -> Iterator[tuple[str, Figure]]:
+    """Every figure of a run with its name, one after the other.
+
+    A figure of the scenario replaces a general one of the same name.
+    """
+    asked = tables(run, "figure")
+    for name, make in GENERAL.items():
+        if name not in asked and (figure := make(run)) is not None:
+            yield name, figure
+    for name, table in asked.items():
+        yield name, ASKED[table.kind](run, table)
 
 
-def _general(run: Run) -> dict[str, Callable[[Run], Figure]]:
-    """The figures every run gets, as far as its history and materials allow."""
-    columns = set(run.history.columns)
-    makers: dict[str, Callable[[Run], Figure]] = {"overview": _overview}
-    if columns.issuperset(ENERGIES):
-        makers["energy"] = lambda run: draw_history(run, ENERGIES, "Energy")
-    if columns.issuperset(MASSES):
-        makers["mass"] = lambda run: draw_history(run, MASSES, "Mass ledger")
-    if flow := measure_flow(run):
-        makers["flow"] = lambda run: draw_flow(run, flow)
-    return makers
+def _energy(run: Run) -> Figure | None:
+    known = set(ENERGIES) <= set(run.history)
+    return draw_history(run, ENERGIES, "Energy") if known else None
+
+
+def _mass(run: Run) -> Figure | None:
+    known = set(MASSES) <= set(run.history)
+    return draw_history(run, MASSES, "Mass ledger") if known else None
+
+
+def _flow(run: Run) -> Figure | None:
+    flow = measure_flow(run)
+    return draw_flow(run, flow) if flow is not None else None
 
 
 def _overview(run: Run) -> Figure:
@@ -66,16 +84,26 @@ def _snapshot_figure(run: Run, table: Any) -> Figure:
     snapshots = _chosen(run, table, view)
     few = table.window is None and max(len(s["id"]) for s in snapshots) <= FEW
     sizes = ("support", "grain") if few else ("grain",)
-    title = table.title or view.title
+    title = _title(run, table, view, snapshots)
     what = SnapshotFigure(view, table.colour, title, sizes, table.material)
     return draw_snapshots(run, snapshots, what)
 
 
 def _histogram_figure(run: Run, table: Any) -> Figure:
     view = named_window(run, table.window)
-    title = table.title or view.title
+    snapshots = _chosen(run, table, view)
+    title = _title(run, table, view, snapshots)
     what = SpeedHistogram(view, table.material, table.bin_width, table.sample, title)
-    return draw_histogram(run, _chosen(run, table, view), what)
+    return draw_histogram(run, snapshots, what)
+
+
+def _title(run: Run, table: Any, view: View, snapshots: list[Snapshot]) -> str:
+    """The caption; it says so where a flow was to be shown that has not come."""
+    title = table.title or view.title
+    waits = table.when == "with_flow" and not table.times
+    if waits and not np.any(select(snapshots[0], view, fluid_names(run))):
+        return f"{title} (no fluid there yet)"
+    return title
 
 
 def _series_figure(run: Run, table: Any) -> Figure:
@@ -101,6 +129,10 @@ def _spread(run: Run, most: int) -> list[Snapshot]:
     """At most `most` snapshots, evenly spread from the first to the last."""
     indices = np.linspace(0, len(run) - 1, min(most, len(run))).round().astype(int)
     return [run[index] for index in indices]
+
+
+GENERAL = {"overview": _overview, "energy": _energy, "mass": _mass, "flow": _flow}
+ASKED = {"snapshot": _snapshot_figure, "histogram": _histogram_figure, "series": _series_figure}
 
 
 def _save(figure: Figure, run: Run, name: str) -> Path:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .errors import UserError
 from .fields import FIELD_BY_KEY
-from .load import Snapshot
+from .loading import Snapshot
 from .measure import speed
 from .nearest import suggestion
 
@@ -47,12 +47,7 @@ def quantity(snapshot: Snapshot, name: str) -> np.ndarray:
 
 
 def quantity_label(name: str) -> str:
-    """Name and unit, for a colour bar."""
-    if name == "speed":
-        return "speed (m/s)"
-    if name in FIELD_BY_KEY:
-        return FIELD_BY_KEY[name].label
-    key, _, component = name.rpartition("_")
-    field = FIELD_BY_KEY[key]
-    symbol = field.symbol if len(field.symbol) == 1 else f"\\{field.symbol}"
-    return f"${symbol}_{{{component}}}$ ({field.unit})"
+    """Name and unit in plain text, for a colour bar."""
+    key = "velocity" if name == "speed" else name
+    field = FIELD_BY_KEY.get(key) or FIELD_BY_KEY[key.rpartition("_")[0]]
+    return f"{name.replace('_', ' ')} ({field.unit})" if field.unit else name

@@ -6,22 +6,22 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 
 from . import vtkhdf
 from .errors import UserError
 from .folder import RunFolder, read_history
-from .storage import clear_errors, write_whole, write_whole_text
+from .storage import clear_errors, sync, write_whole, write_whole_text
 
 
 class Recorder:
     """Writes the folder of a run: scenario, snapshots, history, summary.
 
-    Each snapshot is whole or absent, each history row is flushed: a run that is killed leaves a
-    folder that can be loaded.  Every method raises ResourceError when the disk is full and
-    UserError when it may not be written to.
+    Each snapshot is whole or absent, each history row is written at once: a run that is killed
+    leaves a folder that can be loaded.  Every method raises ResourceError when the disk is full
+    and UserError when it may not be written to.
     """
 
     def __init__(
@@ -44,26 +44,26 @@ class Recorder:
         self._attach(folder, material_names, body_names, dim)
 
     @classmethod
-    def reopen(cls, directory: str | Path, time: float) -> Recorder:
-        """Go on with the record of a run that resumes at `time`, s: drop all that is later."""
+    def reopen(cls, directory: str | Path, snapshots: int, rows: int) -> Recorder:
+        """Go on with the record of a run that resumes: keep its first snapshots and history rows."""
         folder = RunFolder(Path(directory))
         files = folder.snapshot_files()
         if not files:
             raise UserError(f"{directory}: holds no snapshot from which a run could go on")
+        if len(files) < snapshots or len(read_history(folder.history)[1]) < rows:
+            raise UserError(f"{directory}: snapshots or history rows have gone since the checkpoint")
         headers = {file: vtkhdf.read_header(file) for file in files}
         first = headers[files[0]]
         recorder = cls.__new__(cls)
         recorder._attach(folder, first.material_names, first.body_names, first.dim)
         with clear_errors(folder.path):
-            for file in (folder.summary, folder.summary_text):
+            for file in (folder.summary, folder.summary_text, folder.failure):
                 file.unlink(missing_ok=True)
-            for file, header in headers.items():
-                if header.time > time:
-                    file.unlink()
-                else:
-                    recorder._index.append((file.name, header.time))
+            for file in files[snapshots:]:
+                file.unlink()
+        recorder._index = [(file.name, headers[file].time) for file in files[:snapshots]]
         recorder._write_series()
-        recorder._truncate_history(time)
+        recorder._truncate_history(rows)
         return recorder
 
     def _attach(
@@ -79,7 +79,6 @@ class Recorder:
         self._dim = dim
         self._index: list[tuple[str, float]] = []  # file name and time of each snapshot
         self._columns: list[str] = []
-        self._history_file: TextIO | None = None
 
     @property
     def directory(self) -> Path:
@@ -103,28 +102,25 @@ class Recorder:
 
     def history(self, row: Mapping[str, float]) -> None:
         """Append one row; the first row gives the columns, the others must have the same ones."""
+        lines = [[_number_text(value) for value in row.values()]]
+        if not self._columns:
+            self._columns = list(row)
+            lines.insert(0, self._columns)
+        if list(row) != self._columns:
+            raise ValueError(f"history columns changed from {self._columns} to {list(row)}")
+        path = self._folder.history
+        with clear_errors(path), path.open("a", encoding="utf-8") as file:
+            file.write(_csv(lines))
+
+    def sync(self) -> None:
+        """Put the history safely on the disk, so that a checkpoint never knows more rows."""
         with clear_errors(self._folder.history):
-            if not self._columns:
-                self._columns = list(row)
-                self._append(self._columns)
-            if list(row) != self._columns:
-                raise ValueError(f"history columns changed from {self._columns} to {list(row)}")
-            self._append([_number_text(value) for value in row.values()])
+            sync(self._folder.history)
 
     def close(self, summary: Mapping[str, Any]) -> None:
-        """Write `summary` (numbers, words, lists and dicts of them) and close the files."""
-        text = json.dumps(_jsonable(summary), indent=2, allow_nan=False) + "\n"
+        """Write `summary` (numbers, words, lists and dicts of them): the run has ended."""
+        text = json.dumps(jsonable(summary), indent=2, allow_nan=False) + "\n"
         write_whole_text(self._folder.summary, text)
-        if self._history_file is not None:
-            with clear_errors(self._folder.history):
-                self._history_file.close()
-            self._history_file = None
-
-    def _append(self, cells: Sequence[str]) -> None:
-        if self._history_file is None:
-            self._history_file = self._folder.history.open("a", encoding="utf-8")
-        self._history_file.write(",".join(cells) + "\n")
-        self._history_file.flush()
 
     def _write_series(self) -> None:
         names = self._folder.snapshots.name
@@ -132,13 +128,12 @@ class Recorder:
         index = {"file-series-version": "1.0", "files": files}
         write_whole_text(self._folder.series, json.dumps(index, indent=1) + "\n")
 
-    def _truncate_history(self, time: float) -> None:
+    def _truncate_history(self, count: int) -> None:
         self._columns, rows = read_history(self._folder.history)
         if not self._columns:
             return
-        clock = self._columns.index("time")
-        kept = [self._columns, *(row for row in rows if float(row[clock]) <= time)]
-        write_whole_text(self._folder.history, "".join(",".join(row) + "\n" for row in kept))
+        kept = [self._columns, *rows[:count]]
+        write_whole_text(self._folder.history, _csv(kept))
 
 
 def _make_room(folder: RunFolder, overwrite: bool) -> None:
@@ -162,21 +157,23 @@ def _refuse_to_overwrite(folder: RunFolder, overwrite: bool) -> None:
         raise UserError(f"{folder.path}: is not the folder of a run, so it is not overwritten")
 
 
+def _csv(rows: Sequence[Sequence[str]]) -> str:
+    return "".join(",".join(row) + "\n" for row in rows)
+
+
 def _number_text(value: float) -> str:
     """Shortest text that reads back as the same number."""
     return str(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
 
 
-def _jsonable(value: Any) -> Any:
+def jsonable(value: Any) -> Any:
     """The same in types that JSON has; a number that is not finite becomes null."""
     if isinstance(value, Mapping):
-        return {str(key): _jsonable(entry) for key, entry in value.items()}
+        return {str(key): jsonable(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple | np.ndarray):
-        return [_jsonable(entry) for entry in value]
+        return [jsonable(entry) for entry in value]
     if isinstance(value, np.generic):
-        return _jsonable(value.item())
+        return jsonable(value.item())
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    if isinstance(value, Path):
-        return str(value)
     return value

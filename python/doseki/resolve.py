@@ -105,7 +105,7 @@ class Names(Mapping[str, Any]):
     def _value_of(self, text: str, keys: KeyPath) -> Any:
         try:
             in_space = names_in(text) & set(POSITION_NAMES)
-            if in_space and keys[0] == "body" and "velocity" in keys:
+            if in_space and keys[0] == "body" and keys[2:3] == ("velocity",):
                 return text
             return evaluate(text, self)
         except ExpressionError as error:

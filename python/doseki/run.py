@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import signal
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .core import build_simulation, load_core
+from .checkpoint import Checkpoint, CheckpointFolder, Position
+from .core import filled_simulation, load_core
 from .errors import PhysicsError, ResourceError
+from .failure import Failure, explain_failure
+from .folder import RunFolder
 from .record import Recorder
+from .rewind import Rewind
 from .scenario import Scenario
+from .schedule import CheckpointClock, StopRequests
 
 BURST_SECONDS = 0.2  # wall time between two looks at signals and the progress bar
 FIRST_BURST, LAST_BURST = 1, 1_000_000  # steps
-HISTORY_ROWS = 1000  # rows of history.csv when the scenario does not ask for an interval
+CHECKPOINT_MINUTES = 10.0  # what a crash may cost
 
 Progress = Callable[[float, float, int], None]  # time, timestep, step
 
@@ -33,6 +36,8 @@ class RunOptions:
     threads: int | None = None
     overwrite: bool = False
     progress: Progress = field(default=_no_progress)
+    checkpoint_every: float | None = None  # s of simulated time
+    checkpoint_minutes: float = CHECKPOINT_MINUTES  # of wall time
 
 
 def history_row(simulation: Any, material_names: list[str]) -> dict[str, float]:
@@ -52,74 +57,119 @@ def history_row(simulation: Any, material_names: list[str]) -> dict[str, float]:
     return row
 
 
-@contextmanager
-def _stop_requests() -> Iterator[list[int]]:
-    """Collects SIGINT and SIGTERM, so that a run can end at a whole step with its record closed."""
-    received: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM)
-    try:
-        old = {n: signal.signal(n, lambda number, _frame: received.append(number)) for n in numbers}
-    except ValueError:  # not the main thread: whoever started it handles signals
-        yield received
-        return
-    try:
-        yield received
-    finally:
-        for number, handler in old.items():
-            signal.signal(number, handler)
+class ActiveRun:
+    """One run in progress: the simulation, its record and where it stands in it."""
 
-
-class _Run:
-    """One run in progress: the simulation, its record and the clock of outputs."""
-
-    def __init__(self, scenario: Scenario, simulation: Any, recorder: Recorder) -> None:
+    def __init__(
+        self, scenario: Scenario, simulation: Any, recorder: Recorder, body_names: list[str]
+    ) -> None:
         self.scenario = scenario
         self.simulation = simulation
         self.recorder = recorder
-        self.history_interval = scenario.time_history or scenario.time_max / HISTORY_ROWS
-        self.next_history = 0.0
-        self.outputs = 0
+        self.body_names = body_names
+        self.folder = RunFolder(recorder.directory)
+        self.checkpoints = CheckpointFolder(self.folder.checkpoints)
+        self.position = Position()
+        self.rewind = Rewind()
+        self._started = time.perf_counter()
+
+    @property
+    def wall_seconds(self) -> float:
+        """Wall time spent, parts before a resumption included."""
+        return self.position.wall_seconds + time.perf_counter() - self._started
 
     def record_snapshot(self) -> None:
+        """Write the state; the next snapshot is due one interval later."""
         simulation = self.simulation
         self.recorder.snapshot(
             simulation.state(), time=simulation.time, step=simulation.steps, dt=simulation.timestep
         )
-        self.outputs += 1
+        self.position.outputs += 1
+        self.position.snapshots += 1
 
     def record_history(self) -> None:
+        """Write a row of diagnostics; the next one is due one interval later."""
         self.recorder.history(history_row(self.simulation, self.scenario.material_names))
-        while self.next_history <= self.simulation.time:
-            self.next_history += self.history_interval
+        self.position.rows += 1
+        while self.position.next_history <= self.simulation.time:
+            self.position.next_history += self.scenario.time_history
+
+    def write_checkpoint(self, clock: CheckpointClock) -> Path:
+        """Put the state safely on the disk."""
+        clock.reset(self.simulation.time)
+        self.position.next_checkpoint = clock.next_time
+        self.recorder.sync()
+        position = Position(**vars(self.position) | {"wall_seconds": self.wall_seconds})
+        names = self.scenario.material_names, self.body_names
+        return self.checkpoints.write(Checkpoint(self.simulation.checkpoint(), position, *names))
 
     def next_output(self) -> float:
         """Time of the next snapshot; the last one is always at time_max."""
-        scenario = self.scenario
-        planned = self.outputs * scenario.time_out
-        return scenario.time_max if planned > scenario.time_max * (1 - 1e-9) else planned
+        return self._output_time(self.position.outputs)
 
-    def advance(self, options: RunOptions, stop: list[int]) -> None:
-        """Steps to the end, or to the first step after a stop request."""
-        simulation, burst = self.simulation, FIRST_BURST
+    def _output_time(self, number: int) -> float:
+        planned, last = number * self.scenario.time_out, self.scenario.time_max
+        return last if planned > last * (1 - 1e-9) else planned
+
+    def limit_at(self, simulated: float) -> float:
+        """The limit that steps had at a simulated time in the past."""
+        number = self.position.outputs
+        while number > 0 and self._output_time(number - 1) > simulated:
+            number -= 1
+        return self._output_time(number)
+
+    def start(self) -> None:
+        """Take the first rates; record the initial state."""
+        self.simulation.start()
         self.record_snapshot()
         self.record_history()
-        while simulation.time < self.scenario.time_max and not stop:
-            limit = self.next_output()
-            started, first = time.perf_counter(), simulation.steps
-            simulation.advance(limit=limit, pause=min(limit, self.next_history), max_steps=burst)
-            rate = (simulation.steps - first) / (time.perf_counter() - started)
-            burst = max(1, min(LAST_BURST, int(rate * BURST_SECONDS)))
-            if simulation.time >= limit:
-                self.record_snapshot()
-            if simulation.time >= self.next_history or simulation.time >= self.scenario.time_max:
-                self.record_history()
+
+    def advance(self, options: RunOptions, stop: StopRequests) -> str:
+        """Steps to the end, or to the first look after a stop request; returns "done" or "stopped"."""
+        simulation, burst = self.simulation, FIRST_BURST
+        clock = CheckpointClock(
+            options.checkpoint_every, options.checkpoint_minutes, self.position.next_checkpoint
+        )
+        stopped = False
+        while simulation.time < self.scenario.time_max and not stopped:
+            self.rewind.look(simulation)
+            burst = self._burst(burst, clock.next_time)
+            if clock.is_due(simulation.time):
+                self.write_checkpoint(clock)
             options.progress(simulation.time, simulation.timestep, simulation.steps)
-        if stop:
+            stopped = bool(stop)
+        self.write_checkpoint(clock)
+        if stopped:
             self.record_snapshot()
             self.record_history()
+        return "stopped" if stopped else "done"
+
+    def _burst(self, steps: int, pause: float) -> int:
+        """Steps and records; returns how many steps to take next time."""
+        simulation, limit = self.simulation, self.next_output()
+        started, first = time.perf_counter(), simulation.steps
+        pause = min(limit, pause, self.position.next_history)
+        simulation.advance(limit=limit, pause=pause, max_steps=steps)
+        rate = (simulation.steps - first) / (time.perf_counter() - started)
+        if simulation.time >= limit:
+            self.record_snapshot()
+        if simulation.time >= min(self.position.next_history, self.scenario.time_max):
+            self.record_history()
+        return max(1, min(LAST_BURST, int(rate * BURST_SECONDS)))
+
+    def fail(self, message: str) -> Failure:
+        """Go back to the step before the failure, record that state, and explain what happened."""
+        simulation = self.simulation
+        failure = Failure(*simulation.failure, message, simulation.state(), simulation.time, simulation.steps)
+        failure.rewound = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
+        if failure.rewound:
+            self.write_checkpoint(CheckpointClock(None, 0.0))
+        self.record_snapshot()
+        explain_failure(self, failure)
+        return failure
 
 
-def _summary(run: _Run, status: str, wall_seconds: float) -> dict[str, Any]:
+def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
     last = history_row(simulation, scenario.material_names)
     balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
@@ -131,8 +181,8 @@ def _summary(run: _Run, status: str, wall_seconds: float) -> dict[str, Any]:
         "precision": scenario.precision,
         "dp": scenario.dp,
         "xi": scenario.xi,
-        "wall_seconds": wall_seconds,
-        "particle_updates_per_second": simulation.updates / wall_seconds,
+        "wall_seconds": run.wall_seconds,
+        "particle_updates_per_second": simulation.updates / run.wall_seconds,
         "neighbour_rebuilds": simulation.rebuilds,
         "bytes_per_particle": simulation.bytes_per_particle,
         "list_entries_per_particle": simulation.entries_per_particle,
@@ -148,20 +198,12 @@ def run_scenario(
     """Simulates `scenario` and writes its record into `directory`.
 
     Returns the summary, which is also DIR/summary.json; its `status` is "done", or "stopped" after
-    SIGINT or SIGTERM.  Raises UserError for a scenario or folder that cannot be used (nothing is
-    written then), PhysicsError when the state becomes unphysical (the record up to there is kept,
-    the summary says "failed"), ResourceError when memory or disk runs out.
+    SIGINT, SIGTERM or a file DIR/STOP.  Raises UserError for a scenario or folder that cannot be
+    used (nothing is written then), PhysicsError when the state becomes unphysical (the record up to
+    there is kept, the summary says "failed"), ResourceError when memory or disk runs out.
     """
     options = options or RunOptions()
-    core = load_core()
-    if options.threads:
-        core.set_threads(options.threads)
-    try:
-        simulation, body_names = build_simulation(scenario)
-    except core.ResourceFailure as failure:
-        raise ResourceError(str(failure)) from failure
-    except core.PhysicsFailure as failure:
-        raise PhysicsError(f"the initial state cannot be stepped: {failure}") from failure
+    simulation, body_names = filled_simulation(scenario)
     recorder = Recorder(
         directory,
         scenario.effective_toml(),
@@ -170,18 +212,32 @@ def run_scenario(
         scenario.dim,
         overwrite=options.overwrite,
     )
-    run = _Run(scenario, simulation, recorder)
-    started = time.perf_counter()
+    run = ActiveRun(scenario, simulation, recorder, body_names)
+    return carry_out(run, options, fresh=True)
+
+
+def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any]:
+    """Takes a run, `fresh` or restored, to its end; see run_scenario."""
+    core, directory = load_core(), run.folder.path
+    if options.threads:
+        core.set_threads(options.threads)
+    stop = StopRequests(directory)
     try:
-        with _stop_requests() as stop:
-            run.advance(options, stop)
+        with stop.listening():
+            if fresh:
+                run.start()
+            status = run.advance(options, stop)
+    except core.ResourceFailure as failure:
+        raise ResourceError(str(failure)) from failure
     except core.PhysicsFailure as failure:
-        run.record_snapshot()
-        recorder.close(_summary(run, "failed", time.perf_counter() - started) | {"failure": str(failure)})
+        explained = run.fail(str(failure))
+        run.recorder.close(_summary(run, "failed") | {"failure": str(failure)})
         raise PhysicsError(
-            f"{failure}; the record up to there is in {directory}. Try a smaller cflnumber, a larger"
-            " xi, or bodies that do not overlap"
+            f"{failure}. {explained.advice} The record up to there is in {directory};"
+            f" more: doseki explain {directory}"
         ) from failure
-    summary = _summary(run, "stopped" if stop else "done", time.perf_counter() - started)
-    recorder.close(summary)
+    except ResourceError as error:
+        raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
+    summary = _summary(run, status)
+    run.recorder.close(summary)
     return summary

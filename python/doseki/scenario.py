@@ -14,6 +14,7 @@ from pydantic import PrivateAttr, ValidationError, model_validator
 from .materials import Material, MaterialError, complete_materials
 from .overrides import apply_overrides
 from .particle_file import ParticleTable, read_particles
+from .particles import SUPPORT
 from .resolve import resolve_table
 from .scenario_checks import check_scenario
 from .scenario_files import find_scenario, merged_table, read_with_bases, scenario_folder
@@ -78,8 +79,8 @@ class Scenario(ScenarioTable):
 
     @property
     def support(self) -> float:
-        """Radius of the kernel of a particle of spacing dp: 2.5 eta dp."""
-        return 2.5 * self.eta * self.dp
+        """How far a particle of spacing dp acts: H h = 2.5 eta dp."""
+        return SUPPORT * self.eta * self.dp
 
     def effective_toml(self) -> str:
         """The scenario as TOML that `load_scenario` reads back to the same run."""

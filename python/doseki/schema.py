@@ -2,90 +2,20 @@
 
 from __future__ import annotations
 
-import math
-import re
 import sys
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import (
-    AfterValidator,
     BaseModel,
-    BeforeValidator,
     ConfigDict,
     Field,
-    PlainSerializer,
-    ValidationInfo,
     create_model,
     model_validator,
 )
 
-from .expressions import is_expression
 from .materials import LAWS, LIMIT, MATERIAL_PARAMETERS, MaterialParameter
-
-# A length beyond these is a slip of the keyboard, and would overflow further on.
-SMALLEST, LARGEST = 1e-12, 1e12
-RATE_UNITS = {"m3/s": 1.0, "m^3/s": 1.0, "L/s": 1e-3, "l/s": 1e-3}
-
-
-def _of_dimension(vector: list[Any], info: ValidationInfo) -> list[Any]:
-    dim = info.context["dim"]
-    if len(vector) != dim:
-        raise ValueError(f"a {dim}-D run needs {dim} entries here, not {len(vector)}")
-    return vector
-
-
-def _numbers_or_expressions(vector: list[Any]) -> list[Any]:
-    for entry in vector:
-        number = isinstance(entry, int | float) and not isinstance(entry, bool)
-        if not (is_expression(entry) or (number and abs(entry) <= LARGEST)):
-            raise ValueError(f'entries must be finite numbers or "= expression", not {entry!r}')
-    return vector
-
-
-def _bound(value: Any) -> Any:
-    """TOML can write inf; the strings "inf" and "-inf" mean the same."""
-    return float(value) if value in ("inf", "+inf", "-inf") else value
-
-
-def _not_nan(value: float) -> float:
-    if math.isnan(value):
-        raise ValueError("nan is not a position")
-    return value
-
-
-def _rate(value: Any) -> Any:
-    """A rate in m3/s from a number, or from a string with its unit such as "3 L/s"."""
-    if not isinstance(value, str):
-        return value
-    found = re.fullmatch(r"\s*([-+.\deE]+)\s*(\S+)\s*", value)
-    if not found or found[2] not in RATE_UNITS:
-        raise ValueError('a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"')
-    try:
-        return float(found[1]) * RATE_UNITS[found[2]]
-    except ValueError:
-        raise ValueError(f"{found[1]!r} is not a number") from None
-
-
-Positive = Annotated[float, Field(gt=0)]
-Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
-Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-NonNegative = Annotated[float, Field(ge=0)]
-AsArray = (
-    AfterValidator(_of_dimension),
-    AfterValidator(np.array),
-    PlainSerializer(np.ndarray.tolist, return_type=list),
-)
-Vector = Annotated[list[Coordinate], *AsArray]
-VelocityField = Annotated[
-    list[Any], AfterValidator(_of_dimension), AfterValidator(_numbers_or_expressions)
-]
-Bound = Annotated[
-    float, Field(allow_inf_nan=True), BeforeValidator(_bound), AfterValidator(_not_nan)
-]
-Corner = Annotated[list[Bound], *AsArray]
-Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
-Axis = Literal["x", "y", "z"]
+from .value_types import Axis, Corner, Length, NonNegative, Positive, Rate, Skin, Vector, VelocityField
 
 
 class Table(BaseModel):
@@ -166,6 +96,10 @@ class LatticeBody(ShapedBody):
     rotate: float = Field(0.0, description="degrees, from the first axis towards the last")
     rotate_axis: Vector | None = Field(None, description="3-D: axis of a right-handed rotation")
     pivot: Vector | None = Field(None, description="point about which it is rotated, m")
+    jitter: float = Field(
+        0.0, ge=0, le=0.5, description="random displacement along each axis, in spacings"
+    )
+    random_seed: int = Field(1, ge=0, description="of the jitter")
 
 
 class Box(LatticeBody):
@@ -176,6 +110,11 @@ class Box(LatticeBody):
     max: Vector = Field(description="upper corner before rotation, m")
     count: int | None = Field(
         None, gt=0, description="keep this many particles, filled row by row from below"
+    )
+    wetted_by: str | None = Field(
+        None,
+        description="material that lies on its top at rest: the density is such that the cover "
+        "brings it to rho0; else whatever comes to a dry bed hovers one support above it",
     )
 
 
@@ -228,6 +167,9 @@ class Inflow(Part):
     depth: Length = Field(description="m, extent along the section's upward normal")
     start: NonNegative = Field(0.0, description="s")
     duration: Positive = Field(description="s")
+    jitter: float = Field(
+        0.0, ge=0, lt=0.5, description="random displacement along each axis, in spacings"
+    )
 
     @model_validator(mode="after")
     def _has_direction(self) -> Inflow:
@@ -315,7 +257,10 @@ class ScenarioTable(Table):
     cfl_force: float = Field(0.1, gt=0, le=1, description="C_f of eq. 18")
     xi: Positive | None = Field(None, description="reduction factor (eq. 19); excludes xi_height")
     xi_height: Length | None = Field(None, description="H of eq. 19, m; excludes xi")
-    skin: float = Field(0.1, ge=0, le=1, description="margin of the lists over the support")
+    fixed_limits_dt: bool = Field(
+        True, description="false: in eq. 18 a fixed particle is no stiffer than what it meets"
+    )
+    skin: Skin = Field(0.05, description='margin of the lists over the support, or "auto"')
     periodic: list[Axis] = Field(default_factory=list, description="periodic axes")
     domain_min: Vector | None = Field(None, description="lower corner of the periodic domain, m")
     domain_max: Vector | None = Field(None, description="upper corner of the periodic domain, m")

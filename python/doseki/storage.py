@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,20 +18,9 @@ def clear_errors(path: Path) -> Iterator[None]:
     """Turn a failed write to `path` into a ResourceError (disk full) or a UserError."""
     try:
         yield
-    except (OSError, RuntimeError) as error:  # HDF5 reports some failed writes as RuntimeError
-        code = _error_number(error)
-        if code is None:
-            raise
-        if code in _OUT_OF_SPACE:
-            raise ResourceError(f"{path}: cannot be written: {os.strerror(code)}") from None
-        raise UserError(f"{path}: cannot be written: {os.strerror(code)}") from None
-
-
-def _error_number(error: Exception) -> int | None:
-    if getattr(error, "errno", None):
-        return error.errno
-    found = re.search(r"errno = (\d+)", str(error))
-    return int(found[1]) if found else None
+    except OSError as error:
+        kind = ResourceError if error.errno in _OUT_OF_SPACE else UserError
+        raise kind(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
 def write_whole(path: Path, write: Callable[[Path], None]) -> None:
@@ -44,9 +32,9 @@ def write_whole(path: Path, write: Callable[[Path], None]) -> None:
     with clear_errors(path):
         try:
             write(temporary)
-            _sync(temporary)
+            sync(temporary)
             temporary.replace(path)
-            _sync(path.parent)
+            sync(path.parent)
         finally:
             temporary.unlink(missing_ok=True)
 
@@ -56,7 +44,8 @@ def write_whole_text(path: Path, text: str) -> None:
     write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-def _sync(path: Path) -> None:
+def sync(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are safely on the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .flow import Flow, WindowFlow, measure_flow
-from .load import Run
+from .loading import Run
 from .measure import speed
 from .views import with_flow
 

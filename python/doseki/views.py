@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
 from . import measure, schema
 from .errors import UserError
-from .load import Run, Snapshot
+from .loading import Run, Snapshot
 from .materials import complete_materials
 from .nearest import suggestion
 
@@ -39,13 +40,22 @@ def whole_space(dim: int, rotate: float = 0.0) -> View:
 
 
 def tables(run: Run, section: str) -> dict[str, Any]:
-    """The enabled tables [section.NAME] of a run's scenario by name, checked, defaults filled."""
+    """The enabled tables [section.NAME] of a run's scenario by name, defaults filled in.
+
+    Raises UserError for a scenario.toml that was changed by hand to something impossible.
+    """
     model = {"window": schema.Window, "figure": schema.Figure}[section]
     dim = run.scenario["dim"]
-    found = {
-        name: model.model_validate(table, context={"dim": dim})
-        for name, table in run.scenario.get(section, {}).items()
-    }
+    try:
+        found = {
+            name: model.model_validate(table, context={"dim": dim})
+            for name, table in run.scenario.get(section, {}).items()
+        }
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise UserError(
+            f"{run.folder.scenario}: [{section}.*] {first['loc'][0]}: {first['msg']}"
+        ) from None
     return {name: table for name, table in found.items() if table.enabled}
 
 

@@ -35,9 +35,7 @@ def gradient_columns(L, dim):
 
 def elastic_rate(point, L, S, mu, dim):
     """dS/dt of (n, 3, 3) tensors."""
-    columns = point(
-        "elastic_stress_rate", *gradient_columns(L, dim), *stored(S, dim), mu, dim=dim
-    )
+    columns = point("elastic_stress_rate", *gradient_columns(L, dim), *stored(S, dim), mu, dim=dim)
     return full(columns, dim)
 
 

@@ -31,7 +31,7 @@ from .conftest import BLOCK
         ('periodic = ["z"]', ['a 2-D run has no axis "z"']),
         (
             'periodic = ["x"]\ndomain_min = [0, 0]\ndomain_max = [0.5, 1]',
-            ["line 7", "0.5 m long along x", "at least twice the support, 0.6 m"],
+            ["line 7", "0.5 m long along x", "twice the support of a particle, 0.6 m"],
         ),
         (
             'periodic = ["x"]\ndomain_min = [0, 0]\ndomain_max = [0.9, 1]',

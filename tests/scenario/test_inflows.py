@@ -22,7 +22,7 @@ def test_flux_through_the_section_is_the_rate(dim):
     assert section.rate_mass == pytest.approx(30 if dim == 2 else 3)
     assert names[section.body] == "water"
     assert scenario.material_names[section.material] == "water"
-    assert (section.start, section.stop, section.buffer_layers) == (0, 7, 4)
+    assert (section.start, section.stop, section.buffer_layers) == (0, 7, 8)
 
 
 def test_rows_continue_the_lattice_of_the_bed():

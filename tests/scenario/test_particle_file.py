@@ -98,6 +98,7 @@ def test_material_of_the_body_stands_in_for_the_column(write, tmp_path):
         ([HEADER, ROW.replace("water", "watr")], 'unknown material "watr"; did you mean water?'),
         ([HEADER + ",fixed", ROW + ",maybe"], "expected 0, 1, true or false"),
         ([HEADER, ROW.replace("1,1000", "1e-15,1e12")], "body.cloud: a mass of 1e-15 kg"),
+        ([HEADER, ROW.replace("water", '"wa\nter"')], 'unknown material "wa ter"'),
         ([HEADER, "A" * 100_000], "line 2: "),
     ],
 )

@@ -1,0 +1,140 @@
+#pragma once
+#include <chrono>
+#include <cmath>
+#include <unordered_map>
+#include <vector>
+
+#include "rates.hpp"
+
+namespace doseki {
+
+/// Counts, for each particle, the neighbours within the larger of two supports; not itself.
+template <class real, int D, class Finish>
+struct CountTerm {
+    template <class T>
+    using Point = MotionPoint<T, D>;
+    template <class T>
+    using Sums = T;
+
+    std::span<const MotionRecord<real, D>> motion;
+    const Finish& finish_particle;
+
+    auto load(std::uint32_t first) const { return load_motion<real, D>(motion, first); }
+    DOSEKI_FN auto load_one(std::uint32_t j) const { return broadcast_motion(motion[j]); }
+
+    template <class T>
+    DOSEKI_FN void add(T& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        const T q = pair.r * min(i.inverse_support, j.inverse_support);
+        count += select(q < T(1) && q > number<T>(1e-9), T(1), T(0));
+    }
+    template <class T>
+    DOSEKI_FN void add_fixed(T& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        add(count, pair, i, j);
+    }
+    template <class T>
+    void moving_done(T&) const {}
+    template <class T>
+    void finish(std::uint32_t first, int count, const T& sums) const {
+        for (int l = 0; l < count; ++l) finish_particle(first + l, static_cast<double>(sums[l]));
+    }
+};
+
+/// The pair loop by itself, for the bench: how many pairs there are, and how fast the two sums run
+/// when everything they read is in cache.
+template <class real, int D>
+class PairProbe {
+public:
+    PairProbe(const Rates<real, D>& rates, const Neighbours<D>& neighbours)
+        : rates_(rates), neighbours_(neighbours) {}
+
+    /// Pairs (i, j), each way counted, that are within support of each other.
+    double interacting_pairs() const { return count(neighbours_.clusters(), rates_.motion_); }
+
+    /// Such pairs per second of one thread in both sums over a few clusters, over and over for
+    /// `seconds`.
+    double bare_rate(double seconds) const {
+        const HotSet hot = hot_set();
+        const double pairs = count(hot.clusters, hot.motion);
+        double done = 0.0, elapsed = 0.0;
+        const auto start = Clock::now();
+        do {
+            for (int repeat = 0; repeat < 16; ++repeat) sum(hot);
+            done += 16.0 * pairs;
+            elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+        } while (elapsed < seconds);
+        return done / elapsed;
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::size_t width = lanes<real>;
+    static constexpr std::size_t hot_clusters = 128 / width;
+
+    /// Clusters from the middle, with copies of all they read.
+    struct HotSet {
+        std::vector<std::uint32_t> entries;
+        std::vector<ClusterList> clusters;
+        std::vector<MotionRecord<real, D>> motion;
+        std::vector<StressRecord<real, D>> stress;
+    };
+
+    HotSet hot_set() const {
+        const std::size_t whole = neighbours_.moving() / width;
+        if (whole < hot_clusters) throw ResourceFailure("too few particles to measure the pair loop on");
+        const std::size_t first = (whole - hot_clusters) / 2;
+        const auto chosen = neighbours_.clusters().subspan(first, hot_clusters);
+        HotSet hot;
+        std::unordered_map<std::uint32_t, std::uint32_t> place;
+        auto place_of = [&](std::uint32_t p) {
+            const auto [found, is_new] = place.try_emplace(p, static_cast<std::uint32_t>(place.size()));
+            if (is_new) hot.motion.push_back(rates_.motion_[p]), hot.stress.push_back(rates_.stress_[p]);
+            return found->second;
+        };
+        for (std::size_t p = first * width; p < (first + hot_clusters) * width; ++p)
+            place_of(static_cast<std::uint32_t>(p));
+        for (const ClusterList& list : chosen)
+            for (std::uint32_t e = 0; e < list.moving + list.fixed; ++e)
+                hot.entries.push_back(place_of(list.begin[e] & ListEntry::index_mask) |
+                                      (list.begin[e] & ~ListEntry::index_mask));
+        const std::uint32_t* begin = hot.entries.data();
+        for (const ClusterList& list : chosen) {
+            hot.clusters.push_back({begin, list.moving, list.fixed});
+            begin += list.moving + list.fixed;
+        }
+        return hot;
+    }
+
+    template <class Term>
+    void for_each(std::span<const ClusterList> clusters, std::span<const MotionRecord<real, D>> motion,
+                  const Term& term) const {
+        if (rates_.periodic_) for_each_pair<true>(neighbours_, clusters, motion, rates_.frame_, false, term);
+        else for_each_pair<false>(neighbours_, clusters, motion, rates_.frame_, false, term);
+    }
+
+    double count(std::span<const ClusterList> clusters, std::span<const MotionRecord<real, D>> motion) const {
+        std::vector<double> of_particle(motion.size());
+        auto finish = [&](std::size_t p, double count) { of_particle[p] = count; };
+        for_each(clusters, motion, CountTerm<real, D, decltype(finish)>{motion, finish});
+        double total = 0.0;
+        for (double count : of_particle) total += count;
+        return total;
+    }
+
+    void sum(const HotSet& hot) const {
+        const std::span<const MotionRecord<real, D>> motion(hot.motion);
+        const std::span<const StressRecord<real, D>> stress(hot.stress);
+        volatile double sink = 0.0;
+        auto keep_gradient = [&](std::size_t, const Mat<double, D>& gradient) { sink = gradient.element[0]; };
+        auto keep_acceleration = [&](std::size_t, const auto& sums) { sink = sums.acceleration[0] + sums.max_v_sig; };
+        for_each(hot.clusters, motion,
+                 VelocityGradientTerm<GradientOf::own_h, real, D, decltype(keep_gradient)>{motion, keep_gradient});
+        for_each(hot.clusters, motion,
+                 MomentumTerm<GradientOf::own_h, real, D, decltype(keep_acceleration)>{
+                     motion, stress, {static_cast<real>(rates_.options_.alpha), true}, keep_acceleration});
+    }
+
+    const Rates<real, D>& rates_;
+    const Neighbours<D>& neighbours_;
+};
+
+}  // namespace doseki

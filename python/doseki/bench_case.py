@@ -1,0 +1,96 @@
+"""What `doseki bench` times: a block of water and basalt turning slowly, as a simulation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .core_modules import load_core
+from .errors import ResourceError
+from .materials import BUILT_IN
+from .memory import available_bytes
+
+DP = 0.01  # m
+ETA = 1.2
+XI = 0.05  # eq. 19, as on the flume
+JITTER = 0.1  # spacings; a lattice would flatter lists and caches
+MOVED_PER_STEP = 0.005  # spacings that the fastest particle goes in a step; the flume: 0.002
+BYTES_TO_MAKE = 1200  # per particle, while a simulation is made (a guess on the safe side)
+SCHEME = "ueta2022"
+MATERIALS = ("water", "basalt")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One simulation to be timed."""
+
+    dim: int
+    n: int
+    precision: str
+    threads: int
+    isa: str
+    skin: float | str = 0.05
+
+    @property
+    def lanes(self) -> int:
+        """Particles that share one list."""
+        lanes = load_core(self.isa).lanes
+        return 2 * lanes if self.precision == "float" and lanes > 1 else lanes
+
+
+def block(dim: int, n: int) -> np.ndarray:
+    """Exactly n points of a square or cubic lattice, each moved a little at random, (n, dim) m."""
+    side = int(np.ceil(n ** (1 / dim) - 1e-9))
+    cells = np.indices((side,) * dim).reshape(dim, -1).T[:n]
+    return DP * (cells + np.random.default_rng(1).uniform(-JITTER, JITTER, cells.shape))
+
+
+def vortex(position: np.ndarray, speed: float) -> np.ndarray:
+    """An incompressible whirl in the plane of the first two axes that stays within the block."""
+    x, y = (np.pi * position[:, a] / np.ptp(position[:, a]) for a in (0, 1))
+    velocity = np.zeros_like(position)
+    velocity[:, 0] = speed * np.sin(x) * np.cos(y)
+    velocity[:, 1] = -speed * np.cos(x) * np.sin(y)
+    return velocity
+
+
+def _options(case: Case) -> dict[str, Any]:
+    zero = [0.0] * case.dim
+    return {
+        "gravity": zero, "eta": ETA, "alpha": 1.0, "cflnumber": 0.1, "cfl_force": 0.1,
+        "skin": 0.05 if case.skin == "auto" else case.skin, "auto_skin": case.skin == "auto",
+        "balsara": True, "sym_grad": False, "tension": "clamp_fluid", "h_mode": "constant",
+        "domain_min": zero, "domain_max": zero, "periodic": [False] * case.dim,
+    }  # fmt: skip
+
+
+def make_simulation(case: Case) -> Any:
+    """The started core simulation; raises ResourceError when it would not fit in memory."""
+    if case.n * BYTES_TO_MAKE > available_bytes():
+        raise ResourceError(f"{case.n} particles do not fit in the memory that is free")
+    core = load_core(case.isa)
+    core.set_threads(case.threads)
+    materials = [BUILT_IN[name].scaled(XI) for name in MATERIALS]
+    kind = getattr(core, f"Simulation{case.dim}{case.precision.capitalize()}")
+    simulation = kind([vars(material) for material in materials], _options(case))
+
+    position = block(case.dim, case.n)
+    timestep = 0.1 * ETA * DP / max(material.speedsound for material in materials)
+    index = (position[:, 0] > position[:, 0].mean()).astype(np.int32)
+    density = np.array([material.rho0 for material in materials])[index]
+    zeros = np.zeros(case.n, np.int32)
+    simulation.add_particles(
+        position=position,
+        velocity=vortex(position, MOVED_PER_STEP * DP / timestep),
+        mass=density * DP**case.dim,
+        density=density,
+        smoothing_length=np.full(case.n, ETA * DP),
+        material=index,
+        body=zeros,
+        motion=zeros,
+        id=np.arange(case.n),
+    )
+    simulation.start()
+    return simulation

@@ -1,0 +1,83 @@
+"""Kinds of values in a scenario file: bounded numbers, vectors, rates with a unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationInfo
+
+from .expressions import is_expression
+
+# A length beyond these is a slip of the keyboard, and would overflow further on.
+SMALLEST, LARGEST = 1e-12, 1e12
+RATE_UNITS = {"m3/s": 1.0, "m^3/s": 1.0, "L/s": 1e-3, "l/s": 1e-3}
+
+
+def _of_dimension(vector: list[Any], info: ValidationInfo) -> list[Any]:
+    dim = info.context["dim"]
+    if len(vector) != dim:
+        raise ValueError(f"a {dim}-D run needs {dim} entries here, not {len(vector)}")
+    return vector
+
+
+def _numbers_or_expressions(vector: list[Any]) -> list[Any]:
+    for entry in vector:
+        number = isinstance(entry, int | float) and not isinstance(entry, bool)
+        if not (is_expression(entry) or (number and abs(entry) <= LARGEST)):
+            raise ValueError(f'entries must be finite numbers or "= expression", not {entry!r}')
+    return vector
+
+
+def _bound(value: Any) -> Any:
+    """TOML can write inf; the strings "inf" and "-inf" mean the same."""
+    return float(value) if value in ("inf", "+inf", "-inf") else value
+
+
+def _not_nan(value: float) -> float:
+    if math.isnan(value):
+        raise ValueError("nan is not a position")
+    return value
+
+
+def _rate(value: Any) -> Any:
+    """A rate in m3/s from a number, or from a string with its unit such as "3 L/s"."""
+    if not isinstance(value, str):
+        return value
+    found = re.fullmatch(r"\s*([-+.\deE]+)\s*(\S+)\s*", value)
+    if not found or found[2] not in RATE_UNITS:
+        raise ValueError('a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"')
+    try:
+        return float(found[1]) * RATE_UNITS[found[2]]
+    except ValueError:
+        raise ValueError(f"{found[1]!r} is not a number") from None
+
+
+def _skin(value: float | str) -> float | str:
+    if value != "auto" and not (isinstance(value, float) and 0 <= value <= 1):
+        raise ValueError('must be a number from 0 to 1, or "auto"')
+    return value
+
+
+Positive = Annotated[float, Field(gt=0)]
+Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(ge=0)]
+AsArray = (
+    AfterValidator(_of_dimension),
+    AfterValidator(np.array),
+    PlainSerializer(np.ndarray.tolist, return_type=list),
+)
+Vector = Annotated[list[Coordinate], *AsArray]
+VelocityField = Annotated[
+    list[Any], AfterValidator(_of_dimension), AfterValidator(_numbers_or_expressions)
+]
+Bound = Annotated[
+    float, Field(allow_inf_nan=True), BeforeValidator(_bound), AfterValidator(_not_nan)
+]
+Corner = Annotated[list[Bound], *AsArray]
+Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
+Axis = Literal["x", "y", "z"]
+Skin = Annotated[float | str, AfterValidator(_skin)]

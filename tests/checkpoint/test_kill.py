@@ -1,0 +1,82 @@
+"""A run that is killed at any moment can be loaded, and goes on to the same bits."""
+
+from __future__ import annotations
+
+import random
+import subprocess
+import time
+
+import pytest
+
+from doseki.checkpoint import CheckpointFolder
+from doseki.loading import load
+
+from .channel import assert_same_record, command, doseki_command, environment
+
+SETTINGS = ("--threads", 1, "--no-figures", "--checkpoint-every", 0.0005)
+
+
+def kill_at_random(arguments, seconds):
+    """Start doseki and kill -9 it after some time; false if it was done before."""
+    run = subprocess.Popen(
+        command(*arguments), env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    try:
+        run.wait(seconds)
+    except subprocess.TimeoutExpired:
+        run.kill()
+        run.wait()
+        return True
+    return False
+
+
+def kill_again_and_again(channel_file, folder, kills):
+    """Run, and kill, resume, kill ... `kills` times; then go on to the end."""
+    generator = random.Random(kills)
+    done = 0
+    while done < kills:
+        has_checkpoint = bool(CheckpointFolder(folder / "checkpoints").files())
+        started = ["resume", folder] if has_checkpoint else ["run", channel_file, "-o", folder]
+        overwrite = [] if has_checkpoint or not folder.exists() else ["--overwrite"]
+        # Most of the first second goes into starting Python.
+        delay = generator.uniform(0.5, 2.5)
+        if kill_at_random([*started, *overwrite, *SETTINGS], delay):
+            done += 1
+            load_everything(folder)
+        else:
+            restart(folder)
+    if not CheckpointFolder(folder / "checkpoints").files():
+        return doseki_command("run", channel_file, "-o", folder, "--overwrite", *SETTINGS)
+    return doseki_command("resume", folder, *SETTINGS)
+
+
+def restart(folder):
+    """The run came to its end: take away what it ended with."""
+    for file in CheckpointFolder(folder / "checkpoints").files():
+        file.unlink()
+
+
+def load_everything(folder):
+    """What is on the disk can be read, whenever the run was killed."""
+    if not (folder / "snapshots").is_dir() or not (folder / "scenario.toml").exists():
+        return
+    run = load(folder)
+    for snapshot in run:
+        assert len(snapshot["position"]) > 0
+    assert len(run.history.columns) == 0 or len(run.history["time"]) >= 0
+
+
+@pytest.mark.minutes
+def test_killed_five_times(channel_file, uninterrupted, tmp_path):
+    started = time.monotonic()
+    done = kill_again_and_again(channel_file, tmp_path / "run", 5)
+    assert done.returncode == 0, done.stderr
+    assert_same_record(tmp_path / "run", uninterrupted)
+    assert time.monotonic() - started < 300
+
+
+@pytest.mark.full
+def test_killed_fifty_times(channel_file, uninterrupted, tmp_path):
+    done = kill_again_and_again(channel_file, tmp_path / "run", 50)
+    assert done.returncode == 0, done.stderr
+    assert_same_record(tmp_path / "run", uninterrupted)

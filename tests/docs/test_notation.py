@@ -1,0 +1,44 @@
+"""docs/notation.md says what the declarations say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from doseki.fields import FIELDS
+from doseki.materials import BUILT_IN, MATERIAL_PARAMETERS
+from doseki.schema import ScenarioTable
+
+NOTATION = Path(__file__).resolve().parents[2] / "docs" / "notation.md"
+
+
+@pytest.fixture(scope="module")
+def rows():
+    """The rows of all tables, as lists of cells."""
+    lines = NOTATION.read_text(encoding="utf-8").splitlines()
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if "|" in line]
+
+
+@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.key)
+def test_every_field_has_its_row(rows, field):
+    assert [field.doc, field.unit, f"`{field.key}`", f"`{field.file_name}`"] in [
+        row[1:] for row in rows
+    ]
+
+
+@pytest.mark.parametrize("parameter", MATERIAL_PARAMETERS, ids=lambda parameter: parameter.name)
+def test_every_material_parameter_has_its_row(rows, parameter):
+    assert [parameter.doc, parameter.unit, f"`{parameter.name}`"] in [row[1:] for row in rows]
+
+
+@pytest.mark.parametrize("material", BUILT_IN.values(), ids=lambda material: material.name)
+def test_every_built_in_material_has_its_row(rows, material):
+    numbers = (material.rho0, material.speedsound, material.shear_modulus, material.nu)
+    assert [f"`{material.name}`", material.law, *(f"{value:g}" for value in numbers)] in rows
+
+
+@pytest.mark.parametrize("key", ["eta", "alpha", "cflnumber", "cfl_force", "g", "skin"])
+def test_defaults_of_the_scheme(rows, key):
+    default = ScenarioTable.model_fields[key].default
+    assert any(f"`{key}`" in row[2] and row[3] == f"{default:g}" for row in rows if len(row) == 4)

@@ -1,0 +1,40 @@
+"""Cores to test, and simulations made with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import ModuleType
+
+import pytest
+
+from doseki.core import available_instruction_sets, load_core
+
+from .simulations import Simulations
+
+
+@pytest.fixture(params=available_instruction_sets() or ["none"])
+def any_core(request: pytest.FixtureRequest) -> ModuleType:
+    """The compiled core, once for each instruction set of this machine."""
+    return load_core(request.param)
+
+
+@pytest.fixture
+def core() -> Iterator[ModuleType]:
+    """The core that runs use here, on one thread."""
+    core = load_core()
+    threads = core.threads()
+    core.set_threads(1)
+    yield core
+    core.set_threads(threads)
+
+
+@pytest.fixture
+def simulate(core: ModuleType) -> Simulations:
+    """Makes simulations with the core that runs use here."""
+    return Simulations(core)
+
+
+@pytest.fixture(params=[2, 3], ids=["2d", "3d"])
+def dim(request: pytest.FixtureRequest) -> int:
+    """Number of space dimensions."""
+    return request.param
