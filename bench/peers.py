@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """doseki and other SPH codes, timed on the same particles in one run (see README.md here).
 
-    ../.venv/bin/python peers.py                  doseki and PySPH
-    ../.venv/bin/python peers.py --peer NAME N NEIGHBOURS "COMMAND with {steps}"
+../.venv/bin/python peers.py                  doseki and PySPH
+../.venv/bin/python peers.py --peer NAME N NEIGHBOURS "COMMAND with {steps}"
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import resource
 import shlex
 import subprocess
 import sys
@@ -73,9 +74,10 @@ def time_doseki(dim: int, threads: int, steps: int) -> Result:
     load_core().set_threads(threads)
     simulation, _names = build_simulation(dam_break(dim))
     simulation.advance(limit=1e30, pause=1e30, max_steps=WARM_UP)
-    started = time.perf_counter()
+    clock = time.process_time if threads == 1 else time.perf_counter
+    started = clock()
     simulation.advance(limit=1e30, pause=1e30, max_steps=steps)
-    seconds = (time.perf_counter() - started) / steps
+    seconds = (clock() - started) / steps
     n = len(simulation)
     return Result("doseki", dim, n, threads, simulation.interacting_pairs() / n, seconds)
 
@@ -114,31 +116,43 @@ def write_case(path: Path, dim: int) -> None:
     )
 
 
-def time_pysph(python: Path, dim: int, threads: int, steps: int) -> Result:
-    """As many steps of PySPH's weakly compressible scheme on the same particles."""
+def time_pysph(scheme: str, dim: int, threads: int, steps: int) -> Result:
+    """As many steps of PySPH on the same particles."""
     with TemporaryDirectory() as folder:
         case, result = Path(folder) / "case.npz", Path(folder) / "result.json"
         write_case(case, dim)
-        command = [python, HERE / "peer_pysph.py", case, result, steps, threads]
+        command = [install_pysph(), HERE / "peer_pysph.py", scheme, case, result, steps, threads]
         environment = os.environ | {"OMP_NUM_THREADS": str(threads)}
         subprocess.run(
-            list(map(str, command)), check=True, cwd=folder, env=environment, stdout=subprocess.DEVNULL
+            list(map(str, command)),
+            check=True,
+            cwd=folder,
+            env=environment,
+            stdout=subprocess.DEVNULL,
         )
         measured = json.loads(result.read_text())
         n = len(np.load(case)["fixed"])
-    return Result("PySPH", dim, n, threads, measured["neighbours"], measured["seconds_per_step"])
+    seconds = measured["seconds_per_step"]
+    return Result(f"PySPH, {scheme}", dim, n, threads, measured["neighbours"], seconds)
+
+
+def _seconds_of_children() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def _run_command(command: str, steps: int, threads: int) -> float:
+    """Seconds: processor time of one thread, wall time of several."""
     words = shlex.split(command.format(steps=steps, threads=threads))
-    started = time.perf_counter()
+    clock = _seconds_of_children if threads == 1 else time.perf_counter
+    started = clock()
     environment = os.environ | {"OMP_NUM_THREADS": str(threads)}
     subprocess.run(words, check=True, env=environment, stdout=subprocess.DEVNULL)
-    return time.perf_counter() - started
+    return clock() - started
 
 
 def time_peer(words: list[str], dim: int, threads: int, steps: int) -> Result:
-    """Any executable: twice as many steps minus as many steps leaves out what it does at the start."""
+    """Any executable: 2 x steps minus 1 x steps leaves out what it does at the start."""
     name, n, neighbours, command = words
     short, long = (_run_command(command, k * steps, threads) for k in (1, 2))
     return Result(name, dim, int(float(n)), threads, float(neighbours), (long - short) / steps)
@@ -162,11 +176,15 @@ def table(results: list[Result]) -> str:
 
 def arguments() -> argparse.Namespace:
     """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("--dims", type=int, nargs="+", default=[2, 3], choices=[2, 3])
     parser.add_argument("--threads", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--steps", type=int, default=50, help="timed steps [50]")
-    parser.add_argument("--no-pysph", action="store_true")
+    parser.add_argument(
+        "--pysph", nargs="*", default=["wcsph", "stress"], metavar="SCHEME", help="[wcsph stress]"
+    )
     parser.add_argument(
         "--peer",
         nargs=4,
@@ -181,14 +199,12 @@ def arguments() -> argparse.Namespace:
 def main() -> None:
     """Times every code on every case and prints one table."""
     options = arguments()
-    python = None if options.no_pysph else install_pysph()
     results = []
     for dim in options.dims:
         for threads in options.threads:
             case = (dim, threads, options.steps)
             results.append(time_doseki(*case))
-            if python:
-                results.append(time_pysph(python, *case))
+            results += [time_pysph(scheme, *case) for scheme in options.pysph]
             results += [time_peer(words, *case) for words in options.peer]
             print(f"{dim}-D, {threads} threads: timed", file=sys.stderr)
     print(f"{machine()}; {options.steps} steps\n\n{table(results)}")

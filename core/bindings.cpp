@@ -168,7 +168,7 @@ public:
             h.data[k] = particles.smoothing_length[p];
             material.data[k] = tag.material, body.data[k] = tag.body;
             motion.data[k] = static_cast<std::int32_t>(tag.motion), id.data[k] = tag.id;
-            fill_tensor(deviator.data + 9 * k, 0.0, particles.deviatoric_stress[p]);
+            fill_tensor(deviator.data + 9 * k, 0.0, particles.stress(p));
             fill_tensor(stress.data + 9 * k, eos.pressure, sim_.rates().deviator(particles, p));
         }
         nb::dict d;
@@ -190,7 +190,7 @@ public:
             const std::size_t p = order[k];
             for (int a = 0; a < D; ++a) acceleration.data[k * D + a] = particles.acceleration[p][a];
             density_rate.data[k] = particles.density_rate[p];
-            fill_tensor(stress_rate.data + 9 * k, 0.0, particles.deviatoric_stress_rate[p]);
+            fill_tensor(stress_rate.data + 9 * k, 0.0, particles.stress_rate(p));
             balsara.data[k] = static_cast<double>(sim_.rates().stress_records()[p].balsara);
         }
         nb::dict d;

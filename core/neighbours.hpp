@@ -32,13 +32,6 @@ struct ListEntry {
     static constexpr std::uint32_t max_index = index_mask;
 };
 
-/// The union list of one cluster of W consecutive particles: moving neighbours, then fixed ones.
-struct ClusterList {
-    const std::uint32_t* begin = nullptr;
-    std::uint32_t moving = 0;
-    std::uint32_t fixed = 0;
-};
-
 /// Sorted cells, one wrapped grid for each class of particles (moving or fixed, and per factor two of
 /// the smoothing length). The sort is by class, then cell in Morton order, so that W consecutive
 /// particles sit together. Invariants:

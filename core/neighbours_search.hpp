@@ -88,10 +88,9 @@ void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<co
             };
             scratch.list.clear();
             search_grids(false);
-            clusters_[c].moving = static_cast<std::uint32_t>(scratch.list.size());
+            const std::size_t moving = scratch.list.size();
             if (first < moving_) search_grids(true);
-            clusters_[c].fixed = static_cast<std::uint32_t>(scratch.list.size()) - clusters_[c].moving;
-            clusters_[c].begin = storage.keep(scratch.list);
+            clusters_[c] = storage.keep(scratch.list, moving);
         }
     }
 }

@@ -144,8 +144,12 @@ template <int D>
 auto Neighbours<D>::flatten() const -> FlatLists {
     FlatLists flat;
     for (const ClusterList& list : clusters_) {
-        flat.moving.push_back(list.moving), flat.fixed.push_back(list.fixed);
-        flat.entries.insert(flat.entries.end(), list.begin, list.begin + list.moving + list.fixed);
+        const std::size_t first = flat.entries.size();
+        auto add = [&flat](std::uint32_t entry) { flat.entries.push_back(entry); };
+        list.for_each_moving(add);
+        flat.moving.push_back(static_cast<std::uint32_t>(flat.entries.size() - first));
+        list.for_each_fixed(add);
+        flat.fixed.push_back(static_cast<std::uint32_t>(flat.entries.size() - first) - flat.moving.back());
     }
     return flat;
 }
@@ -158,7 +162,7 @@ void Neighbours<D>::unflatten(const FlatLists& flat) {
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
         const std::size_t length = flat.moving[c] + flat.fixed.at(c);
         if (length > rest.size()) throw ResourceFailure("neighbour lists cut short");
-        clusters_[c] = {storage_[0].keep(rest.first(length)), flat.moving[c], flat.fixed[c]};
+        clusters_[c] = storage_[0].keep(rest.first(length), flat.moving[c]);
         rest = rest.subspan(length);
     }
 }

@@ -63,39 +63,53 @@ std::vector<std::array<Coordinate<real>, D>> image_shifts(const Neighbours<D>& n
     return shifts;
 }
 
+/// What all clusters of one loop share.
+template <class real, int D, class Term>
+struct PairLoop {
+    std::span<const MotionRecord<real, D>> records;
+    std::vector<std::array<Coordinate<real>, D>> shifts;
+    real unit;
+    const Term& term;
+};
+
+/// The sums of one cluster. Flattened: whatever gcc left as a call in here would be made for every pair.
+template <bool periodic, class real, int D, class Term>
+[[gnu::flatten, gnu::noinline]] auto sum_over_list(const PairLoop<real, D, Term>& loop, const ClusterList& list,
+                                                   std::uint32_t first) {
+    const Term& term = loop.term;
+    const LanePositions<real, D> x(loop.records.data(), first, static_cast<std::uint32_t>(loop.records.size() - 1));
+    const auto i = term.load(first);
+    typename Term::template Sums<Pack<real>> sums{};
+    auto pair_with = [&](std::uint32_t entry) {
+        auto x_j = loop.records[entry & ListEntry::index_mask].x;
+        if constexpr (periodic)
+            for (int a = 0; a < D; ++a) x_j[a] += loop.shifts[entry >> ListEntry::index_bits][a];
+        return x.pair(x_j, loop.unit);
+    };
+    list.for_each_moving([&](std::uint32_t entry) {
+        term.add(sums, pair_with(entry), i, term.load_one(entry & ListEntry::index_mask));
+    });
+    term.moving_done(sums);
+    list.for_each_fixed([&](std::uint32_t entry) {
+        term.add_fixed(sums, pair_with(entry), i, term.load_one(entry & ListEntry::index_mask));
+    });
+    return sums;
+}
+
 /// `skip_empty`: particles without any neighbour are not finished either.
 template <bool periodic, class real, int D, class Term>
 void for_each_pair(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters,
                    std::span<const MotionRecord<real, D>> records,
                    const CoordinateFrame<real, D>& frame, bool skip_empty, const Term& term) {
-    constexpr int width = lanes<real>;
-    const auto last = static_cast<std::uint32_t>(records.size() - 1);
-    const auto shifts = image_shifts(neighbours, frame);
-    const real unit = static_cast<real>(frame.unit);
+    constexpr std::uint32_t width = lanes<real>;
+    const PairLoop<real, D, Term> loop{records, image_shifts(neighbours, frame), static_cast<real>(frame.unit), term};
 
 #pragma omp parallel for schedule(dynamic, 16) if (clusters.size() > pair_loop)
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-        const ClusterList& list = clusters[c];
-        if (skip_empty && list.moving + list.fixed == 0) continue;
-        const auto first = static_cast<std::uint32_t>(c * width);
-        const LanePositions<real, D> x(records.data(), first, last);
-        const auto i = term.load(first);
-        typename Term::template Sums<Pack<real>> sums{};
-
-        auto add_entries = [&](const std::uint32_t* entry, const std::uint32_t* end, auto is_fixed) __attribute__((always_inline)) {
-            for (; entry != end; ++entry) {
-                const std::uint32_t j = *entry & ListEntry::index_mask;
-                auto x_j = records[j].x;
-                if constexpr (periodic)
-                    for (int a = 0; a < D; ++a) x_j[a] += shifts[*entry >> ListEntry::index_bits][a];
-                if constexpr (is_fixed) term.add_fixed(sums, x.pair(x_j, unit), i, term.load_one(j));
-                else term.add(sums, x.pair(x_j, unit), i, term.load_one(j));
-            }
-        };
-        add_entries(list.begin, list.begin + list.moving, std::false_type{});
-        term.moving_done(sums);
-        add_entries(list.begin + list.moving, list.begin + list.moving + list.fixed, std::true_type{});
-        term.finish(first, static_cast<int>(std::min<std::uint32_t>(width, last - first + 1)), sums);
+        if (skip_empty && clusters[c].empty()) continue;
+        const auto first = static_cast<std::uint32_t>(c) * width;
+        const auto count = std::min<std::size_t>(width, records.size() - first);
+        term.finish(first, static_cast<int>(count), sum_over_list<periodic>(loop, clusters[c], first));
     }
 }
 

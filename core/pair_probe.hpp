@@ -72,7 +72,7 @@ private:
 
     /// Clusters from the middle, with copies of all they read.
     struct HotSet {
-        std::vector<std::uint32_t> entries;
+        ListStorage lists;
         std::vector<ClusterList> clusters;
         std::vector<MotionRecord<real, D>> motion;
         std::vector<StressRecord<real, D>> stress;
@@ -92,14 +92,15 @@ private:
         };
         for (std::size_t p = first * width; p < (first + hot_clusters) * width; ++p)
             place_of(static_cast<std::uint32_t>(p));
-        for (const ClusterList& list : chosen)
-            for (std::uint32_t e = 0; e < list.moving + list.fixed; ++e)
-                hot.entries.push_back(place_of(list.begin[e] & ListEntry::index_mask) |
-                                      (list.begin[e] & ~ListEntry::index_mask));
-        const std::uint32_t* begin = hot.entries.data();
         for (const ClusterList& list : chosen) {
-            hot.clusters.push_back({begin, list.moving, list.fixed});
-            begin += list.moving + list.fixed;
+            std::vector<std::uint32_t> entries;
+            auto add = [&](std::uint32_t entry) {
+                entries.push_back(place_of(entry & ListEntry::index_mask) | (entry & ~ListEntry::index_mask));
+            };
+            list.for_each_moving(add);
+            const std::size_t moving = entries.size();
+            list.for_each_fixed(add);
+            hot.clusters.push_back(hot.lists.keep(entries, moving));
         }
         return hot;
     }

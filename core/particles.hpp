@@ -31,6 +31,7 @@ struct Particles {
     std::vector<double> density_rate;            // [kg/m^3/s]
     std::vector<Deviator<double, D>> deviatoric_stress;         // [Pa]
     std::vector<Deviator<double, D>> deviatoric_stress_rate;    // [Pa/s]
+    bool has_strength = true;    // without, the two arrays above stay empty
     std::vector<double> mass;                // [kg], 2-D: [kg/m]
     std::vector<double> smoothing_length;    // [m]
     std::vector<Tag> tag;
@@ -43,7 +44,8 @@ struct Particles {
     void serialise(F&& f) {
         f("position", position), f("velocity", velocity), f("acceleration", acceleration);
         f("density", density), f("density_rate", density_rate);
-        f("deviatoric_stress", deviatoric_stress), f("deviatoric_stress_rate", deviatoric_stress_rate);
+        if (has_strength)
+            f("deviatoric_stress", deviatoric_stress), f("deviatoric_stress_rate", deviatoric_stress_rate);
         f("mass", mass), f("smoothing_length", smoothing_length), f("tag", tag);
     }
 
@@ -64,6 +66,13 @@ struct Particles {
             for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
             field.swap(sorted);
         });
+    }
+
+    Deviator<double, D> stress(std::size_t p) const {
+        return has_strength ? deviatoric_stress[p] : Deviator<double, D>{};
+    }
+    Deviator<double, D> stress_rate(std::size_t p) const {
+        return has_strength ? deviatoric_stress_rate[p] : Deviator<double, D>{};
     }
 
     bool is_free(std::size_t p) const { return tag[p].motion == Motion::free; }

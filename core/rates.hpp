@@ -89,7 +89,7 @@ public:
 
     /// Deviatoric part of the stress of particle p: S of a solid, tau of a fluid (as last summed).
     Deviator<double, D> deviator(const Particles<D>& particles, std::size_t p) const {
-        Deviator<double, D> tau = particles.deviatoric_stress[p];
+        Deviator<double, D> tau = particles.stress(p);
         const Tag& tag = particles.tag[p];
         if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free || stress_.size() <= p) return tau;
         const StressRecord<real, D>& record = stress_[p];
@@ -220,7 +220,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
         }
     }
     particles.density_rate[p] = density_rate(material, tag.motion, rho, L);
-    particles.deviatoric_stress_rate[p] = rate;
+    if (particles.has_strength) particles.deviatoric_stress_rate[p] = rate;
 
     const auto scaled = stress_over_rho_squared(eos.pressure, stress, rho);
     StressRecord<real, D>& record = stress_[p];

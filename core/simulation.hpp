@@ -19,7 +19,11 @@ public:
     Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
         : options_(options), domain_(domain), neighbours_(domain),
           rates_(std::move(materials), options, domain.any_periodic()) {
-        for (const Material& material : rates_.materials()) sound_speed_ = max(sound_speed_, material.c0);
+        particles.has_strength = false;
+        for (const Material& material : rates_.materials()) {
+            sound_speed_ = max(sound_speed_, material.c0);
+            particles.has_strength |= material.shear_modulus > 0.0;
+        }
     }
 
     Particles<D> particles;

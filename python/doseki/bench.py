@@ -53,7 +53,9 @@ class Plan:
         isas = self.isas or available_instruction_sets()[:1]
         return [
             Case(dim, n, precision, threads, isa)
-            for isa, precision, threads in product(isas, self.precisions, self.threads or default_threads())
+            for isa, precision, threads in product(
+                isas, self.precisions, self.threads or default_threads()
+            )
         ]
 
     def _other_instruction_sets(self, dim: int, n: int) -> list[Case]:
@@ -200,7 +202,9 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
     """The plan for options as typed; raises UserError for what cannot be run here."""
     sizes = _counts("--sizes", options["--sizes"], 1e8)
     if sizes and min(sizes) < SMALLEST:
-        raise UserError(f"--sizes {min(sizes)}: fewer than {SMALLEST} particles are not worth timing")
+        raise UserError(
+            f"--sizes {min(sizes)}: fewer than {SMALLEST} particles are not worth timing"
+        )
     return Plan(
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],
         precisions=_words("--precision", options["--precision"], PRECISIONS) or PRECISIONS,
@@ -238,7 +242,9 @@ def bench_command(plan: Plan, as_json: bool, history: Path | None) -> None:
     rows: list[Row] = []
     for group in run_bench(plan):
         rows += group
-        print(f"doseki bench: {group[0]['dim']}-D, {group[0]['n']} particles timed", file=sys.stderr)
+        print(
+            f"doseki bench: {group[0]['dim']}-D, {group[0]['n']} particles timed", file=sys.stderr
+        )
     if as_json:
         print(json.dumps(rows))
     else:

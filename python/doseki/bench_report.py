@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 Row = dict[str, Any]
 
 MEMORY_LIMIT = 500  # bytes per particle in 3-D and double, lists included: more is an error
@@ -49,7 +50,9 @@ def machine() -> str:
     """The processor and its caches, in words."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+        name = next(
+            line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")
+        )
     except (OSError, StopIteration):
         name = platform.processor() or platform.machine()
     caches = [f"L{level} {size}" for level, size in _caches()]
@@ -63,10 +66,14 @@ def _caches() -> Iterator[tuple[str, str]]:
 
 
 def _find(rows: Sequence[Row], **wanted: Any) -> Row | None:
-    return next((row for row in rows if all(row[key] == value for key, value in wanted.items())), None)
+    return next(
+        (row for row in rows if all(row[key] == value for key, value in wanted.items())), None
+    )
 
 
-def _pairs_of_rows(rows: Sequence[Row], key: str, ours: Any, other: Any) -> Iterator[tuple[Row, Row]]:
+def _pairs_of_rows(
+    rows: Sequence[Row], key: str, ours: Any, other: Any
+) -> Iterator[tuple[Row, Row]]:
     """Rows that differ in nothing but `key`: `ours` and `other`."""
     same = {"dim", "precision", "n", "threads", "isa"} - {key}
     for row in rows:
@@ -87,12 +94,16 @@ def _label(row: Row) -> str:
 def growth(rows: Sequence[Row]) -> list[tuple[str, float]]:
     """Exponent a of step time ~ N^a, for each kind of case timed at two sizes or more."""
     found = []
-    kinds = dict.fromkeys((row["dim"], row["precision"], row["threads"], row["isa"]) for row in rows)
+    kinds = dict.fromkeys(
+        (row["dim"], row["precision"], row["threads"], row["isa"]) for row in rows
+    )
     for dim, precision, threads, isa in kinds:
         wanted = {"dim": dim, "precision": precision, "threads": threads, "isa": isa}
         series = [row for row in rows if wanted.items() <= row.items() and row["n"] >= GROWTH_FROM]
         if len(series) > 1:
-            sizes, seconds = (np.log([row[key] for row in series]) for key in ("n", "seconds_per_step"))
+            sizes, seconds = (
+                np.log([row[key] for row in series]) for key in ("n", "seconds_per_step")
+            )
             name = f"{dim}-D {precision}, {threads} thread{'s' * (threads > 1)}, {isa}"
             found.append((name, float(np.polyfit(sizes, seconds, 1)[0])))
     return found
@@ -138,8 +149,12 @@ def checks(rows: Sequence[Row]) -> list[Check]:
     isa = rows[0]["isa"] if rows else ""
     found = [*_speed_checks(rows, isa), *_ratio_checks(rows, isa)]
     for name, exponent in growth(rows):
-        found.append(Check(f"growth exponent - 1, {name}", abs(exponent - 1), EXPONENT_TOLERANCE, "<="))
-    return found + [check for bound in (MEMORY_LIMIT, MEMORY_TARGET) if (check := memory_check(rows, bound))]
+        found.append(
+            Check(f"growth exponent - 1, {name}", abs(exponent - 1), EXPONENT_TOLERANCE, "<=")
+        )
+    return found + [
+        check for bound in (MEMORY_LIMIT, MEMORY_TARGET) if (check := memory_check(rows, bound))
+    ]
 
 
 def _percent(value: float | None) -> str:
@@ -187,5 +202,7 @@ def phase_table(rows: Sequence[Row]) -> str:
     lines = []
     for row in rows:
         shares = [f"{100 * row['phases'][phase]:.1f}" for phase in phases]
-        lines.append([text(row) for text in KEYS.values()] + shares + [f"{row['steps_per_rebuild']:.0f}"])
+        lines.append(
+            [text(row) for text in KEYS.values()] + shares + [f"{row['steps_per_rebuild']:.0f}"]
+        )
     return markdown_table([*KEYS, *phases, "steps per list"], lines)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -55,7 +56,7 @@ class DamagedCheckpoint(Exception):
     """A file that is not, or no longer, a whole checkpoint."""
 
 
-def to_bytes(checkpoint: Checkpoint) -> bytes:
+def to_bytes(checkpoint: Checkpoint) -> memoryview:
     """The checkpoint as an HDF5 file, followed by its BLAKE2b digest (HDF5 ignores what follows)."""
     image = io.BytesIO()
     with h5py.File(image, "w") as file:
@@ -68,8 +69,10 @@ def to_bytes(checkpoint: Checkpoint) -> bytes:
         file.attrs["doseki"] = json.dumps(said)
         for name, values in checkpoint.state.items():
             file.create_dataset(name, data=values)
-    content = image.getvalue()
-    return content + hashlib.blake2b(content).digest()
+    digest = hashlib.blake2b(image.getbuffer()).digest()
+    image.seek(0, io.SEEK_END)
+    image.write(digest)
+    return image.getbuffer()
 
 
 def from_bytes(data: bytes) -> Checkpoint:
@@ -112,15 +115,18 @@ class CheckpointFolder:
             old.unlink(missing_ok=True)
         return file
 
-    def read_last(self) -> tuple[Checkpoint, list[str]]:
-        """The newest whole checkpoint, and a sentence about each damaged one that was passed over.
+    def read_last(self, until: float = math.inf) -> tuple[Checkpoint, list[str]]:
+        """The newest whole checkpoint at a time of at most `until`, s, and a sentence about each
+        damaged one that was passed over.
 
         Raises UserError when there is none.
         """
         notes: list[str] = []
         for file in reversed(self.files()):
             try:
-                return from_bytes(file.read_bytes()), notes
+                checkpoint = from_bytes(file.read_bytes())
+                if checkpoint.time <= until:
+                    return checkpoint, notes
             except (DamagedCheckpoint, OSError) as error:
                 notes.append(f"{file} is damaged ({error}); using the one before it")
         found = f": {notes[0]}" if notes else ""

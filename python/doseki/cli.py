@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import traceback
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +13,9 @@ from rich.console import Console
 from rich.table import Table
 
 from . import __version__
-from .errors import DosekiError, UserError
+from .errors import DosekiError, ResourceError, UserError
+
+_debug = False  # set by --debug
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -50,8 +53,11 @@ def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")] = False,
 ) -> None:
     """Options that stand before the command."""
+    global _debug
+    _debug = debug
 
 
 def _free_directory(name: str) -> Path:
@@ -76,17 +82,23 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Run a scenario; the record, figures and a one-screen summary go to DIR."""
+    from .check import brief_check
     from .progress import progress_bar
     from .run import RunOptions, run_scenario
     from .scenario import load_scenario
 
     loaded = load_scenario(scenario, settings or [])
     directory = output or _free_directory(scenario)
+
+    def tell(*started: Any) -> None:
+        for line in brief_check(*started):
+            typer.echo(line, err=True)
+
     with progress_bar(loaded.title, loaded.time_max) as progress:
-        options = RunOptions(threads, overwrite, progress, checkpoint_every, checkpoint_minutes)
+        options = RunOptions(
+            threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes
+        )
         summary = run_scenario(loaded, directory, options)
-    for warning in loaded.warnings:
-        typer.echo(f"warning: {warning}", err=True)
     _report(directory, summary, figures, as_json)
 
 
@@ -109,9 +121,25 @@ def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bo
 
 
 @app.command()
+def check(
+    scenario: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")],
+    settings: Settings = None,
+    threads: Threads = None,
+) -> None:
+    """Say what a scenario will take, and what is doubtful about it, without running it."""
+    from .check import check_scenario
+    from .scenario import load_scenario
+
+    typer.echo(check_scenario(load_scenario(scenario, settings or []), threads))
+
+
+@app.command()
 def resume(
     directory: Directory,
     settings: Settings = None,
+    until: Annotated[
+        float, typer.Option("--from", metavar="SECONDS", help="Not from a checkpoint later than this.")
+    ] = float("inf"),
     threads: Threads = None,
     checkpoint_every: CheckpointEvery = None,
     checkpoint_minutes: CheckpointMinutes = 10.0,
@@ -126,8 +154,13 @@ def resume(
 
     scenario = load(directory).scenario
     with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
-        options = RunOptions(threads, False, progress, checkpoint_every, checkpoint_minutes)
-        summary, notes = resume_run(directory, settings or [], options)
+        options = RunOptions(
+            threads,
+            progress=progress,
+            checkpoint_every=checkpoint_every,
+            checkpoint_minutes=checkpoint_minutes,
+        )
+        summary, notes = resume_run(directory, settings or [], options, until)
     for note in notes:
         typer.echo(f"warning: {note}", err=True)
     _report(directory, summary, figures, as_json)
@@ -189,33 +222,53 @@ def list_command() -> None:
 
 @app.command()
 def bench(
-    quick: Annotated[bool, typer.Option("--quick", help="Smaller and fewer: under a minute.")] = False,
-    sizes: Annotated[str | None, typer.Option(metavar="N,...", help="Particles, e.g. 1e4,1e6.")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Smaller and fewer: under a minute.")
+    ] = False,
+    sizes: Annotated[
+        str | None, typer.Option(metavar="N,...", help="Particles, e.g. 1e4,1e6.")
+    ] = None,
     dims: Annotated[str | None, typer.Option(metavar="2,3", help="Dimensions.")] = None,
-    precision: Annotated[str | None, typer.Option(metavar="double,float", help="Of the pairs.")] = None,
-    threads: Annotated[str | None, typer.Option(metavar="T,...", help="Threads [1, 2, all].")] = None,
+    precision: Annotated[
+        str | None, typer.Option(metavar="double,float", help="Of the pairs.")
+    ] = None,
+    threads: Annotated[
+        str | None, typer.Option(metavar="T,...", help="Threads [1, 2, all].")
+    ] = None,
     isa: Annotated[
-        str | None, typer.Option(metavar="v4,...", help="Instruction sets [best; others at one size].")
+        str | None,
+        typer.Option(metavar="v4,...", help="Instruction sets [best; others at one size]."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     append: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Also append the rows to FILE, one line a run.")
+        Path | None,
+        typer.Option(metavar="FILE", help="Also append the rows to FILE, one line a run."),
     ] = None,
 ) -> None:
     """Measure speed and memory here; exit code 4 when memory is over its limit."""
     from .bench import bench_command, make_plan
 
-    plan = make_plan({"--sizes": sizes, "--dims": dims, "--precision": precision, "--threads": threads, "--isa": isa}, quick)
-    bench_command(plan, as_json, append)
+    options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
+    options |= {"--threads": threads, "--isa": isa}
+    bench_command(make_plan(options, quick), as_json, append)
 
 
 def main(arguments: list[str] | None = None) -> Any:
-    """Entry point: user mistakes become one sentence and an exit code, never a traceback."""
+    """Entry point: errors become one sentence and an exit code; a traceback only with --debug."""
     try:
         return app(arguments)
-    except DosekiError as error:
-        typer.echo(f"doseki: {error}", err=True)
-        sys.exit(error.exit_code)
+    except Exception as error:
+        if _debug:
+            traceback.print_exc()
+        if isinstance(error, DosekiError):
+            typer.echo(f"doseki: {error}", err=True)
+            sys.exit(error.exit_code)
+        if isinstance(error, MemoryError):
+            typer.echo("doseki: out of memory", err=True)
+            sys.exit(ResourceError.exit_code)
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        typer.echo(f"doseki: a mistake in doseki itself: {said} (--debug shows where)", err=True)
+        sys.exit(1)
 
 
 if __name__ == "__main__":

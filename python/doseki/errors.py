@@ -1,14 +1,23 @@
 """The errors a user can meet; each carries the exit code of the command line."""
 
 
+LONGEST = 1000  # characters of a message
+
+
+def _one_line(message: str) -> str:
+    """A name or a value that is quoted may hold line breaks, terminal codes, or a novel."""
+    line = " ".join(message.splitlines())
+    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
+    return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
+
+
 class DosekiError(Exception):
     """An error reported in one sentence, never as a traceback."""
 
     exit_code = 1
 
     def __init__(self, message: str) -> None:
-        # A name or a value that is quoted may hold line breaks; the message has none.
-        super().__init__(" ".join(message.splitlines()))
+        super().__init__(_one_line(message))
 
 
 class UserError(DosekiError):

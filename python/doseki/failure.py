@@ -11,6 +11,7 @@ import numpy as np
 from .errors import UserError
 from .folder import RunFolder
 from .forces import Terms, particle_terms
+from .loading import load
 from .record import jsonable
 from .remedy import remedy
 from .storage import write_whole_text
@@ -57,6 +58,7 @@ def explain_failure(run: ActiveRun, failure: Failure) -> dict[str, Any]:
         "message": failure.message,
         "time": run.simulation.time,
         "step": run.simulation.steps,
+        "initial_speed": _initial_speed(run.folder),
         "good_state": _newest(run) if failure.rewound else None,
     }
     index = np.flatnonzero(good["id"] == failure.particle)
@@ -69,6 +71,11 @@ def explain_failure(run: ActiveRun, failure: Failure) -> dict[str, Any]:
     failure.advice = report["advice"] = remedy(report, scenario)
     write_whole_text(run.folder.failure, json.dumps(jsonable(report), indent=1) + "\n")
     return report
+
+
+def _initial_speed(folder: RunFolder) -> float:
+    """The largest speed in the first snapshot, m/s."""
+    return float(np.linalg.norm(load(folder.path)[0]["velocity"], axis=1).max(initial=0.0))
 
 
 def _newest(run: ActiveRun) -> str | None:
@@ -153,7 +160,10 @@ def paragraph(report: dict[str, Any]) -> str:
         )
     said.append(report["advice"])
     if report.get("good_state"):
-        said.append(f"The last good state is checkpoints/{report['good_state']}.")
+        said.append(
+            f"The state of the step before is checkpoints/{report['good_state']}; doseki resume goes"
+            " on from it, or with --from SECONDS from an earlier one."
+        )
     return " ".join(said)
 
 

@@ -64,6 +64,12 @@ class RunFolder:
         """The folder of the pictures."""
         return self.path / "figures"
 
+    def links(self) -> list[Path]:
+        """Symbolic links in the folder: writing to one would write somewhere else."""
+        folders = (self.path, self.snapshots, self.figures, self.checkpoints)
+        inside = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
+        return sorted(file for file in inside if file.is_symlink())
+
     def is_run(self) -> bool:
         """Whether a run was recorded here."""
         return self.scenario.is_file() and self.snapshots.is_dir()

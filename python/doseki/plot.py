@@ -16,6 +16,7 @@ from .figure_series import ENERGIES, MASSES, draw_history
 from .figure_snapshot import SnapshotFigure, draw_snapshots
 from .flow import measure_flow
 from .loading import Run, Snapshot, load
+from .record import refuse_links
 from .storage import clear_errors, write_whole
 from .views import (
     View,
@@ -41,6 +42,7 @@ def plot_run(directory: str | Path) -> list[Path]:
     run = load(directory)
     if not len(run):
         raise UserError(f"{directory}: the run has no snapshot to draw")
+    refuse_links(run.folder)
     return [_save(figure, run, name) for name, figure in figures(run)]
 
 

@@ -47,6 +47,7 @@ class Recorder:
     def reopen(cls, directory: str | Path, snapshots: int, rows: int) -> Recorder:
         """Go on with the record of a run that resumes: keep its first snapshots and history rows."""
         folder = RunFolder(Path(directory))
+        refuse_links(folder)
         files = folder.snapshot_files()
         if not files:
             raise UserError(f"{directory}: holds no snapshot from which a run could go on")
@@ -143,9 +144,16 @@ def _make_room(folder: RunFolder, overwrite: bool) -> None:
             raise UserError(f"{folder.path}: is a file, not a folder")
         if folder.path.is_dir() and any(folder.path.iterdir()):
             _refuse_to_overwrite(folder, overwrite)
+            refuse_links(folder)
             for file in folder.written_files():
                 file.unlink()
         folder.snapshots.mkdir(parents=True, exist_ok=True)
+
+
+def refuse_links(folder: RunFolder) -> None:
+    """Raise UserError where writing into the folder would write outside it."""
+    if links := folder.links():
+        raise UserError(f"{links[0]}: is a symbolic link; nothing is written through it")
 
 
 def _refuse_to_overwrite(folder: RunFolder, overwrite: bool) -> None:

@@ -21,7 +21,7 @@ def remedy(report: dict[str, Any], scenario: Scenario) -> str:
     found = [said for rule in rules if (said := rule(report, scenario))]
     return " ".join(found[:2]) or (
         f"Try half the timestep (--set cflnumber={scenario.cflnumber / 2:g} --set"
-        f" cfl_force={scenario.cfl_force / 2:g}) from the last good state; if it fails at the same"
+        f" cfl_force={scenario.cfl_force / 2:g}) with doseki resume; if it fails at the same"
         f" time, raise xi (now {scenario.xi:.4g}) or lower dp."
     )
 
@@ -60,9 +60,8 @@ def _overlap(report: dict[str, Any], scenario: Scenario) -> str | None:
 
 
 def _mach(report: dict[str, Any], scenario: Scenario) -> str | None:
-    particle = report["particle"]
-    relative = max((n["relative_speed"] for n in report.get("neighbours", ())), default=0.0)
-    speed = max(particle["speed"], relative)
+    """Speeds that were given; those of a blow-up are its consequence."""
+    particle, speed = report["particle"], report["initial_speed"]
     mach = speed / particle["sound_speed"] if particle["sound_speed"] > 0 else 0.0
     if not mach > MACH:
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -21,16 +22,20 @@ CHANGEABLE = {"time_max", "cflnumber", "cfl_force", "alpha", "balsara", "skin", 
 
 
 def resume_run(
-    directory: str | Path, overrides: Sequence[str] = (), options: RunOptions | None = None
+    directory: str | Path,
+    overrides: Sequence[str] = (),
+    options: RunOptions | None = None,
+    until: float = math.inf,
 ) -> tuple[dict[str, Any], list[str]]:
     """Goes on to the end; returns the summary, and sentences about damaged checkpoints.
 
     With the same threads or others, and no `overrides`, the record becomes that of a run that was
-    never interrupted, bit for bit.  `overrides` are KEY=VALUE for keys in CHANGEABLE.  Raises as
+    never interrupted, bit for bit.  It goes on from the newest checkpoint at a time of at most
+    `until`, s.  `overrides` are KEY=VALUE for keys in CHANGEABLE.  Raises as
     run_scenario does, and UserError when there is nothing to go on from.
     """
     folder = load(directory).folder
-    checkpoint, notes = CheckpointFolder(folder.checkpoints).read_last()
+    checkpoint, notes = CheckpointFolder(folder.checkpoints).read_last(until)
     scenario = _scenario(folder.scenario, overrides)
     if checkpoint.time >= scenario.time_max and folder.summary.is_file():
         raise UserError(

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
+from .checkpoint import Checkpoint
 
 SHARE = 0.01  # of the wall time that may go into copies
 SECONDS = 1.0  # at least, between two copies
@@ -18,14 +18,14 @@ class Rewind:
     """
 
     def __init__(self) -> None:
-        self._state: dict[str, np.ndarray] | None = None
+        self.last: Checkpoint | None = None
         self._next = 0.0
 
-    def look(self, simulation: Any) -> None:
-        """Copy the state if the last copy is old enough."""
+    def look(self, take: Callable[[], Checkpoint]) -> None:
+        """Take a copy of the state if the last one is old enough."""
         started = time.monotonic()
         if started >= self._next:
-            self._state = simulation.checkpoint()
+            self.last = take()
             now = time.monotonic()
             self._next = now + max(SECONDS, (now - started) / SHARE)
 
@@ -34,9 +34,9 @@ class Rewind:
 
         `limit_at(time)` is the time of the first output after `time`, s, which steps must meet.
         """
-        if self._state is None:
+        if self.last is None:
             return False
-        simulation.restore(self._state)
+        simulation.restore(self.last.state)
         while simulation.steps < step:
             limit = limit_at(simulation.time)
             simulation.advance(limit=limit, pause=limit, max_steps=step - simulation.steps)

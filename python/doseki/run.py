@@ -23,9 +23,14 @@ FIRST_BURST, LAST_BURST = 1, 1_000_000  # steps
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost
 
 Progress = Callable[[float, float, int], None]  # time, timestep, step
+Started = Callable[[Scenario, Any, list[str]], None]  # scenario, core simulation, body names
 
 
 def _no_progress(_time: float, _timestep: float, _step: int) -> None:
+    pass
+
+
+def _say_nothing(_scenario: Scenario, _simulation: Any, _body_names: list[str]) -> None:
     pass
 
 
@@ -36,6 +41,7 @@ class RunOptions:
     threads: int | None = None
     overwrite: bool = False
     progress: Progress = field(default=_no_progress)
+    started: Started = field(default=_say_nothing)  # called before the first step
     checkpoint_every: float | None = None  # s of simulated time
     checkpoint_minutes: float = CHECKPOINT_MINUTES  # of wall time
 
@@ -94,14 +100,18 @@ class ActiveRun:
         while self.position.next_history <= self.simulation.time:
             self.position.next_history += self.scenario.time_history
 
-    def write_checkpoint(self, clock: CheckpointClock) -> Path:
+    def checkpoint(self) -> Checkpoint:
+        """A copy of the state and of where the run stands."""
+        position = Position(**vars(self.position) | {"wall_seconds": self.wall_seconds})
+        names = self.scenario.material_names, self.body_names
+        return Checkpoint(self.simulation.checkpoint(), position, *names)
+
+    def write_checkpoint(self, clock: CheckpointClock) -> None:
         """Put the state safely on the disk."""
         clock.reset(self.simulation.time)
         self.position.next_checkpoint = clock.next_time
         self.recorder.sync()
-        position = Position(**vars(self.position) | {"wall_seconds": self.wall_seconds})
-        names = self.scenario.material_names, self.body_names
-        return self.checkpoints.write(Checkpoint(self.simulation.checkpoint(), position, *names))
+        self.checkpoints.write(self.checkpoint())
 
     def next_output(self) -> float:
         """Time of the next snapshot; the last one is always at time_max."""
@@ -132,7 +142,7 @@ class ActiveRun:
         )
         stopped = False
         while simulation.time < self.scenario.time_max and not stopped:
-            self.rewind.look(simulation)
+            self.rewind.look(self.checkpoint)
             burst = self._burst(burst, clock.next_time)
             if clock.is_due(simulation.time):
                 self.write_checkpoint(clock)
@@ -163,6 +173,8 @@ class ActiveRun:
         failure = Failure(*simulation.failure, message, simulation.state(), simulation.time, simulation.steps)
         failure.rewound = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
         if failure.rewound:
+            # The step before may be past saving; the run may go on from the state well before it.
+            self.checkpoints.write(self.rewind.last)
             self.write_checkpoint(CheckpointClock(None, 0.0))
         self.record_snapshot()
         explain_failure(self, failure)
@@ -226,6 +238,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         with stop.listening():
             if fresh:
                 run.start()
+                options.started(run.scenario, run.simulation, run.body_names)
             status = run.advance(options, stop)
     except core.ResourceFailure as failure:
         raise ResourceError(str(failure)) from failure

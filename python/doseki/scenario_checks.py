@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from .errors import UserError
 from .nearest import suggestion
 from .quantities import check_quantity
+from .schema import SECTIONS
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -16,10 +18,23 @@ MAX_OUTPUTS = 1e6
 
 def check_scenario(scenario: Scenario) -> None:
     """Raise UserError where tables that are right by themselves do not fit together."""
+    _check_names(scenario)
     _check_references(scenario)
     _check_colours(scenario)
     _check_outputs(scenario)
     _check_periodic(scenario)
+
+
+def _check_names(scenario: Scenario) -> None:
+    """Names of tables become names of files and columns, so they must be fit for that."""
+    for section in SECTIONS:
+        for name in getattr(scenario, section):
+            if not re.fullmatch(r"\w[\w .+-]{0,59}", name):
+                raise scenario.where.error(
+                    (section, name),
+                    f'"{name}" cannot be a name in [{section}]; names begin with a letter or digit'
+                    " and have at most 60 letters, digits, spaces, _, -, + or dots",
+                )
 
 
 def _check_references(scenario: Scenario) -> None:

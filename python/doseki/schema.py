@@ -15,7 +15,17 @@ from pydantic import (
 )
 
 from .materials import LAWS, LIMIT, MATERIAL_PARAMETERS, MaterialParameter
-from .value_types import Axis, Corner, Length, NonNegative, Positive, Rate, Skin, Vector, VelocityField
+from .value_types import (
+    Axis,
+    Corner,
+    Length,
+    NonNegative,
+    Positive,
+    Rate,
+    Skin,
+    Vector,
+    VelocityField,
+)
 
 
 class Table(BaseModel):

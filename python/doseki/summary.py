@@ -46,12 +46,13 @@ def _computed(run: Run) -> Iterator[str]:
         yield _line("steps", f"{last['step']:,.0f}, the last one {last['dt']:.3g} s")
     if "wall_seconds" in said:
         rate = said.get("particle_updates_per_second", math.nan)
-        yield _line("wall time", f"{_duration(said['wall_seconds'])}, {rate:.3g} updates/s")
+        yield _line("wall time", f"{duration_text(said['wall_seconds'])}, {rate:.3g} updates/s")
     if "bytes_per_particle" in said:
         yield _line("memory", f"{said['bytes_per_particle']:.0f} bytes per particle")
 
 
-def _duration(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
+    """Minutes and seconds, or seconds alone."""
     minutes, rest = divmod(seconds, 60)
     return f"{minutes:.0f} min {rest:.0f} s" if minutes else f"{rest:.1f} s"
 

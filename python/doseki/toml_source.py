@@ -12,6 +12,7 @@ from typing import Any
 from .errors import UserError
 
 MAX_BYTES = 16 * 2**20
+MAX_DEPTH = 32
 KeyPath = tuple[str | int, ...]
 
 
@@ -58,11 +59,23 @@ def read_toml(path: Path) -> TomlSource:
     """Read one TOML file; raises UserError for anything that is not readable TOML."""
     text = _read_text(path)
     try:
-        return TomlSource(path, text, tomllib.loads(text))
+        table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{path}: not valid TOML: {error}") from None
     except (RecursionError, ValueError) as error:
         raise UserError(f"{path}: cannot be read as TOML: {error}") from None
+    if _is_deep(table):
+        raise UserError(f"{path}: tables or lists nested more than {MAX_DEPTH} deep")
+    return TomlSource(path, text, table)
+
+
+def _is_deep(table: dict[str, Any]) -> bool:
+    """Whether the nesting would exhaust functions that call themselves."""
+    level: list[Any] = [table]
+    for _ in range(MAX_DEPTH):
+        inside = [part.values() if isinstance(part, dict) else part for part in level]
+        level = [entry for part in inside for entry in part if isinstance(entry, dict | list)]
+    return bool(level)
 
 
 def _read_text(path: Path) -> str:

@@ -57,7 +57,7 @@ def flip(data):
 
 def test_a_checkpoint_reads_back_to_the_last_bit():
     written = make_checkpoint()
-    read = from_bytes(to_bytes(written))
+    read = from_bytes(bytes(to_bytes(written)))
     assert (read.position, read.material_names, read.body_names) == (
         written.position, ["water"], ["sea", "bed"],
     )  # fmt: skip
@@ -68,7 +68,7 @@ def test_a_checkpoint_reads_back_to_the_last_bit():
 
 
 def test_every_flipped_bit_and_every_cut_is_found():
-    data = to_bytes(make_checkpoint())
+    data = bytes(to_bytes(make_checkpoint()))
     random = np.random.default_rng(1)
     for place in random.integers(0, len(data), 300):
         broken = bytearray(data)

@@ -60,7 +60,7 @@ def test_collision_in_3d():
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_flume_load_weighs_20_kg(dim):
-    scenario = load_scenario("flume", [f"dim={dim}"])
+    scenario = load_scenario("flume", [f"dim={dim}", "jitter=0"])
     particles, names = build_bodies(scenario)
     load = particles.body == names.index("load")
     total = 20 / 0.1 if dim == 2 else 20

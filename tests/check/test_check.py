@@ -1,0 +1,154 @@
+"""`doseki check`: what it counts, what it warns of, and how good its estimates are."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import doseki
+from doseki.check import brief_check, check_scenario
+from doseki.core import build_simulation
+from doseki.findings import thorough_findings
+from doseki.scenario import load_scenario
+
+SCENARIO = """\
+schema = 1
+dim = 2
+dp = 0.01
+time_max = 0.05
+time_out = 0.01
+xi = {xi}
+slope = 0
+
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0, "= -{layers}*dp"]
+max = [0.5, 0]
+
+[body.water]
+shape = "box"
+material = "water"
+min = [0.1, {bottom}]
+max = [0.3, {top}]
+"""
+
+
+@pytest.fixture
+def doubts(tmp_path):
+    """The findings about a body of water over a floor."""
+
+    def find(xi=0.05, layers=3, bottom=0.0, top=0.12):
+        file = tmp_path / "case.toml"
+        file.write_text(SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top))
+        scenario = load_scenario(file)
+        simulation, names = build_simulation(scenario)
+        return thorough_findings(scenario, simulation.state(), names)
+
+    return find
+
+
+def test_a_good_set_up_raises_no_doubt(doubts):
+    assert doubts() == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"top": 0.05}, ["water: 5 particles over its depth", "dp = 0.005 would do"]),
+        ({"layers": 2}, ["floor: a wall of 2 layers", "make it 3 layers (0.03 m) thick"]),
+        ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.01"]),
+        ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
+        ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),
+        ({"bottom": -0.012, "top": 0.12}, ["overlaps"]),
+    ],
+)
+def test_a_doubtful_set_up_is_named_with_its_remedy(doubts, changes, words):
+    told = " ".join(doubts(**changes))
+    for word in words:
+        assert word in told
+
+
+def test_report_has_all_that_is_promised():
+    told = check_scenario(load_scenario("flume"), threads=1)
+    for word in (
+        "particles", "most particles", "memory", "disk", "steps", "wall time", "per grain",
+        "depth of water", "Mach number", "1.1 particles across a grain",
+    ):  # fmt: skip
+        assert word in told
+    assert "926 basalt" in told
+
+
+def test_brief_form_is_quick():
+    scenario = load_scenario("flume")
+    simulation, names = build_simulation(scenario)
+    started = time.perf_counter()
+    lines = brief_check(scenario, simulation, names)
+    assert time.perf_counter() - started < 1.0
+    assert lines[0].startswith("2,998 particles")
+    assert simulation.steps == 0
+
+
+MEASURE = """
+import json, sys
+from doseki.core import build_simulation, load_core
+from doseki.estimate import estimate
+from doseki.scenario import load_scenario
+load_core().set_threads(1)
+scenario = load_scenario(sys.argv[1], sys.argv[2:])
+print(json.dumps(vars(estimate(scenario, *build_simulation(scenario)))))
+"""
+RUN = """
+import json, sys
+from doseki.run import RunOptions, run_scenario
+from doseki.scenario import load_scenario
+summary = run_scenario(load_scenario(sys.argv[1], sys.argv[3:]), sys.argv[2], RunOptions(threads=1))
+from resource import RUSAGE_SELF, getrusage
+print(json.dumps({
+    "steps": summary["step"], "most_particles": summary["n_particles"],
+    "seconds": summary["wall_seconds"], "memory": 1024 * getrusage(RUSAGE_SELF).ru_maxrss,
+}))
+"""
+
+
+def in_own_process(program: str, *arguments: object) -> dict[str, float]:
+    paths = os.pathsep.join([str(Path(doseki.__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    done = subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True, text=True, check=True, env=os.environ | {"PYTHONPATH": paths},
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+@pytest.mark.minutes
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("collision", []),
+        ("dambreak", ["time_max=0.3"]),
+        ("film", ["time_max=1"]),
+        ("flume", ["time_max=0.15"]),
+        ("flume-strength", ["time_max=0.15"]),
+        ("hang", []),
+        ("shear-wave", []),
+    ],
+)
+def test_estimates_are_within_30_percent(name, settings, tmp_path):
+    """Wall time too, unless other programs take the processor from one of the two runs."""
+    busy = os.getloadavg()[0] > 0.7 * len(os.sched_getaffinity(0))
+    expected = in_own_process(MEASURE, name, *settings)
+    taken = in_own_process(RUN, name, tmp_path / "run", *settings)
+    taken["disk"] = sum(f.stat().st_size for f in (tmp_path / "run").rglob("*") if f.is_file())
+    for quantity, value in taken.items():
+        print(f"{name:15s} {quantity:15s} {expected[quantity]:.4g} expected, {value:.4g} taken")
+    for quantity in ("steps", "most_particles", "memory", "disk"):
+        assert expected[quantity] == pytest.approx(taken[quantity], rel=0.3), quantity
+    if not busy and taken["seconds"] > 1:
+        assert expected["seconds"] == pytest.approx(taken["seconds"], rel=0.3)

@@ -1,0 +1,115 @@
+"""Memory and threads of the core, watched by the compiler's sanitisers, and the poison mode."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import doseki
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = Path(doseki.__file__).parent
+HERE = Path(__file__).parent
+COMMON = "-fno-omit-frame-pointer"
+ADDRESS = f"-fsanitize=address,undefined -fno-sanitize-recover=undefined {COMMON}"
+THREAD = f"-fsanitize=thread {COMMON}"
+
+
+def library(name: str) -> str:
+    """Path of a runtime library of the compiler."""
+    compiler = os.environ.get("CXX", "c++")
+    found = subprocess.run([compiler, f"-print-file-name={name}"], capture_output=True, text=True, check=True)
+    path = Path(found.stdout.strip())
+    if not path.is_absolute():
+        pytest.skip(f"the compiler has no {name}")
+    return str(path)
+
+
+def build(folder: Path, flags: str) -> Path:
+    """Compile the scalar module with `flags`; returns a folder to import doseki from."""
+    program = shutil.which("cmake", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    if program is None:
+        pytest.skip("cmake is not installed")
+    configure = [
+        program, "-S", ROOT, "-B", folder / "build", f"-DPython_EXECUTABLE={sys.executable}",
+        "-DCMAKE_BUILD_TYPE=RelWithDebInfo", f"-DCMAKE_CXX_FLAGS={flags}", "-DDOSEKI_OPTIMISATION=-O1",
+    ]  # fmt: skip
+    for command in (configure, [program, "--build", folder / "build", "--target", "_core_scalar"]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    site = folder / "site/doseki"
+    site.mkdir(parents=True)
+    for file in [*PACKAGE.glob("*.py"), *(folder / "build").glob("_core_scalar*.so")]:
+        (site / file.name).symlink_to(file)
+    (site / "scenarios").symlink_to(ROOT / "scenarios")
+    return site.parent
+
+
+def exercise(site: Path, preload: str, threads: int, size: float, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run exercise.py on the module in `site` with runtime libraries loaded before all others."""
+    environment = {"PYTHONPATH": str(site), "LD_PRELOAD": preload, "DOSEKI_ISA": "scalar"} | variables
+    return subprocess.run(
+        [sys.executable, HERE / "exercise.py", str(threads), str(size)],
+        env=os.environ | environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+@pytest.mark.minutes
+def test_addresses_and_undefined_behaviour(tmp_path):
+    preload = f"{library('libasan.so')} {library('libubsan.so')}"
+    site = build(tmp_path, ADDRESS)
+    # Python itself frees nothing at its end, which would count as leaks.
+    done = exercise(site, preload, 2, 1.0, ASAN_OPTIONS="detect_leaks=0", DOSEKI_POISON="1")
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.count("\n") == 4
+
+
+@pytest.mark.full
+def test_threads_do_not_race(tmp_path):
+    site = build(tmp_path, THREAD)
+    shim = tmp_path / "libgomp_threads.so"
+    compiler = os.environ.get("CXX", "c++")
+    subprocess.run(
+        [compiler, "-std=c++20", "-shared", "-fPIC", "-O1", *THREAD.split(), HERE / "gomp_threads.cpp", "-o", shim],
+        check=True,
+    )  # fmt: skip
+    preload = f"{library('libtsan.so')} {shim}"
+    done = exercise(site, preload, 4, 3.0, TSAN_OPTIONS="exitcode=66")
+    assert "WARNING: ThreadSanitizer" not in done.stderr, done.stderr[:3000]
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.count("\n") == 4
+
+
+POISONED = """
+import hashlib, sys
+from doseki.core import build_simulation, load_core
+from doseki.scenario import load_scenario
+load_core().set_threads(1)
+digest = hashlib.blake2b()
+for name in ("film", "flume", "hang"):
+    simulation, _ = build_simulation(load_scenario(name, sys.argv[1:]))
+    simulation.advance(limit=1.0, pause=1.0, max_steps=300)
+    for values in simulation.state().values():
+        digest.update(values.tobytes())
+print(digest.hexdigest())
+"""
+
+
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_poisoned_records_survive_no_pass_and_change_no_bit(precision):
+    """NaN in every output before each pass: all of it is overwritten before it is read."""
+    digests = []
+    paths = os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])
+    for variables in ({}, {"DOSEKI_POISON": "1"}):
+        done = subprocess.run(
+            [sys.executable, "-c", POISONED, f"precision={precision}"],
+            env=os.environ | {"PYTHONPATH": paths} | variables, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        digests.append(done.stdout)
+    assert digests[0] == digests[1]
