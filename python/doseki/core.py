@@ -35,14 +35,27 @@ def core_options(scenario: Scenario) -> dict[str, Any]:
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
-    """Materials in the order of their indices, scaled by xi; without strength, mu = 0."""
+    """Materials in the order of their indices, scaled by xi; mu = 0 where no stress is evolved."""
     tables = []
+    moving = _moving_materials(scenario)
     for name in scenario.material_names:
         table = asdict(scenario.materials[name].scaled(scenario.xi))
-        if not scenario.strength:
+        if not scenario.strength or name not in moving:
             table["shear_modulus"] = 0.0
         tables.append(table)
     return tables
+
+
+def _moving_materials(scenario: Scenario) -> set[str]:
+    """Materials of what can move: fixed particles have no deviatoric stress."""
+    moving = {inflow.material for inflow in scenario.inflow.values()}
+    for name, body in scenario.body.items():
+        table = scenario.particle_tables.get(name)
+        if table is not None:
+            moving |= set(table.material_names)
+        elif not body.fixed:
+            moving.add(body.material)
+    return moving
 
 
 def _inflow_table(section: InflowSection) -> dict[str, Any]:

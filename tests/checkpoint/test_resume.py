@@ -53,6 +53,7 @@ def test_stop_and_resume(channel_file, uninterrupted, tmp_path):
         assert summary[name] == expected[name], name
 
 
+@pytest.mark.minutes
 @pytest.mark.parametrize(
     ("dim", "precision", "h_mode"),
     [(2, "float", "constant"), (2, "double", "eq10"), (3, "double", "constant"), (3, "float", "eq10")],
@@ -73,6 +74,7 @@ def test_periodic_scenario_resumes_to_the_same_bits(tmp_path):
     assert_same_record(tmp_path / "run", tmp_path / "straight")
 
 
+@pytest.mark.minutes
 def test_threads_may_change_between_the_parts(channel_file, uninterrupted, tmp_path):
     run_channel(
         channel_file, tmp_path / "run", threads=2, progress=stop_at(tmp_path / "run", 0.02),
@@ -82,6 +84,7 @@ def test_threads_may_change_between_the_parts(channel_file, uninterrupted, tmp_p
     assert_same_record(tmp_path / "run", uninterrupted)
 
 
+@pytest.mark.minutes
 def test_writing_checkpoints_changes_no_bit(channel_file, uninterrupted, tmp_path):
     run_channel(channel_file, tmp_path / "run", checkpoint_every=1e-4, checkpoint_minutes=0.0)
     assert_same_record(tmp_path / "run", uninterrupted)

@@ -52,6 +52,7 @@ def assert_stopped_within_one_step(failed):
     assert checkpoint.step == report["step"] == failed.run.summary["step"]
     for name, values in checkpoint.state.items():
         assert np.isfinite(values).all(), name
+    assert report["particle"]["position"] != report["became"]["position"]
     last = failed.run[-1]
     assert last.time == report["time"] == checkpoint.time
     assert np.isfinite(last["velocity"]).all()
