@@ -75,7 +75,9 @@ def _costs(expected: Estimate) -> Iterator[str]:
     yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second")
 
 
-def _resolution(scenario: Scenario, state: dict[str, np.ndarray], names: list[str]) -> Iterator[str]:
+def _resolution(
+    scenario: Scenario, state: dict[str, np.ndarray], names: list[str]
+) -> Iterator[str]:
     across = grain_spacings(scenario)
     if across is not None:
         yield _line("per grain", f"{across:.3g} particles across")

@@ -52,12 +52,12 @@ class Checkpoint:
         return int(self.state["steps"][0])
 
 
-class DamagedCheckpoint(Exception):
+class DamagedCheckpointError(Exception):
     """A file that is not, or no longer, a whole checkpoint."""
 
 
 def to_bytes(checkpoint: Checkpoint) -> memoryview:
-    """The checkpoint as an HDF5 file, followed by its BLAKE2b digest (HDF5 ignores what follows)."""
+    """The checkpoint as an HDF5 file, then its BLAKE2b digest (HDF5 ignores what follows)."""
     image = io.BytesIO()
     with h5py.File(image, "w") as file:
         said = {
@@ -76,19 +76,21 @@ def to_bytes(checkpoint: Checkpoint) -> memoryview:
 
 
 def from_bytes(data: bytes) -> Checkpoint:
-    """What `to_bytes` wrote; raises DamagedCheckpoint for anything else.
+    """What `to_bytes` wrote; raises DamagedCheckpointError for anything else.
 
     The digest is looked at before HDF5 sees the data: damaged files can crash it.
     """
     content, digest = data[:-DIGEST_BYTES], data[-DIGEST_BYTES:]
     if len(data) < 2 * DIGEST_BYTES or hashlib.blake2b(content).digest() != digest:
-        raise DamagedCheckpoint("its checksum is wrong")
+        raise DamagedCheckpointError("its checksum is wrong")
     with h5py.File(io.BytesIO(content), "r") as file:
         said = json.loads(file.attrs["doseki"])
         if said["version"] != VERSION:
-            raise DamagedCheckpoint(f"it has format {said['version']}, expected {VERSION}")
+            raise DamagedCheckpointError(f"it has format {said['version']}, expected {VERSION}")
         state = {name: dataset[...] for name, dataset in file.items()}
-    return Checkpoint(state, Position(**said["position"]), said["material_names"], said["body_names"])
+    return Checkpoint(
+        state, Position(**said["position"]), said["material_names"], said["body_names"]
+    )
 
 
 class CheckpointFolder:
@@ -127,7 +129,7 @@ class CheckpointFolder:
                 checkpoint = from_bytes(file.read_bytes())
                 if checkpoint.time <= until:
                     return checkpoint, notes
-            except (DamagedCheckpoint, OSError) as error:
+            except (DamagedCheckpointError, OSError) as error:
                 notes.append(f"{file} is damaged ({error}); using the one before it")
         found = f": {notes[0]}" if notes else ""
         raise UserError(f"{self.path}: no whole checkpoint to go on from{found}; run it again")

@@ -49,7 +49,9 @@ def estimate(scenario: Scenario, simulation: Any, body_names: list[str]) -> Esti
         most_particles=most,
         # Beside the state, a copy of it for failures, one to be written, and the image of a file.
         memory=PROCESS_BYTES + most * (per_particle + 3 * checkpoint),
-        disk=snapshots * snapshot_bytes * mean + rows * HISTORY_BYTES + checkpoints * most * checkpoint,
+        disk=snapshots * snapshot_bytes * mean
+        + rows * HISTORY_BYTES
+        + checkpoints * most * checkpoint,
         steps=steps,
         seconds=seconds,
         timestep=timestep,
@@ -88,9 +90,13 @@ def _particles(scenario: Scenario, body_names: list[str], start: int) -> tuple[f
 def _snapshot(scenario: Scenario, simulation: Any, body_names: list[str]) -> tuple[float, float]:
     """Bytes and seconds that a snapshot takes for each particle."""
     header = vtkhdf.Header(
-        simulation.time, simulation.steps, simulation.timestep, scenario.dim,
-        tuple(scenario.material_names), tuple(body_names),
-    )  # fmt: skip
+        simulation.time,
+        simulation.steps,
+        simulation.timestep,
+        scenario.dim,
+        tuple(scenario.material_names),
+        tuple(body_names),
+    )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "snapshot"
         started = time.perf_counter()

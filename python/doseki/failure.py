@@ -21,8 +21,14 @@ if TYPE_CHECKING:
 
 NEIGHBOURS = 6  # listed, nearest first
 PARTICLE_FIELDS = (
-    "position", "velocity", "density", "pressure", "mass", "smoothing_length", "sound_speed",
-)  # fmt: skip
+    "position",
+    "velocity",
+    "density",
+    "pressure",
+    "mass",
+    "smoothing_length",
+    "sound_speed",
+)
 
 # What each kind of failure of the core means.
 KINDS = {
@@ -161,8 +167,8 @@ def paragraph(report: dict[str, Any]) -> str:
     said.append(report["advice"])
     if report.get("good_state"):
         said.append(
-            f"The state of the step before is checkpoints/{report['good_state']}; doseki resume goes"
-            " on from it, or with --from SECONDS from an earlier one."
+            f"The state of the step before is checkpoints/{report['good_state']}; doseki resume"
+            " goes on from it, or with --from SECONDS from an earlier one."
         )
     return " ".join(said)
 

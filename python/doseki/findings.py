@@ -41,10 +41,14 @@ def grain_spacings(scenario: Scenario) -> float | None:
 
 def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict[str, float]:
     """Particles over the depth of each body of fluid, and of each inflow."""
-    fluids = [i for i, n in enumerate(scenario.material_names) if scenario.materials[n].law == "fluid"]
+    fluids = [
+        i for i, n in enumerate(scenario.material_names) if scenario.materials[n].law == "fluid"
+    ]
     depths = {name: inflow.depth / scenario.dp for name, inflow in scenario.inflow.items()}
     for body, name in names.items():
-        of_it = (state["body"] == body) & (state["motion"] == FREE) & np.isin(state["material"], fluids)
+        of_it = (
+            (state["body"] == body) & (state["motion"] == FREE) & np.isin(state["material"], fluids)
+        )
         if of_it.any() and name not in depths:
             depths[name] = float(_extent(state["position"][of_it], scenario).min()) + 1.0
     return depths
@@ -137,10 +141,15 @@ def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterat
         if (state["motion"][of_it] != FREE).any() or not of_it.any() or of_it.all():
             continue
         others = ~of_it & (state["motion"] != DRIVEN)
-        gap = _gap(state["position"][of_it], state["position"][others], 4 * scenario.dp) / scenario.dp
+        gap = (
+            _gap(state["position"][of_it], state["position"][others], 4 * scenario.dp) / scenario.dp
+        )
         if gap > TOUCHING:
             told = f"{gap:.2g} dp" if np.isfinite(gap) else "more than 4 dp"
-            yield f"{name}: touches nothing, its nearest neighbour is {told} away; move it if it should rest"
+            yield (
+                f"{name}: touches nothing, its nearest neighbour is {told} away;"
+                " move it if it should rest"
+            )
 
 
 def _gap(one: np.ndarray, other: np.ndarray, reach: float) -> float:
@@ -151,9 +160,15 @@ def _gap(one: np.ndarray, other: np.ndarray, reach: float) -> float:
     for k, cell in enumerate(np.floor(other / reach).astype(np.int64)):
         cells.setdefault(cell.tobytes(), []).append(k)
     least = np.inf
-    steps = np.stack(np.meshgrid(*[(-1, 0, 1)] * one.shape[1], indexing="ij"), -1).reshape(-1, one.shape[1])
+    steps = np.stack(np.meshgrid(*[(-1, 0, 1)] * one.shape[1], indexing="ij"), -1).reshape(
+        -1, one.shape[1]
+    )
     for x in one:
-        near = [k for c in np.floor(x / reach).astype(np.int64) + steps for k in cells.get(c.tobytes(), ())]
+        near = [
+            k
+            for c in np.floor(x / reach).astype(np.int64) + steps
+            for k in cells.get(c.tobytes(), ())
+        ]
         if near:
             least = min(least, float(np.linalg.norm(other[near] - x, axis=1).min()))
     return least if least <= reach else np.inf

@@ -90,7 +90,10 @@ class _Pairs:
     def traction(self, stress: np.ndarray) -> np.ndarray:
         """(stress_k/rho_k^2 + stress_j/rho_j^2) . r_kj for each pair."""
         rho = self._state["density"]
-        at_k, at_j = stress[self._k] / rho[self._k] ** 2, stress[self._j] / rho[self._j][:, None, None] ** 2
+        at_k, at_j = (
+            stress[self._k] / rho[self._k] ** 2,
+            stress[self._j] / rho[self._j][:, None, None] ** 2,
+        )
         return np.einsum("nab,nb->na", at_k + at_j, self.offset)
 
     def viscosity(self) -> np.ndarray:

@@ -18,7 +18,10 @@ from .storage import write_whole_text
 from .toml_writer import to_toml
 
 # What may differ from the run so far: nothing that the particles or the record were made with.
-CHANGEABLE = {"time_max", "cflnumber", "cfl_force", "alpha", "balsara", "skin", "gravity", "title"}
+CHANGEABLE = {
+    "time_max", "cflnumber", "cfl_force", "fixed_limits_dt", "alpha", "balsara", "skin", "gravity",
+    "title",
+}  # fmt: skip
 
 
 def resume_run(

@@ -135,7 +135,7 @@ class ActiveRun:
         self.record_history()
 
     def advance(self, options: RunOptions, stop: StopRequests) -> str:
-        """Steps to the end, or to the first look after a stop request; returns "done" or "stopped"."""
+        """Steps to the end ("done"), or to the first look after a stop request ("stopped")."""
         simulation, burst = self.simulation, FIRST_BURST
         clock = CheckpointClock(
             options.checkpoint_every, options.checkpoint_minutes, self.position.next_checkpoint
@@ -170,7 +170,9 @@ class ActiveRun:
     def fail(self, message: str) -> Failure:
         """Go back to the step before the failure, record that state, and explain what happened."""
         simulation = self.simulation
-        failure = Failure(*simulation.failure, message, simulation.state(), simulation.time, simulation.steps)
+        failure = Failure(
+            *simulation.failure, message, simulation.state(), simulation.time, simulation.steps
+        )
         failure.rewound = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
         if failure.rewound:
             # The step before may be past saving; the run may go on from the state well before it.

@@ -16,7 +16,7 @@ class CheckpointClock:
     """Checkpoints every so many simulated seconds, and every so many minutes of wall time."""
 
     def __init__(self, every: float | None, minutes: float, next_time: float = 0.0) -> None:
-        """`every`: s of simulated time, or None; `next_time`: when a resumed run has its next one."""
+        """`every`: s of simulated time, or None; `next_time`: of a resumed run, s."""
         self.every = every
         self.seconds = 60.0 * minutes
         self.next_time = math.inf if every is None else max(next_time, every)

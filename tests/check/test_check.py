@@ -79,9 +79,17 @@ def test_a_doubtful_set_up_is_named_with_its_remedy(doubts, changes, words):
 def test_report_has_all_that_is_promised():
     told = check_scenario(load_scenario("flume"), threads=1)
     for word in (
-        "particles", "most particles", "memory", "disk", "steps", "wall time", "per grain",
-        "depth of water", "Mach number", "1.1 particles across a grain",
-    ):  # fmt: skip
+        "particles",
+        "most particles",
+        "memory",
+        "disk",
+        "steps",
+        "wall time",
+        "per grain",
+        "depth of water",
+        "Mach number",
+        "1.1 particles across a grain",
+    ):
         assert word in told
     assert "926 basalt" in told
 
@@ -119,11 +127,16 @@ print(json.dumps({
 
 
 def in_own_process(program: str, *arguments: object) -> dict[str, float]:
-    paths = os.pathsep.join([str(Path(doseki.__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    paths = os.pathsep.join(
+        [str(Path(doseki.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
+    )
     done = subprocess.run(
         [sys.executable, "-c", program, *map(str, arguments)],
-        capture_output=True, text=True, check=True, env=os.environ | {"PYTHONPATH": paths},
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | {"PYTHONPATH": paths},
+    )
     return json.loads(done.stdout)
 
 

@@ -10,7 +10,7 @@ import pytest
 from doseki.checkpoint import (
     Checkpoint,
     CheckpointFolder,
-    DamagedCheckpoint,
+    DamagedCheckpointError,
     Position,
     from_bytes,
     to_bytes,
@@ -59,8 +59,10 @@ def test_a_checkpoint_reads_back_to_the_last_bit():
     written = make_checkpoint()
     read = from_bytes(bytes(to_bytes(written)))
     assert (read.position, read.material_names, read.body_names) == (
-        written.position, ["water"], ["sea", "bed"],
-    )  # fmt: skip
+        written.position,
+        ["water"],
+        ["sea", "bed"],
+    )
     assert (read.time, read.step) == (0.1, 3)
     for name, values in written.state.items():
         np.testing.assert_array_equal(read.state[name], values)
@@ -73,10 +75,10 @@ def test_every_flipped_bit_and_every_cut_is_found():
     for place in random.integers(0, len(data), 300):
         broken = bytearray(data)
         broken[place] ^= 1 << random.integers(8)
-        with pytest.raises(DamagedCheckpoint):
+        with pytest.raises(DamagedCheckpointError):
             from_bytes(bytes(broken))
     for length in (0, 1, 63, 64, 65, 200, len(data) - 1):
-        with pytest.raises(DamagedCheckpoint):
+        with pytest.raises(DamagedCheckpointError):
             from_bytes(data[:length])
 
 

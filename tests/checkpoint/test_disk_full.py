@@ -35,13 +35,23 @@ def assert_stopped_cleanly(done, folder):
     assert not list(folder.rglob("*.part"))
 
 
-@pytest.mark.parametrize("size", [40_000, 100_000, 300_000])
+@pytest.mark.parametrize("size", [100_000, 200_000, 300_000])
 def test_a_file_that_does_not_fit(channel_file, tmp_path, size):
     """The history outgrows the limit, or a checkpoint does, or a snapshot."""
     done = doseki_command(
-        "run", channel_file, "-o", tmp_path / "run", "--threads", 1, "--checkpoint-every", 0.02,
-        "--set", "time_history=0.00003", "--no-figures", preexec_fn=limit_files_to(size),
-    )  # fmt: skip
+        "run",
+        channel_file,
+        "-o",
+        tmp_path / "run",
+        "--threads",
+        1,
+        "--checkpoint-every",
+        0.02,
+        "--set",
+        "time_history=0.00003",
+        "--no-figures",
+        preexec_fn=limit_files_to(size),
+    )
     assert_stopped_cleanly(done, tmp_path / "run")
 
 
@@ -63,9 +73,16 @@ def test_a_small_disk_fills_up_and_the_run_goes_on_when_there_is_room(
     channel_file, uninterrupted, small_disk: Path
 ):
     done = doseki_command(
-        "run", channel_file, "-o", small_disk / "run", "--threads", 1, "--checkpoint-every", 0.004,
+        "run",
+        channel_file,
+        "-o",
+        small_disk / "run",
+        "--threads",
+        1,
+        "--checkpoint-every",
+        0.004,
         "--no-figures",
-    )  # fmt: skip
+    )
     assert_stopped_cleanly(done, small_disk / "run")
     subprocess.run(["mount", "-o", "remount,size=20m", str(small_disk)], check=True)
     resume_run(small_disk / "run", (), RunOptions(threads=1))

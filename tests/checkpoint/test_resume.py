@@ -56,7 +56,12 @@ def test_stop_and_resume(channel_file, uninterrupted, tmp_path):
 @pytest.mark.minutes
 @pytest.mark.parametrize(
     ("dim", "precision", "h_mode"),
-    [(2, "float", "constant"), (2, "double", "eq10"), (3, "double", "constant"), (3, "float", "eq10")],
+    [
+        (2, "float", "constant"),
+        (2, "double", "eq10"),
+        (3, "double", "constant"),
+        (3, "float", "eq10"),
+    ],
 )
 def test_every_mode_resumes_to_the_same_bits(tmp_path, dim, precision, h_mode):
     (tmp_path / "channel.toml").write_text(channel_text(dim, precision, h_mode))
@@ -77,9 +82,12 @@ def test_periodic_scenario_resumes_to_the_same_bits(tmp_path):
 @pytest.mark.minutes
 def test_threads_may_change_between_the_parts(channel_file, uninterrupted, tmp_path):
     run_channel(
-        channel_file, tmp_path / "run", threads=2, progress=stop_at(tmp_path / "run", 0.02),
+        channel_file,
+        tmp_path / "run",
+        threads=2,
+        progress=stop_at(tmp_path / "run", 0.02),
         checkpoint_every=0.001,
-    )  # fmt: skip
+    )
     resume_run(tmp_path / "run", (), RunOptions(threads=1))
     assert_same_record(tmp_path / "run", uninterrupted)
 
@@ -100,9 +108,12 @@ def test_the_last_two_checkpoints_are_kept(channel_file, tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_signals_stop_with_a_checkpoint_and_code_0(channel_file, tmp_path, number):
     run = subprocess.Popen(
-        command("run", channel_file, "-o", tmp_path / "run", "--threads", 1, "--set", "time_max=99"),
-        env=environment(), stdout=subprocess.DEVNULL,
-    )  # fmt: skip
+        command(
+            "run", channel_file, "-o", tmp_path / "run", "--threads", 1, "--set", "time_max=99"
+        ),
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+    )
     while not (tmp_path / "run/history.csv").exists():
         assert run.poll() is None
     run.send_signal(number)
@@ -123,7 +134,22 @@ def test_resume_further(channel_file, tmp_path):
     run_channel(channel_file, tmp_path / "run")
     resume_run(tmp_path / "run", ["time_max=0.08"], RunOptions(threads=1))
     run = load(tmp_path / "run")
-    expected = [0, 0.007, 0.014, 0.021, 0.028, 0.035, 0.042, 0.049, 0.056, 0.06, 0.063, 0.07, 0.077, 0.08]
+    expected = [
+        0,
+        0.007,
+        0.014,
+        0.021,
+        0.028,
+        0.035,
+        0.042,
+        0.049,
+        0.056,
+        0.06,
+        0.063,
+        0.07,
+        0.077,
+        0.08,
+    ]
     assert run.times == pytest.approx(expected)
     assert run.scenario["time_max"] == 0.08
     assert (sorted(run.history["time"]) == run.history["time"]).all()
@@ -131,7 +157,7 @@ def test_resume_further(channel_file, tmp_path):
 
 def test_a_finished_run_says_how_to_go_further(uninterrupted):
     before = record(uninterrupted)
-    with pytest.raises(UserError, match="reached time_max.*--set time_max"):
+    with pytest.raises(UserError, match=r"reached time_max.*--set time_max"):
         resume_run(uninterrupted)
     assert record(uninterrupted) == before
 

@@ -51,7 +51,9 @@ def fail(tmp_path: Path) -> Callable[..., FailedRun]:
         (tmp_path / "case.toml").write_text(HEAD + text)
         folder = tmp_path / "run"
         with pytest.raises(PhysicsError) as error:
-            run_scenario(load_scenario(tmp_path / "case.toml", settings), folder, RunOptions(threads=1))
+            run_scenario(
+                load_scenario(tmp_path / "case.toml", settings), folder, RunOptions(threads=1)
+            )
         report = json.loads((folder / "failure.json").read_text())
         loaded = load(folder)
         return FailedRun(str(error.value), report, explanation(loaded.folder), loaded)

@@ -30,7 +30,6 @@ max = [0.11, 0.11]
 LONG_STEPS = ("cflnumber=1", "cfl_force=1")
 
 
-
 def assert_complete(failed, kind):
     """The parts that every report has."""
     report = failed.report
@@ -57,8 +56,11 @@ def assert_stopped_within_one_step(failed):
     assert last.time == report["time"] == checkpoint.time
     assert np.isfinite(last["velocity"]).all()
     assert set(report["acceleration"]) == {
-        "pressure", "deviatoric_stress", "artificial_viscosity", "gravity",
-    }  # fmt: skip
+        "pressure",
+        "deviatoric_stress",
+        "artificial_viscosity",
+        "gravity",
+    }
     assert report["largest_term"] in report["acceleration"]
     assert report["limited_by"] in report["timestep"]
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(
-    "fuzz", deadline=None, database=None, derandomize=True, print_blob=True,
+    "fuzz",
+    deadline=None,
+    database=None,
+    derandomize=True,
+    print_blob=True,
     suppress_health_check=list(HealthCheck),
-)  # fmt: skip
+)
 settings.load_profile("fuzz")

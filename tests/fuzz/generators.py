@@ -30,7 +30,11 @@ BASE: dict[str, Any] = {
     "material": {"mud": {"based_on": "water", "rho0": 1500.0}},
     "body": {
         "bed": {
-            "shape": "box", "material": "aluminium", "fixed": True, "min": [0, -0.03], "max": [0.2, 0],
+            "shape": "box",
+            "material": "aluminium",
+            "fixed": True,
+            "min": [0, -0.03],
+            "max": [0.2, 0],
         },
         "film": {"shape": "box", "material": "mud", "min": [0, 0], "max": [0.2, "= depth"]},
         "grain": {"shape": "disc", "material": "basalt", "centre": [0.1, 0.1], "radius": 0.02},
@@ -38,33 +42,88 @@ BASE: dict[str, Any] = {
     },
     "inflow": {
         "water": {
-            "material": "water", "rate": "3 L/s", "width": 0.1, "position": [0.15, 0.3],
-            "direction": [-1, 0], "depth": 0.02, "duration": 0.05,
+            "material": "water",
+            "rate": "3 L/s",
+            "width": 0.1,
+            "position": [0.15, 0.3],
+            "direction": [-1, 0],
+            "depth": 0.02,
+            "duration": 0.05,
         },
     },
     "outflow": {"end": {"min": ["-inf", "-inf"], "max": ["inf", -0.5]}},
     "window": {"all": {"min": [0, -1], "max": [1, 1]}},
     "figure": {"end": {"kind": "snapshot", "window": "all", "colour": ["velocity_x"]}},
-}  # fmt: skip
+}
 
 # What people, and those who mean harm, write in place of a value.
 JUNK = st.one_of(
     st.sampled_from(
         [
-            0, -1, 1e300, -1e300, 1e-300, 2**63, 10**40, float("nan"), float("inf"), True, "", " ",
-            "= 1/0", "= 10**10**10", "= 'a'*10**9", "= __import__('os')", "= depth.__class__",
-            "= [x for x in range(9)]", "= 9**9**9**9", "= dp if", "../../../etc/passwd", "/dev/zero",
-            "\u202egnp.exe", "a\nb", "nan", "1e400 L/s", "-3 L/s", "土石流", "\x00", "x" * 5000, [], {},
-            [[[]]], [1], [1, 2, 3], ["inf", "-inf"], {"value": 1}, {"d2": 1, "d3": 2}, [float("nan")] * 2,
+            0,
+            -1,
+            1e300,
+            -1e300,
+            1e-300,
+            2**63,
+            10**40,
+            float("nan"),
+            float("inf"),
+            True,
+            "",
+            " ",
+            "= 1/0",
+            "= 10**10**10",
+            "= 'a'*10**9",
+            "= __import__('os')",
+            "= depth.__class__",
+            "= [x for x in range(9)]",
+            "= 9**9**9**9",
+            "= dp if",
+            "../../../etc/passwd",
+            "/dev/zero",
+            "\u202egnp.exe",
+            "a\nb",
+            "nan",
+            "1e400 L/s",
+            "-3 L/s",
+            "土石流",
+            "\x00",
+            "x" * 5000,
+            [],
+            {},
+            [[[]]],
+            [1],
+            [1, 2, 3],
+            ["inf", "-inf"],
+            {"value": 1},
+            {"d2": 1, "d3": 2},
+            [float("nan")] * 2,
         ]
     ),
-    st.integers(), st.floats(), st.text(max_size=8), st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=8),
+    st.booleans(),
     st.text("=+-*/()0123456789.,e dpxiabs", min_size=2, max_size=20).map(lambda text: "=" + text),
     st.lists(st.one_of(st.integers(), st.floats(), st.text(max_size=3)), max_size=4),
-)  # fmt: skip
+)
 NAMES = st.one_of(
     st.sampled_from(
-        ["../../evil", "/tmp/evil", "..", ".", "", "a/b", "a\\b", "con", "\u202e", "x" * 300, "\x00", "dp"]
+        [
+            "../../evil",
+            "/tmp/evil",
+            "..",
+            ".",
+            "",
+            "a/b",
+            "a\\b",
+            "con",
+            "\u202e",
+            "x" * 300,
+            "\x00",
+            "dp",
+        ]
     ),
     st.text(max_size=10),
 )
@@ -72,7 +131,13 @@ NAMES = st.one_of(
 
 def places(table: Any, path: tuple = ()) -> list[tuple]:
     """Every place in nested tables and lists."""
-    items = table.items() if isinstance(table, dict) else enumerate(table) if isinstance(table, list) else ()
+    items = (
+        table.items()
+        if isinstance(table, dict)
+        else enumerate(table)
+        if isinstance(table, list)
+        else ()
+    )
     found = []
     for key, value in items:
         found += [(*path, key), *places(value, (*path, key))]
@@ -141,16 +206,49 @@ def damaged(draw: st.DrawFn, data: bytes) -> bytes:
 
 
 SNIPPETS = [
-    b"[" * 3000, b"a." * 3000, b'"""', b"\xff\xfe", b"\x00", b"extends = 'flume'\n", b"[body.x]\n",
-    b"dp = 1e-9\n", b"'", b"\r", b"\n\n= ", b"#" * 500, b"inf", b",nan,", b"\xef\xbb\xbf",
-]  # fmt: skip
+    b"[" * 3000,
+    b"a." * 3000,
+    b'"""',
+    b"\xff\xfe",
+    b"\x00",
+    b"extends = 'flume'\n",
+    b"[body.x]\n",
+    b"dp = 1e-9\n",
+    b"'",
+    b"\r",
+    b"\n\n= ",
+    b"#" * 500,
+    b"inf",
+    b",nan,",
+    b"\xef\xbb\xbf",
+]
 CELLS = st.one_of(
     st.sampled_from(
-        ["0", "1", "nan", "inf", "-inf", "1e999", "-1", "", " ", '"', "0x10", "1_000", "=1+1", "water", "土",
-         "9" * 400, "1e-320", "--1", "true", "../x"]
+        [
+            "0",
+            "1",
+            "nan",
+            "inf",
+            "-inf",
+            "1e999",
+            "-1",
+            "",
+            " ",
+            '"',
+            "0x10",
+            "1_000",
+            "=1+1",
+            "water",
+            "土",
+            "9" * 400,
+            "1e-320",
+            "--1",
+            "true",
+            "../x",
+        ]
     ),
     st.floats().map(repr),
-)  # fmt: skip
+)
 HEADER = ["x", "y", "vx", "vy", "mass", "density", "material", "fixed", "body"]
 
 
@@ -159,8 +257,13 @@ def csv_files(draw: st.DrawFn) -> bytes:
     """A particle file in CSV, most of its cells right."""
     header = list(HEADER)
     if draw(st.booleans()):
-        header[draw(st.integers(0, len(header) - 1))] = draw(st.sampled_from(["x", "z", "", "Mass", "x" * 300, "土"]))
-    rows = [["0.1", "0.2", "0", "0", "0.3", "2750", "basalt", "0", "a"] for _ in range(draw(st.integers(0, 4)))]
+        header[draw(st.integers(0, len(header) - 1))] = draw(
+            st.sampled_from(["x", "z", "", "Mass", "x" * 300, "土"])
+        )
+    rows = [
+        ["0.1", "0.2", "0", "0", "0.3", "2750", "basalt", "0", "a"]
+        for _ in range(draw(st.integers(0, 4)))
+    ]
     for _ in range(draw(st.integers(0, 2))):
         if rows:
             row = rows[draw(st.integers(0, len(rows) - 1))]

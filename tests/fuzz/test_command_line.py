@@ -1,4 +1,4 @@
-"""The command line with wrong input: code 2, one message, nothing written where it should not be."""
+"""Wrong input on the command line: code 2, one message, nothing written elsewhere."""
 
 from __future__ import annotations
 
@@ -56,13 +56,21 @@ def assert_refused(capsys, *arguments):
 @pytest.mark.parametrize(
     "change",
     [
-        ("dp = 0.01", "dp = nan"), ("dp = 0.01", "dp = 1e-300"), ("dp = 0.01", "dp = -1"),
-        ("dp = 0.01", "dp = '= 10**10**10'"), ("dim = 2", "dim = 4"), ("basalt", "granit"),
-        ("schema = 1", "schema = 2"), ("min = [0, 0]", "min = [0]"), ("schema = 1", "schema = 1\n[" * 99),
-        ('"box"', '"file"\nfile = "/dev/zero"'), ('"box"', '"file"\nfile = "../nothing.csv"'),
-        ("schema = 1", 'schema = 1\nextends = "/dev/stdin"'), ("[body.block]", '[body."../../evil"]\n'),
+        ("dp = 0.01", "dp = nan"),
+        ("dp = 0.01", "dp = 1e-300"),
+        ("dp = 0.01", "dp = -1"),
+        ("dp = 0.01", "dp = '= 10**10**10'"),
+        ("dim = 2", "dim = 4"),
+        ("basalt", "granit"),
+        ("schema = 1", "schema = 2"),
+        ("min = [0, 0]", "min = [0]"),
+        ("schema = 1", "schema = 1\n[" * 99),
+        ('"box"', '"file"\nfile = "/dev/zero"'),
+        ('"box"', '"file"\nfile = "../nothing.csv"'),
+        ("schema = 1", 'schema = 1\nextends = "/dev/stdin"'),
+        ("[body.block]", '[body."../../evil"]\n'),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_scenario_leaves_nothing_behind(here, capsys, change):
     old, new = change
     (here / "bad.toml").write_text(GOOD.replace(old, new))
@@ -70,7 +78,9 @@ def test_a_wrong_scenario_leaves_nothing_behind(here, capsys, change):
     assert tree(here) == ["bad.toml", "good.toml"]
 
 
-@pytest.mark.parametrize("name", ["../../evil", "/tmp/doseki-evil", "..", "a/b", "\\u0000", "x" * 300])
+@pytest.mark.parametrize(
+    "name", ["../../evil", "/tmp/doseki-evil", "..", "a/b", "\\u0000", "x" * 300]
+)
 def test_names_of_figures_do_not_lead_outside(here, capsys, name):
     (here / "bad.toml").write_text(GOOD + FIGURE.format(name=name))
     before = tree(here.parent)
@@ -78,7 +88,9 @@ def test_names_of_figures_do_not_lead_outside(here, capsys, name):
     assert tree(here.parent) == before
 
 
-@pytest.mark.parametrize("link", ["snapshots", "history.csv", "figures", "checkpoints", "scenario.toml"])
+@pytest.mark.parametrize(
+    "link", ["snapshots", "history.csv", "figures", "checkpoints", "scenario.toml"]
+)
 def test_nothing_is_written_through_a_link(here, capsys, link):
     assert run("run", "good.toml", "-o", "out", "--threads", 1) == 0
     outside = here.parent / "outside"
@@ -90,9 +102,15 @@ def test_nothing_is_written_through_a_link(here, capsys, link):
         target.unlink(missing_ok=True)
     target.symlink_to(outside)
     before = {path: path.read_bytes() for path in [outside, *outside.rglob("*")] if path.is_file()}
-    for command in (("run", "good.toml", "-o", "out", "--overwrite"), ("plot", "out"), ("resume", "out")):
+    for command in (
+        ("run", "good.toml", "-o", "out", "--overwrite"),
+        ("plot", "out"),
+        ("resume", "out"),
+    ):
         assert_refused(capsys, *command)
-    assert before == {path: path.read_bytes() for path in [outside, *outside.rglob("*")] if path.is_file()}
+    assert before == {
+        path: path.read_bytes() for path in [outside, *outside.rglob("*")] if path.is_file()
+    }
 
 
 def test_debug_shows_the_traceback(here, capsys):
@@ -110,4 +128,6 @@ def test_a_mistake_of_ours_is_one_line_too(here, capsys, monkeypatch):
     monkeypatch.setattr("doseki.scenario.load_scenario", fail)
     assert run("run", "good.toml") == 1
     said = capsys.readouterr().err.splitlines()
-    assert said == ["doseki: a mistake in doseki itself: ZeroDivisionError: at home (--debug shows where)"]
+    assert said == [
+        "doseki: a mistake in doseki itself: ZeroDivisionError: at home (--debug shows where)"
+    ]

@@ -81,11 +81,16 @@ print(counts[True], counts[False])
 def damage_many(folder: Path, compressed: bool, count: int) -> list[int]:
     """How many damaged HDF5 files were read all the same, and refused."""
     (folder / "whole.h5").write_bytes(hdf5_file(compressed))
-    paths = os.pathsep.join([str(Path(doseki.__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    paths = os.pathsep.join(
+        [str(Path(doseki.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
+    )
     done = subprocess.run(
         [sys.executable, "-c", DAMAGE_HDF5, folder / "whole.h5", folder / "p.h5", str(count)],
-        capture_output=True, text=True, check=False, env=os.environ | {"PYTHONPATH": paths},
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": paths},
+    )
     assert done.returncode == 0, done.stderr
     return [int(word) for word in done.stdout.split()]
 

@@ -23,7 +23,9 @@ THREAD = f"-fsanitize=thread {COMMON}"
 def library(name: str) -> str:
     """Path of a runtime library of the compiler."""
     compiler = os.environ.get("CXX", "c++")
-    found = subprocess.run([compiler, f"-print-file-name={name}"], capture_output=True, text=True, check=True)
+    found = subprocess.run(
+        [compiler, f"-print-file-name={name}"], capture_output=True, text=True, check=True
+    )
     path = Path(found.stdout.strip())
     if not path.is_absolute():
         pytest.skip(f"the compiler has no {name}")
@@ -32,13 +34,22 @@ def library(name: str) -> str:
 
 def build(folder: Path, flags: str) -> Path:
     """Compile the scalar module with `flags`; returns a folder to import doseki from."""
-    program = shutil.which("cmake", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    program = shutil.which(
+        "cmake", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    )
     if program is None:
         pytest.skip("cmake is not installed")
     configure = [
-        program, "-S", ROOT, "-B", folder / "build", f"-DPython_EXECUTABLE={sys.executable}",
-        "-DCMAKE_BUILD_TYPE=RelWithDebInfo", f"-DCMAKE_CXX_FLAGS={flags}", "-DDOSEKI_OPTIMISATION=-O1",
-    ]  # fmt: skip
+        program,
+        "-S",
+        ROOT,
+        "-B",
+        folder / "build",
+        f"-DPython_EXECUTABLE={sys.executable}",
+        "-DCMAKE_BUILD_TYPE=RelWithDebInfo",
+        f"-DCMAKE_CXX_FLAGS={flags}",
+        "-DDOSEKI_OPTIMISATION=-O1",
+    ]
     for command in (configure, [program, "--build", folder / "build", "--target", "_core_scalar"]):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
@@ -50,13 +61,22 @@ def build(folder: Path, flags: str) -> Path:
     return site.parent
 
 
-def exercise(site: Path, preload: str, threads: int, size: float, **variables: str) -> subprocess.CompletedProcess[str]:
+def exercise(
+    site: Path, preload: str, threads: int, size: float, **variables: str
+) -> subprocess.CompletedProcess[str]:
     """Run exercise.py on the module in `site` with runtime libraries loaded before all others."""
-    environment = {"PYTHONPATH": str(site), "LD_PRELOAD": preload, "DOSEKI_ISA": "scalar"} | variables
+    environment = {
+        "PYTHONPATH": str(site),
+        "LD_PRELOAD": preload,
+        "DOSEKI_ISA": "scalar",
+    } | variables
     return subprocess.run(
         [sys.executable, HERE / "exercise.py", str(threads), str(size)],
-        env=os.environ | environment, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 @pytest.mark.minutes
@@ -75,9 +95,19 @@ def test_threads_do_not_race(tmp_path):
     shim = tmp_path / "libgomp_threads.so"
     compiler = os.environ.get("CXX", "c++")
     subprocess.run(
-        [compiler, "-std=c++20", "-shared", "-fPIC", "-O1", *THREAD.split(), HERE / "gomp_threads.cpp", "-o", shim],
+        [
+            compiler,
+            "-std=c++20",
+            "-shared",
+            "-fPIC",
+            "-O1",
+            *THREAD.split(),
+            HERE / "gomp_threads.cpp",
+            "-o",
+            shim,
+        ],
         check=True,
-    )  # fmt: skip
+    )
     preload = f"{library('libtsan.so')} {shim}"
     done = exercise(site, preload, 4, 3.0, TSAN_OPTIONS="exitcode=66")
     assert "WARNING: ThreadSanitizer" not in done.stderr, done.stderr[:3000]
@@ -108,8 +138,11 @@ def test_poisoned_records_survive_no_pass_and_change_no_bit(precision):
     for variables in ({}, {"DOSEKI_POISON": "1"}):
         done = subprocess.run(
             [sys.executable, "-c", POISONED, f"precision={precision}"],
-            env=os.environ | {"PYTHONPATH": paths} | variables, capture_output=True, text=True, check=False,
-        )  # fmt: skip
+            env=os.environ | {"PYTHONPATH": paths} | variables,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         assert done.returncode == 0, done.stderr
         digests.append(done.stdout)
     assert digests[0] == digests[1]
