@@ -77,13 +77,8 @@ public:
     std::int64_t faulty_particle() const { return faulty_; }
     /// The particle that allows the shortest timestep, or -1.
     std::int64_t limiting_particle() const { return limiting_; }
-    /// Density over density at rest beyond which a state is no longer one of matter. Where tension is
-    /// clamped away, nothing pulls the density of spray back; that of a bed may sink without effect.
-    static constexpr double most_compression = 10.0;
-    static double least_compression(Motion motion, double pressure) {
-        if (motion != Motion::free) return -std::numeric_limits<double>::max();
-        return pressure == 0.0 ? 1e-4 : 0.1;
-    }
+    /// Density over density at rest beyond which a state is no longer one of matter.
+    static constexpr double least_compression = 0.1, most_compression = 10.0;
     const std::vector<Material>& materials() const { return materials_; }
     const std::vector<StressRecord<real, D>>& stress_records() const { return stress_; }
 
@@ -207,7 +202,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
 
     const auto eos = equation_of_state(material, rho, tag.motion, options_.tension);
     const double compression = rho / material.rho0;
-    if (!(compression > least_compression(tag.motion, eos.pressure) && compression < most_compression))
+    if (!(compression > least_compression && compression < most_compression))
         summary_[p / lanes<real>].faulty = static_cast<std::int64_t>(p);
     Deviator<double, D> stress{}, rate{};
     if (tag.motion == Motion::free) {

@@ -45,14 +45,14 @@ class Recorder:
 
     @classmethod
     def reopen(cls, directory: str | Path, snapshots: int, rows: int) -> Recorder:
-        """Go on with the record of a run that resumes: keep its first snapshots and history rows."""
+        """Go on with the record of a resumed run: keep its first snapshots and rows."""
         folder = RunFolder(Path(directory))
         refuse_links(folder)
         files = folder.snapshot_files()
         if not files:
             raise UserError(f"{directory}: holds no snapshot from which a run could go on")
         if len(files) < snapshots or len(read_history(folder.history)[1]) < rows:
-            raise UserError(f"{directory}: snapshots or history rows have gone since the checkpoint")
+            raise UserError(f"{directory}: snapshots or rows have gone since the checkpoint")
         headers = {file: vtkhdf.read_header(file) for file in files}
         first = headers[files[0]]
         recorder = cls.__new__(cls)

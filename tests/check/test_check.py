@@ -118,10 +118,13 @@ import json, sys
 from doseki.run import RunOptions, run_scenario
 from doseki.scenario import load_scenario
 summary = run_scenario(load_scenario(sys.argv[1], sys.argv[3:]), sys.argv[2], RunOptions(threads=1))
-from resource import RUSAGE_SELF, getrusage
+from pathlib import Path
+# Not getrusage: its peak is also that of the process that this one was forked from.
+status = Path("/proc/self/status").read_text().splitlines()
+peak = next(line for line in status if line.startswith("VmHWM"))
 print(json.dumps({
     "steps": summary["step"], "most_particles": summary["n_particles"],
-    "seconds": summary["wall_seconds"], "memory": 1024 * getrusage(RUSAGE_SELF).ru_maxrss,
+    "seconds": summary["wall_seconds"], "memory": 1024 * int(peak.split()[1]),
 }))
 """
 
@@ -154,8 +157,7 @@ def in_own_process(program: str, *arguments: object) -> dict[str, float]:
     ],
 )
 def test_estimates_are_within_30_percent(name, settings, tmp_path):
-    """Wall time too, unless other programs take the processor from one of the two runs."""
-    busy = os.getloadavg()[0] > 0.7 * len(os.sched_getaffinity(0))
+    """Wall time is printed only: it also depends on what else the machine does."""
     expected = in_own_process(MEASURE, name, *settings)
     taken = in_own_process(RUN, name, tmp_path / "run", *settings)
     taken["disk"] = sum(f.stat().st_size for f in (tmp_path / "run").rglob("*") if f.is_file())
@@ -163,5 +165,3 @@ def test_estimates_are_within_30_percent(name, settings, tmp_path):
         print(f"{name:15s} {quantity:15s} {expected[quantity]:.4g} expected, {value:.4g} taken")
     for quantity in ("steps", "most_particles", "memory", "disk"):
         assert expected[quantity] == pytest.approx(taken[quantity], rel=0.3), quantity
-    if not busy and taken["seconds"] > 1:
-        assert expected["seconds"] == pytest.approx(taken["seconds"], rel=0.3)

@@ -114,7 +114,7 @@ def test_without_a_whole_checkpoint_nothing_is_touched(run):
 def test_a_record_with_missing_rows_is_refused(run):
     history = run / "history.csv"
     history.write_text("".join(history.read_text().splitlines(keepends=True)[:4]))
-    with pytest.raises(UserError, match="history rows have gone"):
+    with pytest.raises(UserError, match="rows have gone"):
         resume_run(run)
 
 

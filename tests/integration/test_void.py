@@ -1,4 +1,4 @@
-"""What is stretched beyond the minimum of Eq. (8) expands no further, and can be compressed again."""
+"""What is stretched beyond the minimum of Eq. (8) expands no further; it can be compressed."""
 
 from __future__ import annotations
 

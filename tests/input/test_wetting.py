@@ -34,7 +34,7 @@ def test_deep_rows_see_nothing_of_the_cover():
 
 
 def test_the_cover_brings_the_bed_to_rest(tmp_path):
-    """Density after the cover has come is rho0: the deficit is the cover's kernel sum times its mass."""
+    """The deficit is the cover's mass times its kernel sum, so that rho0 is what comes of it."""
     text = """
 dim = 2
 dp = 0.01
