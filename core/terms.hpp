@@ -1,25 +1,12 @@
 #pragma once
-// The two sums of the ueta2022 scheme, as terms of the pair loop.
+// The two sums of the ueta2022 scheme, as terms of the pair loop: pair_sums.hpp in packs.
 
 #include <span>
 
 #include "pair_loop.hpp"
-#include "physics/kernel.hpp"
-#include "physics/momentum.hpp"
-#include "physics/velocity_gradient.hpp"
+#include "pair_sums.hpp"
 
 namespace doseki {
-
-/// Where a kernel gradient is taken: with the h of i alone, as Eq. (9) is printed, or as the mean
-/// over h_i and h_j, as Eq. (12) is.
-enum class GradientOf { own_h, mean_h };
-
-template <GradientOf of, int D, class T>
-DOSEKI_FN T gradient_factor(const T& r, const MotionPoint<T, D>& i, const MotionPoint<T, D>& j) {
-    const T own = WendlandC6<D>::gradient_factor(r, i.inverse_support);
-    if constexpr (of == GradientOf::own_h) return own;
-    return number<T>(0.5) * (own + WendlandC6<D>::gradient_factor(r, j.inverse_support));
-}
 
 template <class real, int D>
 MotionPoint<Pack<real>, D> load_motion(std::span<const MotionRecord<real, D>> records,
@@ -37,11 +24,7 @@ MotionPoint<Pack<real>, D> load_motion(std::span<const MotionRecord<real, D>> re
 
 template <class real, int D>
 DOSEKI_FN MotionPoint<Pack<real>, D> broadcast_motion(const MotionRecord<real, D>& record) {
-    MotionPoint<Pack<real>, D> point;
-    for (int a = 0; a < D; ++a) point.v[a] = record.v[a];
-    point.mass = record.mass;
-    point.inverse_support = record.inverse_support;
-    return point;
+    return motion_point<Pack<real>>(record);
 }
 
 /// Eq. (9); `finish(p, rho_i L)` is called once for each particle.
@@ -51,6 +34,7 @@ struct VelocityGradientTerm {
     using Point = MotionPoint<T, D>;
     template <class T>
     using Sums = Mat<T, D>;
+    using Sum = VelocityGradientSum<of, D>;
 
     std::span<const MotionRecord<real, D>> motion;
     const Finish& finish_particle;
@@ -61,7 +45,7 @@ struct VelocityGradientTerm {
     template <class T>
     DOSEKI_FN void add(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i,
              const Point<T>& j) const {
-        add_velocity_gradient(gradient, j.mass, i.v - j.v, gradient_factor<of>(pair.r, i, j), pair.r_ij);
+        Sum::add(gradient, pair, i, j);
     }
 
     template <class T>
@@ -69,7 +53,7 @@ struct VelocityGradientTerm {
 
     template <class T>
     DOSEKI_FN void add_fixed(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
-        add(gradient, pair, i, j);
+        Sum::add(gradient, pair, i, j);
     }
 
     template <class T>
@@ -82,25 +66,14 @@ struct VelocityGradientTerm {
     }
 };
 
-template <class real>
-struct MomentumOptions {
-    real alpha;
-    bool fixed_limits_dt;    // false: in Eq. (18) a fixed j has at most the sound speed of i
-};
-
-/// Eqs. (12)-(16), with the largest signal velocity for Eq. (18) and the power that the artificial
-/// viscosity takes out of the moving particles.
+/// Eqs. (12)-(16) and (18); `finish(p, sums)` is called once for each particle.
 template <GradientOf of, class real, int D, class Finish>
 struct MomentumTerm {
     template <class T>
     using Point = StressPoint<T, D>;
-
     template <class T>
-    struct Sums {
-        Vec<T, D> acceleration{};
-        T av_power{};    // per mass of i
-        T max_v_sig{};
-    };
+    using Sums = MomentumSums<T, D>;
+    using Sum = MomentumSum<of, real, D>;
 
     std::span<const MotionRecord<real, D>> motion;
     std::span<const StressRecord<real, D>> stress;
@@ -122,43 +95,20 @@ struct MomentumTerm {
         return point;
     }
 
-    DOSEKI_FN auto load_one(std::uint32_t j) const {
-        const StressRecord<real, D>& record = stress[j];
-        Point<Pack<real>> point;
-        point.motion = broadcast_motion(motion[j]);
-        for (int k = 0; k < Sym<real, D>::size; ++k) point.stress.element[k] = record.stress[k];
-        point.rho = record.rho, point.c = record.c, point.balsara = record.balsara;
-        return point;
-    }
+    DOSEKI_FN auto load_one(std::uint32_t j) const { return stress_point<Pack<real>>(motion[j], stress[j]); }
 
     template <class T>
     DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
-        add(sums, pair, i, j, T(0));
+        Sum::add(sums, options, pair, i, j);
     }
 
     template <class T>
     DOSEKI_FN void add_fixed(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
-        add(sums, pair, i, j, options.fixed_limits_dt ? T(0) : max(T(0), j.c - i.c));
+        Sum::add_fixed(sums, options, pair, i, j);
     }
 
-    /// `spared`: the part of the signal velocity that does not limit the timestep.
     template <class T>
-    DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j,
-                       const T& spared) const {
-        const T F = gradient_factor<of>(pair.r, i.motion, j.motion);
-        const T v_dot_r = dot(i.motion.v - j.motion.v, pair.r_ij);
-        const T w_ij = approach_speed(v_dot_r, pair.r);
-        const T v_sig = signal_velocity(i.c, j.c, w_ij);
-        const T switched = number<T>(0.5) * (i.balsara + j.balsara);
-        const T Pi_ij = switched * artificial_viscosity(T(options.alpha), v_sig, w_ij, i.rho, j.rho);
-        add_acceleration(sums.acceleration, j.motion.mass, i.stress + j.stress, Pi_ij, F, pair.r_ij);
-        sums.av_power += (j.motion.mass * F) * (Pi_ij * v_dot_r);
-        sums.max_v_sig = max(sums.max_v_sig, select(F < T(0), v_sig - spared, T(0)));
-    }
-
-    /// A pair of moving particles is met twice, one with a fixed particle once.
-    template <class T>
-    void moving_done(Sums<T>& sums) const { sums.av_power *= number<T>(0.5); }
+    void moving_done(Sums<T>& sums) const { Sum::moving_done(sums); }
 
     template <class T>
     void finish(std::uint32_t first, int count, const Sums<T>& sums) const {

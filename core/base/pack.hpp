@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <experimental/simd>
 
 #if defined(__CUDACC__)
+// A device has no packs: T is double or float, one thread for each particle.
 #define DOSEKI_FN __host__ __device__ inline
 #else
+#include <experimental/simd>
 // Compilers think a pair term of sixty operations too large to inline; a call per pair costs half
 // the speed.
 #define DOSEKI_FN [[gnu::always_inline]] inline
@@ -16,6 +17,7 @@
 
 namespace doseki {
 
+#if !defined(__CUDACC__)
 namespace stdx = std::experimental;
 
 #if defined(DOSEKI_SCALAR)
@@ -28,6 +30,7 @@ using Pack = stdx::native_simd<real>;
 
 template <class real>
 inline constexpr int lanes = static_cast<int>(Pack<real>::size());
+#endif
 
 using std::abs;
 using std::max;
@@ -45,11 +48,13 @@ DOSEKI_FN T number(double literal) {
 DOSEKI_FN double select(bool mask, double yes, double no) { return mask ? yes : no; }
 DOSEKI_FN float select(bool mask, float yes, float no) { return mask ? yes : no; }
 
+#if !defined(__CUDACC__)
 template <class real, class Abi>
 DOSEKI_FN stdx::simd<real, Abi> select(const stdx::simd_mask<real, Abi>& mask,
                                     const stdx::simd<real, Abi>& yes, stdx::simd<real, Abi> no) {
     stdx::where(mask, no) = yes;
     return no;
 }
+#endif
 
 }  // namespace doseki
