@@ -23,7 +23,8 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Debris flows by smoothed particle hydrodynamics: water and rock solved as continua.",
-    epilog="Exit codes: 0 done, 2 bad input, 3 physics went wrong, 4 out of memory or disk.",
+    epilog="Exit codes: 0 done, 2 bad input, 3 physics went wrong, 4 out of memory or disk."
+    " The tests: ./doseki test [fast|full].",
 )
 
 Settings = Annotated[
@@ -32,7 +33,8 @@ Settings = Annotated[
 ]
 Threads = Annotated[int | None, typer.Option(min=1, max=4096, help="Threads [all cores].")]
 CheckpointEvery = Annotated[
-    float | None, typer.Option(min=1e-12, metavar="SECONDS", help="Simulated time between checkpoints.")
+    float | None,
+    typer.Option(min=1e-12, metavar="SECONDS", help="Simulated time between checkpoints."),
 ]
 CheckpointMinutes = Annotated[
     float, typer.Option(min=0.0, metavar="M", help="Wall time between checkpoints.")
@@ -69,13 +71,18 @@ def _free_directory(name: str) -> Path:
 
 @app.command()
 def run(
-    scenario: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")],
+    scenario: Annotated[
+        str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")
+    ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Output folder [runs/NAME].")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Output folder [runs/NAME]."),
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")
+    ] = False,
     checkpoint_every: CheckpointEvery = None,
     checkpoint_minutes: CheckpointMinutes = 10.0,
     figures: Figures = True,
@@ -112,7 +119,11 @@ def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bo
     text = summary_text(load(directory))
     (directory / "summary.txt").write_text(text + "\n")
     if as_json:
-        typer.echo(json.dumps(summary | {"directory": str(directory), "figures": [str(p) for p in pictures]}))
+        typer.echo(
+            json.dumps(
+                summary | {"directory": str(directory), "figures": [str(p) for p in pictures]}
+            )
+        )
         return
     typer.echo(text)
     typer.echo(f"\nIn {directory}: summary.txt, history.csv, snapshots, figures:")
@@ -122,7 +133,9 @@ def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bo
 
 @app.command()
 def check(
-    scenario: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")],
+    scenario: Annotated[
+        str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")
+    ],
     settings: Settings = None,
     threads: Threads = None,
 ) -> None:
@@ -138,7 +151,8 @@ def resume(
     directory: Directory,
     settings: Settings = None,
     until: Annotated[
-        float, typer.Option("--from", metavar="SECONDS", help="Not from a checkpoint later than this.")
+        float,
+        typer.Option("--from", metavar="SECONDS", help="Not from a checkpoint later than this."),
     ] = float("inf"),
     threads: Threads = None,
     checkpoint_every: CheckpointEvery = None,
@@ -181,7 +195,9 @@ def plot(
     movie: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Also make a movie: FILE.gif or FILE.mp4.")
     ] = None,
-    colour: Annotated[str, typer.Option(help="Colour of the movie: material, velocity_x ...")] = "material",
+    colour: Annotated[
+        str, typer.Option(help="Colour of the movie: material, velocity_x ...")
+    ] = "material",
 ) -> None:
     """Draw the figures of a run (and a movie on request)."""
     from .loading import load
@@ -197,8 +213,12 @@ def plot(
 @app.command()
 def export(
     directory: Directory,
-    vtu: Annotated[bool, typer.Option("--vtu", help="VTU files and a .pvd, for older viewers.")] = False,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="[DIR/vtu]")] = None,
+    vtu: Annotated[
+        bool, typer.Option("--vtu", help="VTU files and a .pvd, for older viewers.")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="[DIR/vtu]")
+    ] = None,
 ) -> None:
     """Write the snapshots of a run in another format."""
     from .export import export_vtu

@@ -88,7 +88,9 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, 
     """A core simulation of `scenario` that is yet to be started, and the names of its bodies."""
     particles, body_names = build_bodies(scenario)
     simulation = empty_simulation(scenario, body_names, isa)
-    simulation.add_particles(**{name: np.ascontiguousarray(v) for name, v in vars(particles).items()})
+    simulation.add_particles(
+        **{name: np.ascontiguousarray(v) for name, v in vars(particles).items()}
+    )
     return simulation, body_names
 
 

@@ -1,6 +1,5 @@
 """The errors a user can meet; each carries the exit code of the command line."""
 
-
 LONGEST = 1000  # characters of a message
 
 

@@ -25,7 +25,14 @@ def test_shared_sources_compile_for_a_device_without_spills(tmp_path):
         print("no nvcc on the path: device code is not compiled")
         pytest.skip("no nvcc on the path")
     built = tmp_path / "pair_terms.o"
-    command = [nvcc, "-arch=sm_90", "-std=c++20", "--expt-relaxed-constexpr", "-Werror", "all-warnings"]
+    command = [
+        nvcc,
+        "-arch=sm_90",
+        "-std=c++20",
+        "--expt-relaxed-constexpr",
+        "-Werror",
+        "all-warnings",
+    ]
     command += ["-Xptxas", "-v", "-I", CORE, "-c", CORE / "device" / "pair_terms.cu", "-o", built]
     done = subprocess.run(command, capture_output=True, text=True)
     report = done.stdout + done.stderr
