@@ -24,7 +24,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Debris flows by smoothed particle hydrodynamics: water and rock solved as continua.",
     epilog="Exit codes: 0 done, 2 bad input, 3 physics went wrong, 4 out of memory or disk."
-    " The tests: ./doseki test [fast|full].",
+    " The tests: ./doseki test.",
 )
 
 Settings = Annotated[

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import subprocess
-import time
 
 import pytest
 
@@ -46,8 +45,12 @@ def kill_again_and_again(channel_file, folder, kills):
         else:
             restart(folder)
     if not CheckpointFolder(folder / "checkpoints").files():
-        return doseki_command("run", channel_file, "-o", folder, "--overwrite", *SETTINGS)
-    return doseki_command("resume", folder, *SETTINGS)
+        done = doseki_command("run", channel_file, "-o", folder, "--overwrite", *SETTINGS)
+        assert done.returncode == 0, done.stderr
+        return
+    done = doseki_command("resume", folder, *SETTINGS)
+    # The last kill may have come between the end of the run and that of its process.
+    assert done.returncode == 0 or "has reached time_max" in done.stderr, done.stderr
 
 
 def restart(folder):
@@ -68,15 +71,11 @@ def load_everything(folder):
 
 @pytest.mark.minutes
 def test_killed_five_times(channel_file, uninterrupted, tmp_path):
-    started = time.monotonic()
-    done = kill_again_and_again(channel_file, tmp_path / "run", 5)
-    assert done.returncode == 0, done.stderr
+    kill_again_and_again(channel_file, tmp_path / "run", 5)
     assert_same_record(tmp_path / "run", uninterrupted)
-    assert time.monotonic() - started < 300
 
 
 @pytest.mark.full
 def test_killed_fifty_times(channel_file, uninterrupted, tmp_path):
-    done = kill_again_and_again(channel_file, tmp_path / "run", 50)
-    assert done.returncode == 0, done.stderr
+    kill_again_and_again(channel_file, tmp_path / "run", 50)
     assert_same_record(tmp_path / "run", uninterrupted)

@@ -1,4 +1,4 @@
-"""The pair sums and the point physics are device code as well: nvcc compiles them where it is present."""
+"""The pair sums and the point physics are device code as well: nvcc compiles them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ CORE = Path(__file__).parents[2] / "core"
 KERNELS = ("sum_velocity_gradient", "sum_momentum", "point_physics")
 PROPERTIES = re.compile(
     r"Function properties for (?P<name>\S+)\s+"
-    r"\d+ bytes stack frame, (?P<stores>\d+) bytes spill stores, (?P<loads>\d+) bytes spill loads\s+"
+    r"\d+ bytes stack frame, (?P<stores>\d+) bytes spill stores, "
+    r"(?P<loads>\d+) bytes spill loads\s+"
     r"ptxas info\s*: Used (?P<registers>\d+) registers"
 )
 
