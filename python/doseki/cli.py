@@ -190,6 +190,31 @@ def explain(directory: Directory) -> None:
 
 
 @app.command()
+def trust(
+    scenario: Annotated[
+        str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")
+    ],
+    key: Annotated[
+        str, typer.Option("--vary", metavar="xi", help="What to halve and double.")
+    ] = "xi",
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Of the runs [runs/NAME-trust]."),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run a scenario at half, given and double xi, and say how much the results moved."""
+    from .record import jsonable
+    from .vary import vary, vary_text
+
+    directory = output or _free_directory(f"{Path(scenario).stem}-trust")
+    report = vary(scenario, settings or [], key, directory, threads)
+    typer.echo(json.dumps(jsonable(report)) if as_json else vary_text(report))
+
+
+@app.command()
 def plot(
     directory: Directory,
     movie: Annotated[

@@ -35,6 +35,11 @@ class RunFolder:
         return self.path / "summary.txt"
 
     @property
+    def trust(self) -> Path:
+        """How far the run can be trusted, for programs."""
+        return self.path / "trust.json"
+
+    @property
     def series(self) -> Path:
         """The index of the snapshots that ParaView opens as one animation."""
         return self.path / "snapshots.vtkhdf.series"
@@ -90,6 +95,7 @@ class RunFolder:
             self.history,
             self.summary,
             self.summary_text,
+            self.trust,
             self.series,
             self.log,
             self.failure,

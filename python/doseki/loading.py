@@ -159,6 +159,14 @@ class Run(Sequence[Snapshot]):
         with _readable(self.folder.summary):
             return json.loads(self.folder.summary.read_text(encoding="utf-8"))
 
+    @cached_property
+    def trust(self) -> dict[str, Any]:
+        """How far the run can be trusted (trust.json); empty while it is going on."""
+        if not self.folder.trust.is_file():
+            return {}
+        with _readable(self.folder.trust):
+            return json.loads(self.folder.trust.read_text(encoding="utf-8"))
+
 
 def _read_header(path: Path) -> vtkhdf.Header:
     with _readable(path):

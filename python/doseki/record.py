@@ -58,7 +58,8 @@ class Recorder:
         recorder = cls.__new__(cls)
         recorder._attach(folder, first.material_names, first.body_names, first.dim)
         with clear_errors(folder.path):
-            for file in (folder.summary, folder.summary_text, folder.failure):
+            ended = (folder.summary, folder.summary_text, folder.trust, folder.failure)
+            for file in ended:
                 file.unlink(missing_ok=True)
             for file in files[snapshots:]:
                 file.unlink()

@@ -13,10 +13,12 @@ from .core import filled_simulation, load_core
 from .errors import PhysicsError, ResourceError
 from .failure import Failure, explain_failure
 from .folder import RunFolder
+from .loading import load
 from .record import Recorder
 from .rewind import Rewind
 from .scenario import Scenario
 from .schedule import CheckpointClock, StopRequests
+from .trust import write_trust
 
 BURST_SECONDS = 0.2  # wall time between two looks at signals and the progress bar
 FIRST_BURST, LAST_BURST = 1, 1_000_000  # steps
@@ -255,4 +257,5 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
     summary = _summary(run, status)
     run.recorder.close(summary)
+    write_trust(load(directory))
     return summary

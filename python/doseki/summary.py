@@ -10,6 +10,7 @@ import numpy as np
 from .flow import Flow, WindowFlow, measure_flow
 from .loading import Run
 from .measure import speed
+from .trust import trust_lines
 from .views import with_flow
 
 WIDTH = 18  # of the column of names
@@ -18,6 +19,7 @@ WIDTH = 18  # of the column of names
 def summary_text(run: Run) -> str:
     """What was run, how it went and the key results: about 20 lines."""
     parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run), _warnings(run)]
+    parts.append(_trust(run))
     return "\n".join(line for part in parts for line in part)
 
 
@@ -112,3 +114,9 @@ def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
 def _warnings(run: Run) -> Iterator[str]:
     for warning in run.summary.get("warnings", ()):
         yield _line("warning", warning)
+
+
+def _trust(run: Run) -> Iterator[str]:
+    """The verdicts on the run, worst first."""
+    for k, (word, text) in enumerate(trust_lines(run.trust) if run.trust else ()):
+        yield _line("" if k else "trust", f"{word}: {text}")
