@@ -22,6 +22,7 @@ from .value_types import (
     NonNegative,
     Positive,
     Rate,
+    ScalarField,
     Skin,
     Vector,
     VelocityField,
@@ -96,6 +97,11 @@ class ShapedBody(Part):
     velocity: VelocityField | None = Field(
         None, description="initial velocity, m/s; expressions may use x, y, z"
     )
+    pressure: ScalarField | None = Field(
+        None,
+        description="initial pressure, Pa; a number or an expression of x, y, z; particles keep "
+        "their volume",
+    )
 
 
 class LatticeBody(ShapedBody):
@@ -110,6 +116,9 @@ class LatticeBody(ShapedBody):
         0.0, ge=0, le=0.5, description="random displacement along each axis, in spacings"
     )
     random_seed: int = Field(1, ge=0, description="of the jitter")
+    where: ScalarField | None = Field(
+        None, description="expression of x, y, z; only particles where it is above zero are kept"
+    )
 
 
 class Box(LatticeBody):
