@@ -133,16 +133,21 @@ def _compression(
     """rho/rho0 - 1 of the initial pressure, p = c^2 (rho - rho0) with the c of the run."""
     if body.pressure is None:
         return np.zeros(len(position))
-    material = scenario.materials[body.material].scaled(scenario.xi)
     pressure = _field(scenario, name, "pressure", body.pressure, position)
-    compression = pressure / (material.rho0 * material.speedsound**2)
-    if (compression <= -1).any():
+    stiffness = _stiffness(scenario, body.material)
+    if (pressure <= -stiffness).any():
         message = (
             f"body.{name}.pressure: {pressure.min():.4g} Pa is more tension than "
-            f"rho0 c^2 = {material.rho0 * material.speedsound**2:.4g} Pa allows"
+            f"rho0 c^2 = {stiffness:.4g} Pa allows"
         )
         raise scenario.where.error(("body", name, "pressure"), message)
-    return compression
+    return pressure / stiffness
+
+
+def _stiffness(scenario: Scenario, material: str) -> float:
+    """rho0 c^2 with the sound speed of the run, Pa."""
+    scaled = scenario.materials[material].scaled(scenario.xi)
+    return scaled.rho0 * scaled.speedsound**2
 
 
 def _missing_cover(scenario: Scenario, body: ShapedBody, n: int) -> np.ndarray:

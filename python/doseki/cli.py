@@ -24,8 +24,8 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Debris flows by smoothed particle hydrodynamics: water and rock solved as continua.",
-    epilog="Exit codes: 0 done, 1 a validation case fails, 2 bad input, 3 physics went wrong, 4 out of memory or disk."
-    " The tests: ./doseki test.",
+    epilog="Exit codes: 0 done, 1 a validation case fails, 2 bad input, 3 physics went wrong,"
+    " 4 out of memory or disk. The tests: ./doseki test.",
 )
 
 Settings = Annotated[
@@ -335,7 +335,7 @@ def validate(
         typer.echo(json.dumps(report.report_table(results, tier.value)))
     else:
         typer.echo(report.table_text(results))
-        for line in report.failures(results):
+        for line in report.remarks(results):
             typer.echo(line)
         typer.echo(f"{report.summary_line(results)}; in {directory}: validation.md, pictures")
     if failed(results):

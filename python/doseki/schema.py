@@ -136,6 +136,12 @@ class Box(LatticeBody):
         "brings it to rho0; else whatever comes to a dry bed hovers one support above it",
     )
 
+    @model_validator(mode="after")
+    def _wetted_whole(self) -> Box:
+        if self.wetted_by is not None and self.where is not None:
+            raise ValueError("wetted_by and where exclude each other: a wetted box is whole")
+        return self
+
 
 class Disc(LatticeBody):
     """A disc (2-D) or sphere (3-D) on a lattice centred on a particle, or one single particle."""

@@ -130,3 +130,8 @@ def test_where_keeps_part_of_a_body(write):
 
 def test_where_must_leave_something(write, error_of):
     assert "body.block.where" in error_of(write(), "body.block.where== -1 - x")
+
+
+def test_a_wetted_box_is_whole(write, error_of):
+    both = ("body.block.wetted_by=water", "body.block.where== 1 - x")
+    assert "exclude each other" in error_of(write(), *both)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -106,7 +107,7 @@ def _row(
 
 
 def controlled(case: Case, control: Control) -> Row:
-    """The wrong model, at the coarsest resolution: it must leave the band."""
+    """The wrong model, at the coarsest resolution: it must leave the band, with a number."""
     resolution, criterion = case.resolutions[0], case.criterion(control.quantity)
     band = next(band for band in criterion.bands if band is not None)
     row = {"unit": criterion.unit, "band": f"not {band}", "note": f"control: {control.what}"}
@@ -115,7 +116,8 @@ def controlled(case: Case, control: Control) -> Row:
     except DosekiError as error:
         row["note"] += f": {error}"
         return Row(case.name, control.quantity, resolution, FAIL, **row)
-    verdict = FAIL if band.holds(value) else PASS
+    caught = math.isfinite(value.number) and not band.holds(value)
+    verdict = PASS if caught else FAIL
     return Row(case.name, control.quantity, resolution, verdict, value, **row)
 
 

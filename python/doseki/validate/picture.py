@@ -47,21 +47,21 @@ def _draw_curves(axes: Axes, result: Result) -> None:
 
 def _draw_errors(axes: Axes, result: Result) -> None:
     """|error| of each quantity against resolution, with lines of first and second order."""
-    sizes = np.array(list(result.outcomes))
+    sizes, drawn = np.array(list(result.outcomes)), []
     for number, criterion in enumerate(result.case.criteria):
         values = [outcome.values[criterion.quantity] for outcome in result.outcomes.values()]
         errors = np.abs([value.error for value in values])
         if np.isfinite(errors).all() and errors.all():
             mark = MARKS[number % len(MARKS)]
             axes.loglog(sizes, errors, f"{mark}-", label=criterion.quantity, markersize=4)
-    for order, style in ((1, "k:"), (2, "k--")):
-        low = axes.get_ylim()[0]
-        axes.loglog(
-            sizes, low * (sizes[-1] / sizes) ** order, style, label=f"order {order}", linewidth=0.8
-        )
+            drawn += [errors[-1]]
+    for order, style in ((1, "k:"), (2, "k--")) if drawn else ():
+        line = min(drawn) * (sizes[-1] / sizes) ** order
+        axes.loglog(sizes, line, style, label=f"order {order}", linewidth=0.8)
     axes.set_xlabel(result.case.across)
     axes.set_ylabel("size of the error")
     axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
     axes.minorticks_off()
     axes.grid(alpha=0.3)
-    axes.legend(fontsize="x-small", frameon=False)
+    if drawn:
+        axes.legend(fontsize="x-small", frameon=False)

@@ -9,12 +9,13 @@ from typing import Any
 
 from ..record import jsonable
 from ..storage import write_whole_text
-from .judging import FAIL, Result, Row, failed
+from .judging import FAIL, SKIPPED, Result, Row, failed
 
 HEADINGS = (
     "case", "quantity", "resolution", "value", "exact or measured", "error", "band", "verdict",
     "order",
 )  # fmt: skip
+NOTE = 60  # characters of a note in the table; the rest stands in the JSON
 
 
 def table_text(results: Sequence[Result]) -> str:
@@ -34,11 +35,9 @@ def cells(row: Row) -> tuple[str, ...]:
     """The texts of a row, one per heading."""
     value = row.value
     expected = None if value is None else value.expected
-    quantity = f"{row.quantity} ({row.unit})" if row.unit else row.quantity
-    note = " ".join(row.note.replace("|", "/").split())
     return (
         row.case,
-        f"{quantity} [{note}]" if note else quantity,
+        _quantity_text(row),
         _text(row.resolution, "g"),
         _text(None if value is None else value.number, ".5g"),
         _text(expected, ".5g"),
@@ -47,6 +46,13 @@ def cells(row: Row) -> tuple[str, ...]:
         row.verdict,
         _text(row.order, ".2f"),
     )
+
+
+def _quantity_text(row: Row) -> str:
+    """The quantity and its unit, or what was tried where there is none."""
+    quantity = f"{row.quantity} ({row.unit})" if row.unit else row.quantity or "the run"
+    note = " ".join(row.note.replace("|", "/").split())
+    return f"{quantity} [{note[:NOTE]}]" if row.quantity and note else quantity
 
 
 def _text(number: float | None, form: str) -> str:
@@ -90,18 +96,19 @@ def markdown(results: Sequence[Result], tier: str, pictures: dict[str, str]) -> 
         parts.append(f"## {case.name}: {case.title}")
         parts.append(f"Resolution: {case.across}. Verdict: {result.verdict}.")
         parts.append("\n".join(f"* {c.quantity}: {c.reason}" for c in case.criteria))
+        parts += ["\n".join(f"* {line}" for line in remarks([result]))] * bool(remarks([result]))
         if case.name in pictures:
             parts.append(f"![{case.name}]({pictures[case.name]})")
     return "\n\n".join(parts) + "\n"
 
 
-def failures(results: Sequence[Result]) -> list[str]:
-    """One line for each row that fails."""
+def remarks(results: Sequence[Result]) -> list[str]:
+    """One line for each row that fails, and for each case that is left out."""
     return [
-        f"{row.case}: {row.quantity or 'the run'} fails{': ' + row.note if row.note else ''}"
+        f"{row.case}: {row.quantity or 'the run'}: {row.verdict}{': ' * bool(row.note)}{row.note}"
         for result in results
         for row in result.rows
-        if row.verdict == FAIL
+        if row.verdict in (FAIL, SKIPPED)
     ]
 
 

@@ -51,8 +51,6 @@ CASES = (
             ),
         ),
         axes=("time over decay time", "amplitude"),
-        controls=(
-            Control("with Balsara's switch", QUANTITY, lambda n: decay(n, "balsara=true")),
-        ),
+        controls=(Control("with Balsara's switch", QUANTITY, lambda n: decay(n, "balsara=true")),),
     ),
 )
