@@ -8,8 +8,6 @@ from doseki.validate.judging import validate_case
 from doseki.validate.report import remarks
 from doseki.validate.running import CASES
 
-SLOW = {"dam-obstacle"}  # 3-D
-
 
 def test_names_and_words():
     for name, case in all_cases().items():
@@ -24,13 +22,8 @@ def test_scenarios_are_part_of_the_package():
     assert (CASES / "tank.toml").is_file()
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.full if name in SLOW else pytest.mark.minutes)
-        for name in all_cases()
-    ],
-)
+@pytest.mark.minutes
+@pytest.mark.parametrize("name", all_cases())
 def test_coarse(name):
     result = validate_case(all_cases()[name], "coarse", lambda _: None)
     assert not remarks([result])

@@ -73,9 +73,9 @@ def level(state: State, at: Sequence[float], dp: float) -> float:
 
 
 def pressure_at(wall: State, point: Sequence[float], dp: float) -> float:
-    """Pressure of the wall's surface particles round a point, those within 1.5 dp, weighted."""
+    """Pressure at a point of the first row of a wall, from the particles less than dp away."""
     distance = np.linalg.norm(wall["position"] - np.asarray(point), axis=1)
-    weight = np.maximum(0.0, 1 - distance / (1.5 * dp))
+    weight = np.maximum(0.0, 1 - distance / dp)
     return float(np.average(wall["pressure"], weights=weight))
 
 
