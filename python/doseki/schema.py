@@ -94,13 +94,13 @@ class ShapedBody(Part):
 
     material: str = Field(description="name of its material")
     fixed: bool = Field(False, description="true: interacts but never moves")
-    velocity: VelocityField | None = Field(
-        None, description="initial velocity, m/s; expressions may use x, y, z"
-    )
     pressure: ScalarField | None = Field(
         None,
         description="initial pressure, Pa; a number or an expression of x, y, z; particles keep "
         "their volume",
+    )
+    velocity: VelocityField | None = Field(
+        None, description="initial velocity, m/s; expressions may use x, y, z"
     )
 
 
