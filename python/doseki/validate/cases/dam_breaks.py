@@ -142,7 +142,7 @@ FRONT = Case(
     ),
     axes=("T = t sqrt(2 g/a)", "Z = x/a"),
     controls=(
-        Control("gravity a quarter too weak", MEAN, lambda n: run_along(n, "gravity=[0, -7.36]")),
+        Control("gravity half as strong again", MEAN, lambda n: run_along(n, "gravity=[0, -14.7]")),
     ),
     data=tuple(FRONTS.values()),
 )

@@ -22,10 +22,12 @@ def depth_below_surface(run: Running, state: State) -> np.ndarray:
 
 
 def surface_rise(run: Running, before: State, after: State) -> float:
-    """Mean rise, in dp, of the particles that made up the surface: less than a spacing deep."""
-    top = depth_below_surface(run, before) < run.scenario.dp
-    sunk = depth_below_surface(run, after)[top] - depth_below_surface(run, before)[top]
-    return float(-np.mean(sunk) / run.scenario.dp)
+    """Twice the rise of the centre of mass, in dp: what the surface does where none is lost."""
+    depths = [
+        np.average(depth_below_surface(run, state), weights=state["mass"])
+        for state in (before, after)
+    ]
+    return float(2 * (depths[0] - depths[1]) / run.scenario.dp)
 
 
 def at_rest(name: str) -> Callable[..., Outcome]:
@@ -33,18 +35,12 @@ def at_rest(name: str) -> Callable[..., Outcome]:
 
     def run_tank(particles: float, *overrides: str) -> Outcome:
         run = Running(name, f"particles={particles:g}", *overrides)
-        before = by_id(moving(run.state()))
+        before = moving(run.state())
         times = run.scenario.time_max * np.linspace(0.5, 1, SAMPLES)
         energy = [kinetic_energy(moving(state)) for state in run.sampled(times)]
-        return measured(run, before, by_id(moving(run.state())), float(np.mean(energy)))
+        return measured(run, before, moving(run.state()), float(np.mean(energy)))
 
     return run_tank
-
-
-def by_id(state: State) -> State:
-    """The particles in the order of their numbers."""
-    order = np.lexsort((state["id"], state["body"]))
-    return {key: values[order] for key, values in state.items()}
 
 
 def measured(run: Running, before: State, after: State, energy: float) -> Outcome:
@@ -85,9 +81,7 @@ CRITERIA = (
         "per area of water, over the second half of the run: it "
         "rests; 1e-5 is a speed of 0.4 % of sqrt(g H)",
     ),
-    Criterion(
-        "surface rise", (small(0.3),), "volume is kept: no particle row is lost or made", unit="dp"
-    ),
+    Criterion("surface rise", (small(0.3),), "volume is kept: a third of a row at most", unit="dp"),
 )
 AXES = ("p / rho g H", "height under the surface / H")
 
