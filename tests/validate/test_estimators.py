@@ -58,6 +58,14 @@ def test_pressure_at_a_point_of_a_wall():
     assert estimators.pressure_at(wall, (0, 0.55), 0.1) == pytest.approx(55)
 
 
+def test_what_is_torn_is_loose():
+    x, y = np.meshgrid(np.arange(30.0), np.arange(20.0))
+    block = np.stack([x.ravel(), y.ravel()], axis=1)
+    assert estimators.loose_share(state(block), 1.6) == 0
+    torn = np.concatenate([block, [[100, 0], [102, 0], [104, 5], [90, 90]]])
+    assert estimators.loose_share(state(torn), 1.6) == pytest.approx(4 / 604)
+
+
 def test_integral():
     t = np.linspace(0, 2, 201)
     assert estimators.integral(t, t, 0, 1) == pytest.approx(0.5)

@@ -79,6 +79,16 @@ def pressure_at(wall: State, point: Sequence[float], dp: float) -> float:
     return float(np.average(wall["pressure"], weights=weight))
 
 
+def loose_share(state: State, reach: float, chunk: int = 500) -> float:
+    """Share of the particles with fewer than three others within `reach`: none in one piece."""
+    x, loose = state["position"], 0
+    for start in range(0, len(x), chunk):
+        gaps = x[start : start + chunk, None, :] - x[None, :, :]
+        near = (np.einsum("ijk,ijk->ij", gaps, gaps) < reach**2).sum(axis=1) - 1
+        loose += int((near < 3).sum())
+    return loose / len(x)
+
+
 def integral(times: np.ndarray, values: np.ndarray, start: float, end: float) -> float:
     """Of a sampled curve between two times, by trapezia."""
     inside = (times >= start) & (times <= end)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..case import Case, Control, Criterion, Curve, Outcome, Value, small, within
-from ..estimators import angular_momentum, kinetic_energy, volume
+from ..case import Case, Control, Criterion, Curve, Outcome, Value, at_most, small, within
+from ..estimators import angular_momentum, kinetic_energy, loose_share, volume
 from ..running import Running, State
 
 RATE, END = 100.0, 0.0076  # 1/s, s: of the drop
 SHORT, LONG, TIP = "short axis a / R", "long axis b / R", "tip / R"
 ENERGY, SPIN, ROOM = "loss of energy", "change of angular momentum", "change of volume"
+TORN, REACH = "loose particles", 1.6  # share of them; spacings within which others must be
 
 
 def ellipse(rate: float, time: float, steps: int = 2000) -> tuple[float, float]:
@@ -51,7 +52,7 @@ def stretch(particles: float, rate: float = RATE) -> Outcome:
 
 
 def turn(particles: float, *overrides: str) -> Outcome:
-    """The square after one turn of its first state."""
+    """The square when its first state would have turned by two radians: it has arms by then."""
     run = Running("square-patch", f"particles={particles:g}", *overrides)
     before = run.state()
     after = run.advance(run.scenario.time_max)
@@ -60,6 +61,7 @@ def turn(particles: float, *overrides: str) -> Outcome:
             ENERGY: Value(1 - kinetic_energy(after) / kinetic_energy(before)),
             SPIN: _change(angular_momentum, before, after),
             ROOM: _change(volume, before, after),
+            TORN: Value(loose_share(after, REACH * run.scenario.dp)),
         },
         [Curve("", *after["position"].T, points=True)],
     )
@@ -96,7 +98,7 @@ PATCH = Case(
         Criterion(
             ENERGY,
             (small(0.04), small(0.02), small(0.01)),
-            "1 % a turn at 100 x 100 and first order from there: no work is done on it",
+            "1 % at 100 x 100 and first order from there: no work is done on it",
         ),
         Criterion(
             SPIN,
@@ -104,6 +106,12 @@ PATCH = Case(
             "no torque acts; forces along the line of centres keep it, corrections do not quite",
         ),
         Criterion(ROOM, (small(0.01),), "water keeps its volume, stretched as it is"),
+        Criterion(
+            TORN,
+            (at_most(0.02), at_most(0.01), at_most(0.01)),
+            "pieces that fly freely keep energy and momentum too, so it must stay whole; loose is "
+            "what has fewer than three others within 1.6 spacings",
+        ),
     ),
     axes=("x (m)", "y (m)"),
     controls=(
