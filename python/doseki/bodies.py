@@ -82,11 +82,12 @@ def _from_shape(scenario: Scenario, name: str, names: list[str]) -> ParticleSet:
     position, mass = _fill(scenario, name, body, rho0)
     n = len(position)
     masses, rest = np.full(n, mass), np.full(n, rho0)
+    compressed = 1 + _compression(scenario, name, body, position)
     return ParticleSet(
         position=position,
         velocity=_velocity(scenario, name, body, position),
-        mass=masses,
-        density=rest - _missing_cover(scenario, body, n),
+        mass=masses * compressed,
+        density=rest * compressed - _missing_cover(scenario, body, n),
         smoothing_length=smoothing_length(scenario, masses, rest),
         material=np.full(n, scenario.material_names.index(body.material), np.int32),
         body=np.full(n, names.index(name), np.int32),
@@ -111,7 +112,42 @@ def _fill(scenario: Scenario, name: str, body: ShapedBody, rho0: float) -> tuple
     if body.jitter:
         random = np.random.default_rng(body.random_seed)
         position += body.jitter * spacing * random.uniform(-1.0, 1.0, position.shape)
-    return _rotated(scenario, name, body, position, pivot), body.mass_per_particle or mass
+    position = _rotated(scenario, name, body, position, pivot)
+    return _kept(scenario, name, body, position), body.mass_per_particle or mass
+
+
+def _kept(scenario: Scenario, name: str, body: LatticeBody, position: np.ndarray) -> np.ndarray:
+    """The positions where the body's `where` is above zero."""
+    if body.where is None:
+        return position
+    kept = position[_field(scenario, name, "where", body.where, position) > 0]
+    if not len(kept):
+        message = f"body.{name}.where: it is above zero at no particle of the body"
+        raise scenario.where.error(("body", name, "where"), message)
+    return kept
+
+
+def _compression(
+    scenario: Scenario, name: str, body: ShapedBody, position: np.ndarray
+) -> np.ndarray:
+    """rho/rho0 - 1 of the initial pressure, p = c^2 (rho - rho0) with the c of the run."""
+    if body.pressure is None:
+        return np.zeros(len(position))
+    pressure = _field(scenario, name, "pressure", body.pressure, position)
+    stiffness = _stiffness(scenario, body.material)
+    if (pressure <= -stiffness).any():
+        message = (
+            f"body.{name}.pressure: {pressure.min():.4g} Pa is more tension than "
+            f"rho0 c^2 = {stiffness:.4g} Pa allows"
+        )
+        raise scenario.where.error(("body", name, "pressure"), message)
+    return pressure / stiffness
+
+
+def _stiffness(scenario: Scenario, material: str) -> float:
+    """rho0 c^2 with the sound speed of the run, Pa."""
+    scaled = scenario.materials[material].scaled(scenario.xi)
+    return scaled.rho0 * scaled.speedsound**2
 
 
 def _missing_cover(scenario: Scenario, body: ShapedBody, n: int) -> np.ndarray:
@@ -157,15 +193,20 @@ def _velocity(scenario: Scenario, name: str, body: ShapedBody, position: np.ndar
     """Initial velocities (N, dim): numbers, or expressions of the position."""
     velocity = np.zeros_like(position)
     for axis, entry in enumerate(body.velocity or []):
-        if not is_expression(entry):
-            velocity[:, axis] = entry
-            continue
-        try:
-            velocity[:, axis] = evaluate_at(entry, scenario.constants, position)
-        except ExpressionError as error:
-            keys = ("body", name, "velocity")
-            raise scenario.where.error(keys, f"body.{name}.velocity: {error}") from None
+        velocity[:, axis] = _field(scenario, name, "velocity", entry, position)
     return velocity
+
+
+def _field(
+    scenario: Scenario, name: str, key: str, entry: float | str, position: np.ndarray
+) -> np.ndarray:
+    """A number, or an expression of the position, at each of the positions."""
+    if not is_expression(entry):
+        return np.full(len(position), float(entry))
+    try:
+        return evaluate_at(entry, scenario.constants, position)
+    except ExpressionError as error:
+        raise scenario.where.error(("body", name, key), f"body.{name}.{key}: {error}") from None
 
 
 def _from_file(scenario: Scenario, name: str, names: list[str]) -> ParticleSet:

@@ -1,10 +1,11 @@
-"""The command line: doseki run | plot | export | list | bench."""
+"""The command line: doseki run | plot | export | list | bench | validate."""
 
 from __future__ import annotations
 
 import json
 import sys
 import traceback
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,8 +24,8 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Debris flows by smoothed particle hydrodynamics: water and rock solved as continua.",
-    epilog="Exit codes: 0 done, 2 bad input, 3 physics went wrong, 4 out of memory or disk."
-    " The tests: ./doseki test.",
+    epilog="Exit codes: 0 done, 1 a validation case fails, 2 bad input, 3 physics went wrong,"
+    " 4 out of memory or disk. The tests: ./doseki test.",
 )
 
 Settings = Annotated[
@@ -41,6 +42,7 @@ CheckpointMinutes = Annotated[
 ]
 Figures = Annotated[bool, typer.Option(help="Draw the figures at the end.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
+Tier = StrEnum("Tier", ["coarse", "full"])
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")]
 
 
@@ -296,6 +298,48 @@ def bench(
     options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
     options |= {"--threads": threads, "--isa": isa}
     bench_command(make_plan(options, quick), as_json, append)
+
+
+@app.command()
+def validate(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME ...]", help="Cases [all].")
+    ] = None,
+    tier: Annotated[
+        Tier, typer.Option(help="coarse: the coarsest resolution only; full: all of them.")
+    ] = Tier.coarse,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Of the report [runs/validation]."),
+    ] = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+    only_list: Annotated[bool, typer.Option("--list", help="List the cases and stop.")] = False,
+) -> None:
+    """Compare runs with formulas and measurements; exit code 1 when a case fails."""
+    from .validate import report
+    from .validate.catalogue import chosen_cases
+    from .validate.command import validate as validate_cases
+    from .validate.judging import failed
+
+    cases = chosen_cases(names or [])
+    if only_list:
+        for case in cases:
+            typer.echo(f"{case.name:28} {case.title}")
+        return
+    directory = output or _free_directory("validation")
+    results = validate_cases(
+        cases, tier.value, directory, threads, lambda text: typer.echo(text, err=True)
+    )
+    if as_json:
+        typer.echo(json.dumps(report.report_table(results, tier.value)))
+    else:
+        typer.echo(report.table_text(results))
+        for line in report.remarks(results):
+            typer.echo(line)
+        typer.echo(f"{report.summary_line(results)}; in {directory}: validation.md, pictures")
+    if failed(results):
+        raise typer.Exit(1)
 
 
 def main(arguments: list[str] | None = None) -> Any:

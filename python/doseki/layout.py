@@ -69,13 +69,13 @@ def name_axes(axes: Axes, dim: int, rotate: float) -> None:
 
 
 def chart_grid(
-    rows: int, columns: int, panel: tuple[float, float], title: str
+    rows: int, columns: int, panel: tuple[float, float], title: str, sharex: bool = True
 ) -> tuple[Figure, np.ndarray]:
     """A figure of rows x columns charts of `panel` = (width, height) inches: (figure, axes)."""
     figure = _figure(columns * panel[0] + 1.5, rows * panel[1] + 0.6)
     figure.set_layout_engine("constrained")
     figure.suptitle(title, fontsize="medium", wrap=True)
-    return figure, figure.subplots(rows, columns, squeeze=False, sharex=True)
+    return figure, figure.subplots(rows, columns, squeeze=False, sharex=sharex)
 
 
 def _figure(width: float, height: float) -> Figure:

@@ -21,13 +21,14 @@ from .toml_source import KeyPath, Where, dotted
 
 DIMENSION_KEYS = {"d2", "d3"}
 WORDS = {"schema", "title", "description"}  # top-level keys that no expression needs
+SPATIAL_KEYS = ("velocity", "pressure", "where")  # of a body: may use x, y, z
 SWITCHED_SECTIONS = ("body", "inflow", "outflow", "window", "figure")
 
 
 def resolve_table(table: dict[str, Any], where: Where) -> tuple[dict[str, Any], dict[str, Any]]:
     """The table with every expression evaluated, and the names expressions may use.
 
-    Parts with `enabled = false` are left out; a body's velocity that depends on x, y, z stays an
+    Parts with `enabled = false` are left out; what of a body depends on x, y, z stays an
     expression.  Raises UserError.
     """
     _check_names(table, where)
@@ -105,7 +106,7 @@ class Names(Mapping[str, Any]):
     def _value_of(self, text: str, keys: KeyPath) -> Any:
         try:
             in_space = names_in(text) & set(POSITION_NAMES)
-            if in_space and keys[0] == "body" and keys[2:3] == ("velocity",):
+            if in_space and keys[0] == "body" and keys[2:3] and keys[2] in SPATIAL_KEYS:
                 return text
             return evaluate(text, self)
         except ExpressionError as error:

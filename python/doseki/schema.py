@@ -22,6 +22,7 @@ from .value_types import (
     NonNegative,
     Positive,
     Rate,
+    ScalarField,
     Skin,
     Vector,
     VelocityField,
@@ -93,6 +94,11 @@ class ShapedBody(Part):
 
     material: str = Field(description="name of its material")
     fixed: bool = Field(False, description="true: interacts but never moves")
+    pressure: ScalarField | None = Field(
+        None,
+        description="initial pressure, Pa; a number or an expression of x, y, z; particles keep "
+        "their volume",
+    )
     velocity: VelocityField | None = Field(
         None, description="initial velocity, m/s; expressions may use x, y, z"
     )
@@ -117,6 +123,9 @@ class LatticeBody(ShapedBody):
         0.0, ge=0, le=0.5, description="random displacement along each axis, in spacings"
     )
     random_seed: int = Field(1, ge=0, description="of the jitter")
+    where: ScalarField | None = Field(
+        None, description="expression of x, y, z; only particles where it is above zero are kept"
+    )
 
 
 class Box(LatticeBody):
@@ -133,6 +142,12 @@ class Box(LatticeBody):
         description="material that lies on its top at rest: the density is such that the cover "
         "brings it to rho0; else whatever comes to a dry bed hovers one support above it",
     )
+
+    @model_validator(mode="after")
+    def _wetted_whole(self) -> Box:
+        if self.wetted_by is not None and self.where is not None:
+            raise ValueError("wetted_by and where exclude each other: a wetted box is whole")
+        return self
 
 
 class Disc(LatticeBody):

@@ -31,6 +31,10 @@ def _numbers_or_expressions(vector: list[Any]) -> list[Any]:
     return vector
 
 
+def _number_or_expression(value: Any) -> Any:
+    return _numbers_or_expressions([value])[0]
+
+
 def _bound(value: Any) -> Any:
     """TOML can write inf; the strings "inf" and "-inf" mean the same."""
     return float(value) if value in ("inf", "+inf", "-inf") else value
@@ -74,6 +78,7 @@ Vector = Annotated[list[Coordinate], *AsArray]
 VelocityField = Annotated[
     list[Any], AfterValidator(_of_dimension), AfterValidator(_numbers_or_expressions)
 ]
+ScalarField = Annotated[Any, AfterValidator(_number_or_expression)]
 Bound = Annotated[
     float, Field(allow_inf_nan=True), BeforeValidator(_bound), AfterValidator(_not_nan)
 ]

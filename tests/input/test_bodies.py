@@ -94,3 +94,44 @@ def test_bodies_that_touch_do_not_overlap(write):
 def test_nothing_at_all_is_an_empty_set():
     empty = concatenate([], dim=3)
     assert (len(empty), empty.dim, empty.body.dtype) == (0, 3, np.int32)
+
+
+PRESSED = "body.block.pressure== 1000*9.81*(0.5 - y)"
+
+
+def test_pressure_becomes_density_and_keeps_the_volume(write):
+    """Linear: p = c^2 (rho - rho0) with the sound speed of the run."""
+    particles = build(write("xi = 0.05"), PRESSED)
+    pressure = 1000 * 9.81 * (0.5 - particles.position[:, 1])
+    np.testing.assert_allclose((0.05 * 1400) ** 2 * (particles.density - 1000), pressure, rtol=1e-9)
+    np.testing.assert_allclose(particles.mass / particles.density, 0.1**2)
+    np.testing.assert_allclose(particles.smoothing_length, 1.2 * 0.1)
+
+
+def test_pressure_may_be_a_number(write):
+    density = build(write(), "body.block.pressure=1.96e6").density
+    np.testing.assert_allclose(density, 1001.0)
+
+
+def test_pressure_beyond_all_tension_is_refused(write, error_of):
+    assert "tension" in error_of(write(), "body.block.pressure=-1e10")
+
+
+def test_bad_pressure_names_its_key(write, error_of):
+    assert "body.block.pressure" in error_of(write(), "body.block.pressure== 1/(y - y)")
+    assert "body.block.pressure" in error_of(write(), "body.block.pressure=high")
+
+
+def test_where_keeps_part_of_a_body(write):
+    position = build(write(), "body.block.where== 0.5 - x - y").position
+    full = build(write()).position
+    np.testing.assert_array_equal(position, full[0.5 - full.sum(axis=1) > 0])
+
+
+def test_where_must_leave_something(write, error_of):
+    assert "body.block.where" in error_of(write(), "body.block.where== -1 - x")
+
+
+def test_a_wetted_box_is_whole(write, error_of):
+    both = ("body.block.wetted_by=water", "body.block.where== 1 - x")
+    assert "exclude each other" in error_of(write(), *both)

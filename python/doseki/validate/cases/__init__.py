@@ -1,0 +1,1 @@
+"""The cases: each module holds CASES and runs the scenario that lies beside it."""

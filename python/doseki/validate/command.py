@@ -1,0 +1,41 @@
+"""`doseki validate`: run cases, tell how they go, write the report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from ..core import load_core
+from ..storage import clear_errors
+from .case import Case
+from .judging import Result, validate_case
+from .picture import draw_result
+from .report import write_report
+
+
+def validate(
+    cases: Sequence[Case],
+    tier: str,
+    directory: Path,
+    threads: int | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> list[Result]:
+    """Run the cases one after another; the report is whole after each of them."""
+    with clear_errors(directory):
+        directory.mkdir(parents=True, exist_ok=True)
+    core = load_core()
+    before = core.threads()
+    core.set_threads(threads or before)
+    results, pictures = [], {}
+    try:
+        for case in cases:
+            result = validate_case(case, tier, tell)
+            results.append(result)
+            if result.outcomes:
+                pictures[case.name] = f"{case.name}.png"
+                with clear_errors(directory / pictures[case.name]):
+                    draw_result(result, directory / pictures[case.name])
+            write_report(directory, results, tier, pictures)
+    finally:
+        core.set_threads(before)
+    return results

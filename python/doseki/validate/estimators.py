@@ -1,0 +1,96 @@
+"""Numbers read from states: amplitudes, profiles, fronts, levels, pressures at a sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .running import State
+
+
+def kinetic_energy(state: State) -> float:
+    """Of the given particles, J (2-D: J/m)."""
+    return 0.5 * float(np.sum(state["mass"] * np.sum(state["velocity"] ** 2, axis=1)))
+
+
+def volume(state: State) -> float:
+    """Sum of m/rho, m3 (2-D: m2)."""
+    return float(np.sum(state["mass"] / state["density"]))
+
+
+def angular_momentum(state: State) -> float:
+    """About the origin, 2-D, counted counter-clockwise, kg m/s."""
+    x, v = state["position"], state["velocity"]
+    return float(np.sum(state["mass"] * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])))
+
+
+def mean_velocity(state: State, axis: int = 0) -> float:
+    """Weighted with mass, m/s."""
+    return float(np.average(state["velocity"][:, axis], weights=state["mass"]))
+
+
+def wave_amplitude(state: State, component: int, axis: int, k: float) -> float:
+    """Amplitude of sin(k x_axis) in a component of the velocity."""
+    phase = k * state["position"][:, axis]
+    return float(2 * np.mean(state["velocity"][:, component] * np.sin(phase)))
+
+
+def rms(values: np.ndarray) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def crossings(times: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Times at which a sampled curve goes through zero, interpolated linearly."""
+    k = np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0)
+    share = values[k] / (values[k] - values[k + 1])
+    return times[k] + share * (times[k + 1] - times[k])
+
+
+def first_above(times: np.ndarray, values: np.ndarray, level: float) -> float:
+    """When a sampled curve first reaches a level, interpolated linearly; nan if it never does."""
+    above = np.flatnonzero(values >= level)
+    if not len(above):
+        return float("nan")
+    k = int(above[0])
+    if k == 0:
+        return float(times[0])
+    share = (level - values[k - 1]) / (values[k] - values[k - 1])
+    return float(times[k - 1] + share * (times[k] - times[k - 1]))
+
+
+def front(state: State, dp: float, axis: int = 0) -> float:
+    """Farthest reach of the particles along an axis, half a spacing beyond the last one."""
+    return float(state["position"][:, axis].max() + dp / 2)
+
+
+def level(state: State, at: Sequence[float], dp: float) -> float:
+    """Height of the water over the horizontal point `at`; zero without water there."""
+    x = state["position"]
+    near = (np.abs(x[:, :-1] - np.asarray(at)) <= dp).all(axis=1)
+    return float(x[near, -1].max() + dp / 2) if near.any() else 0.0
+
+
+def pressure_at(wall: State, point: Sequence[float], dp: float) -> float:
+    """Pressure at a point of the first row of a wall, from the particles less than dp away."""
+    distance = np.linalg.norm(wall["position"] - np.asarray(point), axis=1)
+    weight = np.maximum(0.0, 1 - distance / dp)
+    return float(np.average(wall["pressure"], weights=weight))
+
+
+def loose_share(state: State, reach: float, chunk: int = 500) -> float:
+    """Share of the particles with fewer than three others within `reach`: none in one piece."""
+    x, loose = state["position"], 0
+    for start in range(0, len(x), chunk):
+        gaps = x[start : start + chunk, None, :] - x[None, :, :]
+        near = (np.einsum("ijk,ijk->ij", gaps, gaps) < reach**2).sum(axis=1) - 1
+        loose += int((near < 3).sum())
+    return loose / len(x)
+
+
+def integral(times: np.ndarray, values: np.ndarray, start: float, end: float) -> float:
+    """Of a sampled curve between two times, by trapezia."""
+    inside = (times >= start) & (times <= end)
+    t, v = times[inside], values[inside]
+    return float(np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(t)))

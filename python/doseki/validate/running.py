@@ -1,0 +1,74 @@
+"""A scenario as a running simulation, without a record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..core import build_simulation
+from ..particles import FREE
+from ..scenario import load_scenario
+
+FOREVER = 10**9  # steps
+CASES = Path(__file__).resolve().parent / "cases"
+
+State = dict[str, np.ndarray]
+
+
+class Running:
+    """A scenario with overrides, to be advanced and looked at."""
+
+    def __init__(self, name: str, *overrides: str) -> None:
+        """`name` is that of a scenario in cases/, else of a shipped one."""
+        own = CASES / f"{name}.toml"
+        self.scenario = load_scenario(str(own) if own.is_file() else name, overrides)
+        self.simulation, self.body_names = build_simulation(self.scenario)
+
+    @property
+    def time(self) -> float:
+        """Time, s."""
+        return self.simulation.time
+
+    def constant(self, name: str) -> float:
+        """A parameter or top-level number of the scenario."""
+        return float(self.scenario.constants[name])
+
+    def state(self) -> State:
+        """The particles now."""
+        return self.simulation.state()
+
+    def advance(self, time: float, max_steps: int = FOREVER) -> State:
+        """The state at `time`, or after `max_steps` steps if that comes first."""
+        self.simulation.advance(limit=time, pause=time, max_steps=max_steps)
+        return self.state()
+
+    def sampled(self, times: Iterable[float]) -> Iterator[State]:
+        """The states at `times`, which must rise."""
+        for time in times:
+            yield self.advance(time)
+
+    def totals(self) -> dict[str, Any]:
+        """Mass, momentum and energies of the free particles."""
+        return self.simulation.totals()
+
+    def of_body(self, state: State, body: str) -> State:
+        """The particles of one body."""
+        return chosen(state, state["body"] == self.body_names.index(body))
+
+    def mean(self, field: str, body: str) -> np.ndarray:
+        """Mean of a field over a body now, weighted with mass."""
+        state = self.of_body(self.state(), body)
+        return np.average(state[field], axis=0, weights=state["mass"])
+
+
+def chosen(state: State, mask: np.ndarray) -> State:
+    """The particles where `mask` is true."""
+    return {key: values[mask] for key, values in state.items()}
+
+
+def moving(state: State) -> State:
+    """The particles that are free to move."""
+    return chosen(state, state["motion"] == FREE)

@@ -1,0 +1,82 @@
+"""Numbers read from states, on states whose numbers are known."""
+
+import numpy as np
+import pytest
+
+from doseki.validate import estimators
+from doseki.validate.cases.drops import ellipse
+from doseki.validate.cases.films import KEULEGAN, nusselt_speed
+from doseki.validate.cases.poiseuille import exact_speed
+
+
+def state(position, velocity=0.0, **fields):
+    position = np.array(position, float)
+    n = len(position)
+    given = {
+        "position": position,
+        "velocity": np.broadcast_to(np.array(velocity, float), position.shape),
+        "mass": np.ones(n),
+        "density": np.full(n, 2.0),
+    }
+    return given | fields
+
+
+def test_sums():
+    turning = state([[1, 0], [0, 1], [-1, 0], [0, -1]], [[0, 3], [-3, 0], [0, -3], [3, 0]])
+    assert estimators.kinetic_energy(turning) == pytest.approx(18)
+    assert estimators.angular_momentum(turning) == pytest.approx(12)
+    assert estimators.volume(turning) == pytest.approx(2)
+    assert estimators.mean_velocity(turning) == pytest.approx(0)
+
+
+def test_amplitude_of_a_wave():
+    y = (np.arange(40) + 0.5) / 40
+    wave = state(np.stack([y, y], axis=1), np.stack([0.3 * np.sin(2 * np.pi * y), 0 * y], axis=1))
+    assert estimators.wave_amplitude(wave, 0, 1, 2 * np.pi) == pytest.approx(0.3)
+
+
+def test_crossings_and_first_above():
+    t = np.linspace(0, 4, 401)
+    zeros = estimators.crossings(t, np.cos(np.pi * t))
+    np.testing.assert_allclose(zeros, [0.5, 1.5, 2.5, 3.5], atol=1e-6)
+    assert estimators.first_above(t, t**2, 1.0) == pytest.approx(1.0)
+    assert estimators.first_above(t, t, -1.0) == 0
+    assert np.isnan(estimators.first_above(t, t, 5.0))
+
+
+def test_front_and_level():
+    column = state([[0.05, 0.05], [0.05, 0.15], [0.45, 0.05]])
+    assert estimators.front(column, 0.1) == pytest.approx(0.5)
+    assert estimators.level(column, (0.05,), 0.1) == pytest.approx(0.2)
+    assert estimators.level(column, (0.25,), 0.1) == 0
+
+
+def test_pressure_at_a_point_of_a_wall():
+    y = np.arange(10) * 0.1
+    wall = state(np.stack([0 * y, y], axis=1), pressure=100 * y)
+    assert estimators.pressure_at(wall, (0, 0.5), 0.1) == pytest.approx(50)
+    assert estimators.pressure_at(wall, (0, 0.55), 0.1) == pytest.approx(55)
+
+
+def test_what_is_torn_is_loose():
+    x, y = np.meshgrid(np.arange(30.0), np.arange(20.0))
+    block = np.stack([x.ravel(), y.ravel()], axis=1)
+    assert estimators.loose_share(state(block), 1.6) == 0
+    torn = np.concatenate([block, [[100, 0], [102, 0], [104, 5], [90, 90]]])
+    assert estimators.loose_share(state(torn), 1.6) == pytest.approx(4 / 604)
+
+
+def test_integral():
+    t = np.linspace(0, 2, 201)
+    assert estimators.integral(t, t, 0, 1) == pytest.approx(0.5)
+
+
+def test_exact_solutions():
+    """Against the values that are published or follow by hand."""
+    assert ellipse(100, 0.0076) == pytest.approx((0.51427, 1.94452), abs=1e-5)
+    assert np.prod(ellipse(100, 0.0076)) == pytest.approx(1)
+    assert pytest.approx(2.07, abs=0.005) == KEULEGAN
+    assert nusselt_speed(0.02) == pytest.approx(0.6710, abs=1e-4)
+    y = np.linspace(0, 1, 11)
+    np.testing.assert_allclose(exact_speed(y, 0.0), 0, atol=1e-4)
+    np.testing.assert_allclose(exact_speed(y, 1e3), 4 * y * (1 - y), atol=1e-12)
