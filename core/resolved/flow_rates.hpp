@@ -292,11 +292,13 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     const double rho = record.rho, rho0 = materials_[particles.tag[p].material].rho0;
     Vec<double, D> a = (1.0 / rho) * (2.0 * sums.force + sums.traction) + options_.gravity;
     double rate = rho * sums.density_rate;
-    static const double tic = std::getenv("TIC") ? std::atof(std::getenv("TIC")) : 0.0;
-    if (tic > 0 && sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface && record.p < (tic > 1 ? 1e300 : 0.0)) a = a + (2.0 * record.p / rho) * sums.concentration_gradient;
+    static const double lo = std::getenv("LO") ? std::atof(std::getenv("LO")) : 5e-4;
+    double norm = 0.0;
+    for (double element : L.element) norm += element * element;
+    const double act = 1.0;
+    norm = std::max(norm, std::pow(lo * constants_.c / h, 2));
+    if (sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface) a = a + (2.0 * act * record.p / rho) * sums.concentration_gradient;
     if (shifted && measure.x < SurfaceMeasure::surface) {
-        double norm = 0.0;
-        for (double element : L.element) norm += element * element;
         Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::sqrt(norm), h);
         if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
         flow.shift[p] = shift;
