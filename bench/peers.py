@@ -31,6 +31,7 @@ ENVIRONMENT = HERE.parent / ".tools" / "peers" / "pysph"  # ignored by git
 # PySPH is a source distribution before its first release; it compiles with Cython 3.0, not before
 # and not after, and with the NumPy of before 2.  Build isolation would take the newest of both.
 BUILD_TOOLS = ("setuptools<70", "wheel", "Cython>=3.0,<3.1", "numpy<2", "mako")
+# Each is compiled against those before it.
 PYSPH = ("cyarray==1.2", "compyle==0.9.1", "pysph==1.0b2")
 
 RESOLUTION = {2: 200, 3: 50}  # particles along the height of the column
@@ -90,7 +91,8 @@ def install_pysph() -> Path:
         subprocess.run([sys.executable, "-m", "venv", "--clear", ENVIRONMENT], check=True)
         pip = [python, "-m", "pip", "install", "--quiet", "--no-build-isolation"]
         subprocess.run([*pip, *BUILD_TOOLS], check=True)
-        subprocess.run([*pip, "--pre", *PYSPH], check=True)
+        for package in PYSPH:
+            subprocess.run([*pip, "--pre", package], check=True)
         (ENVIRONMENT / "complete").touch()
     return python
 

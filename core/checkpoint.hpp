@@ -27,6 +27,11 @@ struct Numbers<Vec<T, D>> {
     static constexpr std::size_t count = D;
 };
 template <class T, int D>
+struct Numbers<Mat<T, D>> {
+    using type = T;
+    static constexpr std::size_t count = D * D;
+};
+template <class T, int D>
 struct Numbers<Deviator<T, D>> {
     using type = T;
     static constexpr std::size_t count = Deviator<T, D>::size;

@@ -3,7 +3,6 @@
 
 #include "particles.hpp"
 #include "physics/stress.hpp"
-#include "rates.hpp"
 
 namespace doseki {
 
@@ -17,8 +16,9 @@ struct Totals {
     std::vector<std::int64_t> count;    // free particles per material
 };
 
-template <int D>
-Totals<D> totals(const Particles<D>& particles, const std::vector<Material>& materials, Tension tension) {
+template <class Scheme, int D>
+Totals<D> totals(const Particles<D>& particles, const Scheme& scheme) {
+    const std::vector<Material>& materials = scheme.materials();
     Totals<D> sum;
     sum.count.assign(materials.size(), 0);
     for (std::size_t p = 0; p < particles.size(); ++p) {
@@ -26,7 +26,7 @@ Totals<D> totals(const Particles<D>& particles, const std::vector<Material>& mat
         if (tag.motion == Motion::driven) continue;
         const Material& material = materials[tag.material];
         const double m = particles.mass[p], rho = particles.density[p];
-        const auto eos = equation_of_state(material, rho, tag.motion, tension);
+        const auto eos = scheme.thermodynamics(particles, p);
         // Where tension is clamped away there is no force, hence no energy.
         if (rho >= material.rho0 || eos.pressure < 0.0) sum.bulk_energy += m * eos.bulk_energy;
         if (tag.motion == Motion::fixed) continue;

@@ -26,7 +26,8 @@ double drift(Particles<D>& particles, double dt) {
     for (std::size_t p = 0; p < n; ++p) {
         // A fixed particle may have a velocity, as a belt has: it acts on others, nothing moves.
         if (particles.is_fixed(p)) continue;
-        const Vec<double, D>& v = particles.velocity[p];
+        Vec<double, D> v = particles.velocity[p];
+        if (particles.has_flow) v = v + particles.flow.shift[p];
         for (int a = 0; a < D; ++a) particles.position[p][a] += dt * v[a];
         fastest = max(fastest, dot(v, v));
     }

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "base/vec.hpp"
 
 namespace doseki {
@@ -9,7 +11,32 @@ enum class Tension { free, clamp_fluid, clamp_all };
 /// Smoothing length: as given at the start, or following Eq. (10).
 enum class SmoothingLengthMode { constant, eq10 };
 
-/// Parameters of the ueta2022 scheme.
+/// Law of pressure of the resolved scheme: c^2 (rho - rho0), or Tait's with exponent 7.
+enum class PressureLaw { linear, tait };
+
+/// Eddy viscosity: none, Smagorinsky's of the particle spacing, or Prandtl's mixing length over the
+/// depth of the flow.
+enum class Turbulence { none, smagorinsky, mixing_length };
+
+/// How fluid meets the fixed particles of a body.
+struct WallCondition {
+    bool stick = true;    // no slip; otherwise free slip, and friction where ks > 0
+    double ks = 0.0;      // equivalent sand roughness [m]
+};
+
+/// What only the resolved scheme has.
+struct FlowOptions {
+    double dp = 0.0;
+    bool wide_kernel = false;    // Wendland C6 instead of C2
+    bool monaghan_cleary = false;
+    bool shifting = true;
+    PressureLaw pressure_law = PressureLaw::linear;
+    Turbulence turbulence = Turbulence::none;
+    double smagorinsky = 0.12;
+    std::vector<WallCondition> walls;    // by body
+};
+
+/// Parameters of the scheme.
 template <int D>
 struct Options {
     Vec<double, D> gravity{};
@@ -24,6 +51,7 @@ struct Options {
     bool sym_grad = false;
     Tension tension = Tension::clamp_fluid;
     SmoothingLengthMode h_mode = SmoothingLengthMode::constant;
+    FlowOptions flow;
 };
 
 }  // namespace doseki

@@ -6,6 +6,7 @@
 //     template <class T> using Point = ...;                        // what i and j bring
 //     Point<Pack> load(std::uint32_t first) const;                 // W particles i
 //     Point<Pack> load_one(std::uint32_t j) const;                 // one j in all lanes
+//     ... load_fixed(std::uint32_t j) const;                       // as load_one, of a fixed j
 //     void add(Sums<T>&, const Pair<T, D>&, const Point<T>& i, const Point<T>& j) const;
 //     void moving_done(Sums<T>&) const;      // between moving and fixed neighbours
 //     void add_fixed(...) const;             // as add, of a fixed j
@@ -91,23 +92,24 @@ template <bool periodic, class real, int D, class Term>
     });
     term.moving_done(sums);
     list.for_each_fixed([&](std::uint32_t entry) {
-        term.add_fixed(sums, pair_with(entry), i, term.load_one(entry & ListEntry::index_mask));
+        term.add_fixed(sums, pair_with(entry), i, term.load_fixed(entry & ListEntry::index_mask));
     });
     return sums;
 }
 
-/// `skip_empty`: particles without any neighbour are not finished either.
+/// `skip_empty`: particles without any neighbour are not finished either. `first_cluster`: number of
+/// the first of `clusters`.
 template <bool periodic, class real, int D, class Term>
 void for_each_pair(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters,
                    std::span<const MotionRecord<real, D>> records,
-                   const CoordinateFrame<real, D>& frame, bool skip_empty, const Term& term) {
+                   const CoordinateFrame<real, D>& frame, bool skip_empty, const Term& term, std::size_t first_cluster = 0) {
     constexpr std::uint32_t width = lanes<real>;
     const PairLoop<real, D, Term> loop{records, image_shifts(neighbours, frame), static_cast<real>(frame.unit), term};
 
 #pragma omp parallel for schedule(dynamic, 16) if (clusters.size() > pair_loop)
     for (std::size_t c = 0; c < clusters.size(); ++c) {
         if (skip_empty && clusters[c].empty()) continue;
-        const auto first = static_cast<std::uint32_t>(c) * width;
+        const auto first = static_cast<std::uint32_t>(first_cluster + c) * width;
         const auto count = std::min<std::size_t>(width, records.size() - first);
         term.finish(first, static_cast<int>(count), sum_over_list<periodic>(loop, clusters[c], first));
     }

@@ -21,6 +21,7 @@ struct CountTerm {
 
     auto load(std::uint32_t first) const { return load_motion<real, D>(motion, first); }
     DOSEKI_FN auto load_one(std::uint32_t j) const { return broadcast_motion(motion[j]); }
+    DOSEKI_FN auto load_fixed(std::uint32_t j) const { return load_one(j); }
 
     template <class T>
     DOSEKI_FN void add(T& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
@@ -39,22 +40,50 @@ struct CountTerm {
     }
 };
 
-/// The pair loop by itself, for the bench: how many pairs there are, and how fast the two sums run
-/// when everything they read is in cache.
+/// How many pairs a scheme of type Rates sums over.
+template <class Rates, class Lists>
+class PairCounter {
+public:
+    PairCounter(const Rates& rates, const Lists& neighbours) : rates_(rates), neighbours_(neighbours) {}
+
+    /// Pairs (i, j), each way counted, that are within support of each other.
+    double interacting_pairs() const { return count(neighbours_.clusters(), rates_.motion_); }
+
+    template <class Motion>
+    double count(std::span<const ClusterList> clusters, const Motion& motion) const {
+        std::vector<double> of_particle(motion.size());
+        auto finish = [&](std::size_t p, double count) { of_particle[p] = count; };
+        for_each(clusters, motion, CountTerm<typename Rates::Real, Rates::dim, decltype(finish)>{motion, finish});
+        double total = 0.0;
+        for (double count : of_particle) total += count;
+        return total;
+    }
+
+    template <class Motion, class Term>
+    void for_each(std::span<const ClusterList> clusters, const Motion& motion, const Term& term) const {
+        const std::span<const MotionRecord<typename Rates::Real, Rates::dim>> records(motion);
+        if (rates_.periodic_) for_each_pair<true>(neighbours_, clusters, records, rates_.frame_, false, term);
+        else for_each_pair<false>(neighbours_, clusters, records, rates_.frame_, false, term);
+    }
+
+private:
+    const Rates& rates_;
+    const Lists& neighbours_;
+};
+
+/// The pair loop by itself, for the bench: how fast the two sums of the ueta2022 scheme run when
+/// everything they read is in cache.
 template <class real, int D>
 class PairProbe {
 public:
     PairProbe(const Rates<real, D>& rates, const Neighbours<D>& neighbours)
-        : rates_(rates), neighbours_(neighbours) {}
-
-    /// Pairs (i, j), each way counted, that are within support of each other.
-    double interacting_pairs() const { return count(neighbours_.clusters(), rates_.motion_); }
+        : rates_(rates), neighbours_(neighbours), counter_(rates, neighbours) {}
 
     /// Such pairs per second of one thread in both sums over a few clusters, over and over for
     /// `seconds` of processor time.
     double bare_rate(double seconds) const {
         const HotSet hot = hot_set();
-        const double pairs = count(hot.clusters, hot.motion);
+        const double pairs = counter_.count(hot.clusters, hot.motion);
         double done = 0.0, elapsed = 0.0;
         const std::clock_t start = std::clock();
         do {
@@ -104,37 +133,22 @@ private:
         return hot;
     }
 
-    template <class Term>
-    void for_each(std::span<const ClusterList> clusters, std::span<const MotionRecord<real, D>> motion,
-                  const Term& term) const {
-        if (rates_.periodic_) for_each_pair<true>(neighbours_, clusters, motion, rates_.frame_, false, term);
-        else for_each_pair<false>(neighbours_, clusters, motion, rates_.frame_, false, term);
-    }
-
-    double count(std::span<const ClusterList> clusters, std::span<const MotionRecord<real, D>> motion) const {
-        std::vector<double> of_particle(motion.size());
-        auto finish = [&](std::size_t p, double count) { of_particle[p] = count; };
-        for_each(clusters, motion, CountTerm<real, D, decltype(finish)>{motion, finish});
-        double total = 0.0;
-        for (double count : of_particle) total += count;
-        return total;
-    }
-
     void sum(const HotSet& hot) const {
         const std::span<const MotionRecord<real, D>> motion(hot.motion);
         const std::span<const StressRecord<real, D>> stress(hot.stress);
         volatile double sink = 0.0;
         auto keep_gradient = [&](std::size_t, const Mat<double, D>& gradient) { sink = gradient.element[0]; };
         auto keep_acceleration = [&](std::size_t, const auto& sums) { sink = sums.acceleration[0] + sums.max_v_sig; };
-        for_each(hot.clusters, motion,
+        counter_.for_each(hot.clusters, motion,
                  VelocityGradientTerm<GradientOf::own_h, real, D, decltype(keep_gradient)>{motion, keep_gradient});
-        for_each(hot.clusters, motion,
+        counter_.for_each(hot.clusters, motion,
                  MomentumTerm<GradientOf::own_h, real, D, decltype(keep_acceleration)>{
                      motion, stress, {static_cast<real>(rates_.options_.alpha), true}, keep_acceleration});
     }
 
     const Rates<real, D>& rates_;
     const Neighbours<D>& neighbours_;
+    PairCounter<Rates<real, D>, Neighbours<D>> counter_;
 };
 
 }  // namespace doseki

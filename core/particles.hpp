@@ -32,6 +32,20 @@ struct Particles {
     std::vector<Deviator<double, D>> deviatoric_stress;         // [Pa]
     std::vector<Deviator<double, D>> deviatoric_stress_rate;    // [Pa/s]
     bool has_strength = true;    // without, the two arrays above stay empty
+    /// Of the resolved scheme.
+    struct Flow {
+        std::vector<Vec<double, D>> pressure_gradient;    // of the last step [Pa/m]
+        std::vector<Mat<double, D>> velocity_gradient;    // of the last step [1/s]
+        std::vector<Vec<double, D>> shift;                // velocity relative to the fluid [m/s]
+        std::vector<double> surface;                      // of the last step, see SurfaceLimit
+        std::vector<double> mixing_length;                // [m]
+        // Of wall particles:
+        std::vector<Vec<double, D>> normal;        // into the fluid
+        std::vector<double> wall_depth;            // below the surface of the wall [m]
+        std::vector<Vec<double, D>> wall_force;    // of the fluid on it [N], 2-D: [N/m]
+        std::vector<double> wall_pressure;         // of the fluid at its place [Pa]
+    } flow;
+    bool has_flow = false;    // without, the arrays of `flow` stay empty
     std::vector<double> mass;                // [kg], 2-D: [kg/m]
     std::vector<double> smoothing_length;    // [m]
     std::vector<Tag> tag;
@@ -46,6 +60,12 @@ struct Particles {
         f("density", density), f("density_rate", density_rate);
         if (has_strength)
             f("deviatoric_stress", deviatoric_stress), f("deviatoric_stress_rate", deviatoric_stress_rate);
+        if (has_flow) {
+            f("pressure_gradient", flow.pressure_gradient), f("velocity_gradient", flow.velocity_gradient);
+            f("shift", flow.shift), f("surface", flow.surface), f("mixing_length", flow.mixing_length);
+            f("normal", flow.normal), f("wall_depth", flow.wall_depth);
+            f("wall_force", flow.wall_force), f("wall_pressure", flow.wall_pressure);
+        }
         f("mass", mass), f("smoothing_length", smoothing_length), f("tag", tag);
     }
 

@@ -48,6 +48,10 @@ double density_rate(const Material& material, Motion motion, double rho, const M
 template <class real, int D>
 class Rates {
 public:
+    using Real = real;
+    static constexpr int dim = D;
+    static constexpr bool has_flow = false;
+
     Rates(std::vector<Material> materials, const Options<D>& options, bool periodic)
         : materials_(std::move(materials)), options_(options), periodic_(periodic) {}
 
@@ -70,6 +74,11 @@ public:
         if (poisoned) find_survivor(particles);
     }
 
+    static constexpr double kernel_support() { return WendlandC6<D>::support; }
+    Thermodynamics thermodynamics(const Particles<D>& particles, std::size_t p) const {
+        const Tag& tag = particles.tag[p];
+        return equation_of_state(materials_[tag.material], particles.density[p], tag.motion, options_.tension);
+    }
     double timestep() const { return timestep_; }
     double av_power() const { return av_power_; }
     PhaseTimer& phases() { return phases_; }
@@ -110,6 +119,8 @@ public:
 
 private:
     friend class PairProbe<real, D>;
+    template <class, class>
+    friend class PairCounter;
 
     /// What a cluster adds to the step's totals, reduced in the order of clusters.
     struct ClusterSummary {

@@ -10,19 +10,21 @@
 
 namespace doseki {
 
-/// A run: state, right-hand side and clock. Owned by Python, which says until when to go on.
-template <class real, int D>
+/// A run: state, right-hand side (the scheme) and clock. Owned by Python, which says until when to go on.
+template <class Scheme>
 class Simulation {
 public:
-    static constexpr int width = lanes<real>;
+    static constexpr int D = Scheme::dim;
+    static constexpr int width = lanes<typename Scheme::Real>;
 
     Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
         : options_(options), domain_(domain), neighbours_(domain),
           rates_(std::move(materials), options, domain.any_periodic()) {
         particles.has_strength = false;
+        particles.has_flow = Scheme::has_flow;
         for (const Material& material : rates_.materials()) {
             sound_speed_ = max(sound_speed_, material.c0);
-            particles.has_strength |= material.shear_modulus > 0.0;
+            particles.has_strength |= !Scheme::has_flow && material.shear_modulus > 0.0;
         }
     }
 
@@ -35,7 +37,7 @@ public:
             if (particles.is_free(p)) sources.ledger.initial += particles.mass[p];
         sources.feed(particles, time_);
         rebuild_neighbours();
-        update_rates(0.0);
+        first_rates();
     }
 
     /// Steps until `limit` (met exactly), or returns early at the first step at or past `pause`, or
@@ -61,7 +63,7 @@ public:
     /// with sums in another order.
     void renew_lists() {
         rebuild_neighbours();
-        update_rates(0.0);
+        first_rates();
     }
 
     double time() const { return time_; }
@@ -73,13 +75,13 @@ public:
     /// Particles stepped, summed over the steps.
     std::int64_t updates() const { return updates_; }
     const Neighbours<D>& neighbours() const { return neighbours_; }
-    const Rates<real, D>& rates() const { return rates_; }
+    const Scheme& rates() const { return rates_; }
     const Options<D>& options() const { return options_; }
     PhaseTimer& phases() { return rates_.phases(); }
     /// Margin of the lists over the smallest support radius, as a fraction of it.
     double skin() const { return skin_; }
 
-    Totals<D> totals() const { return doseki::totals(particles, rates_.materials(), options_.tension); }
+    Totals<D> totals() const { return doseki::totals(particles, rates_); }
 
     /// Bytes held per particle: state, records, lists.
     double bytes_per_particle() const;
@@ -92,6 +94,11 @@ private:
     void update_neighbours(double moved);
     void rebuild_neighbours();
     void update_rates(double half_dt);
+    /// Twice where a pass reads what the one before has left.
+    void first_rates() {
+        update_rates(0.0);
+        if (Scheme::has_flow) update_rates(0.0);
+    }
     void wrap_positions();
     void drop_removed();
     std::vector<double> support_radii() const;
@@ -106,7 +113,7 @@ private:
     Options<D> options_;
     Domain<D> domain_;
     Neighbours<D> neighbours_;
-    Rates<real, D> rates_;
+    Scheme rates_;
     double time_ = 0.0, last_dt_ = 0.0;
     double av_dissipation_ = 0.0;
     double moved_ = 0.0;           // since the lists were built
@@ -118,8 +125,8 @@ private:
     std::int64_t rebuild_step_ = 0;    // when the lists were built
 };
 
-template <class real, int D>
-void Simulation<real, D>::step(double limit) {
+template <class Scheme>
+void Simulation<Scheme>::step(double limit) {
     const double end = min(limit, sources.next_event() > time_ ? sources.next_event() : limit);
     const double dt = min(rates_.timestep(), end - time_), old_power = rates_.av_power();
     kick(0.5 * dt);
@@ -135,21 +142,21 @@ void Simulation<real, D>::step(double limit) {
     updates_ += static_cast<std::int64_t>(particles.size());
 }
 
-template <class real, int D>
-void Simulation<real, D>::kick(double half_dt) {
+template <class Scheme>
+void Simulation<Scheme>::kick(double half_dt) {
     const auto timing = phases().measure(Phase::integrate);
     doseki::kick(particles, half_dt);
 }
 
-template <class real, int D>
-double Simulation<real, D>::drift(double dt) {
+template <class Scheme>
+double Simulation<Scheme>::drift(double dt) {
     const auto timing = phases().measure(Phase::integrate);
     return doseki::drift(particles, dt);
 }
 
 /// From what the lists that end now have lasted.
-template <class real, int D>
-double Simulation<real, D>::cheapest_skin(double smallest_support) const {
+template <class Scheme>
+double Simulation<Scheme>::cheapest_skin(double smallest_support) const {
     const std::int64_t lasted = steps_ - rebuild_step_;
     if (!options_.auto_skin || skin_ == 0.0) return options_.skin;
     if (lasted == 0) return skin_;
@@ -157,15 +164,15 @@ double Simulation<real, D>::cheapest_skin(double smallest_support) const {
 }
 
 /// Lists hold as long as no two particles can have come nearer by more than the skin.
-template <class real, int D>
-void Simulation<real, D>::update_neighbours(double moved) {
+template <class Scheme>
+void Simulation<Scheme>::update_neighbours(double moved) {
     moved_ += moved;
     const bool changed = sources.feed(particles, time_);
     if (changed || !(2.0 * moved_ < skin_width_)) rebuild_neighbours();
 }
 
-template <class real, int D>
-void Simulation<real, D>::rebuild_neighbours() {
+template <class Scheme>
+void Simulation<Scheme>::rebuild_neighbours() {
     check_positions();
     wrap_positions();
     sources.drain(particles);
@@ -178,7 +185,7 @@ void Simulation<real, D>::rebuild_neighbours() {
     const double least_support = *std::min_element(support.begin(), support.end());
     skin_ = cheapest_skin(least_support);
     skin_width_ = skin_ * least_support;
-    least_timestep_ = smallest_timestep * options_.cflnumber * least_support / (WendlandC6<D>::support * sound_speed_);
+    least_timestep_ = smallest_timestep * options_.cflnumber * least_support / (rates_.kernel_support() * sound_speed_);
     {
         const auto timing = phases().measure(Phase::sort);
         particles.reorder(neighbours_.sort(particles.position, support, fixed));
@@ -190,8 +197,8 @@ void Simulation<real, D>::rebuild_neighbours() {
     rebuild_step_ = steps_;
 }
 
-template <class real, int D>
-void Simulation<real, D>::drop_removed() {
+template <class Scheme>
+void Simulation<Scheme>::drop_removed() {
     std::vector<std::uint32_t> kept;
     for (std::uint32_t p = 0; p < particles.size(); ++p)
         if (!sources.removed[p]) kept.push_back(p);
@@ -199,8 +206,8 @@ void Simulation<real, D>::drop_removed() {
     sources.removed.clear();
 }
 
-template <class real, int D>
-std::vector<double> Simulation<real, D>::support_radii() const {
+template <class Scheme>
+std::vector<double> Simulation<Scheme>::support_radii() const {
     std::vector<double> support(particles.size());
     const bool grows = options_.h_mode == SmoothingLengthMode::eq10;
     for (std::size_t p = 0; p < support.size(); ++p) {
@@ -209,13 +216,13 @@ std::vector<double> Simulation<real, D>::support_radii() const {
             const double rho0 = rates_.materials()[particles.tag[p].material].rho0;
             h = max(h, 1.25 * options_.eta * std::pow(particles.mass[p] / rho0, 1.0 / D));
         }
-        support[p] = WendlandC6<D>::support * h;
+        support[p] = rates_.kernel_support() * h;
     }
     return support;
 }
 
-template <class real, int D>
-void Simulation<real, D>::wrap_positions() {
+template <class Scheme>
+void Simulation<Scheme>::wrap_positions() {
     for (int a = 0; a < D; ++a) {
         if (!domain_.periodic[a]) continue;
         const double length = domain_.length(a);
@@ -223,8 +230,8 @@ void Simulation<real, D>::wrap_positions() {
     }
 }
 
-template <class real, int D>
-void Simulation<real, D>::update_rates(double half_dt) {
+template <class Scheme>
+void Simulation<Scheme>::update_rates(double half_dt) {
     rates_.compute(particles, neighbours_, half_dt, moved_ == 0.0);
     if (rates_.faulty_particle() >= 0) {
         const auto p = static_cast<std::size_t>(rates_.faulty_particle());
@@ -236,8 +243,8 @@ void Simulation<real, D>::update_rates(double half_dt) {
 }
 
 /// No particle may be lost: outside the world, or a whole box away from a domain that is given.
-template <class real, int D>
-void Simulation<real, D>::check_positions() const {
+template <class Scheme>
+void Simulation<Scheme>::check_positions() const {
     for (std::size_t p = 0; p < particles.size(); ++p)
         for (int a = 0; a < D; ++a) {
             const double x = particles.position[p][a], length = domain_.length(a);
@@ -247,8 +254,8 @@ void Simulation<real, D>::check_positions() const {
         }
 }
 
-template <class real, int D>
-std::size_t Simulation<real, D>::fastest_particle() const {
+template <class Scheme>
+std::size_t Simulation<Scheme>::fastest_particle() const {
     std::size_t fastest = 0;
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (dot(particles.velocity[p], particles.velocity[p]) > dot(particles.velocity[fastest], particles.velocity[fastest]))
@@ -256,8 +263,8 @@ std::size_t Simulation<real, D>::fastest_particle() const {
     return fastest;
 }
 
-template <class real, int D>
-void Simulation<real, D>::report_failure(const char* kind, std::size_t p) const {
+template <class Scheme>
+void Simulation<Scheme>::report_failure(const char* kind, std::size_t p) const {
     const Tag& tag = particles.tag[p];
     const Material& material = rates_.materials()[tag.material];
     auto text = [](double value) {
@@ -275,8 +282,8 @@ void Simulation<real, D>::report_failure(const char* kind, std::size_t p) const 
                          kind, tag.id);
 }
 
-template <class real, int D>
-double Simulation<real, D>::bytes_per_particle() const {
+template <class Scheme>
+double Simulation<Scheme>::bytes_per_particle() const {
     std::size_t bytes = neighbours_.bytes() + rates_.bytes();
     auto& fields = const_cast<Particles<D>&>(particles);
     fields.for_each_field([&bytes](const auto& field) { bytes += field.capacity() * sizeof(field[0]); });

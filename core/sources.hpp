@@ -127,6 +127,7 @@ void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std
         particles.density[p] = inflow.density;
         particles.density_rate[p] = 0.0;
         if (particles.has_strength) particles.deviatoric_stress[p] = particles.deviatoric_stress_rate[p] = {};
+        if (particles.has_flow) particles.flow.surface[p] = 1.0;
         particles.mass[p] = inflow.mass;
         particles.smoothing_length[p] = inflow.smoothing_length;
         particles.tag[p] = {next_id++, inflow.body, inflow.material, Motion::driven};

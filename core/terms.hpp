@@ -41,6 +41,7 @@ struct VelocityGradientTerm {
 
     auto load(std::uint32_t first) const { return load_motion<real, D>(motion, first); }
     DOSEKI_FN auto load_one(std::uint32_t j) const { return broadcast_motion(motion[j]); }
+    DOSEKI_FN auto load_fixed(std::uint32_t j) const { return load_one(j); }
 
     template <class T>
     DOSEKI_FN void add(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i,
@@ -96,6 +97,7 @@ struct MomentumTerm {
     }
 
     DOSEKI_FN auto load_one(std::uint32_t j) const { return stress_point<Pack<real>>(motion[j], stress[j]); }
+    DOSEKI_FN auto load_fixed(std::uint32_t j) const { return load_one(j); }
 
     template <class T>
     DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {

@@ -11,6 +11,8 @@ from .bodies import build_bodies
 from .core_modules import available_instruction_sets, load_core
 from .inflows import InflowSection, build_inflows
 from .scenario import Scenario
+from .schemes import RESOLVED
+from .walls import wall_geometry
 
 __all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 
@@ -18,13 +20,14 @@ __all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 FIRST_SKIN = 0.05
 
 
-def core_options(scenario: Scenario) -> dict[str, Any]:
+def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """The parameters of the scheme, as the core reads them."""
     names = "eta alpha cflnumber cfl_force fixed_limits_dt balsara sym_grad tension h_mode".split()
     axes = "xyz"[: scenario.dim]
     zeros = [0.0] * scenario.dim
     low, high = scenario.domain_min, scenario.domain_max
-    return {name: getattr(scenario, name) for name in names} | {
+    flow = {"flow": _flow_options(scenario, body_names)} if scenario.scheme == RESOLVED else {}
+    return flow | {name: getattr(scenario, name) for name in names} | {
         "gravity": list(scenario.gravity),
         "skin": FIRST_SKIN if scenario.skin == "auto" else scenario.skin,
         "auto_skin": scenario.skin == "auto",
@@ -32,6 +35,19 @@ def core_options(scenario: Scenario) -> dict[str, Any]:
         "domain_min": zeros if low is None else list(low),
         "domain_max": zeros if high is None else list(high),
     }
+
+
+def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
+    """What only the resolved scheme has."""
+    names = "dp kernel viscosity shifting eos turbulence smagorinsky".split()
+    return {name: getattr(scenario, name) for name in names} | {
+        "walls": [_wall_condition(scenario.body.get(name)) for name in body_names]
+    }
+
+
+def _wall_condition(body: Any) -> dict[str, Any]:
+    wall = getattr(body, "wall", "no_slip")
+    return {"stick": wall == "no_slip", "ks": body.ks if wall == "rough" else 0.0}
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
@@ -75,8 +91,9 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
 def empty_simulation(scenario: Scenario, body_names: list[str], isa: str | None = None) -> Any:
     """A core simulation of `scenario` without particles, to be filled or restored."""
     core = load_core(isa)
-    kind = getattr(core, f"Simulation{scenario.dim}{scenario.precision.capitalize()}")
-    simulation = kind(core_materials(scenario), core_options(scenario))
+    scheme = "Resolved" if scenario.scheme == RESOLVED else ""
+    kind = getattr(core, f"{scheme}Simulation{scenario.dim}{scenario.precision.capitalize()}")
+    simulation = kind(core_materials(scenario), core_options(scenario, body_names))
     for section in build_inflows(scenario, body_names):
         simulation.add_inflow(_inflow_table(section))
     for outflow in scenario.outflow.values():
@@ -91,6 +108,11 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, 
     simulation.add_particles(
         **{name: np.ascontiguousarray(v) for name, v in vars(particles).items()}
     )
+    if scenario.scheme == RESOLVED:
+        normal, depth = wall_geometry(scenario, particles, body_names)
+        simulation.set_walls(
+            normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth)
+        )
     return simulation, body_names
 
 

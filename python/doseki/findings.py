@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from .particles import DRIVEN, FIXED, FREE, SUPPORT
+from .particles import DRIVEN, FIXED, FREE
 from .scenario import Scenario
 from .schema import Box
 
@@ -109,7 +109,7 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[str]:
     """A wall thinner than the support lets particles feel its end, or pass it."""
-    needed = math.ceil(SUPPORT * scenario.eta - 0.5 - 1e-9)
+    needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
     for body, name in names.items():
         of_it = (state["body"] == body) & (state["motion"] == FIXED)
         if not of_it.any() or not isinstance(scenario.body.get(name), Box):

@@ -14,12 +14,12 @@ from pydantic import PrivateAttr, ValidationError, model_validator
 from .materials import Material, MaterialError, complete_materials
 from .overrides import apply_overrides
 from .particle_file import ParticleTable, read_particles
-from .particles import SUPPORT
 from .resolve import resolve_table
 from .scenario_checks import check_scenario
 from .scenario_files import find_scenario, merged_table, read_with_bases, scenario_folder
 from .schema import SECTIONS, ParticleFile, ScenarioTable
 from .schema_errors import to_user_error
+from .schemes import KERNEL_SUPPORT, with_scheme_defaults
 from .toml_source import Where, read_toml
 from .toml_writer import to_toml
 
@@ -79,12 +79,12 @@ class Scenario(ScenarioTable):
 
     @property
     def support(self) -> float:
-        """How far a particle of spacing dp acts: H h = 2.5 eta dp."""
-        return SUPPORT * self.eta * self.dp
+        """How far a particle of spacing dp acts, m: H h = 2.5 eta dp (Wendland C2: 2 eta dp)."""
+        return KERNEL_SUPPORT[self.kernel] * self.eta * self.dp
 
     def effective_toml(self) -> str:
         """The scenario as TOML that `load_scenario` reads back to the same run."""
-        implied = {"xi_height", "slope"}  # xi and gravity say the same
+        implied = {"xi_height", "speed_max", "slope"}  # xi and gravity say the same
         table = self.model_dump(by_alias=True, exclude_none=True, exclude=implied | set(SECTIONS))
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
         given["material"] = {name: asdict(self.materials[name]) for name in self.material_names}
@@ -114,7 +114,7 @@ def load_scenario(name_or_path: str, overrides: Sequence[str] = ()) -> Scenario:
     """Read, override, evaluate and check a scenario; raises UserError with one clear sentence."""
     sources = read_with_bases(find_scenario(str(name_or_path)))
     where = Where(sources)
-    table = apply_overrides(merged_table(sources, where), overrides, where)
+    table = with_scheme_defaults(apply_overrides(merged_table(sources, where), overrides, where))
     table, constants = resolve_table(table, where)
     try:
         scenario = Scenario.model_validate(table, context={"dim": table["dim"]})
@@ -164,9 +164,20 @@ def _materials_in_use(scenario: Scenario) -> list[str]:
 
 
 def _reduction_factor(scenario: Scenario) -> float:
-    """xi = 10 sqrt(2 g H)/min c0 over the materials in use (eq. 19); 1 without a height."""
-    if scenario.xi_height is None:
-        return 1.0
+    """xi = 10 sqrt(2 g H)/min c0 over the materials in use (eq. 19); 1 without a height.
+
+    With `speed_max` in place of a height it is 10 speed_max/min c0.
+    """
     g = float(np.linalg.norm(scenario.gravity)) or scenario.g
-    slowest = min(scenario.materials[name].speedsound for name in scenario.material_names)
-    return 10 * math.sqrt(2 * g * scenario.xi_height) / slowest
+    speed = scenario.speed_max
+    if scenario.xi_height is not None:
+        speed = math.sqrt(2 * g * scenario.xi_height)
+    if speed is None:
+        return 1.0
+    return 10 * speed / min(scenario.materials[name].speedsound for name in _elastic(scenario))
+
+
+def _elastic(scenario: Scenario) -> list[str]:
+    """Materials in use whose sound speed counts: in the resolved scheme walls have none."""
+    fluids = [n for n in scenario.material_names if scenario.materials[n].law == "fluid"]
+    return fluids if scenario.scheme == "resolved" and fluids else scenario.material_names

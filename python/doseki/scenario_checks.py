@@ -23,6 +23,11 @@ def check_scenario(scenario: Scenario) -> None:
     _check_colours(scenario)
     _check_outputs(scenario)
     _check_periodic(scenario)
+    if scenario.scheme == "resolved":
+        _check_resolved(scenario)
+    elif scenario.kernel != "wendland_c6":
+        message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
+        raise scenario.where.error(("kernel",), message)
 
 
 def _check_names(scenario: Scenario) -> None:
@@ -95,3 +100,26 @@ def _check_periodic(scenario: Scenario) -> None:
             raise scenario.where.error(("periodic",), f'periodic: a 2-D run has no axis "{axis}"')
         if scenario.domain_min is None or scenario.domain_max is None:
             raise scenario.where.error(("periodic",), "periodic needs domain_min and domain_max")
+
+
+def _check_resolved(scenario: Scenario) -> None:
+    """What the resolved scheme needs or cannot do."""
+    if scenario.precision != "double":
+        raise scenario.where.error(("precision",), 'precision: the resolved scheme runs in "double"')
+    if scenario.xi is None and scenario.xi_height is None and scenario.speed_max is None:
+        raise scenario.where.error(
+            ("scheme",),
+            "the resolved scheme needs the highest speed to expect: give speed_max (m/s), "
+            "xi_height (m) or xi",
+        )
+    for name, body in scenario.body.items():
+        keys = ("body", name)
+        law = scenario.materials[body.material].law if body.material else "fluid"
+        if not body.fixed and law != "fluid":
+            raise scenario.where.error(
+                (*keys, "material"),
+                f"body.{name}: the resolved scheme moves fluids only; {body.material} is a solid: "
+                "set fixed = true, or use the scheme ueta2022",
+            )
+        if getattr(body, "wall", None) == "rough" and body.ks is None:
+            raise scenario.where.error((*keys, "ks"), f"body.{name}: a rough wall needs ks (m)")

@@ -96,6 +96,13 @@ class ShapedBody(Part):
     velocity: VelocityField | None = Field(
         None, description="initial velocity, m/s; expressions may use x, y, z"
     )
+    wall: Literal["no_slip", "free_slip", "rough"] = Field(
+        "no_slip", description="fixed, resolved scheme: how fluid meets it"
+    )
+    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
+    normal: Vector | None = Field(
+        None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
+    )
 
 
 class LatticeBody(ShapedBody):
@@ -249,7 +256,22 @@ class ScenarioTable(Table):
     time_max: Positive = Field(description="end of the run, s")
     time_out: Positive = Field(description="time between snapshots, s")
     time_history: Positive | None = Field(None, description="s between history rows")
-    scheme: Literal["ueta2022"] = Field("ueta2022", description="the list of terms")
+    scheme: Literal["ueta2022", "resolved"] = Field("ueta2022", description="the list of terms")
+    kernel: Literal["wendland_c2", "wendland_c6"] = Field(
+        "wendland_c6", description="W; the resolved scheme has wendland_c2 by default"
+    )
+    eos: Literal["linear", "tait"] = Field("linear", description="resolved: law of pressure")
+    viscosity: Literal["morris", "monaghan_cleary"] = Field(
+        "morris", description="resolved: form of the viscous term; the second keeps angular momentum"
+    )
+    turbulence: Literal["none", "smagorinsky", "mixing_length"] = Field(
+        "none", description="resolved: eddy viscosity"
+    )
+    smagorinsky: NonNegative = Field(0.12, description="resolved: C_s of the eddy viscosity")
+    shifting: bool = Field(True, description="resolved: keep particles evenly spread")
+    speed_max: Positive | None = Field(
+        None, description="highest speed expected, m/s: sound speed 10 times that; excludes xi"
+    )
     precision: Literal["double", "float"] = Field("double", description="of the pair arithmetic")
     gravity: Vector | None = Field(None, description="m/s2; excludes slope")
     slope: float | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
@@ -285,7 +307,12 @@ class ScenarioTable(Table):
 
 TOP_LEVEL_KEYS = {field.alias or name for name, field in ScenarioTable.model_fields.items()}
 ALIASES = {"hdp": "eta"}  # names people already type
-EXCLUSIVE = (("gravity", "slope"), ("xi", "xi_height"))
+EXCLUSIVE = (
+    ("gravity", "slope"),
+    ("xi", "xi_height"),
+    ("xi", "speed_max"),
+    ("xi_height", "speed_max"),
+)
 SECTIONS = {
     "parameters": Parameter,
     "material": MaterialTable,

@@ -1,0 +1,389 @@
+#pragma once
+// Python's view of a simulation: one class per scheme, dimension and precision.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <omp.h>
+
+#include <numeric>
+
+#include "checkpoint.hpp"
+#include "pair_probe.hpp"
+#include "simulation.hpp"
+
+namespace doseki {
+
+namespace nb = nanobind;
+
+template <class T>
+using Array = nb::ndarray<nb::numpy, T>;
+template <class T>
+using Input = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
+
+/// New numpy array of n rows of the given shape.
+template <class T>
+struct Output {
+    explicit Output(std::vector<std::size_t> shape) : shape(std::move(shape)) {
+        data = new T[std::accumulate(this->shape.begin(), this->shape.end(), std::size_t{1}, std::multiplies<>())]();
+    }
+    Array<T> release() {
+        nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+        return Array<T>(data, shape.size(), shape.data(), owner);
+    }
+    std::vector<std::size_t> shape;
+    T* data;
+};
+
+template <class T>
+T get(const nb::dict& dict, const char* key) {
+    return nb::cast<T>(dict[key]);
+}
+
+template <class T>
+T get(const nb::dict& dict, const char* key, T otherwise) {
+    return dict.contains(key) ? get<T>(dict, key) : otherwise;
+}
+
+template <int D>
+Vec<double, D> vector(const nb::handle& sequence) {
+    const auto values = nb::cast<std::vector<double>>(sequence);
+    if (values.size() != D) throw nb::value_error("vector of the wrong length");
+    Vec<double, D> v;
+    for (int a = 0; a < D; ++a) v[a] = values[static_cast<std::size_t>(a)];
+    return v;
+}
+
+inline Material material(const nb::dict& d) {
+    return {get<std::string>(d, "name"), get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid,
+            get<double>(d, "rho0"), get<double>(d, "speedsound"), get<double>(d, "shear_modulus"), get<double>(d, "nu")};
+}
+
+inline FlowOptions flow_options(const nb::dict& d) {
+    FlowOptions o;
+    o.dp = get<double>(d, "dp");
+    o.wide_kernel = get<std::string>(d, "kernel") == "wendland_c6";
+    o.monaghan_cleary = get<std::string>(d, "viscosity") == "monaghan_cleary";
+    o.shifting = get<bool>(d, "shifting");
+    o.pressure_law = get<std::string>(d, "eos") == "tait" ? PressureLaw::tait : PressureLaw::linear;
+    const auto turbulence = get<std::string>(d, "turbulence");
+    o.turbulence = turbulence == "smagorinsky" ? Turbulence::smagorinsky
+                   : turbulence == "mixing_length" ? Turbulence::mixing_length : Turbulence::none;
+    o.smagorinsky = get<double>(d, "smagorinsky");
+    for (const auto& wall : nb::cast<std::vector<nb::dict>>(d["walls"]))
+        o.walls.push_back({get<bool>(wall, "stick"), get<double>(wall, "ks")});
+    return o;
+}
+
+template <int D>
+Options<D> options(const nb::dict& d) {
+    Options<D> o;
+    o.gravity = vector<D>(d["gravity"]);
+    o.eta = get<double>(d, "eta");
+    o.alpha = get<double>(d, "alpha");
+    o.cflnumber = get<double>(d, "cflnumber");
+    o.cfl_force = get<double>(d, "cfl_force");
+    o.skin = get<double>(d, "skin");
+    o.auto_skin = get(d, "auto_skin", false);
+    o.fixed_limits_dt = get(d, "fixed_limits_dt", true);
+    o.balsara = get<bool>(d, "balsara");
+    o.sym_grad = get<bool>(d, "sym_grad");
+    const auto tension = get<std::string>(d, "tension");
+    o.tension = tension == "free" ? Tension::free : tension == "clamp_all" ? Tension::clamp_all : Tension::clamp_fluid;
+    o.h_mode = get<std::string>(d, "h_mode") == "eq10" ? SmoothingLengthMode::eq10 : SmoothingLengthMode::constant;
+    if (d.contains("flow")) o.flow = flow_options(nb::cast<nb::dict>(d["flow"]));
+    return o;
+}
+
+template <int D>
+Domain<D> domain(const nb::dict& d) {
+    Domain<D> box;
+    box.low = vector<D>(d["domain_min"]);
+    box.high = vector<D>(d["domain_max"]);
+    const auto periodic = nb::cast<std::vector<bool>>(d["periodic"]);
+    for (int a = 0; a < D; ++a) box.periodic[a] = periodic.at(static_cast<std::size_t>(a));
+    return box;
+}
+
+template <class Scheme>
+class Bound {
+public:
+    using Sim = Simulation<Scheme>;
+    static constexpr int D = Scheme::dim;
+
+    Bound(const std::vector<nb::dict>& materials, const nb::dict& o)
+        : sim_(make_materials(materials), options<D>(o), domain<D>(o)) {}
+
+    void add_particles(Input<double> position, Input<double> velocity, Input<double> mass, Input<double> density,
+                       Input<double> smoothing_length, Input<std::int32_t> material, Input<std::int32_t> body,
+                       Input<std::int32_t> motion, Input<std::int64_t> id) {
+        const std::size_t first = sim_.particles.size(), n = mass.size();
+        if (position.size() != n * D || velocity.size() != n * D || id.size() != n)
+            throw nb::value_error("particle arrays of unequal length");
+        auto& particles = sim_.particles;
+        particles.resize(first + n);
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = first + k;
+            for (int a = 0; a < D; ++a) {
+                particles.position[p][a] = position.data()[k * D + a];
+                particles.velocity[p][a] = velocity.data()[k * D + a];
+            }
+            particles.mass[p] = mass.data()[k];
+            particles.density[p] = density.data()[k];
+            particles.smoothing_length[p] = smoothing_length.data()[k];
+            particles.tag[p] = {id.data()[k], body.data()[k], static_cast<std::int16_t>(material.data()[k]),
+                                static_cast<Motion>(motion.data()[k])};
+            sim_.sources.next_id = std::max(sim_.sources.next_id, id.data()[k] + 1);
+        }
+    }
+
+    /// Normals (n, D) and depths (n) of the walls, in the order in which the particles were added.
+    void set_walls(Input<double> normal, Input<double> depth) {
+        auto& particles = sim_.particles;
+        if (normal.size() != particles.size() * D || depth.size() != particles.size())
+            throw nb::value_error("wall arrays of the wrong length");
+        if (!particles.has_flow) throw nb::value_error("the scheme has no walls");
+        for (std::size_t p = 0; p < particles.size(); ++p) {
+            for (int a = 0; a < D; ++a) particles.flow.normal[p][a] = normal.data()[p * D + a];
+            particles.flow.wall_depth[p] = depth.data()[p];
+        }
+    }
+
+    void add_inflow(const nb::dict& d) {
+        Inflow<D> inflow;
+        for (const auto& row : nb::cast<std::vector<std::vector<double>>>(d["layer"])) {
+            Vec<double, D> x;
+            for (int a = 0; a < D; ++a) x[a] = row.at(static_cast<std::size_t>(a));
+            inflow.layer.push_back(x);
+        }
+        inflow.direction = vector<D>(d["direction"]);
+        inflow.speed = get<double>(d, "speed");
+        inflow.spacing = get<double>(d, "spacing");
+        inflow.buffer_layers = get<int>(d, "buffer_layers");
+        inflow.jitter = get<double>(d, "jitter");
+        inflow.start = get<double>(d, "start");
+        inflow.stop = get<double>(d, "stop");
+        inflow.mass = get<double>(d, "mass");
+        inflow.density = get<double>(d, "density");
+        inflow.smoothing_length = get<double>(d, "smoothing_length");
+        inflow.material = static_cast<std::int16_t>(get<int>(d, "material"));
+        inflow.body = get<std::int32_t>(d, "body");
+        sim_.sources.inflows.push_back(std::move(inflow));
+    }
+
+    void add_outflow(const std::vector<double>& low, const std::vector<double>& high) {
+        sim_.sources.outflows.push_back({vector<D>(nb::cast(low)), vector<D>(nb::cast(high))});
+    }
+
+    nb::dict state() const {
+        const auto& particles = sim_.particles;
+        const std::size_t n = particles.size();
+        const auto order = id_order();
+        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}), h({n}), c({n}),
+            deviator({n, 3, 3}), stress({n, 3, 3});
+        Output<std::int32_t> material({n}), body({n}), motion({n});
+        Output<std::int64_t> id({n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = order[k];
+            const Tag& tag = particles.tag[p];
+            for (int a = 0; a < D; ++a) {
+                position.data[k * D + a] = particles.position[p][a];
+                velocity.data[k * D + a] = particles.velocity[p][a];
+            }
+            const auto eos = sim_.rates().thermodynamics(particles, p);
+            mass.data[k] = particles.mass[p], density.data[k] = particles.density[p];
+            pressure.data[k] = eos.pressure, c.data[k] = eos.sound_speed;
+            h.data[k] = particles.smoothing_length[p];
+            material.data[k] = tag.material, body.data[k] = tag.body;
+            motion.data[k] = static_cast<std::int32_t>(tag.motion), id.data[k] = tag.id;
+            fill_tensor(deviator.data + 9 * k, 0.0, particles.stress(p));
+            fill_tensor(stress.data + 9 * k, eos.pressure, sim_.rates().deviator(particles, p));
+        }
+        nb::dict d;
+        d["position"] = position.release(), d["velocity"] = velocity.release();
+        d["mass"] = mass.release(), d["density"] = density.release(), d["pressure"] = pressure.release();
+        d["sound_speed"] = c.release(), d["smoothing_length"] = h.release();
+        d["deviatoric_stress"] = deviator.release(), d["stress"] = stress.release();
+        d["material"] = material.release(), d["body"] = body.release(), d["motion"] = motion.release();
+        d["id"] = id.release();
+        if (particles.has_flow) add_flow_state(d, order);
+        return d;
+    }
+
+    nb::dict rates() const {
+        const auto& particles = sim_.particles;
+        const std::size_t n = particles.size();
+        const auto order = id_order();
+        Output<double> acceleration({n, D}), density_rate({n}), stress_rate({n, 3, 3}), balsara({n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = order[k];
+            for (int a = 0; a < D; ++a) acceleration.data[k * D + a] = particles.acceleration[p][a];
+            density_rate.data[k] = particles.density_rate[p];
+            fill_tensor(stress_rate.data + 9 * k, 0.0, particles.stress_rate(p));
+            if constexpr (!Scheme::has_flow) balsara.data[k] = static_cast<double>(sim_.rates().stress_records()[p].balsara);
+        }
+        nb::dict d;
+        d["acceleration"] = acceleration.release(), d["density_rate"] = density_rate.release();
+        d["deviatoric_stress_rate"] = stress_rate.release(), d["balsara"] = balsara.release();
+        d["timestep"] = sim_.next_timestep(), d["av_power"] = sim_.rates().av_power();
+        return d;
+    }
+
+    nb::dict totals() const {
+        const auto sum = sim_.totals();
+        const Ledger& ledger = sim_.sources.ledger;
+        nb::dict d;
+        d["mass"] = sum.mass;
+        d["momentum"] = std::vector<double>(sum.momentum.component.begin(), sum.momentum.component.end());
+        d["kinetic_energy"] = sum.kinetic_energy, d["bulk_energy"] = sum.bulk_energy;
+        d["shear_energy"] = sum.shear_energy, d["av_dissipation"] = sim_.av_dissipation();
+        d["mass_initial"] = ledger.initial, d["mass_asked"] = ledger.asked;
+        d["mass_entered"] = ledger.entered, d["mass_left"] = ledger.left;
+        d["count"] = sum.count;
+        return d;
+    }
+
+    nb::dict checkpoint() {
+        SavingArchive archive;
+        int width = Sim::width;
+        archive("lanes", width);
+        sim_.serialise(archive);
+        return archive.arrays;
+    }
+
+    /// False where lists had to be made anew, because this module has clusters of another width.
+    bool restore(const nb::dict& arrays) {
+        LoadingArchive archive(arrays);
+        int width = 0;
+        archive("lanes", width);
+        sim_.serialise(archive);
+        if (width == Sim::width) return true;
+        sim_.renew_lists();
+        return false;
+    }
+
+    void start() { guarded([&] { sim_.start(); }); }
+    void advance(double limit, double pause, std::int64_t max_steps) {
+        guarded([&] { sim_.advance(limit, pause, max_steps); });
+    }
+    /// Kind and particle of the failure that ended the last call; "" and -1 without one.
+    std::pair<std::string, std::int64_t> failure() const { return failure_; }
+    double time() const { return sim_.time(); }
+    double timestep() const { return sim_.last_timestep(); }
+    std::int64_t steps() const { return sim_.steps(); }
+    std::int64_t rebuilds() const { return sim_.rebuilds(); }
+    std::int64_t updates() const { return sim_.updates(); }
+    std::size_t size() const { return sim_.particles.size(); }
+    double skin() const { return sim_.skin(); }
+    double bytes_per_particle() const { return sim_.bytes_per_particle(); }
+    double entries_per_particle() const { return double(sim_.neighbours().entries()) / double(size()); }
+
+    void time_phases(bool on) { sim_.phases().restart(on); }
+    nb::dict phase_seconds() {
+        const auto seconds = sim_.phases().seconds(omp_get_max_threads());
+        nb::dict d;
+        for (std::size_t k = 0; k < phase_names.size(); ++k) d[phase_names[k]] = seconds[k];
+        return d;
+    }
+    double interacting_pairs() const { return PairCounter(sim_.rates(), sim_.neighbours()).interacting_pairs(); }
+    double bare_pair_rate(double seconds) const {
+        if constexpr (Scheme::has_flow) throw nb::value_error("only the ueta2022 scheme has a bare rate");
+        else return PairProbe(sim_.rates(), sim_.neighbours()).bare_rate(seconds);
+    }
+
+private:
+    /// Forces on walls, and the measure of the free surface, by id.
+    void add_flow_state(nb::dict& d, const std::vector<std::size_t>& order) const {
+        const auto& flow = sim_.particles.flow;
+        Output<double> force({order.size(), D}), surface({order.size()}), normal({order.size(), D}),
+            gradient({order.size(), D, D});
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            const std::size_t p = order[k];
+            surface.data[k] = flow.surface[p];
+            for (int a = 0; a < D; ++a) {
+                force.data[k * D + a] = flow.wall_force[p][a], normal.data[k * D + a] = flow.normal[p][a];
+                for (int b = 0; b < D; ++b) gradient.data[(k * D + a) * D + b] = flow.velocity_gradient[p](a, b);
+            }
+        }
+        d["force"] = force.release(), d["surface"] = surface.release(), d["normal"] = normal.release();
+        d["velocity_gradient"] = gradient.release();
+    }
+
+    /// Python's exceptions carry only a text; what else a failure says is kept here.
+    template <class F>
+    void guarded(F&& work) {
+        failure_ = {"", -1};
+        try {
+            work();
+        } catch (const PhysicsFailure& failure) {
+            failure_ = {failure.kind, failure.particle};
+            throw;
+        }
+    }
+
+    static std::vector<Material> make_materials(const std::vector<nb::dict>& dicts) {
+        std::vector<Material> materials;
+        for (const auto& d : dicts) materials.push_back(material(d));
+        return materials;
+    }
+
+    std::vector<std::size_t> id_order() const {
+        const auto& tag = sim_.particles.tag;
+        std::vector<std::size_t> order(tag.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return tag[p].id < tag[q].id; });
+        return order;
+    }
+
+    static void fill_tensor(double* out, double p, const Deviator<double, D>& S) {
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) out[3 * a + b] = S(std::min(a, b), std::max(a, b));
+        out[8] = S.zz();
+        for (int a = 0; a < 3; ++a) out[4 * a] -= p;
+    }
+
+    Sim sim_;
+    std::pair<std::string, std::int64_t> failure_{"", -1};
+};
+
+template <class Scheme>
+void bind_simulation(nb::module_& m, const char* name) {
+    using B = Bound<Scheme>;
+    const auto unlocked = nb::call_guard<nb::gil_scoped_release>();
+    nb::class_<B>(m, name)
+        .def(nb::init<const std::vector<nb::dict>&, const nb::dict&>(), nb::arg("materials"), nb::arg("options"))
+        .def("add_particles", &B::add_particles, nb::kw_only(), nb::arg("position"), nb::arg("velocity"),
+             nb::arg("mass"), nb::arg("density"), nb::arg("smoothing_length"), nb::arg("material"), nb::arg("body"),
+             nb::arg("motion"), nb::arg("id"))
+        .def("set_walls", &B::set_walls, nb::kw_only(), nb::arg("normal"), nb::arg("depth"))
+        .def("add_inflow", &B::add_inflow)
+        .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))
+        .def("start", &B::start, unlocked)
+        .def("advance", &B::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"), unlocked)
+        .def("checkpoint", &B::checkpoint, "The whole state as arrays in storage order.")
+        .def("restore", &B::restore, nb::arg("arrays"),
+             "Go on from what checkpoint() gave; false where that changes the order of sums.")
+        .def_prop_ro("failure", &B::failure)
+        .def("time_phases", &B::time_phases, nb::arg("on"), "Start timing the phases of steps from zero, or stop.")
+        .def("phase_seconds", &B::phase_seconds)
+        .def("interacting_pairs", &B::interacting_pairs, unlocked,
+             "Ordered pairs of different particles within support; fixed-fixed ones not counted.")
+        .def("bare_pair_rate", &B::bare_pair_rate, nb::arg("seconds"), unlocked,
+             "Such pairs per second in both sums of one thread over clusters that stay in cache.")
+        .def_prop_ro("skin", &B::skin)
+        .def("state", &B::state)
+        .def("rates", &B::rates)
+        .def("totals", &B::totals)
+        .def_prop_ro("time", &B::time)
+        .def_prop_ro("timestep", &B::timestep)
+        .def_prop_ro("steps", &B::steps)
+        .def_prop_ro("rebuilds", &B::rebuilds)
+        .def_prop_ro("updates", &B::updates)
+        .def_prop_ro("bytes_per_particle", &B::bytes_per_particle)
+        .def_prop_ro("entries_per_particle", &B::entries_per_particle)
+        .def("__len__", &B::size);
+}
+
+}  // namespace doseki

@@ -1,0 +1,45 @@
+#pragma once
+#include <cmath>
+
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// How a pair shares momentum: factors of v_ij and of (v_ij.n) n. Morris, Fox & Zhu (J. Comput. Phys.
+/// 136, 1997) has (1, 0); Monaghan's form (Rep. Prog. Phys. 68, 2005), which keeps angular momentum,
+/// has (0, D + 2).
+template <class T>
+struct ViscousForm {
+    T along_jump, along_pair;
+};
+
+/// What mu F multiplies: `v_dot_r` = v_ij.r_ij.
+template <class T, int D>
+DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D>& v_ij, const T& v_dot_r, const T& r,
+                                      const Vec<T, D>& r_ij) {
+    const T along = form.along_pair * v_dot_r / (r * r);
+    return form.along_jump * v_ij + along * r_ij;
+}
+
+/// |D| = sqrt(2 D:D) of the strain rate, the symmetric part of L [1/s].
+template <int D>
+double strain_rate(const Mat<double, D>& L) {
+    double sum = 0.0;
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) {
+            const double d = 0.5 * (L(a, b) + L(b, a));
+            sum += 2.0 * d * d;
+        }
+    return std::sqrt(sum);
+}
+
+/// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress
+/// rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile. At least
+/// `least`; z: height over the bed, d: depth.
+inline double mixing_length(double z, double d, double least) {
+    constexpr double von_karman = 0.40;
+    const double inside = d > 0.0 ? std::clamp(z / d, 0.0, 1.0) : 0.0;
+    return std::max(least, von_karman * inside * d * std::sqrt(1.0 - inside));
+}
+
+}  // namespace doseki

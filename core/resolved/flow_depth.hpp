@@ -1,0 +1,60 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "particles.hpp"
+#include "physics/viscosity.hpp"
+
+namespace doseki {
+
+/// Height over the bed and depth of the flow at each fluid particle, along the last axis, as a mixing
+/// length needs them. The plan is cut into columns: the bed is the highest wall particle of a column
+/// below its fluid, the depth is that of the volume in it, so that spray counts for what it is.
+template <int D>
+class FlowDepth {
+public:
+    /// `width` of a column [m].
+    FlowDepth(const Particles<D>& particles, std::size_t fluid, double width) : width_(width) {
+        for (std::size_t p = 0; p < fluid; ++p) {
+            Column& column = columns_[key(particles.position[p])];
+            column.volume += particles.mass[p] / particles.density[p];
+            column.height += particles.position[p][D - 1];
+            column.count += 1.0;
+        }
+        for (std::size_t p = fluid; p < particles.size(); ++p) {
+            const auto found = columns_.find(key(particles.position[p]));
+            if (found == columns_.end()) continue;
+            Column& column = found->second;
+            const double top = particles.position[p][D - 1] + particles.flow.wall_depth[p];
+            if (top < column.height / column.count) column.bed = std::max(column.bed, top);
+        }
+    }
+
+    /// Mixing length at a fluid particle; `least` where there is no bed.
+    double mixing_length(const Vec<double, D>& x, double least) const {
+        const auto found = columns_.find(key(x));
+        if (found == columns_.end() || !std::isfinite(found->second.bed)) return least;
+        const double depth = found->second.volume / std::pow(width_, D - 1);
+        return doseki::mixing_length(x[D - 1] - found->second.bed, depth, least);
+    }
+
+private:
+    struct Column {
+        double volume = 0.0, height = 0.0, count = 0.0, bed = -std::numeric_limits<double>::infinity();
+    };
+    using Key = std::array<std::int64_t, D - 1>;
+
+    Key key(const Vec<double, D>& x) const {
+        Key key;
+        for (int a = 0; a < D - 1; ++a) key[a] = static_cast<std::int64_t>(std::floor(x[a] / width_));
+        return key;
+    }
+
+    double width_;
+    std::map<Key, Column> columns_;
+};
+
+}  // namespace doseki

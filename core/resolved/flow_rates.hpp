@@ -1,0 +1,340 @@
+#pragma once
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "material.hpp"
+#include "neighbours.hpp"
+#include "options.hpp"
+#include "particles.hpp"
+#include "phase_timer.hpp"
+#include "physics/equation_of_state.hpp"
+#include "physics/free_surface.hpp"
+#include "poison.hpp"
+#include "resolved/flow_depth.hpp"
+#include "resolved/flow_terms.hpp"
+
+namespace doseki {
+
+/// The right-hand side of the resolved scheme: fluid among walls, in one pass over the pairs of fluid
+/// particles and one over those of walls. Gradients, and the measure of the free surface, are those of
+/// the step before where a pair needs them; a timestep is short against what they describe.
+template <int D>
+class FlowRates {
+public:
+    using Real = double;
+    static constexpr int dim = D;
+
+    FlowRates(std::vector<Material> materials, const Options<D>& options, bool periodic)
+        : materials_(std::move(materials)), options_(options), periodic_(periodic) {
+        for (const Material& material : materials_)
+            if (material.law == Law::fluid) constants_.c = std::max(constants_.c, material.c0);
+        constants_.dp = options.flow.dp;
+        const double support = kernel_support() * options.eta * options.flow.dp;
+        const auto lattice = options.flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(options.flow.dp, support)
+                                                      : lattice_sums<WendlandC2<D>, D>(options.flow.dp, support);
+        lattice_concentration_ = lattice.concentration;
+        constants_.gradient_scale = 1.0 / lattice.moment;
+        constants_.form = options.flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0} : ViscousForm<double>{1.0, 0.0};
+    }
+
+    static constexpr bool has_flow = true;
+    double kernel_support() const { return options_.flow.wide_kernel ? WendlandC6<D>::support : WendlandC2<D>::support; }
+
+    /// See Rates::compute.
+    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt, bool new_lists) {
+        fluid_count_ = neighbours.moving();
+        const bool poisoned = is_poisoned_run();
+        if (new_lists && options_.flow.turbulence == Turbulence::mixing_length) set_mixing_lengths(particles);
+        pack(particles, half_dt, poisoned);
+        if (options_.flow.wide_kernel) sum_all<WendlandC6<D>>(particles, neighbours);
+        else sum_all<WendlandC2<D>>(particles, neighbours);
+        reduce_summaries();
+        if (poisoned && faulty_ < 0) faulty_ = survivor<double>(particles.acceleration);
+    }
+
+    double timestep() const { return timestep_; }
+    double av_power() const { return power_; }
+    PhaseTimer& phases() { return phases_; }
+    std::int64_t faulty_particle() const { return faulty_; }
+    std::int64_t limiting_particle() const { return limiting_; }
+    const std::vector<Material>& materials() const { return materials_; }
+    Deviator<double, D> deviator(const Particles<D>&, std::size_t) const { return {}; }
+
+    /// Pressure and energy of a particle; of a wall particle, those of the fluid at its place.
+    Thermodynamics thermodynamics(const Particles<D>& particles, std::size_t p) const {
+        const Material& material = materials_[particles.tag[p].material];
+        if (particles.is_fixed(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
+        const double rho = particles.density[p], e = rho / material.rho0;
+        return {pressure(material, rho, particles.flow.surface[p]), material.c0,
+                material.c0 * material.c0 * (std::log(e) + 1.0 / e - 1.0)};
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("next_timestep", timestep_), archive("av_power", power_);
+    }
+
+    std::size_t bytes() const {
+        return motion_.capacity() * sizeof(MotionRecord<double, D>) + fluid_.capacity() * sizeof(FluidRecord<D>) +
+               wall_.capacity() * sizeof(WallRecord<D>) + summary_.capacity() * sizeof(ClusterSummary);
+    }
+
+private:
+    template <class, class>
+    friend class PairCounter;
+
+    struct ClusterSummary {
+        double timestep = std::numeric_limits<double>::max();
+        double power = 0.0;
+        std::int64_t faulty = -1, limiting = -1;
+    };
+
+    /// Tension holds inside; a free surface takes none.
+    double pressure(const Material& material, double rho, double surface) const {
+        const double stiffness = material.rho0 * material.c0 * material.c0, e = rho / material.rho0;
+        const double p = options_.flow.pressure_law == PressureLaw::linear
+                             ? stiffness * (e - 1.0)
+                             : stiffness / 7.0 * (std::pow(e, 7.0) - 1.0);
+        return surface > SurfaceMeasure::surface ? std::max(0.0, p) : p;
+    }
+
+    void set_mixing_lengths(Particles<D>& particles) {
+        const double least = options_.flow.smagorinsky * options_.flow.dp;
+        const FlowDepth<D> depth(particles, fluid_count_, 4.0 * options_.flow.dp);
+        for (std::size_t p = 0; p < fluid_count_; ++p)
+            particles.flow.mixing_length[p] = depth.mixing_length(particles.position[p], least);
+    }
+
+    /// Time, in h/c, in which the density that follows from motion is drawn to that of the arrangement of
+    /// particles: what continuity sums up over many steps forgets how far apart they are.
+    static inline const double relaxation = std::getenv("RELAX") ? std::atof(std::getenv("RELAX")) : 100.0;
+
+    double eddy_viscosity(const Particles<D>& particles, std::size_t p) const {
+        if (options_.flow.turbulence == Turbulence::none) return 0.0;
+        const bool mixing = options_.flow.turbulence == Turbulence::mixing_length;
+        const double l = mixing ? particles.flow.mixing_length[p] : options_.flow.smagorinsky * options_.flow.dp;
+        return l * l * strain_rate(particles.flow.velocity_gradient[p]);
+    }
+
+    void pack(Particles<D>& particles, double half_dt, bool poisoned);
+    void pack_fluid(const Particles<D>& particles, std::size_t p, double half_dt);
+    void pack_wall(const Particles<D>& particles, std::size_t p);
+
+    template <class Kernel>
+    void sum_all(Particles<D>& particles, const Neighbours<D>& neighbours) {
+        if (fluid_count_ == 0) return;
+        const FlowRecords<D> records{motion_, fluid_, wall_, motion_[0].inverse_support};
+        if (!wall_.empty()) sum_walls<Kernel>(particles, neighbours, records);
+        sum_fluid<Kernel>(particles, neighbours, records);
+    }
+    template <class Kernel>
+    void sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records);
+    template <class Kernel>
+    void sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records);
+
+    void finish_wall(Particles<D>& particles, std::size_t p, const WallSums<double, D>& sums);
+    void finish_fluid(Particles<D>& particles, std::size_t p, const FluidSums<double, D>& sums, bool shifted);
+    void limit_timestep(const Particles<D>& particles, std::size_t p);
+    void reduce_summaries();
+
+    template <class Term>
+    void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, std::size_t first, const Term& term) {
+        const std::span<const MotionRecord<double, D>> records(motion_);
+        if (periodic_) for_each_pair<true>(neighbours, clusters, records, frame_, false, term, first);
+        else for_each_pair<false>(neighbours, clusters, records, frame_, false, term, first);
+    }
+
+    std::vector<Material> materials_;
+    Options<D> options_;
+    bool periodic_;
+    FlowConstants constants_{};
+    double lattice_concentration_ = 1.0;
+    CoordinateFrame<double, D> frame_;
+    std::vector<MotionRecord<double, D>> motion_;
+    std::vector<FluidRecord<D>> fluid_;
+    std::vector<WallRecord<D>> wall_;
+    std::vector<ClusterSummary> summary_;
+    PhaseTimer phases_;
+    std::size_t fluid_count_ = 0;
+    double timestep_ = 0.0, power_ = 0.0;
+    std::int64_t faulty_ = -1, limiting_ = -1;
+};
+
+template <int D>
+void FlowRates<D>::pack_fluid(const Particles<D>& particles, std::size_t p, double half_dt) {
+    FluidRecord<D>& record = fluid_[p];
+    const Material& material = materials_[particles.tag[p].material];
+    const double rho = particles.density[p] + half_dt * particles.density_rate[p];
+    record.rho = rho;
+    record.volume = particles.mass[p] / rho, record.rest_volume = particles.mass[p] / material.rho0;
+    record.surface = particles.flow.surface[p];
+    record.p = pressure(material, rho, record.surface);
+    record.mu = rho * (material.nu + eddy_viscosity(particles, p));
+    for (int a = 0; a < D; ++a)
+        for (int b = a; b < D; ++b) {
+            const Mat<double, D>& L = particles.flow.velocity_gradient[p];
+            record.strain[Sym<double, D>::index(a, b)] = 0.5 * (L(a, b) + L(b, a));
+        }
+    record.pressure_gradient = particles.flow.pressure_gradient[p].component;
+    if (!(rho > 0.1 * material.rho0 && rho < 10.0 * material.rho0))
+        summary_[p / lanes<double>].faulty = static_cast<std::int64_t>(p);
+}
+
+template <int D>
+void FlowRates<D>::pack_wall(const Particles<D>& particles, std::size_t p) {
+    WallRecord<D>& record = wall_[p - fluid_count_];
+    const Vec<double, D>& normal = particles.flow.normal[p];
+    record.normal = normal.component;
+    record.traction = {};
+    record.volume = std::pow(options_.flow.dp, D);
+    record.depth = particles.flow.wall_depth[p];
+    record.g_normal = std::max(0.0, dot(particles.acceleration[p] - options_.gravity, normal));
+    record.stick = options_.flow.walls.at(static_cast<std::size_t>(particles.tag[p].body)).stick ? 1.0 : 0.0;
+}
+
+template <int D>
+void FlowRates<D>::pack(Particles<D>& particles, double half_dt, bool poisoned) {
+    const auto timing = phases_.measure(Phase::pack);
+    const std::size_t n = particles.size();
+    motion_.resize(n), fluid_.resize(fluid_count_), wall_.resize(n - fluid_count_);
+    summary_.assign((n + lanes<double> - 1) / lanes<double>, {});
+    if (poisoned) poison<double>(motion_), poison<double>(fluid_), poison<double>(wall_);
+#pragma omp parallel for schedule(static) if (n > light_loop)
+    for (std::size_t p = 0; p < n; ++p) {
+        MotionRecord<double, D>& record = motion_[p];
+        const bool wall = p >= fluid_count_;
+        record.x = particles.position[p].component;
+        for (int a = 0; a < D; ++a)
+            record.v[a] = particles.velocity[p][a] + (wall ? 0.0 : half_dt * particles.acceleration[p][a]);
+        record.mass = particles.mass[p];
+        record.inverse_support = 1.0 / (kernel_support() * particles.smoothing_length[p]);
+        if (wall) pack_wall(particles, p);
+        else pack_fluid(particles, p, half_dt);
+    }
+}
+
+template <int D>
+template <class Kernel>
+void FlowRates<D>::sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records) {
+    const auto timing = phases_.measure(Phase::pass_1);
+    const std::size_t first = fluid_count_ / lanes<double>;
+    auto finish = [&](std::size_t p, const WallSums<double, D>& sums) { finish_wall(particles, p, sums); };
+    sum_over_pairs(neighbours, neighbours.clusters().subspan(first), first,
+                   WallTerm<Kernel, D, decltype(finish)>{records, constants_, finish});
+}
+
+template <int D>
+template <class Kernel>
+void FlowRates<D>::sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records) {
+    const auto timing = phases_.measure(Phase::pass_2);
+    constexpr std::size_t width = lanes<double>;
+    auto finish = [&](std::size_t p, const FluidSums<double, D>& sums) {
+        finish_fluid(particles, p, sums, options_.flow.shifting);
+    };
+    sum_over_pairs(neighbours, neighbours.clusters().first((fluid_count_ + width - 1) / width), 0,
+                   FluidTerm<Kernel, D, decltype(finish)>{records, constants_, finish});
+}
+
+/// Force, pressure and, on a rough bed, the friction of one wall particle.
+template <int D>
+void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p, const WallSums<double, D>& sums) {
+    constexpr double least_filled = 0.05;    // of the kernel, by fluid
+    WallRecord<D>& record = wall_[p - fluid_count_];
+    Vec<double, D> force = sums.force;
+    particles.flow.wall_pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
+    const WallCondition& wall = options_.flow.walls[static_cast<std::size_t>(particles.tag[p].body)];
+    const double dp = options_.flow.dp;
+    if (wall.ks > 0.0 && record.depth < dp && sums.weight > least_filled) {
+        const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - particles.velocity[p];
+        const Vec<double, D> along = tangential(u, particles.flow.normal[p]);
+        const double rho = materials_[particles.tag[0].material].rho0;
+        const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * std::pow(dp, D - 1);
+        const Vec<double, D> drag = friction * std::sqrt(dot(along, along)) * along;
+        record.traction = ((-1.0 / sums.weight) * drag).component;
+        force = force + drag;
+    }
+    particles.flow.wall_force[p] = force;
+}
+
+/// Rates and gradients of one fluid particle from its sums.
+template <int D>
+void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const FluidSums<double, D>& sums, bool shifted) {
+    const Mat<double, D> B = inverse_moment(sums.moment);
+    auto corrected = [&B](const Vec<double, D>& raw) {
+        Vec<double, D> v;
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) v[a] += B(a, b) * raw[b];
+        return v;
+    };
+    auto& flow = particles.flow;
+    flow.pressure_gradient[p] = corrected(sums.pressure_gradient);
+    Mat<double, D>& L = flow.velocity_gradient[p];
+    for (int a = 0; a < D; ++a) {
+        Vec<double, D> row;
+        for (int b = 0; b < D; ++b) row[b] = sums.velocity_gradient(a, b);
+        row = corrected(row);
+        for (int b = 0; b < D; ++b) L(a, b) = row[b];
+    }
+    const double slope = std::sqrt(dot(sums.concentration_gradient, sums.concentration_gradient));
+    const double h = particles.smoothing_length[p];
+    const auto measure = SurfaceMeasure::of(sums.concentration / lattice_concentration_, kernel_support() * h * slope,
+                                            options_.flow.wide_kernel);
+    flow.surface[p] = measure.x;
+    flow.shift[p] = {};
+    if (!particles.is_free(p)) {
+        particles.acceleration[p] = {}, particles.density_rate[p] = 0.0;
+        return;
+    }
+    const FluidRecord<D>& record = fluid_[p];
+    const double rho = record.rho, rho0 = materials_[particles.tag[p].material].rho0;
+    Vec<double, D> a = (1.0 / rho) * (2.0 * sums.force + sums.traction) + options_.gravity;
+    double rate = rho * sums.density_rate;
+    static const double tic = std::getenv("TIC") ? std::atof(std::getenv("TIC")) : 0.0;
+    if (tic > 0 && sums.largest_surface < SurfaceMeasure::surface && record.p < (tic > 1 ? 1e300 : 0.0)) a = a + (2.0 * record.p / rho) * sums.concentration_gradient;
+    if (shifted && measure.x < SurfaceMeasure::surface) {
+        double norm = 0.0;
+        for (double element : L.element) norm += element * element;
+        Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::sqrt(norm), h);
+        if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
+        flow.shift[p] = shift;
+        for (int k = 0; k < D; ++k)
+            for (int l = 0; l < D; ++l) a[k] += L(k, l) * shift[l];
+        rate += dot(flow.pressure_gradient[p], shift) / (constants_.c * constants_.c);
+    }
+    rate += (measure.filling * rho0 - rho) * constants_.c / (relaxation * h);
+    particles.acceleration[p] = a;
+    particles.density_rate[p] = rate;
+    summary_[p / lanes<double>].power += record.volume * sums.power;
+    limit_timestep(particles, p);
+}
+
+/// dt = min(C_CFL h/(c + |v|), C_f sqrt(h/|a|), h^2/(8 nu)).
+template <int D>
+void FlowRates<D>::limit_timestep(const Particles<D>& particles, std::size_t p) {
+    const double h = particles.smoothing_length[p];
+    const Vec<double, D>&a = particles.acceleration[p], &v = particles.velocity[p];
+    const double acoustic = options_.cflnumber * h / (constants_.c + std::sqrt(dot(v, v)));
+    const double forced = options_.cfl_force * std::sqrt(h / std::max(std::sqrt(dot(a, a)), 1e-300));
+    const double viscous = 0.125 * h * h * fluid_[p].rho / std::max(fluid_[p].mu, 1e-300);
+    const double dt = std::min({acoustic, forced, viscous});
+    ClusterSummary& summary = summary_[p / lanes<double>];
+    if (dt < summary.timestep) summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
+    if (!std::isfinite(dot(a, a) + particles.density_rate[p])) summary.faulty = static_cast<std::int64_t>(p);
+}
+
+template <int D>
+void FlowRates<D>::reduce_summaries() {
+    timestep_ = std::numeric_limits<double>::max();
+    power_ = 0.0;
+    faulty_ = limiting_ = -1;
+    for (const ClusterSummary& summary : summary_) {
+        if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
+        power_ += summary.power;
+        if (faulty_ < 0) faulty_ = summary.faulty;
+    }
+}
+
+}  // namespace doseki
