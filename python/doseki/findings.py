@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from .particles import DRIVEN, FIXED, FREE, SUPPORT
+from .gauges import outside_everything
+from .particles import DRIVEN, FIXED, FREE
 from .scenario import Scenario
 from .schema import Box
 
@@ -23,7 +24,8 @@ def findings(scenario: Scenario, state: State, body_names: list[str]) -> list[st
     """One sentence for each doubt about the particles of `state` (the core's fields)."""
     names = dict(enumerate(body_names))
     found = [*scenario.warnings, *_grains(scenario), *_flow_depth(scenario, state, names)]
-    found += [*_walls(scenario, state, names), *_mach(scenario, state)]
+    found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
+    found += [*_gauges(scenario, state), *_mach(scenario, state)]
     return list(dict.fromkeys(found))
 
 
@@ -70,8 +72,7 @@ def mach_number(scenario: Scenario, state: State) -> tuple[float, float]:
 def _inflow_speeds(scenario: Scenario) -> Iterator[float]:
     yield 0.0
     for inflow in scenario.inflow.values():
-        area = inflow.depth * inflow.width
-        yield inflow.rate / area
+        yield inflow.peak_rate / (inflow.depth * inflow.width)
 
 
 def _fall(scenario: Scenario, state: State) -> float:
@@ -109,7 +110,7 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[str]:
     """A wall thinner than the support lets particles feel its end, or pass it."""
-    needed = math.ceil(SUPPORT * scenario.eta - 0.5 - 1e-9)
+    needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
     for body, name in names.items():
         of_it = (state["body"] == body) & (state["motion"] == FIXED)
         if not of_it.any() or not isinstance(scenario.body.get(name), Box):
@@ -121,6 +122,26 @@ def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[
                 f"{name}: a wall of {thin} layers is thinner than the kernel's reach;"
                 f" make it {needed} layers ({needed * scenario.dp:.3g} m) thick"
             )
+
+
+def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[str]:
+    """Roughness larger than the flow is deep: no wall law describes that."""
+    depths = flow_depths(scenario, state, names)
+    depth = min((across * scenario.dp for across in depths.values()), default=math.inf)
+    rough = [(f"body.{name}", getattr(b, "ks", None)) for name, b in scenario.body.items()]
+    rough += [(f"inflow.{name}", inflow.ks) for name, inflow in scenario.inflow.items()]
+    for name, ks in rough:
+        if ks is not None and ks > depth:
+            yield (
+                f"{name}.ks = {ks:.3g} m is larger than the depth of the flow, {depth:.3g} m: model"
+                " such roughness as bodies"
+            )
+
+
+def _gauges(scenario: Scenario, state: State) -> Iterator[str]:
+    for name in outside_everything(scenario, state):
+        position = scenario.gauge[name].position.tolist()
+        yield f"gauge.{name}.position = {position} m lies outside everything in the scene"
 
 
 def _mach(scenario: Scenario, state: State) -> Iterator[str]:
