@@ -26,7 +26,7 @@ from .schema import (
 
 REACH = 3.0  # spacings; radius of the interpolation
 SLAB = 4.0  # spacings; length of the slab of a discharge gauge
-STEP = 0.25  # spacings; between two looks for the surface
+STEP = 0.5  # spacings; between two looks for the surface
 LEAST_VOID = 0.25  # share of a neighbourhood that walls leave; below, nothing is told from it
 INSIDE = 0.5  # volume fraction from which on a point lies within the flow
 
@@ -131,6 +131,26 @@ def _weights(
     return volume * kernel(np.linalg.norm(position - x, axis=1), radius, dim)
 
 
+class Column:
+    """Particles near a line, in order along it, so that each look at it meets only a few."""
+
+    def __init__(
+        self, position: np.ndarray, volume: np.ndarray, foot: np.ndarray, up: np.ndarray
+    ) -> None:
+        """`up` is the unit vector of the line, which begins at `foot`."""
+        away = position - foot
+        along = away @ up
+        order = np.argsort(along, kind="stable")
+        self.along, self.volume = along[order], volume[order]
+        self.aside = ((away - np.outer(along, up)) ** 2).sum(axis=1)[order]  # m2
+
+    def filled(self, height: float, radius: float, dim: int) -> float:
+        """Share of the space around the point at `height` along the line that they fill."""
+        first, last = np.searchsorted(self.along, (height - radius, height + radius))
+        r = np.sqrt(self.aside[first:last] + (self.along[first:last] - height) ** 2)
+        return float(self.volume[first:last] @ kernel(r, radius, dim))
+
+
 def column_height(around: Neighbourhood, foot: np.ndarray, up: np.ndarray, step: float) -> float:
     """Height, m, above `foot` at which the fraction first falls below one half, going up.
 
@@ -138,14 +158,16 @@ def column_height(around: Neighbourhood, foot: np.ndarray, up: np.ndarray, step:
     of the kernel, does not end the column.  `step` is the distance between looks, m; within a step
     the fraction is taken as linear.
     """
-    along = (around.position - foot) @ up
-    top = float(along.max(initial=-np.inf)) + around.radius
-    before = 0.0
+    radius, dim = around.radius, around.dim
+    flow = Column(around.position, around.volume, foot, up)
+    walls = Column(around.wall_position, around.wall_volume, foot, up)
+    top, before = float(flow.along.max(initial=-np.inf)) + radius, 0.0
     for k in range(int(top / step) + 2 if top > 0 else 0):
-        now = around.fraction(foot + k * step * up)
+        void = max(1.0 - walls.filled(k * step, radius, dim), LEAST_VOID)
+        now = flow.filled(k * step, radius, dim) / void
         if now < INSIDE <= before:
             return step * (k - 1 + (before - INSIDE) / (before - now))
-        if now < INSIDE and k * step > around.radius:
+        if now < INSIDE and k * step > radius:
             return 0.0
         before = now
     return 0.0

@@ -12,7 +12,7 @@ import numpy as np
 from .columns_csv import read_csv_columns
 from .errors import UserError
 from .toml_source import check_regular_file
-from .value_types import RATE_UNITS, checked_hydrograph
+from .value_types import LARGEST, RATE_UNITS, checked_hydrograph
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -130,13 +130,15 @@ def keulegan_rate(depth: float, pull: float, ks: float) -> float:
 def normal_depth(rate: float, pull: float, ks: float) -> float:
     """The depth h, m, at which `keulegan_rate` is `rate`, m2/s.
 
-    Raises ValueError where h would be below ks: the law knows no such flow.
+    Raises ValueError where h would be below ks, where the law ends, or absurd.
     """
     low = high = ks
     if keulegan_rate(low, pull, ks) > rate:
         raise ValueError("the normal depth would be less than ks")
     while keulegan_rate(high, pull, ks) < rate:
         high *= 2
+        if high > LARGEST:
+            raise ValueError(f"the normal depth would be more than {LARGEST:g} m")
     for _ in range(200):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if keulegan_rate(middle, pull, ks) < rate else (low, middle)

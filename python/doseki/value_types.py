@@ -58,7 +58,8 @@ def _rate(value: Any) -> Any:
 
 def _depth(value: float | str) -> float | str:
     if value != "normal" and not (isinstance(value, float) and SMALLEST <= value <= LARGEST):
-        raise ValueError(f'{value!r} must be a length in m from {SMALLEST:g} on, or "normal"')
+        shown = repr(value)[:60]
+        raise ValueError(f'{shown} must be a length in m from {SMALLEST:g} on, or "normal"')
     return value
 
 
@@ -79,9 +80,10 @@ def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
         raise ValueError(f"{len(rows)} rows; two or more are needed")
     for number, (t, rate) in enumerate(rows, start=1):
         for name, value in (("t", t), ("Q", rate)):
-            number_ = isinstance(value, int | float) and not isinstance(value, bool)
-            if not number_ or not 0 <= value <= LARGEST:
-                raise ValueError(f"row {number}: {name} = {value!r}; allowed: numbers from 0 on")
+            is_number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not is_number or not 0 <= value <= LARGEST:
+                shown = repr(value)[:60]
+                raise ValueError(f"row {number}: {name} = {shown}; allowed: numbers from 0 on")
         if number > 1 and t < rows[number - 2][0]:
             before = rows[number - 2][0]
             raise ValueError(f"row {number}: t = {t:g} s goes back; allowed: {before:g} s or later")
