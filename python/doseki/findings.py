@@ -59,20 +59,25 @@ def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict
 def mach_number(scenario: Scenario, state: State) -> tuple[float, float]:
     """Largest speed to expect, m/s, and what it is in sound speeds of the slowest material.
 
-    The speed is that of the start or inflow, or of a free fall through all of the scene.
+    The speed is that of the start, of an inflow or of a wall that goes (not: turns), or of a free
+    fall through all of the scene.
     """
     free = state["motion"] != FIXED
     speeds = np.linalg.norm(state["velocity"][free], axis=1)
-    given = max(float(speeds.max(initial=0.0)), *(_inflow_speeds(scenario)), 0.0)
+    given = max(float(speeds.max(initial=0.0)), *(_given_speeds(scenario)), 0.0)
     expected = math.sqrt(given**2 + 2 * _fall(scenario, state))
     slowest = min(scenario.materials[name].speedsound for name in scenario.material_names)
     return expected, expected / (slowest * scenario.xi)
 
 
-def _inflow_speeds(scenario: Scenario) -> Iterator[float]:
+def _given_speeds(scenario: Scenario) -> Iterator[float]:
     yield 0.0
     for inflow in scenario.inflow.values():
         yield inflow.peak_rate / (inflow.depth * inflow.width)
+    for body in scenario.body.values():
+        motion = getattr(body, "motion", None)
+        if motion is not None and motion.velocity is not None:
+            yield float(np.linalg.norm(motion.velocity))
 
 
 def _fall(scenario: Scenario, state: State) -> float:

@@ -64,6 +64,15 @@ GAUGE = """
 kind = "pressure"
 position = [0.2, 3]
 """
+PISTON = """
+[body.piston]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0.4, 0]
+max = [0.43, 0.1]
+motion = { velocity = [-12, 5] }
+"""
 ROUGH = """
 [inflow.i]
 material = "water"
@@ -87,6 +96,7 @@ duration = 1
         ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),
         ({"bottom": -0.012, "top": 0.12}, ["overlaps"]),
         ({"more": GAUGE}, ["gauge.far.position = [0.2, 3.0] m lies outside everything"]),
+        ({"more": PISTON}, ["speeds up to 13.1 m/s are Mach"]),
         ({"more": ROUGH}, ["inflow.i.ks = 0.15 m is larger than the depth of the flow, 0.12 m"]),
     ],
 )
