@@ -29,15 +29,20 @@ struct WallMotion {
     }
 
     /// Where a point that is at x at time t is after dt, within which the motion does not change.
-    /// It turns by the exact angle: a body keeps its shape over any number of steps.
     Vec<double, D> moved(const Vec<double, D>& x, double t, double dt) const {
+        return x + dt * velocity + turning(x - pivot_at(t), dt);
+    }
+
+    /// What turning for dt adds to a vector that is fixed to the body. It turns by the exact angle,
+    /// so a body keeps its shape over any number of steps.
+    Vec<double, D> turning(const Vec<double, D>& r, double dt) const {
         const double rate = std::sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]);
-        if (rate == 0.0) return x + dt * velocity;
-        // Rodrigues: r cos + (k x r) sin + k (k . r)(1 - cos), with k x (k x r) = k (k . r) - r.
-        const Vec<double, D> r = x - pivot_at(t), s = (1.0 / rate) * cross_spin(r);
-        const Vec<double, D> twice = (1.0 / rate) * cross_spin(s);
+        if (rate == 0.0) return {};
+        // Rodrigues, k being the axis: k x r sin + k x (k x r) (1 - cos).
+        const Vec<double, D> once = (1.0 / rate) * cross_spin(r),
+                             twice = (1.0 / rate) * cross_spin(once);
         const double half_sine = std::sin(0.5 * rate * dt);
-        return x + dt * velocity + std::sin(rate * dt) * s + 2.0 * half_sine * half_sine * twice;
+        return std::sin(rate * dt) * once + 2.0 * half_sine * half_sine * twice;
     }
 
 private:
