@@ -37,6 +37,8 @@ struct Output {
     T* data;
 };
 
+using Column = std::vector<double>;
+
 template <class T>
 T get(const nb::dict& dict, const char* key) {
     return nb::cast<T>(dict[key]);
@@ -159,12 +161,16 @@ public:
             inflow.layer.push_back(x);
         }
         inflow.direction = vector<D>(d["direction"]);
-        inflow.speed = get<double>(d, "speed");
+        if (d.contains("times"))
+            inflow.speed = {get<Column>(d, "times"), get<Column>(d, "distances"), get<Column>(d, "speeds")};
+        else
+            inflow.speed = SpeedTable::constant(get<double>(d, "start"), get<double>(d, "stop"), get<double>(d, "speed"));
+        if (inflow.speed.time.size() < 2 || inflow.speed.distance.size() != inflow.speed.time.size() ||
+            inflow.speed.speed.size() != inflow.speed.time.size())
+            throw nb::value_error("an inflow needs two rows or more of times, distances and speeds");
         inflow.spacing = get<double>(d, "spacing");
         inflow.buffer_layers = get<int>(d, "buffer_layers");
         inflow.jitter = get<double>(d, "jitter");
-        inflow.start = get<double>(d, "start");
-        inflow.stop = get<double>(d, "stop");
         inflow.mass = get<double>(d, "mass");
         inflow.density = get<double>(d, "density");
         inflow.smoothing_length = get<double>(d, "smoothing_length");
@@ -175,6 +181,48 @@ public:
 
     void add_outflow(const std::vector<double>& low, const std::vector<double>& high) {
         sim_.sources.outflows.push_back({vector<D>(nb::cast(low)), vector<D>(nb::cast(high))});
+    }
+
+    void move_body(const nb::dict& d) {
+        WallMotion<D> motion;
+        motion.body = get<std::int32_t>(d, "body");
+        motion.velocity = vector<D>(d["velocity"]);
+        const auto spin = vector<3>(d["angular_velocity"]);
+        for (int a = 0; a < 3; ++a) motion.spin[static_cast<std::size_t>(a)] = spin[a];
+        motion.pivot = vector<D>(d["pivot"]);
+        motion.start = get<double>(d, "start"), motion.stop = get<double>(d, "stop");
+        motion.removed_at = get<double>(d, "removed_at");
+        sim_.walls.add(motion);
+    }
+
+    /// What gauges read of the particles in a box, in the order of their ids.
+    nb::dict sample(const std::vector<double>& low, const std::vector<double>& high) const {
+        const auto& particles = sim_.particles;
+        const Outflow<D> box{vector<D>(nb::cast(low)), vector<D>(nb::cast(high))};
+        std::vector<std::size_t> found;
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            if (box.contains(particles.position[p])) found.push_back(p);
+        std::sort(found.begin(), found.end(),
+                  [&](std::size_t p, std::size_t q) { return particles.tag[p].id < particles.tag[q].id; });
+        const std::size_t n = found.size();
+        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}), h({n});
+        Output<std::int32_t> material({n}), motion({n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = found[k];
+            for (int a = 0; a < D; ++a) {
+                position.data[k * D + a] = particles.position[p][a];
+                velocity.data[k * D + a] = particles.velocity[p][a];
+            }
+            mass.data[k] = particles.mass[p], density.data[k] = particles.density[p];
+            pressure.data[k] = eos_of(p).pressure, h.data[k] = particles.smoothing_length[p];
+            material.data[k] = particles.tag[p].material;
+            motion.data[k] = static_cast<std::int32_t>(particles.tag[p].motion);
+        }
+        nb::dict d;
+        d["position"] = position.release(), d["velocity"] = velocity.release();
+        d["mass"] = mass.release(), d["density"] = density.release(), d["pressure"] = pressure.release();
+        d["smoothing_length"] = h.release(), d["material"] = material.release(), d["motion"] = motion.release();
+        return d;
     }
 
     nb::dict state() const {
@@ -192,7 +240,7 @@ public:
                 position.data[k * D + a] = particles.position[p][a];
                 velocity.data[k * D + a] = particles.velocity[p][a];
             }
-            const auto eos = sim_.rates().thermodynamics(particles, p);
+            const auto eos = eos_of(p);
             mass.data[k] = particles.mass[p], density.data[k] = particles.density[p];
             pressure.data[k] = eos.pressure, c.data[k] = eos.sound_speed;
             h.data[k] = particles.smoothing_length[p];
@@ -294,6 +342,8 @@ public:
     }
 
 private:
+    auto eos_of(std::size_t p) const { return sim_.rates().thermodynamics(sim_.particles, p); }
+
     /// Forces on walls, and the measure of the free surface, by id.
     void add_flow_state(nb::dict& d, const std::vector<std::size_t>& order) const {
         const auto& flow = sim_.particles.flow;
@@ -360,6 +410,9 @@ void bind_simulation(nb::module_& m, const char* name) {
         .def("set_walls", &B::set_walls, nb::kw_only(), nb::arg("normal"), nb::arg("depth"))
         .def("add_inflow", &B::add_inflow)
         .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))
+        .def("move_body", &B::move_body, "Give a fixed body a prescribed motion.")
+        .def("sample", &B::sample, nb::arg("low"), nb::arg("high"),
+             "Fields of the particles inside a box, in the order of their ids.")
         .def("start", &B::start, unlocked)
         .def("advance", &B::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"), unlocked)
         .def("checkpoint", &B::checkpoint, "The whole state as arrays in storage order.")

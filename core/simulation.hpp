@@ -7,6 +7,7 @@
 #include "rates.hpp"
 #include "skin.hpp"
 #include "sources.hpp"
+#include "walls.hpp"
 
 namespace doseki {
 
@@ -30,11 +31,13 @@ public:
 
     Particles<D> particles;
     Sources<D> sources;
+    Walls<D> walls;
 
     /// Sorts, builds lists and takes the first rates. Call once, after the particles are in.
     void start() {
         for (std::size_t p = 0; p < particles.size(); ++p)
             if (particles.is_free(p)) sources.ledger.initial += particles.mass[p];
+        walls.set_velocities(particles, time_);
         sources.feed(particles, time_);
         rebuild_neighbours();
         first_rates();
@@ -91,7 +94,8 @@ private:
     void kick(double half_dt);
     double drift(double dt);
     double cheapest_skin(double smallest_support) const;
-    void update_neighbours(double moved);
+    double next_event() const;
+    void update_neighbours(double before, double moved);
     void rebuild_neighbours();
     void update_rates(double half_dt);
     /// Twice where a pass reads what the one before has left.
@@ -127,13 +131,15 @@ private:
 
 template <class Scheme>
 void Simulation<Scheme>::step(double limit) {
-    const double end = min(limit, sources.next_event() > time_ ? sources.next_event() : limit);
+    const double before = time_, end = min(limit, next_event());
     const double dt = min(rates_.timestep(), end - time_), old_power = rates_.av_power();
     kick(0.5 * dt);
     const double moved = drift(dt);
     time_ = dt < end - time_ ? time_ + dt : end;
     if (moved > largest_mach * sound_speed_ * dt) report_failure("speed", fastest_particle());
-    update_neighbours(moved);
+    walls.set_velocities(particles, time_);
+    sources.settle(particles, time_);
+    update_neighbours(before, moved);
     update_rates(0.5 * dt);
     kick(0.5 * dt);
     av_dissipation_ += 0.5 * dt * (old_power + rates_.av_power());
@@ -151,7 +157,15 @@ void Simulation<Scheme>::kick(double half_dt) {
 template <class Scheme>
 double Simulation<Scheme>::drift(double dt) {
     const auto timing = phases().measure(Phase::integrate);
-    return doseki::drift(particles, dt);
+    sources.drive(particles, time_, dt);
+    return max(doseki::drift(particles, dt), walls.move(particles, time_, dt));
+}
+
+/// The next time that a step must meet exactly.
+template <class Scheme>
+double Simulation<Scheme>::next_event() const {
+    const double source = sources.next_event();
+    return min(walls.next_event(time_), source > time_ ? source : std::numeric_limits<double>::infinity());
 }
 
 /// From what the lists that end now have lasted.
@@ -165,9 +179,10 @@ double Simulation<Scheme>::cheapest_skin(double smallest_support) const {
 
 /// Lists hold as long as no two particles can have come nearer by more than the skin.
 template <class Scheme>
-void Simulation<Scheme>::update_neighbours(double moved) {
+void Simulation<Scheme>::update_neighbours(double before, double moved) {
     moved_ += moved;
-    const bool changed = sources.feed(particles, time_);
+    bool changed = sources.feed(particles, time_);
+    changed |= walls.remove(particles, before, time_, sources.removed);
     if (changed || !(2.0 * moved_ < skin_width_)) rebuild_neighbours();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "particles.hpp"
+#include "speed_table.hpp"
 
 namespace doseki {
 
@@ -18,18 +19,17 @@ inline double symmetric_noise(std::int64_t id, int axis) {
     return static_cast<double>(static_cast<std::int64_t>(z)) * 0x1p-63;
 }
 
-/// An inflow section: layers of particles, dp apart, pushed through it at a constant speed. Behind the
+/// An inflow section: layers of particles, dp apart, pushed through it at a prescribed speed. Behind the
 /// section a buffer of driven layers carries the flow's pressure upstream; a layer that has crossed the
 /// section is set free and a new one joins at the back. The rate is therefore exact to one layer.
 template <int D>
 struct Inflow {
     std::vector<Vec<double, D>> layer;    // positions of one layer in the plane of the section
     Vec<double, D> direction{};           // unit vector of the flow
-    double speed = 0.0;                   // [m/s]
+    SpeedTable speed;                     // from the start of the inflow to its end
     double spacing = 0.0;                 // between layers [m]
     int buffer_layers = 4;
     double jitter = 0.0;                  // random displacement of a particle, in spacings (< 1/2)
-    double start = 0.0, stop = 0.0;       // [s]
     double mass = 0.0, density = 0.0, smoothing_length = 0.0;    // of one particle
     std::int16_t material = 0;
     std::int32_t body = 0;
@@ -39,14 +39,13 @@ struct Inflow {
     bool open = false, closed = false;
 
     double mass_per_layer() const { return mass * static_cast<double>(layer.size()); }
-    double rate() const { return mass_per_layer() * speed / spacing; }
-    double asked(double t) const { return rate() * std::clamp(t - start, 0.0, stop - start); }
+    double asked(double t) const { return mass_per_layer() * speed.distance_at(t) / spacing; }
 
     /// The next time at which particles appear, are set free or vanish.
     double next_event() const {
         if (closed) return std::numeric_limits<double>::infinity();
-        if (!open) return start;
-        return min(stop, start + (static_cast<double>(released) + 0.5) * spacing / speed);
+        if (!open) return speed.start();
+        return min(speed.stop(), speed.time_at((static_cast<double>(released) + 0.5) * spacing));
     }
 
     template <class Archive>
@@ -56,7 +55,7 @@ struct Inflow {
 
     /// Distance of layer k beyond the section at time t (< 0: still in the buffer).
     double advance(std::int64_t k, double t) const {
-        return speed * (t - start) - (static_cast<double>(k) + 0.5) * spacing;
+        return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
     }
 };
 
@@ -94,6 +93,19 @@ public:
     /// neighbours must be sorted anew. Particles to remove are left in `removed`.
     bool feed(Particles<D>& particles, double t);
 
+    /// Gives driven particles the mean speed from t to t + dt, so that a drift takes them exactly as far
+    /// as the table of their inflow says; nothing to do for one of constant speed.
+    void drive(Particles<D>& particles, double t, double dt) const {
+        set_speeds(particles, [t, dt](const SpeedTable& table) {
+            return dt > 0.0 ? (table.distance_at(t + dt) - table.distance_at(t)) / dt : table.speed_at(t);
+        });
+    }
+
+    /// Gives driven particles their speed at time t.
+    void settle(Particles<D>& particles, double t) const {
+        set_speeds(particles, [t](const SpeedTable& table) { return table.speed_at(t); });
+    }
+
     /// Free particles inside an outflow, to be dropped at the next sort.
     void drain(const Particles<D>& particles);
 
@@ -109,9 +121,24 @@ public:
     }
 
 private:
+    template <class Speed>
+    void set_speeds(Particles<D>& particles, Speed&& speed_of) const;
     void add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t);
     void release(Particles<D>& particles, Inflow<D>& inflow, double t);
 };
+
+template <int D>
+template <class Speed>
+void Sources<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) const {
+    for (const Inflow<D>& inflow : inflows) {
+        if (inflow.speed.steady() || !inflow.open || inflow.closed) continue;
+        const Vec<double, D> velocity = speed_of(inflow.speed) * inflow.direction;
+        for (std::size_t p = 0; p < particles.size(); ++p) {
+            const Tag& tag = particles.tag[p];
+            if (tag.motion == Motion::driven && tag.body == inflow.body) particles.velocity[p] = velocity;
+        }
+    }
+}
 
 template <int D>
 void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t) {
@@ -122,7 +149,7 @@ void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std
         particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
         for (int a = 0; a < D; ++a)
             particles.position[p][a] += inflow.jitter * inflow.spacing * symmetric_noise(next_id, a);
-        particles.velocity[p] = inflow.speed * inflow.direction;
+        particles.velocity[p] = inflow.speed.speed_at(t) * inflow.direction;
         particles.acceleration[p] = {};
         particles.density[p] = inflow.density;
         particles.density_rate[p] = 0.0;
@@ -160,8 +187,8 @@ bool Sources<D>::feed(Particles<D>& particles, double t) {
             inflow.open = true;
             for (std::int64_t k = 0; k < inflow.buffer_layers; ++k) add_layer(particles, inflow, k, t);
         }
-        release(particles, inflow, min(t, inflow.stop));
-        if (t >= inflow.stop) {
+        release(particles, inflow, min(t, inflow.speed.stop()));
+        if (t >= inflow.speed.stop()) {
             inflow.closed = true;
             removed.resize(particles.size(), 0);
             for (std::size_t p = 0; p < particles.size(); ++p)

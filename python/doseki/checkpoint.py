@@ -6,7 +6,7 @@ import hashlib
 import io
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import h5py
@@ -27,6 +27,7 @@ class Position:
     outputs: int = 0  # intervals of time_out that are done with, the start included
     snapshots: int = 0  # recorded
     rows: int = 0  # of the history
+    gauge_rows: dict[str, int] = field(default_factory=dict)  # never changed in place
     next_history: float = 0.0  # s
     next_checkpoint: float = 0.0  # s
     wall_seconds: float = 0.0

@@ -10,6 +10,7 @@ import numpy as np
 from .bodies import build_bodies
 from .core_modules import available_instruction_sets, load_core
 from .inflows import InflowSection, build_inflows
+from .motions import wall_motions
 from .scenario import Scenario
 from .schemes import RESOLVED
 from .walls import wall_geometry
@@ -80,8 +81,9 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
         "direction": list(section.direction),
         **{
             name: getattr(section, name)
-            for name in "speed spacing jitter mass density smoothing_length start stop".split()
+            for name in "spacing jitter mass density smoothing_length".split()
         },
+        **{name: getattr(section, name).tolist() for name in "times speeds distances".split()},
         "buffer_layers": int(section.buffer_layers),
         "material": int(section.material),
         "body": int(section.body),
@@ -98,12 +100,15 @@ def empty_simulation(scenario: Scenario, body_names: list[str], isa: str | None 
         simulation.add_inflow(_inflow_table(section))
     for outflow in scenario.outflow.values():
         simulation.add_outflow(list(outflow.min), list(outflow.max))
+    for motion in wall_motions(scenario, body_names):
+        simulation.move_body(motion)
     return simulation
 
 
 def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, list[str]]:
     """A core simulation of `scenario` that is yet to be started, and the names of its bodies."""
     particles, body_names = build_bodies(scenario)
+    build_inflows(scenario, body_names, particles)  # for its checks against the particles
     simulation = empty_simulation(scenario, body_names, isa)
     simulation.add_particles(
         **{name: np.ascontiguousarray(v) for name, v in vars(particles).items()}

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import vtkhdf
 from .inflows import build_inflows
 from .scenario import Scenario
@@ -77,13 +79,9 @@ def _particles(scenario: Scenario, body_names: list[str], start: int) -> tuple[f
     """Mean and largest number of particles, if nothing that enters leaves again."""
     mean = most = float(start)
     for section in build_inflows(scenario, body_names):
-        per_second = section.rate_mass / section.mass
-        duration = min(section.stop, scenario.time_max) - section.start
-        if duration > 0:
-            entered = per_second * duration
-            most += entered
-            rest = scenario.time_max - section.start - duration
-            mean += entered * (0.5 * duration + rest) / scenario.time_max
+        entered = section.entered(np.linspace(0.0, scenario.time_max, 1001))
+        most += float(entered[-1])
+        mean += float(entered.mean())
     return mean, most
 
 

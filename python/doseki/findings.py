@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from .gauges import outside_everything
 from .particles import DRIVEN, FIXED, FREE
 from .scenario import Scenario
 from .schema import Box
@@ -23,7 +24,8 @@ def findings(scenario: Scenario, state: State, body_names: list[str]) -> list[st
     """One sentence for each doubt about the particles of `state` (the core's fields)."""
     names = dict(enumerate(body_names))
     found = [*scenario.warnings, *_grains(scenario), *_flow_depth(scenario, state, names)]
-    found += [*_walls(scenario, state, names), *_mach(scenario, state)]
+    found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
+    found += [*_gauges(scenario, state), *_mach(scenario, state)]
     return list(dict.fromkeys(found))
 
 
@@ -57,21 +59,25 @@ def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict
 def mach_number(scenario: Scenario, state: State) -> tuple[float, float]:
     """Largest speed to expect, m/s, and what it is in sound speeds of the slowest material.
 
-    The speed is that of the start or inflow, or of a free fall through all of the scene.
+    The speed is that of the start, of an inflow or of a wall that goes (not: turns), or of a free
+    fall through all of the scene.
     """
     free = state["motion"] != FIXED
     speeds = np.linalg.norm(state["velocity"][free], axis=1)
-    given = max(float(speeds.max(initial=0.0)), *(_inflow_speeds(scenario)), 0.0)
+    given = max(float(speeds.max(initial=0.0)), *(_given_speeds(scenario)), 0.0)
     expected = math.sqrt(given**2 + 2 * _fall(scenario, state))
     slowest = min(scenario.materials[name].speedsound for name in scenario.material_names)
     return expected, expected / (slowest * scenario.xi)
 
 
-def _inflow_speeds(scenario: Scenario) -> Iterator[float]:
+def _given_speeds(scenario: Scenario) -> Iterator[float]:
     yield 0.0
     for inflow in scenario.inflow.values():
-        area = inflow.depth * inflow.width
-        yield inflow.rate / area
+        yield inflow.peak_rate / (inflow.depth * inflow.width)
+    for body in scenario.body.values():
+        motion = getattr(body, "motion", None)
+        if motion is not None and motion.velocity is not None:
+            yield float(np.linalg.norm(motion.velocity))
 
 
 def _fall(scenario: Scenario, state: State) -> float:
@@ -121,6 +127,26 @@ def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[
                 f"{name}: a wall of {thin} layers is thinner than the kernel's reach;"
                 f" make it {needed} layers ({needed * scenario.dp:.3g} m) thick"
             )
+
+
+def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[str]:
+    """Roughness larger than the flow is deep: no wall law describes that."""
+    depths = flow_depths(scenario, state, names)
+    depth = min((across * scenario.dp for across in depths.values()), default=math.inf)
+    rough = [(f"body.{name}", getattr(b, "ks", None)) for name, b in scenario.body.items()]
+    rough += [(f"inflow.{name}", inflow.ks) for name, inflow in scenario.inflow.items()]
+    for name, ks in rough:
+        if ks is not None and ks > depth:
+            yield (
+                f"{name}.ks = {ks:.3g} m is larger than the depth of the flow, {depth:.3g} m: model"
+                " such roughness as bodies"
+            )
+
+
+def _gauges(scenario: Scenario, state: State) -> Iterator[str]:
+    for name in outside_everything(scenario, state):
+        position = scenario.gauge[name].position.tolist()
+        yield f"gauge.{name}.position = {position} m lies outside everything in the scene"
 
 
 def _mach(scenario: Scenario, state: State) -> Iterator[str]:

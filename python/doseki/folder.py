@@ -65,13 +65,22 @@ class RunFolder:
         return self.path / "snapshots"
 
     @property
+    def gauges(self) -> Path:
+        """The folder of what the gauges read."""
+        return self.path / "gauges"
+
+    def gauge(self, name: str) -> Path:
+        """The file of a gauge."""
+        return self.gauges / f"{name}.csv"
+
+    @property
     def figures(self) -> Path:
         """The folder of the pictures."""
         return self.path / "figures"
 
     def links(self) -> list[Path]:
         """Symbolic links in the folder: writing to one would write somewhere else."""
-        folders = (self.path, self.snapshots, self.figures, self.checkpoints)
+        folders = (self.path, self.snapshots, self.figures, self.checkpoints, self.gauges)
         inside = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
         return sorted(file for file in inside if file.is_symlink())
 
@@ -103,6 +112,7 @@ class RunFolder:
         return [
             *(file for file in plain if file.exists()),
             *self.snapshot_files(),
+            *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),
             *self.checkpoints.glob("*.h5"),
         ]
@@ -113,7 +123,7 @@ def _number(file: Path) -> int:
 
 
 def read_history(path: Path) -> tuple[list[str], list[list[str]]]:
-    """Column names and rows of a history file; a last row cut short by a kill is left out."""
+    """Column names and rows of a history or gauge file, without a last row cut short by a kill."""
     if not path.is_file():
         return [], []
     text = path.read_text(encoding="utf-8")

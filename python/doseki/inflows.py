@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .lattice import ROUNDING
+from .particles import FIXED, ParticleSet
 from .scenario import Scenario
 from .schema import Inflow
 
@@ -16,8 +17,9 @@ class InflowSection:
     """A plane section through which layers of particles enter, SI units.
 
     `rows` are the particles of one layer as they cross the section.  Behind it `buffer_layers`
-    more layers, `spacing` apart, move with the same `speed`, so that what has entered always has
-    neighbours upstream.
+    more layers, `spacing` apart, move with the same speed, so that what has entered always has
+    neighbours upstream.  `speeds` hold at `times` and are linear in between; `distances` is how far
+    layers have gone by then.
     """
 
     name: str
@@ -25,21 +27,57 @@ class InflowSection:
     body: int  # index into the body names
     rows: np.ndarray  # (n, dim)
     direction: np.ndarray  # (dim,), unit vector of the flow
-    speed: float
+    times: np.ndarray  # (k,)
+    speeds: np.ndarray  # (k,)
+    distances: np.ndarray  # (k,)
     spacing: float
     mass: float  # of each particle, kg (2-D: kg/m)
     density: float
     smoothing_length: float
-    start: float
-    stop: float
-    rate_mass: float  # kg/s (2-D: kg/s/m)
     buffer_layers: int
     jitter: float  # random displacement of a particle, in spacings
 
+    @property
+    def start(self) -> float:
+        """When the first layer sets out, s."""
+        return float(self.times[0])
 
-def build_inflows(scenario: Scenario, body_names: list[str]) -> list[InflowSection]:
-    """The inflow sections; `body_names` are those of `build_bodies`.  Raises UserError."""
-    return [_section(scenario, name, body_names.index(name)) for name in scenario.inflow]
+    @property
+    def stop(self) -> float:
+        """When the last layer has entered, s."""
+        return float(self.times[-1])
+
+    @property
+    def speed(self) -> float:
+        """Largest speed, m/s."""
+        return float(self.speeds.max())
+
+    @property
+    def rate_mass(self) -> float:
+        """Largest mass that enters in a second, kg/s (2-D: kg/s/m)."""
+        return self.mass * len(self.rows) * self.speed / self.spacing
+
+    def entered(self, time: np.ndarray) -> np.ndarray:
+        """Particles that have entered by each time, s, a fraction of a layer included."""
+        t = np.clip(time, self.start, self.stop)
+        k = np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.times) - 2)
+        since, speed = t - self.times[k], np.interp(t, self.times, self.speeds)
+        gone = self.distances[k] + 0.5 * (self.speeds[k] + speed) * since
+        return gone / self.spacing * len(self.rows)
+
+
+def build_inflows(
+    scenario: Scenario, body_names: list[str], particles: ParticleSet | None = None
+) -> list[InflowSection]:
+    """The inflow sections; `body_names` are those of `build_bodies`.
+
+    Raises UserError, also where a section lies inside a wall of the `particles` given.
+    """
+    sections = [_section(scenario, name, body_names.index(name)) for name in scenario.inflow]
+    if particles is not None:
+        for section in sections:
+            _check_outside_walls(scenario, section, particles, body_names)
+    return sections
 
 
 def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
@@ -47,25 +85,46 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     material = scenario.materials[inflow.material]
     direction = inflow.direction / np.linalg.norm(inflow.direction)
     rows = _rows(scenario, name, inflow, direction)
-    rate = inflow.rate / inflow.width if dim == 2 else inflow.rate
-    area = len(rows) * dp ** (dim - 1)
+    times, rate = inflow.rows.T
+    area = len(rows) * dp ** (dim - 1) * (inflow.width if dim == 2 else 1.0)
+    speeds = rate / area
+    steps = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)
     return InflowSection(
         name=name,
         material=scenario.material_names.index(inflow.material),
         body=body,
         rows=rows,
         direction=direction,
-        speed=rate / area,
+        times=times,
+        speeds=speeds,
+        distances=np.concatenate([[0.0], np.cumsum(steps)]),
         spacing=dp,
         mass=material.rho0 * dp**dim,
         density=material.rho0,
         smoothing_length=scenario.eta * dp,
-        start=inflow.start,
-        stop=inflow.start + inflow.duration,
-        rate_mass=material.rho0 * rate,
         buffer_layers=_buffer_layers(scenario),
         jitter=inflow.jitter,
     )
+
+
+def _check_outside_walls(
+    scenario: Scenario, section: InflowSection, particles: ParticleSet, body_names: list[str]
+) -> None:
+    """Particles that entered within a wall would be flung out of it."""
+    near = 0.5 * scenario.dp * (1 - ROUNDING)
+    low, high = section.rows.min(axis=0) - near, section.rows.max(axis=0) + near
+    inside = ((particles.position > low) & (particles.position < high)).all(axis=1)
+    for p in np.flatnonzero(inside & (particles.motion == FIXED)):
+        apart = np.linalg.norm(section.rows - particles.position[p], axis=1)
+        if apart.min() < near:
+            row = np.round(section.rows[np.argmin(apart)], 9).tolist()
+            position = scenario.inflow[section.name].position.tolist()
+            raise scenario.where.error(
+                ("inflow", section.name, "position"),
+                f"inflow.{section.name}.position = {position}: the section lies inside the wall"
+                f" {body_names[particles.body[p]]}, at {row} m; keep it"
+                f" dp/2 = {0.5 * scenario.dp:g} m or more from fixed particles",
+            )
 
 
 def _rows(scenario: Scenario, name: str, inflow: Inflow, direction: np.ndarray) -> np.ndarray:

@@ -83,6 +83,8 @@ class Snapshot(Mapping[str, np.ndarray]):
 class History(Mapping[str, np.ndarray]):
     """The diagnostics of a run: a mapping from column name to the values over time."""
 
+    of = "the history"  # what its columns belong to
+
     def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         self.columns = list(columns)
         table = np.array([[float(cell) for cell in row] for row in rows])
@@ -91,7 +93,7 @@ class History(Mapping[str, np.ndarray]):
     def __getitem__(self, column: str) -> np.ndarray:
         if column not in self.columns:
             known = suggestion(column, self.columns)
-            raise KeyError(f"{column!r} is not a column of the history{known}")
+            raise KeyError(f"{column!r} is not a column of {self.of}{known}")
         return self._table[:, self.columns.index(column)]
 
     def __iter__(self) -> Iterator[str]:
@@ -99,6 +101,21 @@ class History(Mapping[str, np.ndarray]):
 
     def __len__(self) -> int:
         return len(self.columns)
+
+
+class GaugeRecord(History):
+    """What a gauge read: a mapping from column name to an array (N,), in `units`.
+
+    A velocity profile has one row for each sample and height.
+    """
+
+    of = "the gauge"
+
+    def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """`columns` as in the file, "name [unit]" each."""
+        parts = [column.removesuffix("]").split(" [") for column in columns]
+        super().__init__([name for name, _ in parts], rows)
+        self.units = dict(parts)
 
 
 class Run(Sequence[Snapshot]):
@@ -144,6 +161,15 @@ class Run(Sequence[Snapshot]):
         """The diagnostics."""
         with _readable(self.folder.history):
             return History(*read_history(self.folder.history))
+
+    @cached_property
+    def gauges(self) -> dict[str, GaugeRecord]:
+        """What the gauges read, by their names."""
+        records = {}
+        for file in sorted(self.folder.gauges.glob("*.csv")):
+            with _readable(file):
+                records[file.stem] = GaugeRecord(*read_history(file))
+        return records
 
     @cached_property
     def scenario(self) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from .errors import UserError
 from .figure_flow import draw_flow
+from .figure_gauge import draw_gauge
 from .figure_histogram import SpeedHistogram, draw_histogram
 from .figure_series import ENERGIES, MASSES, draw_history
 from .figure_snapshot import SnapshotFigure, draw_snapshots
@@ -112,6 +113,10 @@ def _series_figure(run: Run, table: Any) -> Figure:
     return draw_history(run, table.columns, table.title)
 
 
+def _gauge_figure(run: Run, table: Any) -> Figure:
+    return draw_gauge(run, table.gauge, table.columns, table.times, table.title)
+
+
 def _chosen(run: Run, table: Any, view: View) -> list[Snapshot]:
     """The snapshots a figure table asks for, in order of time, none twice."""
     if table.times:
@@ -134,7 +139,12 @@ def _spread(run: Run, most: int) -> list[Snapshot]:
 
 
 GENERAL = {"overview": _overview, "energy": _energy, "mass": _mass, "flow": _flow}
-ASKED = {"snapshot": _snapshot_figure, "histogram": _histogram_figure, "series": _series_figure}
+ASKED = {
+    "snapshot": _snapshot_figure,
+    "histogram": _histogram_figure,
+    "series": _series_figure,
+    "gauge": _gauge_figure,
+}
 
 
 def _save(figure: Figure, run: Run, name: str) -> Path:

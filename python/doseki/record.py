@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,13 @@ class Recorder:
         self._attach(folder, material_names, body_names, dim)
 
     @classmethod
-    def reopen(cls, directory: str | Path, snapshots: int, rows: int) -> Recorder:
+    def reopen(
+        cls,
+        directory: str | Path,
+        snapshots: int,
+        rows: int,
+        gauge_rows: Mapping[str, int] = MappingProxyType({}),
+    ) -> Recorder:
         """Go on with the record of a resumed run: keep its first snapshots and rows."""
         folder = RunFolder(Path(directory))
         refuse_links(folder)
@@ -53,6 +60,9 @@ class Recorder:
             raise UserError(f"{directory}: holds no snapshot from which a run could go on")
         if len(files) < snapshots or len(read_history(folder.history)[1]) < rows:
             raise UserError(f"{directory}: snapshots or rows have gone since the checkpoint")
+        for name, count in gauge_rows.items():
+            if len(read_history(folder.gauge(name))[1]) < count:
+                raise UserError(f"{folder.gauge(name)}: rows have gone since the checkpoint")
         headers = {file: vtkhdf.read_header(file) for file in files}
         first = headers[files[0]]
         recorder = cls.__new__(cls)
@@ -65,7 +75,10 @@ class Recorder:
                 file.unlink()
         recorder._index = [(file.name, headers[file].time) for file in files[:snapshots]]
         recorder._write_series()
-        recorder._truncate_history(rows)
+        _truncate(folder.history, rows)
+        recorder._columns = read_history(folder.history)[0]
+        for file in folder.gauges.glob("*.csv"):
+            _truncate(file, gauge_rows.get(file.stem, 0))
         return recorder
 
     def _attach(
@@ -114,10 +127,22 @@ class Recorder:
         with clear_errors(path), path.open("a", encoding="utf-8") as file:
             file.write(_csv(lines))
 
+    def gauge(self, name: str, header: Sequence[str], rows: Sequence[Sequence[float]]) -> None:
+        """Append rows of a gauge; the first ones come after the header, "name [unit]" each."""
+        path = self._folder.gauge(name)
+        lines = [[_number_text(value) for value in row] for row in rows]
+        with clear_errors(path):
+            path.parent.mkdir(exist_ok=True)
+            if not path.is_file() or path.stat().st_size == 0:
+                lines.insert(0, list(header))
+            with path.open("a", encoding="utf-8") as file:
+                file.write(_csv(lines))
+
     def sync(self) -> None:
-        """Put the history safely on the disk, so that a checkpoint never knows more rows."""
-        with clear_errors(self._folder.history):
-            sync(self._folder.history)
+        """Put the tables safely on the disk, so that a checkpoint never knows more rows."""
+        for path in (self._folder.history, *self._folder.gauges.glob("*.csv")):
+            with clear_errors(path):
+                sync(path)
 
     def close(self, summary: Mapping[str, Any]) -> None:
         """Write `summary` (numbers, words, lists and dicts of them): the run has ended."""
@@ -129,13 +154,6 @@ class Recorder:
         files = [{"name": f"{names}/{name}", "time": time} for name, time in self._index]
         index = {"file-series-version": "1.0", "files": files}
         write_whole_text(self._folder.series, json.dumps(index, indent=1) + "\n")
-
-    def _truncate_history(self, count: int) -> None:
-        self._columns, rows = read_history(self._folder.history)
-        if not self._columns:
-            return
-        kept = [self._columns, *rows[:count]]
-        write_whole_text(self._folder.history, _csv(kept))
 
 
 def _make_room(folder: RunFolder, overwrite: bool) -> None:
@@ -164,6 +182,13 @@ def _refuse_to_overwrite(folder: RunFolder, overwrite: bool) -> None:
         )
     if not folder.is_run():
         raise UserError(f"{folder.path}: is not the folder of a run, so it is not overwritten")
+
+
+def _truncate(path: Path, count: int) -> None:
+    """Keep the header and the first rows of a table; without any row, nothing."""
+    columns, rows = read_history(path)
+    if columns:
+        write_whole_text(path, _csv([columns, *rows[:count]]) if count else "")
 
 
 def _csv(rows: Sequence[Sequence[str]]) -> str:

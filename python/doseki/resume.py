@@ -86,7 +86,7 @@ def _restored(
             f" only (DOSEKI_ISA chooses one; now {load_core().__name__.rpartition('_')[2]})"
         )
     position = checkpoint.position
-    recorder = Recorder.reopen(directory, position.snapshots, position.rows)
+    recorder = Recorder.reopen(directory, position.snapshots, position.rows, position.gauge_rows)
     run = ActiveRun(scenario, simulation, recorder, checkpoint.body_names)
     run.position = position
     run.checkpoints.drop_later(checkpoint.step)

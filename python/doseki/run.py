@@ -13,11 +13,12 @@ from .core import filled_simulation, load_core
 from .errors import PhysicsError, ResourceError
 from .failure import Failure, explain_failure
 from .folder import RunFolder
+from .gauges import GaugeReader, build_gauges
 from .loading import load
 from .record import Recorder
 from .rewind import Rewind
 from .scenario import Scenario
-from .schedule import CheckpointClock, StopRequests
+from .schedule import CheckpointClock, OutputTimes, StopRequests
 from .trust import write_trust
 
 BURST_SECONDS = 0.2  # wall time between two looks at signals and the progress bar
@@ -79,6 +80,11 @@ class ActiveRun:
         self.checkpoints = CheckpointFolder(self.folder.checkpoints)
         self.position = Position()
         self.rewind = Rewind()
+        self.outputs = OutputTimes(scenario.time_out, scenario.time_max)
+        self.gauges = [
+            (gauge, OutputTimes(gauge.interval, scenario.time_max))
+            for gauge in build_gauges(scenario, body_names)
+        ]
         self._started = time.perf_counter()
 
     @property
@@ -102,6 +108,13 @@ class ActiveRun:
         while self.position.next_history <= self.simulation.time:
             self.position.next_history += self.scenario.time_history
 
+    def record_gauge(self, gauge: GaugeReader) -> None:
+        """Write a sample."""
+        rows = gauge.read(self.simulation)
+        self.recorder.gauge(gauge.name, gauge.header, rows)
+        written = self.position.gauge_rows.get(gauge.name, 0) + len(rows)
+        self.position.gauge_rows = self.position.gauge_rows | {gauge.name: written}
+
     def checkpoint(self) -> Checkpoint:
         """A copy of the state and of where the run stands."""
         position = Position(**vars(self.position) | {"wall_seconds": self.wall_seconds})
@@ -117,24 +130,21 @@ class ActiveRun:
 
     def next_output(self) -> float:
         """Time of the next snapshot; the last one is always at time_max."""
-        return self._output_time(self.position.outputs)
-
-    def _output_time(self, number: int) -> float:
-        planned, last = number * self.scenario.time_out, self.scenario.time_max
-        return last if planned > last * (1 - 1e-9) else planned
+        return self.outputs.time(self.position.outputs)
 
     def limit_at(self, simulated: float) -> float:
-        """The limit that steps had at a simulated time in the past."""
-        number = self.position.outputs
-        while number > 0 and self._output_time(number - 1) > simulated:
-            number -= 1
-        return self._output_time(number)
+        """The limit that steps have at a simulated time: the next snapshot or sample."""
+        times = [self.outputs, *(times for _, times in self.gauges)]
+        limit = min(each.after(simulated) for each in times)
+        return min(limit, self.scenario.time_max)
 
     def start(self) -> None:
         """Take the first rates; record the initial state."""
         self.simulation.start()
         self.record_snapshot()
         self.record_history()
+        for gauge, _ in self.gauges:
+            self.record_gauge(gauge)
 
     def advance(self, options: RunOptions, stop: StopRequests) -> str:
         """Steps to the end ("done"), or to the first look after a stop request ("stopped")."""
@@ -158,13 +168,17 @@ class ActiveRun:
 
     def _burst(self, steps: int, pause: float) -> int:
         """Steps and records; returns how many steps to take next time."""
-        simulation, limit = self.simulation, self.next_output()
+        simulation, limit = self.simulation, self.limit_at(self.simulation.time)
+        samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
         started, first = time.perf_counter(), simulation.steps
         pause = min(limit, pause, self.position.next_history)
         simulation.advance(limit=limit, pause=pause, max_steps=steps)
         rate = (simulation.steps - first) / (time.perf_counter() - started)
-        if simulation.time >= limit:
+        if self.outputs.is_due(simulation.time, self.next_output()):
             self.record_snapshot()
+        for gauge, planned in samples:
+            if self.outputs.is_due(simulation.time, planned):
+                self.record_gauge(gauge)
         if simulation.time >= min(self.position.next_history, self.scenario.time_max):
             self.record_history()
         return max(1, min(LAST_BURST, int(rate * BURST_SECONDS)))

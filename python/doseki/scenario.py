@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import PrivateAttr, ValidationError, model_validator
 
+from .hydrograph import complete_inflows
 from .materials import Material, MaterialError, complete_materials
 from .overrides import apply_overrides
 from .particle_file import ParticleTable, read_particles
@@ -27,9 +28,9 @@ from .toml_writer import to_toml
 class Scenario(ScenarioTable):
     """A run, checked and without expressions; lengths in m, times in s, angles in degrees.
 
-    The tables of the file are `parameters`, `body`, `inflow`, `outflow`, `window` and `figure`,
-    dictionaries by name.  `gravity` is an array (dim,) also where the file gives a slope, and `xi`
-    a number also where it gives a height.
+    The tables of the file are `parameters`, `body`, `inflow`, `outflow`, `gauge`, `window` and
+    `figure`, dictionaries by name.  `gravity` is an array (dim,) also where the file gives a
+    slope, and `xi` a number also where it gives a height.
     """
 
     _where: Where = PrivateAttr()
@@ -104,6 +105,7 @@ class Scenario(ScenarioTable):
             for name, body in self.body.items()
             if isinstance(body, ParticleFile)
         }
+        complete_inflows(self)
         check_scenario(self)
         self._material_names = _materials_in_use(self)
         if self.xi is None:

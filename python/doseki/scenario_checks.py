@@ -6,6 +6,8 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from .errors import UserError
+from .gauge_tables import check_gauges
+from .motions import check_motions
 from .nearest import suggestion
 from .quantities import check_quantity
 from .schema import SECTIONS
@@ -28,6 +30,8 @@ def check_scenario(scenario: Scenario) -> None:
     elif scenario.kernel != "wendland_c6":
         message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
         raise scenario.where.error(("kernel",), message)
+    check_motions(scenario)
+    check_gauges(scenario)
 
 
 def _check_names(scenario: Scenario) -> None:
@@ -49,11 +53,15 @@ def _check_references(scenario: Scenario) -> None:
     for section in ("body", "inflow", "figure"):
         for name, part in getattr(scenario, section).items():
             _check_known(scenario, (section, name, "material"), part.material, scenario.materials)
+    for name, gauge in scenario.gauge.items():
+        material = getattr(gauge, "material", None)
+        _check_known(scenario, ("gauge", name, "material"), material, scenario.materials)
     for name, body in scenario.body.items():
         wetted_by = getattr(body, "wetted_by", None)
         _check_known(scenario, ("body", name, "wetted_by"), wetted_by, scenario.materials)
     for name, figure in scenario.figure.items():
         _check_known(scenario, ("figure", name, "window"), figure.window, scenario.window)
+        _check_known(scenario, ("figure", name, "gauge"), figure.gauge, scenario.gauge)
     for name, particles in scenario.particle_tables.items():
         for material in particles.material_names:
             _check_known(scenario, ("body", name, "file"), material, scenario.materials)

@@ -12,6 +12,35 @@ from pathlib import Path
 STOP_FILE = "STOP"
 
 
+class OutputTimes:
+    """Multiples of an interval, the last of them exactly at the end of the run."""
+
+    SAME = 1e-12  # relative difference of two times that are meant to be one
+
+    def __init__(self, interval: float, last: float) -> None:
+        """Both in s."""
+        self.interval, self.last = interval, last
+
+    def time(self, number: int) -> float:
+        """Time of output `number`, s; from the end on, the end."""
+        planned = number * self.interval
+        return self.last if planned > self.last * (1 - 1e-9) else planned
+
+    def after(self, simulated: float) -> float:
+        """The first of these times that is later than `simulated`, s; inf if there is none."""
+        passed = simulated * (1 + self.SAME)
+        number = max(0, int(simulated / self.interval) - 1)
+        while self.time(number) <= passed:
+            if self.time(number) == self.last:
+                return math.inf
+            number += 1
+        return self.time(number)
+
+    def is_due(self, simulated: float, planned: float) -> bool:
+        """Whether `planned` has come at the time `simulated`, both in s."""
+        return simulated * (1 + self.SAME) >= planned
+
+
 class CheckpointClock:
     """Checkpoints every so many simulated seconds, and every so many minutes of wall time."""
 

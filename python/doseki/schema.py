@@ -18,6 +18,8 @@ from .materials import LAWS, LIMIT, MATERIAL_PARAMETERS, MaterialParameter
 from .value_types import (
     Axis,
     Corner,
+    Depth,
+    Hydrograph,
     Length,
     NonNegative,
     Positive,
@@ -89,16 +91,42 @@ MaterialTable = create_model(
 )
 
 
+class Motion(Table):
+    """A prescribed motion of a fixed body."""
+
+    velocity: Vector | None = Field(None, description="m/s; default: none")
+    angular_velocity: float | Vector | None = Field(
+        None, description="rad/s, anticlockwise; 3-D: a vector; default: none"
+    )
+    pivot: Vector | None = Field(
+        None, description="point about which it turns, which goes with it, m"
+    )
+    start: NonNegative = Field(0.0, description="when it begins to move, s")
+    stop: Positive | None = Field(None, description="when it stands still again, s")
+    removed_at: Positive | None = Field(None, description="when the body vanishes, s")
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Motion:
+        if self.stop is not None and self.stop <= self.start:
+            raise ValueError(f"stop = {self.stop:g} s must be later than start = {self.start:g} s")
+        if self.angular_velocity is not None and self.pivot is None:
+            raise ValueError("angular_velocity needs a pivot, the point about which the body turns")
+        if self.velocity is None and self.angular_velocity is None and self.removed_at is None:
+            raise ValueError("give velocity, angular_velocity or removed_at")
+        return self
+
+
 class ShapedBody(Part):
     """What every body with a shape has."""
 
     material: str = Field(description="name of its material")
-    fixed: bool = Field(False, description="true: interacts but never moves")
     pressure: ScalarField | None = Field(
         None,
         description="initial pressure, Pa; a number or an expression of x, y, z; particles keep "
         "their volume",
     )
+    fixed: bool = Field(False, description="true: interacts but moves only as `motion` says")
+    motion: Motion | None = Field(None, description="prescribed motion of a fixed body")
     velocity: VelocityField | None = Field(
         None, description="initial velocity, m/s; expressions may use x, y, z"
     )
@@ -189,16 +217,24 @@ BODY_TABLES = {
 
 
 class Inflow(Part):
-    """A section through which particles enter at a constant rate."""
+    """A section through which particles enter, at a constant rate or as a hydrograph says."""
 
     material: str = Field(description="name of the material that enters")
-    rate: Rate = Field(description='m3/s, or a string such as "3 L/s"')
+    rate: Rate | None = Field(None, description='m3/s, or a string such as "3 L/s"')
+    hydrograph: Hydrograph | None = Field(
+        None,
+        description="[[t, Q], ...] in s after `start` and m3/s, or a CSV file with columns t and"
+        " Q; excludes rate",
+    )
     width: Length = Field(description="m; a 2-D run enters rate/width")
     position: Vector = Field(description="bottom point of the section, m")
     direction: Vector = Field(description="direction of the flow")
-    depth: Length = Field(description="m, extent along the section's upward normal")
+    depth: Depth = Field(
+        description='m, extent along the section\'s upward normal, or "normal": of uniform flow'
+    )
+    ks: Length | None = Field(None, description="roughness of the bed in the normal depth, m")
     start: NonNegative = Field(0.0, description="s")
-    duration: Positive = Field(description="s")
+    duration: Positive | None = Field(None, description="s; a hydrograph has its own")
     jitter: float = Field(
         0.0, ge=0, lt=0.5, description="random displacement along each axis, in spacings"
     )
@@ -208,6 +244,17 @@ class Inflow(Part):
         if not np.any(self.direction):
             raise ValueError("direction must not be the zero vector")
         return self
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Rows (n, 2) of time, s, and discharge, m3/s; linear in between."""
+        given = self.hydrograph or [[0.0, self.rate], [self.duration, self.rate]]
+        return np.array(given, dtype=float) + np.array([self.start, 0.0])
+
+    @property
+    def peak_rate(self) -> float:
+        """Largest discharge, m3/s."""
+        return float(self.rows[:, 1].max())
 
 
 class Region(Part):
@@ -236,10 +283,83 @@ class Window(Region):
     )
 
 
+class Gauge(Part):
+    """An instrument that is read at times of its own."""
+
+    interval: Positive | None = Field(None, description="s between samples; default: time_out")
+
+
+class FlowGauge(Gauge):
+    """One that looks at what moves near a point."""
+
+    position: Vector = Field(description="where it stands, m")
+    material: str | None = Field(
+        None, description="look only at this material; default: all that moves"
+    )
+
+
+class SurfaceHeight(FlowGauge):
+    """Height of the column that stands on a point of the bed."""
+
+    kind: Literal["surface_height"]
+    direction: Vector | None = Field(None, description="upwards; default: against gravity")
+
+
+class VelocityProfile(FlowGauge):
+    """Velocity at points along a line from the bed."""
+
+    kind: Literal["velocity_profile"]
+    direction: Vector | None = Field(None, description="of the line; default: against gravity")
+    length: Length = Field(description="of the line, m")
+    count: int = Field(20, gt=0, le=10_000, description="points, at (k + 1/2) length/count")
+
+
+class PressureGauge(FlowGauge):
+    """Mean pressure of what is near a point of a wall."""
+
+    kind: Literal["pressure"]
+    radius: Length | None = Field(None, description="of the mean, m; default: 3 dp")
+
+
+class Discharge(FlowGauge):
+    """What flows through a section."""
+
+    kind: Literal["discharge"]
+    direction: Vector = Field(description="normal of the section, along which flow counts")
+    depth: Length | None = Field(
+        None, description="extent upwards from the position, m; default: everything"
+    )
+    width: Length | None = Field(None, description="3-D: extent across, m; default: everything")
+    length: Length | None = Field(
+        None, description="of the slab around the section, m; default: 4 dp"
+    )
+
+
+class ForceGauge(Gauge):
+    """Force and moment of the flow on fixed bodies."""
+
+    kind: Literal["force"]
+    bodies: list[str] = Field(description="names of fixed bodies", min_length=1)
+    about: Vector | None = Field(None, description="point of the moment, m; default: the origin")
+
+
+GaugeTable = Annotated[
+    SurfaceHeight | VelocityProfile | PressureGauge | Discharge | ForceGauge,
+    Field(discriminator="kind"),
+]
+GAUGE_TABLES = {
+    "surface_height": SurfaceHeight,
+    "velocity_profile": VelocityProfile,
+    "pressure": PressureGauge,
+    "discharge": Discharge,
+    "force": ForceGauge,
+}
+
+
 class Figure(Part):
     """A picture made from the record of a run."""
 
-    kind: Literal["snapshot", "histogram", "series"] = Field(description="what is drawn")
+    kind: Literal["snapshot", "histogram", "series", "gauge"] = Field(description="what is drawn")
     title: str = Field("", description="caption")
     window: str | None = Field(None, description="name of a [window.NAME]; default: everything")
     times: list[float] = Field(
@@ -257,7 +377,10 @@ class Figure(Part):
     material: str | None = Field(None, description="count or draw only this material")
     bin_width: Positive = Field(0.1, description="histogram bins, m/s")
     sample: int = Field(30, gt=0, description="size of a random sample of particles")
-    columns: list[str] = Field(default_factory=list, description="series: columns of the history")
+    columns: list[str] = Field(
+        default_factory=list, description="series, gauge: columns of the history, of the gauge"
+    )
+    gauge: str | None = Field(None, description="gauge: name of a [gauge.NAME]")
 
 
 class ScenarioTable(Table):
@@ -316,6 +439,7 @@ class ScenarioTable(Table):
     body: dict[str, BodyTable] = Field(default_factory=dict)
     inflow: dict[str, Inflow] = Field(default_factory=dict)
     outflow: dict[str, Outflow] = Field(default_factory=dict)
+    gauge: dict[str, GaugeTable] = Field(default_factory=dict)
     window: dict[str, Window] = Field(default_factory=dict)
     figure: dict[str, Figure] = Field(default_factory=dict)
 
@@ -334,8 +458,15 @@ SECTIONS = {
     "body": None,  # its keys depend on the shape
     "inflow": Inflow,
     "outflow": Outflow,
+    "gauge": None,  # its keys depend on the kind
     "window": Window,
     "figure": Figure,
+}
+
+
+KINDS = {  # sections of several kinds of tables: the key that tells, the kinds, what all have
+    "body": ("shape", BODY_TABLES, ShapedBody),
+    "gauge": ("kind", GAUGE_TABLES, Gauge),
 }
 
 
@@ -343,11 +474,14 @@ def table_at(keys: tuple[str | int, ...], table: Any) -> type[Table] | None:
     """The kind of table that stands at `keys` (top level: empty) of the scenario `table`."""
     if not keys:
         return ScenarioTable
+    if len(keys) == 3 and keys[0] == "body" and keys[2] == "motion":
+        return Motion
     if len(keys) != 2 or keys[0] not in SECTIONS:
         return None
-    if keys[0] != "body":
+    if keys[0] not in KINDS:
         return SECTIONS[str(keys[0])]
+    tag, kinds, general = KINDS[str(keys[0])]
     try:
-        return BODY_TABLES.get(table["body"][keys[1]]["shape"], ShapedBody)
+        return kinds.get(table[keys[0]][keys[1]][tag], general)
     except (KeyError, TypeError):
-        return ShapedBody
+        return general

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from .errors import UserError
 from .nearest import suggestion
-from .schema import BODY_TABLES, table_at
+from .schema import KINDS, table_at
 from .toml_source import KeyPath, Where, dotted
 
 EXPECTED = {
@@ -66,11 +66,8 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any]) -> str:
         return f"{name} is not a known key{_nearest_key(keys, table)}"
     if kind == "missing":
         return f"{name} is missing{about}"
-    if kind == "union_tag_not_found":
-        return f"{name}.shape is missing; choose one of {', '.join(BODY_TABLES)}"
-    if kind == "union_tag_invalid":
-        tag = str(context["tag"])
-        return f'{name}.shape = "{tag}" is not a shape{suggestion(tag, BODY_TABLES)}'
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        return _tag_sentence(name, KINDS[str(keys[0])], context.get("tag"))
     if kind == "literal_error":
         return f"{name} = {_shown(value)} is not allowed; choose {context['expected']}{about}"
     if kind == "value_error":
@@ -84,6 +81,14 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any]) -> str:
             limit = f"{words} {context[bound]:g}"
             return f"{name} = {_shown(value)} is out of range; must be {limit}{about}"
     return f"{name} = {_shown(value)}: {objection['msg']}{about}"
+
+
+def _tag_sentence(name: str, kinds: tuple[str, dict[str, Any], Any], tag: Any) -> str:
+    """About a table that does not say rightly of which kind it is."""
+    key, known, _ = kinds
+    if tag is None:
+        return f"{name}.{key} is missing; choose one of {', '.join(known)}"
+    return f'{name}.{key} = "{tag}" is not a {key}{suggestion(str(tag), known)}'
 
 
 def _description(keys: KeyPath, table: dict[str, Any]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -59,6 +60,42 @@ def _rate(value: Any) -> Any:
         raise ValueError(f"{found[1]!r} is not a number") from None
 
 
+def _depth(value: float | str) -> float | str:
+    if value != "normal" and not (isinstance(value, float) and SMALLEST <= value <= LARGEST):
+        shown = repr(value)[:60]
+        raise ValueError(f'{shown} must be a length in m from {SMALLEST:g} on, or "normal"')
+    return value
+
+
+def _hydrograph(value: Any) -> str | list[list[float]]:
+    """The path of a CSV file, or checked rows [t, Q] in s and m3/s."""
+    if isinstance(value, str) and value:
+        return value
+    if not isinstance(value, list) or not all(
+        isinstance(row, list) and len(row) == 2 for row in value
+    ):
+        raise ValueError("must be a list of [t, Q] pairs, or the path of a CSV file")
+    return checked_hydrograph([(t, _rate(rate)) for t, rate in value])
+
+
+def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
+    """Rows [t, Q] in s and m3/s; raises ValueError where they are no hydrograph."""
+    if len(rows) < 2:
+        raise ValueError(f"{len(rows)} rows; two or more are needed")
+    for number, (t, rate) in enumerate(rows, start=1):
+        for name, value in (("t", t), ("Q", rate)):
+            is_number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not is_number or not 0 <= value <= LARGEST:
+                shown = repr(value)[:60]
+                raise ValueError(f"row {number}: {name} = {shown}; allowed: numbers from 0 on")
+        if number > 1 and t < rows[number - 2][0]:
+            before = rows[number - 2][0]
+            raise ValueError(f"row {number}: t = {t:g} s goes back; allowed: {before:g} s or later")
+    if rows[0][0] == rows[-1][0] or not any(rate > 0 for _, rate in rows):
+        raise ValueError("nothing would enter; times must go on and some Q be above 0")
+    return [[float(t), float(rate)] for t, rate in rows]
+
+
 def _skin(value: float | str) -> float | str:
     if value != "auto" and not (isinstance(value, float) and 0 <= value <= 1):
         raise ValueError('must be a number from 0 to 1, or "auto"')
@@ -84,5 +121,7 @@ Bound = Annotated[
 ]
 Corner = Annotated[list[Bound], *AsArray]
 Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
+Depth = Annotated[float | str, AfterValidator(_depth)]
+Hydrograph = Annotated[Any, AfterValidator(_hydrograph)]
 Axis = Literal["x", "y", "z"]
 Skin = Annotated[float | str, AfterValidator(_skin)]

@@ -45,9 +45,9 @@ max = [0.3, {top}]
 def doubts(tmp_path):
     """The findings about a body of water over a floor."""
 
-    def find(xi=0.05, layers=3, bottom=0.0, top=0.12):
+    def find(xi=0.05, layers=3, bottom=0.0, top=0.12, more=""):
         file = tmp_path / "case.toml"
-        file.write_text(SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top))
+        file.write_text(SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top) + more)
         scenario = load_scenario(file)
         simulation, names = build_simulation(scenario)
         return thorough_findings(scenario, simulation.state(), names)
@@ -59,6 +59,33 @@ def test_a_good_set_up_raises_no_doubt(doubts):
     assert doubts() == []
 
 
+GAUGE = """
+[gauge.far]
+kind = "pressure"
+position = [0.2, 3]
+"""
+PISTON = """
+[body.piston]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0.4, 0]
+max = [0.43, 0.1]
+motion = { velocity = [-12, 5] }
+"""
+ROUGH = """
+[inflow.i]
+material = "water"
+rate = 0.01
+width = 0.1
+position = [0.01, 0]
+direction = [1, 0]
+depth = 0.2
+ks = 0.15
+duration = 1
+"""
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -68,6 +95,9 @@ def test_a_good_set_up_raises_no_doubt(doubts):
         ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
         ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),
         ({"bottom": -0.012, "top": 0.12}, ["overlaps"]),
+        ({"more": GAUGE}, ["gauge.far.position = [0.2, 3.0] m lies outside everything"]),
+        ({"more": PISTON}, ["speeds up to 13.1 m/s are Mach"]),
+        ({"more": ROUGH}, ["inflow.i.ks = 0.15 m is larger than the depth of the flow, 0.12 m"]),
     ],
 )
 def test_a_doubtful_set_up_is_named_with_its_remedy(doubts, changes, words):

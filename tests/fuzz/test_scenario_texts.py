@@ -21,7 +21,7 @@ def read(path, overrides=()):
     try:
         scenario = load_scenario(path, overrides)
         particles, names = build_bodies(scenario)
-        build_inflows(scenario, names)
+        build_inflows(scenario, names, particles)
     except (UserError, ResourceError) as error:
         assert_one_sentence(error)
         return None

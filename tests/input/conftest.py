@@ -40,8 +40,8 @@ def write(tmp_path: Path) -> Callable[..., str]:
 def load_and_build(path: str, overrides: Sequence[str]) -> None:
     """All that is done with a scenario before a run."""
     scenario = load_scenario(path, overrides)
-    _, names = build_bodies(scenario)
-    build_inflows(scenario, names)
+    particles, names = build_bodies(scenario)
+    build_inflows(scenario, names, particles)
 
 
 @pytest.fixture

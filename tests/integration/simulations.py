@@ -52,6 +52,7 @@ class Simulations:
         domain: tuple[list[float], list[float]] | None = None,
         inflows: tuple[dict[str, Any], ...] = (),
         outflows: tuple[tuple[list[float], list[float]], ...] = (),
+        motions: tuple[dict[str, Any], ...] = (),
         **options: Any,
     ) -> Any:
         """A started simulation of particles of spacing `dp` at rest density.
@@ -73,6 +74,8 @@ class Simulations:
             simulation.add_inflow(inflow)
         for outflow in outflows:
             simulation.add_outflow(*outflow)
+        for motion in motions:
+            simulation.move_body(motion)
         simulation.start()
         return simulation
 
