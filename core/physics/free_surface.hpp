@@ -1,6 +1,5 @@
 #pragma once
 #include <cmath>
-#include <cstdlib>
 
 #include "base/vec.hpp"
 
@@ -79,7 +78,7 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
 /// time 1/|L| is undone in about that time, however fast the frame moves.
 template <int D>
 Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate, double h) {
-    static const double strength = std::getenv("SHIFT") ? std::atof(std::getenv("SHIFT")) : 4.0, most = std::getenv("MOST") ? std::atof(std::getenv("MOST")) : 0.5;
+    constexpr double strength = 40.0, most = 5.0;
     const double length = std::sqrt(dot(gradient_of_concentration, gradient_of_concentration));
     if (!(length > 0.0)) return {};
     const double speed = std::min(strength * h * length, most) * h * rate;

@@ -74,7 +74,7 @@ public:
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("next_timestep", timestep_), archive("av_power", power_);
+        archive("next_timestep", timestep_), archive("av_power", power_), archive("liveliness", liveliness_);
     }
 
     std::size_t bytes() const {
@@ -88,7 +88,7 @@ private:
 
     struct ClusterSummary {
         double timestep = std::numeric_limits<double>::max();
-        double power = 0.0;
+        double power = 0.0, strain = 0.0;
         std::int64_t faulty = -1, limiting = -1;
     };
 
@@ -111,6 +111,8 @@ private:
     /// Time, in h/c, in which the density that follows from motion is drawn to that of the arrangement of
     /// particles: what continuity sums up over many steps forgets how far apart they are.
     static inline const double relaxation = std::getenv("RELAX") ? std::atof(std::getenv("RELAX")) : 100.0;
+    /// Root mean square of |L| h/c below which a fluid counts as at rest.
+    static constexpr double at_rest = 5e-4;
 
     double eddy_viscosity(const Particles<D>& particles, std::size_t p) const {
         if (options_.flow.turbulence == Turbulence::none) return 0.0;
@@ -160,6 +162,7 @@ private:
     PhaseTimer phases_;
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;
+    double liveliness_ = 0.0;    // 0: fluid at rest, whose momentum pairs conserve; 1: flow
     std::int64_t faulty_ = -1, limiting_ = -1;
 };
 
@@ -292,14 +295,14 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     const double rho = record.rho, rho0 = materials_[particles.tag[p].material].rho0;
     Vec<double, D> a = (1.0 / rho) * (2.0 * sums.force + sums.traction) + options_.gravity;
     double rate = rho * sums.density_rate;
-    static const double lo = std::getenv("LO") ? std::atof(std::getenv("LO")) : 5e-4;
     double norm = 0.0;
     for (double element : L.element) norm += element * element;
-    const double act = 1.0;
-    norm = std::max(norm, std::pow(lo * constants_.c / h, 2));
-    if (sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface) a = a + (2.0 * act * record.p / rho) * sums.concentration_gradient;
+    summary_[p / lanes<double>].strain += norm;
+    // Away from walls and surface the mean pressure does nothing; what disorder makes of it is noise.
+    if (sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface)
+        a = a + (2.0 * liveliness_ * record.p / rho) * sums.concentration_gradient;
     if (shifted && measure.x < SurfaceMeasure::surface) {
-        Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::sqrt(norm), h);
+        Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), 0.01 * constants_.c / h), h);
         if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
         flow.shift[p] = shift;
         for (int k = 0; k < D; ++k)
@@ -332,10 +335,16 @@ void FlowRates<D>::reduce_summaries() {
     timestep_ = std::numeric_limits<double>::max();
     power_ = 0.0;
     faulty_ = limiting_ = -1;
+    double strain = 0.0;
     for (const ClusterSummary& summary : summary_) {
         if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
         power_ += summary.power;
+        strain += summary.strain;
         if (faulty_ < 0) faulty_ = summary.faulty;
+    }
+    if (fluid_count_ > 0) {
+        const double h = options_.eta * options_.flow.dp, rms = std::sqrt(strain / static_cast<double>(fluid_count_));
+        liveliness_ = std::clamp(h * rms / (at_rest * constants_.c) - 1.0, 0.0, 1.0);
     }
 }
 
