@@ -4,12 +4,13 @@
 namespace doseki {
 
 /// Low-dissipation acoustic Riemann solver (Zhang, Hu & Adams, J. Comput. Phys. 335, 2017):
-/// p* = (p_i + p_j)/2 + beta rho c dU/2, beta = min(3 max(dU, 0)/c, 1), with dU = (v_i - v_j).n the
-/// speed of approach. This is what it adds to the mean pressure [Pa].
+/// p* = (p_i + p_j)/2 + beta rho c dU/2 with dU = (v_i - v_j).n the speed of approach, less what the
+/// velocity gradient makes of it. Their beta = min(3 max(dU, 0)/c, 1) leaves noise at a free surface
+/// undamped; here it is at least `least_beta`. This is what it adds to the mean pressure [Pa].
 template <class T>
 DOSEKI_FN T approach_pressure(const T& dU, const T& rho, const T& c) {
-    const T half = number<T>(0.5);
-    return half * rho * min(T(3) * max(dU, T(0)), c) * dU;
+    constexpr double least_beta = 0.05;
+    return number<T>(0.5) * rho * min(max(T(3) * dU, number<T>(least_beta) * c), c) * dU;
 }
 
 /// The part of the solver's velocity U* that comes from pressures, twice over: (p_i - p_j)/(rho c). It

@@ -110,7 +110,9 @@ private:
 
     /// Time, in h/c, in which the density that follows from motion is drawn to that of the arrangement of
     /// particles: what continuity sums up over many steps forgets how far apart they are.
-    static inline const double relaxation = std::getenv("RELAX") ? std::atof(std::getenv("RELAX")) : 100.0;
+    static constexpr double relaxation = 100.0;
+    /// Of rho0. What tears apart leaves a void, not water under tension.
+    static constexpr double least_density = 0.98;
     /// Root mean square of |L| h/c below which a fluid counts as at rest.
     static constexpr double at_rest = 5e-4;
 
@@ -310,6 +312,7 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
         rate += dot(flow.pressure_gradient[p], shift) / (constants_.c * constants_.c);
     }
     rate += (measure.filling * rho0 - rho) * constants_.c / (relaxation * h);
+    if (rho < least_density * rho0) rate = std::max(0.0, rate);
     particles.acceleration[p] = a;
     particles.density_rate[p] = rate;
     summary_[p / lanes<double>].power += record.volume * sums.power;

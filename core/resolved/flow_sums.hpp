@@ -51,10 +51,22 @@ struct WallContact {
     T power;
 };
 
+/// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle in
+/// front of its face; beyond an edge, the line between the two and no gravity.
 template <class T, int D>
-DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw, const T& F,
-                                         const FluidPoint<T, D>& i, const WallPoint<T, D>& w) {
+DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
+    WallPoint<T, D> seen = w;
+    const T front = select(dot(r_iw, w.normal) > w.depth, T(1), T(0)), beyond = (T(1) - front) / r;
+    for (int a = 0; a < D; ++a) seen.normal[a] = front * w.normal[a] + beyond * r_iw[a];
+    seen.g_normal = front * w.g_normal;
+    return seen;
+}
+
+template <class T, int D>
+DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw, const T& r, const T& F,
+                                         const FluidPoint<T, D>& i, const WallPoint<T, D>& wall) {
     WallContact<T, D> contact;
+    const WallPoint<T, D> w = facing(wall, r_iw, r);
     const Vec<T, D> v_iw = i.v - w.v;
     contact.r_dot_n = dot(r_iw, w.normal);
     contact.approach = -dot(v_iw, w.normal);
@@ -118,7 +130,7 @@ struct FluidSum {
                                    const Pair<T, D>& pair, const FluidPoint<T, D>& i, const WallPoint<T, D>& w) {
         const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support), VF = w.volume * F;
         const T W = Kernel::value(pair.r, inverse_support);
-        const auto contact = wall_contact(constants, pair.r_ij, F, i, w);
+        const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
         const T half = number<T>(0.5);
         for (int a = 0; a < D; ++a) {
             sums.force[a] += half * contact.force[a];
@@ -142,7 +154,7 @@ struct WallSum {
                               const Pair<T, D>& pair, const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
         const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support), W = Kernel::value(pair.r, inverse_support);
         const Vec<T, D> r_jw = T(-1) * pair.r_ij;
-        const auto contact = wall_contact(constants, r_jw, F, j, w);
+        const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);
         const T share = j.volume * W;
         for (int a = 0; a < D; ++a) {
             sums.force[a] -= j.volume * contact.force[a];
