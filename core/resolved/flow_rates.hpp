@@ -335,7 +335,8 @@ void FlowRates<D>::limit_timestep(const Particles<D>& particles, std::size_t p) 
 
 template <int D>
 void FlowRates<D>::reduce_summaries() {
-    timestep_ = std::numeric_limits<double>::max();
+    // What enters next may be the first fluid there is.
+    timestep_ = options_.cflnumber * options_.eta * options_.flow.dp / constants_.c;
     power_ = 0.0;
     faulty_ = limiting_ = -1;
     double strain = 0.0;

@@ -15,10 +15,11 @@ from statistics import median
 from typing import Any
 
 from . import __version__
-from .bench_case import SCHEME, Case, make_simulation
+from .bench_case import SCHEMES, Case, make_simulation
 from .bench_report import checks, growth, machine, memory_check, phase_table, speed_table
 from .core_modules import available_instruction_sets, load_core
 from .errors import ResourceError, UserError
+from .schemes import RESOLVED, UETA2022
 
 SIZES = (4_000, 10_000, 100_000, 1_000_000)
 QUICK_SIZES = (4_000, 10_000, 100_000)
@@ -43,6 +44,7 @@ class Plan:
     threads: Sequence[int] = ()
     isas: Sequence[str] = ()
     quick: bool = False
+    scheme: str = UETA2022
 
     def groups(self) -> Iterator[list[Case]]:
         """Cases to be timed in turns, so that what disturbs the machine disturbs them alike."""
@@ -52,7 +54,7 @@ class Plan:
     def _cases(self, dim: int, n: int) -> list[Case]:
         isas = self.isas or available_instruction_sets()[:1]
         return [
-            Case(dim, n, precision, threads, isa)
+            Case(dim, n, precision, threads, isa, scheme=self.scheme)
             for isa, precision, threads in product(
                 isas, self.precisions, self.threads or default_threads()
             )
@@ -63,7 +65,8 @@ class Plan:
         compared = QUICK_COMPARED_SIZE if self.quick else COMPARED_SIZE
         if self.isas or n != compared or "double" not in self.precisions:
             return []
-        return [Case(dim, n, "double", 1, isa) for isa in available_instruction_sets()[1:]]
+        others = available_instruction_sets()[1:]
+        return [Case(dim, n, "double", 1, isa, scheme=self.scheme) for isa in others]
 
 
 def default_threads() -> list[int]:
@@ -120,7 +123,7 @@ class Timing:
         self.core_shares.append(processor / (wall * threads))
         self.steps += steps
         self.rebuilds += simulation.rebuilds - first_build
-        if self.case.threads == 1:
+        if self.case.threads == 1 and self.case.scheme == UETA2022:
             self.bare_rates.append(simulation.bare_pair_rate(BARE_SECONDS))
 
     def shares(self) -> dict[str, float]:
@@ -139,7 +142,7 @@ class Timing:
         return {
             "dim": case.dim,
             "precision": case.precision,
-            "scheme": SCHEME,
+            "scheme": case.scheme,
             "n": case.n,
             "threads": case.threads,
             "isa": case.isa,
@@ -205,9 +208,14 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
         raise UserError(
             f"--sizes {min(sizes)}: fewer than {SMALLEST} particles are not worth timing"
         )
+    scheme = (_words("--scheme", options["--scheme"], SCHEMES) or [UETA2022])[0]
+    precisions = _words("--precision", options["--precision"], PRECISIONS) or list(PRECISIONS)
+    if scheme == RESOLVED:
+        precisions = ["double"]
     return Plan(
+        scheme=scheme,
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],
-        precisions=_words("--precision", options["--precision"], PRECISIONS) or PRECISIONS,
+        precisions=precisions,
         sizes=sizes,
         threads=_counts("--threads", options["--threads"], 4096),
         isas=_words("--isa", options["--isa"], available_instruction_sets()),
@@ -226,7 +234,7 @@ def append_history(path: Path, rows: Sequence[Row]) -> None:
 
 def print_report(rows: Sequence[Row]) -> None:
     """Tables, growth and targets, as Markdown."""
-    print(f"{machine()}; scheme {SCHEME}")
+    print(f"{machine()}; scheme {rows[0]['scheme']}")
     for title, table in (("Speed and memory", speed_table), ("Share of a step, %", phase_table)):
         print(f"\n{title}\n\n{table(rows)}")
     print("\nStep time ~ N^a\n")

@@ -11,6 +11,7 @@ from .core_modules import load_core
 from .errors import ResourceError
 from .materials import BUILT_IN
 from .memory import available_bytes
+from .schemes import RESOLVED, RESOLVED_DEFAULTS, RESOLVED_ETA, UETA2022
 
 DP = 0.01  # m
 ETA = 1.2
@@ -18,8 +19,8 @@ XI = 0.05  # eq. 19, as on the flume
 JITTER = 0.1  # spacings; a lattice would flatter lists and caches
 MOVED_PER_STEP = 0.005  # spacings that the fastest particle goes in a step; the flume: 0.002
 BYTES_TO_MAKE = 1200  # per particle, while a simulation is made (a guess on the safe side)
-SCHEME = "ueta2022"
-MATERIALS = ("water", "basalt")
+MATERIALS = {UETA2022: ("water", "basalt"), RESOLVED: ("water", "water")}
+SCHEMES = tuple(MATERIALS)
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,17 @@ class Case:
     threads: int
     isa: str
     skin: float | str = 0.05
+    scheme: str = UETA2022
+
+    @property
+    def eta(self) -> float:
+        """Smoothing length over spacing."""
+        return ETA if self.scheme == UETA2022 else RESOLVED_ETA[RESOLVED_DEFAULTS["kernel"]]
+
+    @property
+    def cflnumber(self) -> float:
+        """That of the scheme by default."""
+        return 0.1 if self.scheme == UETA2022 else RESOLVED_DEFAULTS["cflnumber"]
 
     @property
     def lanes(self) -> int:
@@ -59,10 +71,16 @@ def vortex(position: np.ndarray, speed: float) -> np.ndarray:
 def _options(case: Case) -> dict[str, Any]:
     zero = [0.0] * case.dim
     return {
-        "gravity": zero, "eta": ETA, "alpha": 1.0, "cflnumber": 0.1, "cfl_force": 0.1,
-        "skin": 0.05 if case.skin == "auto" else case.skin, "auto_skin": case.skin == "auto",
-        "balsara": True, "sym_grad": False, "tension": "clamp_fluid", "h_mode": "constant",
+        "gravity": zero, "eta": case.eta, "alpha": 1.0, "cflnumber": case.cflnumber,
+        "cfl_force": 0.1, "skin": 0.05 if case.skin == "auto" else case.skin,
+        "auto_skin": case.skin == "auto", "balsara": True, "sym_grad": False,
+        "tension": "clamp_fluid", "h_mode": "constant",
         "domain_min": zero, "domain_max": zero, "periodic": [False] * case.dim,
+        "flow": {
+            "dp": DP, "kernel": RESOLVED_DEFAULTS["kernel"], "viscosity": "morris",
+            "shifting": True, "eos": "linear", "turbulence": "smagorinsky", "smagorinsky": 0.12,
+            "walls": [{"stick": True, "ks": 0.0}],
+        },
     }  # fmt: skip
 
 
@@ -72,12 +90,13 @@ def make_simulation(case: Case) -> Any:
         raise ResourceError(f"{case.n} particles do not fit in the memory that is free")
     core = load_core(case.isa)
     core.set_threads(case.threads)
-    materials = [BUILT_IN[name].scaled(XI) for name in MATERIALS]
-    kind = getattr(core, f"Simulation{case.dim}{case.precision.capitalize()}")
+    materials = [BUILT_IN[name].scaled(XI) for name in MATERIALS[case.scheme]]
+    prefix = "Resolved" if case.scheme == RESOLVED else ""
+    kind = getattr(core, f"{prefix}Simulation{case.dim}{case.precision.capitalize()}")
     simulation = kind([vars(material) for material in materials], _options(case))
 
     position = block(case.dim, case.n)
-    timestep = 0.1 * ETA * DP / max(material.speedsound for material in materials)
+    timestep = case.cflnumber * case.eta * DP / max(material.speedsound for material in materials)
     index = (position[:, 0] > position[:, 0].mean()).astype(np.int32)
     density = np.array([material.rho0 for material in materials])[index]
     zeros = np.zeros(case.n, np.int32)
@@ -86,7 +105,7 @@ def make_simulation(case: Case) -> Any:
         velocity=vortex(position, MOVED_PER_STEP * DP / timestep),
         mass=density * DP**case.dim,
         density=density,
-        smoothing_length=np.full(case.n, ETA * DP),
+        smoothing_length=np.full(case.n, case.eta * DP),
         material=index,
         body=zeros,
         motion=zeros,

@@ -286,6 +286,9 @@ def bench(
         str | None,
         typer.Option(metavar="v4,...", help="Instruction sets [best; others at one size]."),
     ] = None,
+    scheme: Annotated[
+        str | None, typer.Option(metavar="NAME", help="ueta2022 or resolved [ueta2022].")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     append: Annotated[
         Path | None,
@@ -296,7 +299,7 @@ def bench(
     from .bench import bench_command, make_plan
 
     options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
-    options |= {"--threads": threads, "--isa": isa}
+    options |= {"--threads": threads, "--isa": isa, "--scheme": scheme}
     bench_command(make_plan(options, quick), as_json, append)
 
 
