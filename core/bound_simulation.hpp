@@ -83,6 +83,7 @@ template <int D>
 Options<D> options(const nb::dict& d) {
     Options<D> o;
     o.gravity = vector<D>(d["gravity"]);
+    o.attraction = get(d, "attraction", 0.0);
     o.eta = get<double>(d, "eta");
     o.alpha = get<double>(d, "alpha");
     o.cflnumber = get<double>(d, "cflnumber");

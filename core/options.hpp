@@ -40,6 +40,7 @@ struct FlowOptions {
 template <int D>
 struct Options {
     Vec<double, D> gravity{};
+    double attraction = 0.0;    // towards the origin, -B^2 x [1/s]; resolved scheme
     double eta = 1.2;
     double alpha = 1.0;
     double cflnumber = 0.1;

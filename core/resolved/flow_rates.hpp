@@ -296,6 +296,7 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     const FluidRecord<D>& record = fluid_[p];
     const double rho = record.rho, rho0 = materials_[particles.tag[p].material].rho0;
     Vec<double, D> a = (1.0 / rho) * (2.0 * sums.force + sums.traction) + options_.gravity;
+    a = a - options_.attraction * options_.attraction * particles.position[p];
     double rate = rho * sums.density_rate;
     double norm = 0.0;
     for (double element : L.element) norm += element * element;

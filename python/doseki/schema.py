@@ -414,6 +414,9 @@ class ScenarioTable(Table):
     gravity: Vector | None = Field(None, description="m/s2; excludes slope")
     slope: float | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
     g: Positive = Field(9.8, description="gravity on a slope and in eq. 19, m/s2")
+    attraction: NonNegative = Field(
+        0.0, description="resolved: B of a force -B^2 x per mass towards the origin, 1/s"
+    )
     eta: float = Field(1.2, ge=0.8, le=3, description="smoothing length over spacing (eq. 10)")
     alpha: NonNegative = Field(1.0, description="artificial viscosity (eq. 13)")
     balsara: bool = Field(True, description="Balsara switch")

@@ -4,7 +4,7 @@ import pytest
 
 from doseki.validate.case import Case
 from doseki.validate.catalogue import all_cases
-from doseki.validate.judging import validate_case
+from doseki.validate.judging import FAIL, validate_case
 from doseki.validate.report import remarks
 from doseki.validate.running import CASES
 
@@ -26,4 +26,4 @@ def test_scenarios_are_part_of_the_package():
 @pytest.mark.parametrize("name", all_cases())
 def test_coarse(name):
     result = validate_case(all_cases()[name], "coarse", lambda _: None)
-    assert not remarks([result])
+    assert not [row for row in result.rows if row.verdict == FAIL], remarks([result])

@@ -4,7 +4,15 @@ import math
 
 from doseki.errors import PhysicsError
 from doseki.validate.case import Control, Criterion, Outcome, Value
-from doseki.validate.judging import FAIL, PASS, REPORTED, SKIPPED, failed, validate_case
+from doseki.validate.judging import (
+    FAIL,
+    PASS,
+    REPORTED,
+    SHORT,
+    SKIPPED,
+    failed,
+    validate_case,
+)
 
 
 def judge(case, tier="full"):
@@ -74,3 +82,10 @@ def test_without_its_data_a_case_is_skipped(make_case):
     assert "nowhere/at_all.csv" in result.rows[0].note
     assert not told
     assert not failed([result])
+
+
+def test_what_is_known_to_fall_short_is_not_a_pass(make_case):
+    result, _ = judge(make_case(tolerance=0.001, short="a reason"))
+    assert [row.verdict for row in result.rows[:3]] == [SHORT, SHORT, PASS]
+    assert result.rows[0].note == "a reason"
+    assert failed([result])

@@ -78,6 +78,7 @@ class Criterion:
     reason: str
     unit: str = ""
     order: float | None = None  # least fitted order of convergence, where one is asked
+    short: str = ""  # why the band is known to be missed; it stays what it is
 
     def band(self, level: int) -> Band | None:
         """The band of the resolution number `level`."""

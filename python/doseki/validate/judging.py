@@ -13,6 +13,7 @@ from .convergence import fitted_order
 from .reference import missing_files
 
 PASS, FAIL, SKIPPED, REPORTED = "pass", "FAIL", "skipped", "reported"
+SHORT = "falls short"  # misses a band, and is known to
 
 
 @dataclass(frozen=True)
@@ -51,8 +52,9 @@ class Result:
     def verdict(self) -> str:
         """FAIL if any row fails, skipped if there is nothing else."""
         verdicts = {row.verdict for row in self.rows}
-        if FAIL in verdicts:
-            return FAIL
+        for word in (FAIL, SHORT):
+            if word in verdicts:
+                return word
         return SKIPPED if verdicts == {SKIPPED} else PASS
 
 
@@ -98,11 +100,11 @@ def _row(
     least = criterion.order if order is not None else None
     verdict = REPORTED if band is None and least is None else PASS
     if (band is not None and not band.holds(value)) or (least is not None and order < least):
-        verdict = FAIL
+        verdict = SHORT if criterion.short else FAIL
     texts = [str(band)] * (band is not None) + [f"order at least {least}"] * (least is not None)
     return Row(
         case.name, criterion.quantity, resolution, verdict, value, criterion.unit,
-        ", ".join(texts), order,
+        ", ".join(texts), order, criterion.short if verdict == SHORT else "",
     )  # fmt: skip
 
 
@@ -122,5 +124,5 @@ def controlled(case: Case, control: Control) -> Row:
 
 
 def failed(results: Sequence[Result]) -> bool:
-    """Whether any case fails."""
-    return any(result.verdict == FAIL for result in results)
+    """Whether any case fails or falls short."""
+    return any(result.verdict in (FAIL, SHORT) for result in results)

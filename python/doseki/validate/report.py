@@ -9,7 +9,7 @@ from typing import Any
 
 from ..record import jsonable
 from ..storage import write_whole_text
-from .judging import FAIL, SKIPPED, Result, Row, failed
+from .judging import FAIL, SHORT, SKIPPED, Result, Row, failed
 
 HEADINGS = (
     "case", "quantity", "resolution", "value", "exact or measured", "error", "band", "verdict",
@@ -51,6 +51,8 @@ def cells(row: Row) -> tuple[str, ...]:
 def _quantity_text(row: Row) -> str:
     """The quantity and its unit, or what was tried where there is none."""
     quantity = f"{row.quantity} ({row.unit})" if row.unit else row.quantity or "the run"
+    if row.verdict == SHORT:
+        return quantity
     note = " ".join(row.note.replace("|", "/").split())
     return f"{quantity} [{note[:NOTE]}]" if row.quantity and note else quantity
 
@@ -103,12 +105,12 @@ def markdown(results: Sequence[Result], tier: str, pictures: dict[str, str]) -> 
 
 
 def remarks(results: Sequence[Result]) -> list[str]:
-    """One line for each row that fails, and for each case that is left out."""
+    """One line for each row that fails or falls short, and for each case that is left out."""
     return [
         f"{row.case}: {row.quantity or 'the run'}: {row.verdict}{': ' * bool(row.note)}{row.note}"
         for result in results
         for row in result.rows
-        if row.verdict in (FAIL, SKIPPED)
+        if row.verdict in (FAIL, SHORT, SKIPPED)
     ]
 
 

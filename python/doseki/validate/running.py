@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core import build_simulation
+from ..core import build_simulation, load_core
+from ..errors import PhysicsError
 from ..particles import FREE
 from ..scenario import load_scenario
 
@@ -41,8 +42,14 @@ class Running:
         return self.simulation.state()
 
     def advance(self, time: float, max_steps: int = FOREVER) -> State:
-        """The state at `time`, or after `max_steps` steps if that comes first."""
-        self.simulation.advance(limit=time, pause=time, max_steps=max_steps)
+        """The state at `time`, or after `max_steps` steps if that comes first.
+
+        Raises PhysicsError where the run goes wrong.
+        """
+        try:
+            self.simulation.advance(limit=time, pause=time, max_steps=max_steps)
+        except load_core().PhysicsFailure as failure:
+            raise PhysicsError(str(failure)) from None
         return self.state()
 
     def sampled(self, times: Iterable[float]) -> Iterator[State]:

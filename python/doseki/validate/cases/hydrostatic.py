@@ -107,9 +107,9 @@ CASES = (
         "hydrostatic",
         "Water at rest in a tank",
         Control(
-            "water 5 % too heavy",
+            "water a tenth too heavy",
             "dp/dz / rho g",
-            lambda n: at_rest("hydrostatic")(n, "material.water.rho0=1050"),
+            lambda n: at_rest("hydrostatic")(n, "material.water.rho0=1100"),
         ),
     ),
     case(
