@@ -28,14 +28,18 @@ def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     zeros = [0.0] * scenario.dim
     low, high = scenario.domain_min, scenario.domain_max
     flow = {"flow": _flow_options(scenario, body_names)} if scenario.scheme == RESOLVED else {}
-    return flow | {name: getattr(scenario, name) for name in names} | {
-        "gravity": list(scenario.gravity),
-        "skin": FIRST_SKIN if scenario.skin == "auto" else scenario.skin,
-        "auto_skin": scenario.skin == "auto",
-        "periodic": [axis in scenario.periodic for axis in axes],
-        "domain_min": zeros if low is None else list(low),
-        "domain_max": zeros if high is None else list(high),
-    }
+    return (
+        flow
+        | {name: getattr(scenario, name) for name in names}
+        | {
+            "gravity": list(scenario.gravity),
+            "skin": FIRST_SKIN if scenario.skin == "auto" else scenario.skin,
+            "auto_skin": scenario.skin == "auto",
+            "periodic": [axis in scenario.periodic for axis in axes],
+            "domain_min": zeros if low is None else list(low),
+            "domain_max": zeros if high is None else list(high),
+        }
+    )
 
 
 def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
@@ -115,9 +119,7 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, 
     )
     if scenario.scheme == RESOLVED:
         normal, depth = wall_geometry(scenario, particles, body_names)
-        simulation.set_walls(
-            normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth)
-        )
+        simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
     return simulation, body_names
 
 

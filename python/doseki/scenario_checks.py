@@ -113,7 +113,9 @@ def _check_periodic(scenario: Scenario) -> None:
 def _check_resolved(scenario: Scenario) -> None:
     """What the resolved scheme needs or cannot do."""
     if scenario.precision != "double":
-        raise scenario.where.error(("precision",), 'precision: the resolved scheme runs in "double"')
+        raise scenario.where.error(
+            ("precision",), 'precision: the resolved scheme runs in "double"'
+        )
     if scenario.xi is None and scenario.xi_height is None and scenario.speed_max is None:
         raise scenario.where.error(
             ("scheme",),

@@ -400,7 +400,8 @@ class ScenarioTable(Table):
     )
     eos: Literal["linear", "tait"] = Field("linear", description="resolved: law of pressure")
     viscosity: Literal["morris", "monaghan_cleary"] = Field(
-        "morris", description="resolved: form of the viscous term; the second keeps angular momentum"
+        "morris",
+        description="resolved: form of the viscous term; the second keeps angular momentum",
     )
     turbulence: Literal["none", "smagorinsky", "mixing_length"] = Field(
         "none", description="resolved: eddy viscosity"

@@ -1,4 +1,4 @@
-"""Walls as the resolved scheme needs them: a normal into the fluid and a depth for each particle."""
+"""Walls for the resolved scheme: a normal into the fluid and a depth for each particle."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab wit
 
 
 def wall_geometry(scenario: Scenario, particles: ParticleSet, names: list[str]) -> tuple:
-    """Normals (N, dim) into the fluid and depths (N,) below the surface, m; zero where not fixed."""
+    """Normals (N, dim) into the fluid and depths (N,) below it, m; zero where not fixed."""
     normal, depth = np.zeros_like(particles.position), np.zeros(len(particles))
     for name, body in scenario.body.items():
         of_it = (particles.motion == FIXED) & (particles.body == names.index(name))

@@ -92,7 +92,10 @@ def fast(factor):
     return change
 
 
-def dense(factor, of=slice(0, 480)):
+COMPRESSED = slice(0, 480)
+
+
+def dense(factor, of=COMPRESSED):
     def change(state, row):
         state["density"][of] *= factor
 

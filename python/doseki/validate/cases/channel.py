@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -35,7 +36,12 @@ def flow(ks: float, particles: float, *overrides: str) -> Outcome:
     """A flume of 1.5 m: speed and discharge near the outlet, averaged over the second half."""
     depth, expected = keulegan(ks)
     run = Running(
-        "channel", "flume_length=1.5", f"dp={depth / particles}", f"ks={ks}", "time_max=2.5", *overrides
+        "channel",
+        "flume_length=1.5",
+        f"dp={depth / particles}",
+        f"ks={ks}",
+        "time_max=2.5",
+        *overrides,
     )
     length, end = run.constant("upper_end"), run.scenario.time_max
     times = np.linspace(LATE, 1, SAMPLES) * end
@@ -47,7 +53,7 @@ def flow(ks: float, particles: float, *overrides: str) -> Outcome:
         rates.append(passing(last, 0.1 * length, 0.4 * length))
     x, u = last["position"][:, 0], -last["velocity"][:, 0]
     reaches = np.linspace(0, length, 21)
-    mean = [float(u[(x >= a) & (x < b)].mean()) for a, b in zip(reaches, reaches[1:], strict=False)]
+    mean = [float(u[(x >= a) & (x < b)].mean()) for a, b in pairwise(reaches)]
     middle = 0.5 * (reaches[1:] + reaches[:-1])
     return Outcome(
         {
@@ -77,9 +83,7 @@ def case(name: str, title: str, ks: float) -> Case:
             Criterion(BALANCE, (between(0.98, 1.02),), "what enters leaves, averaged over 1.25 s"),
         ),
         axes=("distance from the outlet (m)", "mean speed (m/s)"),
-        controls=(
-            Control("a bed without friction", SPEED, lambda n: flow(ks, n, "body.bed.wall=free_slip")),
-        ),
+        controls=(Control("no friction", SPEED, lambda n: flow(ks, n, "body.bed.wall=free_slip")),),
     )
 
 

@@ -179,8 +179,6 @@ OSCILLATING = Case(
         Criterion(AXES, (at_most(0.04), at_most(0.02), at_most(0.02)), "worst of 40 times"),
     ),
     axes=("time (s)", "a / R"),
-    controls=(
-        Control("a liquid of Re = 100", LOSS, lambda n: swing(n, "material.water.nu=1e-2")),
-    ),
+    controls=(Control("a liquid of Re = 100", LOSS, lambda n: swing(n, "material.water.nu=1e-2")),),
 )
 CASES = (OSCILLATING, drop(0.0), drop(JITTER), PATCH)
