@@ -48,7 +48,7 @@ CASES = {
     "rough, periodic": Case(walls=(STICK, ROUGH, ROUGH), periodic="xy"),
     "periodic": Case(periodic="xyz"),
     "two fluids, periodic": Case(periodic="xyz", fluids=2),
-    "hardly moving": Case(periodic="xyz", speed=0.012),
+    "hardly moving": Case(periodic="xyz", speed=0.008),
     "no shifting": Case({"shifting": False}),
     "wide kernel": Case({"kernel": "wendland_c6", "eta": 1.2}),
     "wide kernel, periodic": Case({"kernel": "wendland_c6", "eta": 1.2}, periodic="xyz"),
