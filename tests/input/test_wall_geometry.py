@@ -99,7 +99,9 @@ def test_a_disc_faces_outwards(geometry):
 @pytest.mark.parametrize("angle", [30, -70])
 def test_a_rotated_slab_faces_along_its_rotated_axis(geometry, angle):
     floor = wall("floor", (0, -0.3), (2, 0), f"rotate = {angle}\npivot = [0, 0]")
-    x, n, depth = geometry("floor", WATER.replace("min", f"rotate = {angle}\npivot = [0, 0]\nmin") + floor)
+    x, n, depth = geometry(
+        "floor", WATER.replace("min", f"rotate = {angle}\npivot = [0, 0]\nmin") + floor
+    )
     turned = np.radians(angle)
     normal = np.array([-np.sin(turned), np.cos(turned)])
     np.testing.assert_allclose(n, np.broadcast_to(normal, x.shape), atol=1e-12)
@@ -110,7 +112,10 @@ def test_a_rotated_block_faces_along_its_own_sides(geometry):
     rotation = "rotate = 25\npivot = [3, 0]"
     x, n, depth = geometry("block", WATER + wall("block", (3, 0), (5, 1), rotation))
     turned = np.radians(25)
-    along, up = np.array([np.cos(turned), np.sin(turned)]), np.array([-np.sin(turned), np.cos(turned)])
+    along, up = (
+        np.array([np.cos(turned), np.sin(turned)]),
+        np.array([-np.sin(turned), np.cos(turned)]),
+    )
     own = np.stack([(x - [3, 0]) @ along, (x - [3, 0]) @ up])
     gaps = np.stack([own[0], 2 - own[0], own[1], 1 - own[1]])
     np.testing.assert_allclose(depth, gaps.min(axis=0), atol=1e-12)

@@ -39,7 +39,10 @@ material = "water"
 jitter = 0.2
 min = {{ d2 = [0, 0], d3 = [0, 0, 0] }}
 max = {{ d2 = [0.2, 0.04], d3 = [0.12, 0.12, 0.04] }}
-velocity = {{ d2 = ["= 0.5*sin(60*x) - 1", "= 0.3*cos(90*x)"], d3 = ["= 0.5*sin(60*x) - 1", 0.2, "= 0.3*cos(90*y)"] }}
+
+[body.film.velocity]
+d2 = ["= 0.5*sin(60*x) - 1", "= 0.3*cos(90*x)"]
+d3 = ["= 0.5*sin(60*x) - 1", 0.2, "= 0.3*cos(90*y)"]
 """
 
 # Water that enters over a rough bed, meets water at rest before a block, and leaves.

@@ -92,7 +92,11 @@ def moving_drop(flows, dim, speed):
     """A turning, stretched drop on its way. Viscosity limits its steps, whatever its speed."""
     along = "z" if dim == 3 else "y"
     velocity = [f"= {speed} - 4*{along} + 2*x", *["= -2*y"] * (dim - 2), f"= {2 * speed} + 4*x"]
-    settings = [f"body.drop.velocity={velocity}", "material.water.nu=0.5", "material.water.law=fluid"]
+    settings = [
+        f"body.drop.velocity={velocity}",
+        "material.water.nu=0.5",
+        "material.water.law=fluid",
+    ]
     return flows(DROP.format(dim=dim), *settings)
 
 

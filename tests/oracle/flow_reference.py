@@ -1,7 +1,8 @@
 """The resolved scheme written as plainly as possible: every pair is visited, nothing is clever.
 
 An oracle for the core on small sets of particles. It shares no code with it. Arrays of pairs have
-the particle i on their first axis, its neighbour on the second; r_ij = x_i - x_j, grad_i W = F r_ij.
+the particle i on their first axis, its neighbour on the second; r_ij = x_i - x_j and
+grad_i W = F r_ij.
 "Fluid" are the particles that move, "wall" the fixed ones. Gradients of pressure and velocity, the
 measure of the surface and the liveliness enter with the values of the evaluation before.
 """
@@ -101,9 +102,9 @@ class Pairs:
 class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
-    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth` of its walls; `materials`
-    are mappings with law, rho0, speedsound and nu. All smoothing lengths are eta dp, all fixed
-    particles have no acceleration.
+    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth` of its walls;
+    `materials` are mappings with law, rho0, speedsound and nu. All smoothing lengths are eta dp, all
+    fixed particles have no acceleration.
     """
 
     def __init__(
@@ -352,9 +353,7 @@ class FlowReference:
         self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2
 
     def _relax_density(self) -> None:
-        self.density_rate += (
-            (self.filling * self.rho0 - self.rho) * self.c / (RELAXATION * self.h)
-        )
+        self.density_rate += (self.filling * self.rho0 - self.rho) * self.c / (RELAXATION * self.h)
         void = self.rho < LEAST_DENSITY * self.rho0
         self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
 

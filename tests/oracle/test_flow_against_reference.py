@@ -29,7 +29,7 @@ TOLERANCE = 1e-10
 
 @dataclass(frozen=True)
 class Case:
-    """What differs from an open cloud of water over a floor that holds it, beside a slippery wall."""
+    """What differs from an open cloud of water over a no-slip floor, beside a slippery wall."""
 
     options: dict[str, Any] = field(default_factory=dict)
     walls: tuple[dict[str, Any], ...] = (STICK, STICK, SLIP)  # of fluid, floor and side

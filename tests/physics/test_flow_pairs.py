@@ -41,7 +41,9 @@ def test_pressure_jump_of_a_quadratic_field_vanishes(point, dim, random):
     columns = [p(x_i), p(x_j), *rows(x_i @ A + b), *rows(x_j @ A + b), *rows(x_i - x_j)]
     (jump,) = point("pressure_jump", *columns, dim=dim)
     np.testing.assert_allclose(jump, 0, atol=1e-13)
-    (jump,) = point("pressure_jump", *columns[:2], *np.zeros((2 * dim, 50)), *columns[-dim:], dim=dim)
+    (jump,) = point(
+        "pressure_jump", *columns[:2], *np.zeros((2 * dim, 50)), *columns[-dim:], dim=dim
+    )
     np.testing.assert_allclose(jump, p(x_i) - p(x_j), rtol=1e-14)
 
 
@@ -62,7 +64,7 @@ def test_viscous_direction_of_monaghan_is_central(point, dim, random):
 
 
 def test_both_viscous_forms_are_the_laplacian_of_a_shear_flow(point, dim):
-    """v_x = y^2/2: the integral of 2 F v_ij over the kernel is 1, that of Monaghan's form as well."""
+    """v_x = y^2/2: the integral of 2 F v_ij over the kernel is 1, in Monaghan's form as well."""
     R, n = 1.0, 61
     axis = np.linspace(-R, R, n)
     x = np.stack(np.meshgrid(*[axis] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
