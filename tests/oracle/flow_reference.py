@@ -103,7 +103,7 @@ class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
     `particles` has the arrays of doseki's ParticleSet and `normal`, `depth` of its walls;
-    `materials` are mappings with law, rho0, speedsound and nu. All smoothing lengths are eta dp, all
+    `materials` are mappings with law, rho0, speedsound, nu. All smoothing lengths are eta dp, all
     fixed particles have no acceleration.
     """
 
