@@ -143,3 +143,42 @@ duration = 1
 """
     _, n, _ = geometry("floor", wall("floor", (0, -0.3), (2, 0)) + inflow)
     assert (n == [0, 1]).all()
+
+
+def test_walls_in_3d(write):
+    """A slab turned about y, and a sphere."""
+    tables = """
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0, 0.5]
+max = [1, 1, 1]
+
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [0, 0, -0.3]
+max = [1, 1, 0]
+rotate = 20
+rotate_axis = [0, 1, 0]
+pivot = [0, 0, 0]
+
+[body.ball]
+shape = "sphere"
+material = "basalt"
+fixed = true
+centre = [3, 0, 0]
+radius = 0.45
+"""
+    path = write(top=FAST, tables=tables)
+    scenario = load_scenario(path, ["dim=3"])
+    particles, names = build_bodies(scenario)
+    normal, depth = wall_geometry(scenario, particles, names)
+    floor, ball = (particles.body == names.index(name) for name in ("floor", "ball"))
+    up = np.array([np.sin(np.radians(20)), 0, np.cos(np.radians(20))])
+    np.testing.assert_allclose(normal[floor], np.broadcast_to(up, (floor.sum(), 3)), atol=1e-12)
+    np.testing.assert_allclose(depth[floor], -(particles.position[floor] @ up), atol=1e-12)
+    out = particles.position[ball] - [3, 0, 0]
+    np.testing.assert_allclose(depth[ball], 0.45 - np.linalg.norm(out, axis=1), atol=1e-12)
+    np.testing.assert_allclose((normal[ball] * out).sum(axis=1), np.linalg.norm(out, axis=1))
