@@ -37,6 +37,12 @@ class Case:
     speed: float = 1.0
     fluids: int = 1
     thinned: float = 0.0  # fraction of the fluid that is taken out
+    thicker: float = 1.0  # factor of the viscosities
+
+    @property
+    def materials(self) -> list[dict[str, Any]]:
+        """MATERIALS with the viscosities of this case."""
+        return [m | {"nu": self.thicker * m["nu"]} for m in MATERIALS]
 
 
 CASES = {
@@ -48,6 +54,7 @@ CASES = {
     "rough, periodic": Case(walls=(STICK, ROUGH, ROUGH), periodic="xy"),
     "periodic": Case(periodic="xyz"),
     "two fluids, periodic": Case(periodic="xyz", fluids=2),
+    "viscosity limits the step": Case(thicker=1000),
     "hardly moving": Case(periodic="xyz", speed=0.008),
     "no shifting": Case({"shifting": False}),
     "wide kernel": Case({"kernel": "wendland_c6", "eta": 1.2}),
@@ -102,7 +109,7 @@ def reference(dim: int, name: str) -> FlowReference:
     case = CASES[name]
     period = np.array([1.0 if axis in case.periodic else np.inf for axis in "xyz"])
     options = FlowOptions(dp=1 / ACROSS[dim], walls=case.walls, period=period, **case.options)
-    return FlowReference(cloud(dim, case), MATERIALS, GRAVITY[-dim:], options).start()
+    return FlowReference(cloud(dim, case), case.materials, GRAVITY[-dim:], options).start()
 
 
 def core_simulation(isa: str, dim: int, name: str) -> Any:
@@ -116,7 +123,7 @@ def core_simulation(isa: str, dim: int, name: str) -> Any:
     options |= {"tension": "free", "h_mode": "constant", "gravity": GRAVITY[-dim:]}
     options |= {"domain_min": [0.0] * dim, "domain_max": [1.0] * dim}
     options["periodic"] = [axis in case.periodic for axis in "xyz"[:dim]]
-    materials = [m | {"shear_modulus": 0.0} for m in MATERIALS]
+    materials = [m | {"shear_modulus": 0.0} for m in case.materials]
     simulation = getattr(load_core(isa), f"ResolvedSimulation{dim}Double")(materials, options)
     normal, depth = particles.pop("normal"), particles.pop("depth")
     simulation.add_particles(**particles)
@@ -183,5 +190,7 @@ def test_the_cases_reach_every_branch(dim: int) -> None:
     front = np.einsum("ija,ja->ij", case["open"].fw.r_ij, case["open"].normal) > case["open"].depth
     assert (front & (case["open"].fw.F < 0)).any()
     assert (~front & (case["open"].fw.F < 0)).any()
+    thick = case["viscosity limits the step"]
+    assert thick.timestep == np.min(thick.h**2 * thick.rho / (8 * thick.mu))
     length = case["mixing length"]._mixing_length(0.0)
     assert (length > 0.12 / ACROSS[dim]).any()
