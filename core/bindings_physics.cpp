@@ -5,12 +5,18 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "physics/equation_of_state.hpp"
+#include "physics/free_surface.hpp"
 #include "physics/kernel.hpp"
 #include "physics/momentum.hpp"
+#include "physics/riemann.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
 #include "physics/velocity_gradient.hpp"
+#include "physics/viscosity.hpp"
+#include "physics/wall.hpp"
 
 namespace nb = nanobind;
 using namespace doseki;
@@ -53,6 +59,20 @@ void define(nb::module_& m, const char* name, int results, F f) {
     }, nb::arg("columns"), nb::arg("pack") = false);
 }
 
+/// As define, for functions of plain numbers that no pair loop calls.
+template <class F>
+void define_numbers(nb::module_& m, const char* name, int results, F f) {
+    m.def(name, [results, f](const Table& arguments, bool) { return evaluate<double>(arguments, results, f); },
+          nb::arg("columns"), nb::arg("pack") = false);
+}
+
+template <int D, class T>
+Vec<T, D> vector(const std::vector<T>& in, std::size_t first) {
+    Vec<T, D> v;
+    for (std::size_t a = 0; a < D; ++a) v[static_cast<int>(a)] = in[first + a];
+    return v;
+}
+
 template <int D, class T>
 Mat<T, D> matrix(const std::vector<T>& in, std::size_t first) {
     Mat<T, D> m;
@@ -67,8 +87,74 @@ Deviator<T, D> deviator(const std::vector<T>& in, std::size_t first) {
     return s;
 }
 
+/// The point functions of the resolved scheme.
+template <int D>
+void bind_flow(nb::module_& m) {
+    define(m, "wendland_c2", 2, [](const auto& in, auto& out) {    // r, 1/R -> W, F
+        out[0] = WendlandC2<D>::value(in[0], in[1]);
+        out[1] = WendlandC2<D>::gradient_factor(in[0], in[1]);
+    });
+    define(m, "pressure_jump", 1, [](const auto& in, auto& out) {    // p_i, p_j, grad p_i, grad p_j, r_ij
+        out[0] = pressure_jump(in[0], in[1], vector<D>(in, 2), vector<D>(in, 2 + D), vector<D>(in, 2 + 2 * D));
+    });
+    define(m, "viscous_direction", D, [](const auto& in, auto& out) {    // along_jump, along_pair, v_ij, r_ij
+        const auto v = vector<D>(in, 2), x = vector<D>(in, 2 + D);
+        const ViscousForm<std::decay_t<decltype(in[0])>> form{in[0], in[1]};
+        const auto direction = viscous_direction(form, v, dot(v, x), sqrt(dot(x, x)), x);
+        std::copy(direction.component.begin(), direction.component.end(), out.begin());
+    });
+    define(m, "wall_excess_pressure", 1, [](const auto& in, auto& out) {    // rho, g_n, r.n, grad p, n, r
+        out[0] = wall_excess_pressure(in[0], vector<D>(in, 3), in[1], vector<D>(in, 3 + D), in[2],
+                                      vector<D>(in, 3 + 2 * D));
+    });
+    define_numbers(m, "strain_rate", 1, [](const auto& in, auto& out) { out[0] = strain_rate(matrix<D>(in, 0)); });
+    define_numbers(m, "lattice_sums_c2", 2, [](const auto& in, auto& out) {    // dp, R -> sum W, moment
+        const auto sums = lattice_sums<WendlandC2<D>, D>(in[0], in[1]);
+        out[0] = sums.concentration, out[1] = sums.moment;
+    });
+    define_numbers(m, "lattice_sums_c6", 2, [](const auto& in, auto& out) {    // dp, R -> sum W, moment
+        const auto sums = lattice_sums<WendlandC6<D>, D>(in[0], in[1]);
+        out[0] = sums.concentration, out[1] = sums.moment;
+    });
+    define_numbers(m, "inverse_moment", D * D, [](const auto& in, auto& out) {    // the stored components
+        Sym<double, D> moment;
+        std::copy_n(in.begin(), moment.element.size(), moment.element.begin());
+        const auto inverse = inverse_moment(moment);
+        std::copy(inverse.element.begin(), inverse.element.end(), out.begin());
+    });
+    define_numbers(m, "shifting_velocity", D, [](const auto& in, auto& out) {    // rate, h, grad C
+        const auto v = shifting_velocity(vector<D>(in, 2), in[0], in[1]);
+        std::copy(v.component.begin(), v.component.end(), out.begin());
+    });
+    define_numbers(m, "tangential", D, [](const auto& in, auto& out) {    // v, normal
+        const auto v = tangential(vector<D>(in, 0), vector<D>(in, D));
+        std::copy(v.component.begin(), v.component.end(), out.begin());
+    });
+}
+
+/// Those that have no dimension.
+void bind_flow_numbers(nb::module_& m) {
+    define(m, "approach_pressure", 1, [](const auto& in, auto& out) {    // dU, rho, c
+        out[0] = approach_pressure(in[0], in[1], in[2]);
+    });
+    define(m, "no_slip_factor", 1, [](const auto& in, auto& out) {    // d_w, d_i, least
+        out[0] = no_slip_factor(in[0], in[1], in[2]);
+    });
+    define_numbers(m, "bed_friction", 1, [](const auto& in, auto& out) {    // rho, z, ks
+        out[0] = bed_friction(in[0], in[1], in[2]);
+    });
+    define_numbers(m, "mixing_length", 1, [](const auto& in, auto& out) {    // z, d, least
+        out[0] = mixing_length(in[0], in[1], in[2]);
+    });
+    define_numbers(m, "surface_measure", 2, [](const auto& in, auto& out) {    // C, R |grad C|, wide
+        const auto measure = SurfaceMeasure::of(in[0], in[1], in[2] > 0.0);
+        out[0] = measure.x, out[1] = measure.filling;
+    });
+}
+
 template <int D>
 void bind_dimension(nb::module_& m) {
+    bind_flow<D>(m);
     define(m, "kernel", 2, [](const auto& in, auto& out) {    // r, 1/R -> W, F
         out[0] = WendlandC6<D>::value(in[0], in[1]);
         out[1] = WendlandC6<D>::gradient_factor(in[0], in[1]);
@@ -101,6 +187,7 @@ void bind_physics(nb::module_& m) {
     nb::module_ two = m.def_submodule("two"), three = m.def_submodule("three");
     bind_dimension<2>(two);
     bind_dimension<3>(three);
+    bind_flow_numbers(m);
     define(m, "equation_of_state", 3, [](const auto& in, auto& out) {    // rho, rho0, c0 -> p, c, u
         const auto eos = BirchMurnaghan<std::decay_t<decltype(in[0])>>::at(in[0], in[1], in[2]);
         out[0] = eos.pressure, out[1] = eos.sound_speed, out[2] = eos.bulk_energy;

@@ -9,6 +9,7 @@ import pytest
 from doseki.fields import FIELDS
 from doseki.materials import BUILT_IN, MATERIAL_PARAMETERS
 from doseki.schema import ScenarioTable
+from doseki.schemes import RESOLVED_DEFAULTS, RESOLVED_ETA
 
 NOTATION = Path(__file__).resolve().parents[2] / "docs" / "notation.md"
 
@@ -42,3 +43,16 @@ def test_every_built_in_material_has_its_row(rows, material):
 def test_defaults_of_the_scheme(rows, key):
     default = ScenarioTable.model_fields[key].default
     assert any(f"`{key}`" in row[2] and row[3] == f"{default:g}" for row in rows if len(row) == 4)
+
+
+@pytest.mark.parametrize("key", ["kernel", "eos", "viscosity", "turbulence", "smagorinsky"])
+def test_defaults_of_the_resolved_scheme(rows, key):
+    default = RESOLVED_DEFAULTS.get(key, ScenarioTable.model_fields[key].default)
+    assert any(row[2] == f"`{key}`" and row[3] == f"{default}" for row in rows if len(row) == 4)
+
+
+def test_numbers_of_the_resolved_scheme(rows):
+    limits = ", ".join(str(RESOLVED_DEFAULTS[key]) for key in ("cflnumber", "cfl_force"))
+    eta = "{wendland_c2} (C6: {wendland_c6})".format(**RESOLVED_ETA)
+    assert limits in [row[3] for row in rows if row[2] == "`cflnumber`, `cfl_force`"]
+    assert eta in [row[3] for row in rows if row[2] == "`eta`"]

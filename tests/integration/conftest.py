@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from types import ModuleType
 
 import pytest
 
 from doseki.core import available_instruction_sets, load_core
 
+from .flows import Flows
 from .simulations import Simulations
 
 
@@ -38,3 +40,9 @@ def simulate(core: ModuleType) -> Simulations:
 def dim(request: pytest.FixtureRequest) -> int:
     """Number of space dimensions."""
     return request.param
+
+
+@pytest.fixture
+def flows(tmp_path: Path) -> Flows:
+    """Makes simulations of the resolved scheme from the texts of scenarios."""
+    return Flows(tmp_path)
