@@ -37,7 +37,7 @@ struct Particles {
         std::vector<Vec<double, D>> pressure_gradient;    // of the last step [Pa/m]
         std::vector<Mat<double, D>> velocity_gradient;    // of the last step [1/s]
         std::vector<Vec<double, D>> shift;                // velocity relative to the fluid [m/s]
-        std::vector<double> surface;                      // of the last step, see SurfaceLimit
+        std::vector<double> surface;                      // of the last step, see SurfaceMeasure
         std::vector<double> mixing_length;                // [m]
         // Of wall particles:
         std::vector<Vec<double, D>> normal;        // into the fluid

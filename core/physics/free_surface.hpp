@@ -74,7 +74,7 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
 }
 
 /// Velocity at which particles are shifted towards where they are scarce (Lind et al., J. Comput. Phys.
-/// 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most h |L|/2: what disorder the flow makes in the
+/// 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 5 h |L|: what disorder the flow makes in the
 /// time 1/|L| is undone in about that time, however fast the frame moves.
 template <int D>
 Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate, double h) {

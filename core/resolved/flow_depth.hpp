@@ -16,8 +16,8 @@ namespace doseki {
 template <int D>
 class FlowDepth {
 public:
-    /// `width` of a column [m].
-    FlowDepth(const Particles<D>& particles, std::size_t fluid, double width) : width_(width) {
+    /// `width` of a column along each axis of the plan [m].
+    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Vec<double, D - 1>& width) : width_(width) {
         for (std::size_t p = 0; p < fluid; ++p) {
             Column& column = columns_[key(particles.position[p])];
             column.volume += particles.mass[p] / particles.density[p];
@@ -26,7 +26,7 @@ public:
         }
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
-            if (found == columns_.end()) continue;
+            if (found == columns_.end() || particles.flow.normal[p][D - 1] < 0.5) continue;
             Column& column = found->second;
             const double top = particles.position[p][D - 1] + particles.flow.wall_depth[p];
             if (top < column.height / column.count) column.bed = std::max(column.bed, top);
@@ -37,7 +37,9 @@ public:
     double mixing_length(const Vec<double, D>& x, double least) const {
         const auto found = columns_.find(key(x));
         if (found == columns_.end() || !std::isfinite(found->second.bed)) return least;
-        const double depth = found->second.volume / std::pow(width_, D - 1);
+        double area = 1.0;
+        for (int a = 0; a < D - 1; ++a) area *= width_[a];
+        const double depth = found->second.volume / area;
         return doseki::mixing_length(x[D - 1] - found->second.bed, depth, least);
     }
 
@@ -49,11 +51,11 @@ private:
 
     Key key(const Vec<double, D>& x) const {
         Key key;
-        for (int a = 0; a < D - 1; ++a) key[a] = static_cast<std::int64_t>(std::floor(x[a] / width_));
+        for (int a = 0; a < D - 1; ++a) key[a] = static_cast<std::int64_t>(std::floor(x[a] / width_[a]));
         return key;
     }
 
-    double width_;
+    Vec<double, D - 1> width_;
     std::map<Key, Column> columns_;
 };
 

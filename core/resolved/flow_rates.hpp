@@ -47,7 +47,8 @@ public:
     void compute(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt, bool new_lists) {
         fluid_count_ = neighbours.moving();
         const bool poisoned = is_poisoned_run();
-        if (new_lists && options_.flow.turbulence == Turbulence::mixing_length) set_mixing_lengths(particles);
+        if (new_lists && options_.flow.turbulence == Turbulence::mixing_length)
+            set_mixing_lengths(particles, column_width(neighbours));
         pack(particles, half_dt, poisoned);
         if (options_.flow.wide_kernel) sum_all<WendlandC6<D>>(particles, neighbours);
         else sum_all<WendlandC2<D>>(particles, neighbours);
@@ -68,8 +69,9 @@ public:
         const Material& material = materials_[particles.tag[p].material];
         if (particles.is_fixed(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
         const double rho = particles.density[p], e = rho / material.rho0;
-        return {pressure(material, rho, particles.flow.surface[p]), material.c0,
-                material.c0 * material.c0 * (std::log(e) + 1.0 / e - 1.0)};
+        const bool linear = options_.flow.pressure_law == PressureLaw::linear;
+        const double energy = linear ? std::log(e) + 1.0 / e - 1.0 : (std::pow(e, 6.0) / 6.0 + 1.0 / e - 7.0 / 6.0) / 7.0;
+        return {pressure(material, rho, particles.flow.surface[p]), material.c0, material.c0 * material.c0 * energy};
     }
 
     template <class Archive>
@@ -101,9 +103,21 @@ private:
         return surface > SurfaceMeasure::surface ? std::max(0.0, p) : p;
     }
 
-    void set_mixing_lengths(Particles<D>& particles) {
+    /// About four spacings, such that whole columns fill a period.
+    Vec<double, D - 1> column_width(const Neighbours<D>& neighbours) const {
+        Vec<double, D - 1> width;
+        for (int a = 0; a < D - 1; ++a) {
+            double period = 0.0;
+            for (const auto& shift : neighbours.image_shifts()) period = std::max(period, shift[a]);
+            const double columns = std::max(1.0, std::floor(period / (4.0 * options_.flow.dp)));
+            width[a] = period > 0.0 ? period / columns : 4.0 * options_.flow.dp;
+        }
+        return width;
+    }
+
+    void set_mixing_lengths(Particles<D>& particles, const Vec<double, D - 1>& width) {
         const double least = options_.flow.smagorinsky * options_.flow.dp;
-        const FlowDepth<D> depth(particles, fluid_count_, 4.0 * options_.flow.dp);
+        const FlowDepth<D> depth(particles, fluid_count_, width);
         for (std::size_t p = 0; p < fluid_count_; ++p)
             particles.flow.mixing_length[p] = depth.mixing_length(particles.position[p], least);
     }
@@ -255,7 +269,7 @@ void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p, const Wal
     if (wall.ks > 0.0 && record.depth < dp && sums.weight > least_filled) {
         const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - particles.velocity[p];
         const Vec<double, D> along = tangential(u, particles.flow.normal[p]);
-        const double rho = materials_[particles.tag[0].material].rho0;
+        const double rho = sums.density / sums.weight;
         const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * std::pow(dp, D - 1);
         const Vec<double, D> drag = friction * std::sqrt(dot(along, along)) * along;
         record.traction = ((-1.0 / sums.weight) * drag).component;

@@ -21,7 +21,7 @@ struct WallRecord {
     std::array<double, D> traction;    // force of a rough bed on a fluid particle over V_i W
     double volume;
     double depth;       // below the surface of the wall [m]
-    double g_normal;    // see wall_pressure
+    double g_normal;    // see wall_excess_pressure
     double stick;       // 1: no slip, 0: the wall pass has the friction
 };
 

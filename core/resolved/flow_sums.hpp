@@ -28,14 +28,14 @@ struct FluidSums {
     Sym<T, D> moment;
     T concentration{};              // sum of rest volumes times W
     T wall_share{};                 // of walls in it
-    T largest_surface{};            // among the neighbours
+    T largest_surface{};            // among the neighbours and i
 };
 
 /// Sums over the fluid around a wall particle, with weights V W but for the force.
 template <class T, int D>
 struct WallSums {
     Vec<T, D> force;                // of the fluid, over the wall particle's volume
-    T weight{}, height{}, pressure{};
+    T weight{}, height{}, pressure{}, density{};
     Vec<T, D> velocity;
 };
 
@@ -161,6 +161,7 @@ struct WallSum {
             sums.velocity[a] += share * j.v[a];
         }
         sums.weight += share;
+        sums.density += share * j.rho;
         sums.height += share * (contact.r_dot_n - w.depth);
         sums.pressure += share * (j.p + contact.excess);
     }

@@ -64,6 +64,7 @@ WallSums<double, D> lane_of(const WallSums<Pack<double>, D>& sums, int l) {
     WallSums<double, D> lane;
     for (int a = 0; a < D; ++a) lane.force[a] = sums.force[a][l], lane.velocity[a] = sums.velocity[a][l];
     lane.weight = sums.weight[l], lane.height = sums.height[l], lane.pressure = sums.pressure[l];
+    lane.density = sums.density[l];
     return lane;
 }
 

@@ -23,7 +23,8 @@ FIRST_SKIN = 0.05
 
 def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """The parameters of the scheme, as the core reads them."""
-    names = "attraction eta alpha cflnumber cfl_force fixed_limits_dt balsara sym_grad tension h_mode".split()
+    names = "attraction eta alpha cflnumber cfl_force fixed_limits_dt balsara sym_grad".split()
+    names += ["tension", "h_mode"]
     axes = "xyz"[: scenario.dim]
     zeros = [0.0] * scenario.dim
     low, high = scenario.domain_min, scenario.domain_max

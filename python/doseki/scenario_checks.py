@@ -131,5 +131,14 @@ def _check_resolved(scenario: Scenario) -> None:
                 f"body.{name}: the resolved scheme moves fluids only; {body.material} is a solid: "
                 "set fixed = true, or use the scheme ueta2022",
             )
+        normal = getattr(body, "normal", None)
+        if normal is not None and not normal.any():
+            raise scenario.where.error((*keys, "normal"), f"body.{name}.normal must not be zero")
         if getattr(body, "wall", None) == "rough" and body.ks is None:
             raise scenario.where.error((*keys, "ks"), f"body.{name}: a rough wall needs ks (m)")
+    for name, inflow in scenario.inflow.items():
+        if scenario.materials[inflow.material].law != "fluid":
+            raise scenario.where.error(
+                ("inflow", name, "material"),
+                f"inflow.{name}: the resolved scheme moves fluids only; {inflow.material} is a solid",
+            )

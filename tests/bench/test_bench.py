@@ -93,7 +93,8 @@ def test_block_has_exactly_the_particles_asked_for(n):
 
 def made_up_row(**changes):
     """A row with the numbers of a machine on which nothing is remarkable."""
-    row = {"dim": 3, "precision": "double", "scheme": "ueta2022", "n": 10**6, "threads": 1, "isa": "v4",
+    row = {"dim": 3, "precision": "double", "n": 10**6, "threads": 1, "isa": "v4",
+           "scheme": "ueta2022",
            "updates_per_s": 1e6, "bytes_per_particle": 400.0, "bare_fraction": 0.6}  # fmt: skip
     row |= changes
     return row | {"seconds_per_step": row["n"] / row["updates_per_s"]}

@@ -243,7 +243,8 @@ class FlowReference:
         dp, ks = self.options.dp, np.where(self.ks > 0, self.ks, 1)
         rough = (self.ks > 0) & (self.depth < dp) & (weight > LEAST_FILLED)
         z = np.maximum((share * contact["height"]).sum(axis=0) / filled, ks / 30)
-        friction = self.rho0[0] * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * dp ** (self.dim - 1)
+        rho = (share * self.rho[:, None]).sum(axis=0) / filled
+        friction = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * dp ** (self.dim - 1)
         drag = (rough * friction * np.linalg.norm(u, axis=1))[:, None] * u
         self.wall_force += drag
         self.traction = -drag / filled[:, None]

@@ -3,7 +3,7 @@
 import math
 
 from doseki.errors import PhysicsError
-from doseki.validate.case import Control, Criterion, Outcome, Value
+from doseki.validate.case import Control, Criterion, Outcome, Value, within
 from doseki.validate.judging import (
     FAIL,
     PASS,
@@ -85,7 +85,8 @@ def test_without_its_data_a_case_is_skipped(make_case):
 
 
 def test_what_is_known_to_fall_short_is_not_a_pass(make_case):
-    result, _ = judge(make_case(tolerance=0.001, short="a reason"))
+    short = Criterion("value", (within(0.001),), "made up", short="a reason")
+    result, _ = judge(make_case(criteria=(short,)))
     assert [row.verdict for row in result.rows[:3]] == [SHORT, SHORT, PASS]
     assert result.rows[0].note == "a reason"
     assert failed([result])
