@@ -112,8 +112,10 @@ MODES = (
     (3, "double", "constant"),
     (3, "float", "eq10"),
 )
-threads, size = int(sys.argv[1]), float(sys.argv[2])
-load_core().set_threads(threads)
+threads, size, site = int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3])
+core = load_core()
+assert Path(core.__file__).is_relative_to(site), f"{core.__file__} is not the module to watch"
+core.set_threads(threads)
 for mode in MODES:
     exercise(flume(*mode, size))
 with tempfile.TemporaryDirectory() as folder:

@@ -64,14 +64,17 @@ def build(folder: Path, flags: str) -> Path:
 def exercise(
     site: Path, preload: str, threads: int, size: float, **variables: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run exercise.py on the module in `site` with runtime libraries loaded before all others."""
+    """Run exercise.py on the module in `site` with runtime libraries loaded before all others.
+
+    Without site packages (-S), for an editable installation of doseki comes before any path.
+    """
     environment = {
-        "PYTHONPATH": str(site),
+        "PYTHONPATH": os.pathsep.join([str(site), *filter(None, sys.path)]),
         "LD_PRELOAD": preload,
         "DOSEKI_ISA": "scalar",
     } | variables
     return subprocess.run(
-        [sys.executable, HERE / "exercise.py", str(threads), str(size)],
+        [sys.executable, "-S", HERE / "exercise.py", str(threads), str(size), site],
         env=os.environ | environment,
         capture_output=True,
         text=True,
