@@ -124,8 +124,8 @@ from doseki.core import build_simulation, load_core
 from doseki.scenario import load_scenario
 load_core().set_threads(1)
 digest = hashlib.blake2b()
-for name in ("film", "flume", "hang"):
-    simulation, _ = build_simulation(load_scenario(name, sys.argv[1:]))
+for name in sys.argv[1].split(","):
+    simulation, _ = build_simulation(load_scenario(name, sys.argv[2:]))
     simulation.advance(limit=1.0, pause=1.0, max_steps=300)
     for values in simulation.state().values():
         digest.update(values.tobytes())
@@ -133,14 +133,22 @@ print(digest.hexdigest())
 """
 
 
-@pytest.mark.parametrize("precision", ["double", "float"])
-def test_poisoned_records_survive_no_pass_and_change_no_bit(precision):
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["film,flume,hang", "precision=double"],
+        ["film,flume,hang", "precision=float"],
+        ["film,dambreak", "scheme=resolved", "speed_max=3"],
+    ],
+    ids=["double", "float", "resolved"],
+)
+def test_poisoned_records_survive_no_pass_and_change_no_bit(arguments):
     """NaN in every output before each pass: all of it is overwritten before it is read."""
     digests = []
     paths = os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])
     for variables in ({}, {"DOSEKI_POISON": "1"}):
         done = subprocess.run(
-            [sys.executable, "-c", POISONED, f"precision={precision}"],
+            [sys.executable, "-c", POISONED, *arguments],
             env=os.environ | {"PYTHONPATH": paths} | variables,
             capture_output=True,
             text=True,
