@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "fault.hpp"
 #include "material.hpp"
 #include "neighbours.hpp"
 #include "options.hpp"
@@ -72,6 +73,7 @@ public:
         sum_momentum(particles, neighbours);
         reduce_summaries();
         if (poisoned) find_survivor(particles);
+        fault_ = traced_to_its_source(fault_, particles, materials_);
     }
 
     static constexpr double kernel_support() { return WendlandC6<D>::support; }
@@ -82,12 +84,10 @@ public:
     double timestep() const { return timestep_; }
     double av_power() const { return av_power_; }
     PhaseTimer& phases() { return phases_; }
-    /// A particle whose density is absurd or whose rates are not finite, or -1.
-    std::int64_t faulty_particle() const { return faulty_; }
+    /// The particle to blame where a density is absurd or rates are not finite.
+    const Fault& fault() const { return fault_; }
     /// The particle that allows the shortest timestep, or -1.
     std::int64_t limiting_particle() const { return limiting_; }
-    /// Density over density at rest beyond which a state is no longer one of matter.
-    static constexpr double least_compression = 0.1, most_compression = 10.0;
     const std::vector<Material>& materials() const { return materials_; }
     const std::vector<StressRecord<real, D>>& stress_records() const { return stress_; }
 
@@ -126,7 +126,8 @@ private:
     struct ClusterSummary {
         double timestep = std::numeric_limits<double>::max();
         double av_power = 0.0;
-        std::int64_t faulty = -1, limiting = -1;
+        Fault fault;
+        std::int64_t limiting = -1;
     };
 
     void pack_motion(Particles<D>& particles, double half_dt);
@@ -161,7 +162,8 @@ private:
     PhaseTimer phases_;
     double timestep_ = 0.0;
     double av_power_ = 0.0;
-    std::int64_t faulty_ = -1, limiting_ = -1;
+    Fault fault_;
+    std::int64_t limiting_ = -1;
 };
 
 /// Eq. (10), held within a quarter of its value at rest (a solid in tension would grow h for ever).
@@ -212,9 +214,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
     for (double& element : L.element) element /= rho;
 
     const auto eos = equation_of_state(material, rho, tag.motion, options_.tension);
-    const double compression = rho / material.rho0;
-    if (!(compression > least_compression && compression < most_compression))
-        summary_[p / lanes<real>].faulty = static_cast<std::int64_t>(p);
+    summary_[p / lanes<real>].fault.note_density(rho, material.rho0, p);
     Deviator<double, D> stress{}, rate{};
     if (tag.motion == Motion::free) {
         if (material.law == Law::fluid) {
@@ -274,7 +274,7 @@ void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& 
         const double dt = doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
                                            options_.cflnumber, options_.cfl_force);
         if (dt < summary.timestep) summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
-        if (!std::isfinite(dot(a, a) + particles.density_rate[p])) summary.faulty = static_cast<std::int64_t>(p);
+        summary.fault.note_rates(dot(a, a) + particles.density_rate[p], p);
     };
     const std::span<const MotionRecord<real, D>> motion(motion_);
     const std::span<const StressRecord<real, D>> stress(stress_);
@@ -292,11 +292,11 @@ template <class real, int D>
 void Rates<real, D>::reduce_summaries() {
     timestep_ = std::numeric_limits<double>::max();
     av_power_ = 0.0;
-    faulty_ = limiting_ = -1;
+    fault_ = {}, limiting_ = -1;
     for (const ClusterSummary& summary : summary_) {
         if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
         av_power_ += summary.av_power;
-        if (faulty_ < 0) faulty_ = summary.faulty;
+        fault_.merge(summary.fault);
     }
 }
 
@@ -305,7 +305,7 @@ template <class real, int D>
 void Rates<real, D>::find_survivor(Particles<D>& particles) {
     const std::int64_t motion = std::is_same_v<real, double> ? survivor<real>(motion_) : -1;
     for (const std::int64_t p : {motion, survivor<real>(stress_), survivor<double>(particles.acceleration)})
-        if (faulty_ < 0) faulty_ = p;
+        if (p >= 0) fault_.note(Fault::rates, static_cast<std::size_t>(p));
 }
 
 }  // namespace doseki

@@ -248,11 +248,8 @@ void Simulation<Scheme>::wrap_positions() {
 template <class Scheme>
 void Simulation<Scheme>::update_rates(double half_dt) {
     rates_.compute(particles, neighbours_, half_dt, moved_ == 0.0);
-    if (rates_.faulty_particle() >= 0) {
-        const auto p = static_cast<std::size_t>(rates_.faulty_particle());
-        const double rho = particles.density[p] + half_dt * particles.density_rate[p];
-        report_failure(std::isfinite(rho) && std::isfinite(particles.acceleration[p][0]) ? "density" : "not_finite", p);
-    }
+    if (const Fault& fault = rates_.fault(); fault.rank != Fault::none)
+        report_failure(fault.rank == Fault::density ? "density" : "not_finite", static_cast<std::size_t>(fault.particle));
     if (rates_.timestep() < least_timestep_ && rates_.limiting_particle() >= 0)
         report_failure("timestep", static_cast<std::size_t>(rates_.limiting_particle()));
 }

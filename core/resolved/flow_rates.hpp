@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "fault.hpp"
 #include "material.hpp"
 #include "neighbours.hpp"
 #include "options.hpp"
@@ -53,13 +54,15 @@ public:
         if (options_.flow.wide_kernel) sum_all<WendlandC6<D>>(particles, neighbours);
         else sum_all<WendlandC2<D>>(particles, neighbours);
         reduce_summaries();
-        if (poisoned && faulty_ < 0) faulty_ = survivor<double>(particles.acceleration);
+        const std::int64_t left = poisoned ? survivor<double>(particles.acceleration) : -1;
+        if (left >= 0) fault_.note(Fault::rates, static_cast<std::size_t>(left));
+        fault_ = traced_to_its_source(fault_, particles, materials_);
     }
 
     double timestep() const { return timestep_; }
     double av_power() const { return power_; }
     PhaseTimer& phases() { return phases_; }
-    std::int64_t faulty_particle() const { return faulty_; }
+    const Fault& fault() const { return fault_; }
     std::int64_t limiting_particle() const { return limiting_; }
     const std::vector<Material>& materials() const { return materials_; }
     Deviator<double, D> deviator(const Particles<D>&, std::size_t) const { return {}; }
@@ -91,7 +94,8 @@ private:
     struct ClusterSummary {
         double timestep = std::numeric_limits<double>::max();
         double power = 0.0, strain = 0.0;
-        std::int64_t faulty = -1, limiting = -1;
+        Fault fault;
+        std::int64_t limiting = -1;
     };
 
     /// Tension holds inside; a free surface takes none.
@@ -179,7 +183,8 @@ private:
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;
     double liveliness_ = 0.0;    // 0: fluid at rest, whose momentum pairs conserve; 1: flow
-    std::int64_t faulty_ = -1, limiting_ = -1;
+    Fault fault_;
+    std::int64_t limiting_ = -1;
 };
 
 template <int D>
@@ -198,8 +203,6 @@ void FlowRates<D>::pack_fluid(const Particles<D>& particles, std::size_t p, doub
             record.strain[Sym<double, D>::index(a, b)] = 0.5 * (L(a, b) + L(b, a));
         }
     record.pressure_gradient = particles.flow.pressure_gradient[p].component;
-    if (!(rho > 0.1 * material.rho0 && rho < 10.0 * material.rho0))
-        summary_[p / lanes<double>].faulty = static_cast<std::int64_t>(p);
 }
 
 template <int D>
@@ -303,6 +306,7 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
                                             options_.flow.wide_kernel);
     flow.surface[p] = measure.x;
     flow.shift[p] = {};
+    summary_[p / lanes<double>].fault.note_density(fluid_[p].rho, materials_[particles.tag[p].material].rho0, p);
     if (!particles.is_free(p)) {
         particles.acceleration[p] = {}, particles.density_rate[p] = 0.0;
         return;
@@ -345,7 +349,7 @@ void FlowRates<D>::limit_timestep(const Particles<D>& particles, std::size_t p) 
     const double dt = std::min({acoustic, forced, viscous});
     ClusterSummary& summary = summary_[p / lanes<double>];
     if (dt < summary.timestep) summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
-    if (!std::isfinite(dot(a, a) + particles.density_rate[p])) summary.faulty = static_cast<std::int64_t>(p);
+    summary.fault.note_rates(dot(a, a) + particles.density_rate[p], p);
 }
 
 template <int D>
@@ -353,13 +357,13 @@ void FlowRates<D>::reduce_summaries() {
     // What enters next may be the first fluid there is.
     timestep_ = options_.cflnumber * options_.eta * options_.flow.dp / constants_.c;
     power_ = 0.0;
-    faulty_ = limiting_ = -1;
+    fault_ = {}, limiting_ = -1;
     double strain = 0.0;
     for (const ClusterSummary& summary : summary_) {
         if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
         power_ += summary.power;
         strain += summary.strain;
-        if (faulty_ < 0) faulty_ = summary.faulty;
+        fault_.merge(summary.fault);
     }
     if (fluid_count_ > 0) {
         const double h = options_.eta * options_.flow.dp, rms = std::sqrt(strain / static_cast<double>(fluid_count_));

@@ -36,7 +36,7 @@ KINDS = {
     "speed": "its speed is over ten times the largest sound speed",
     "timestep": "it lets the timestep collapse below 1e-4 of that of matter at rest",
     "outside": "it is far outside the domain",
-    "not_finite": "its acceleration or density rate is not a finite number",
+    "not_finite": "its state, acceleration or density rate is not a finite number",
     "empty": "no particle is left in the domain",
 }
 

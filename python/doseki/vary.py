@@ -56,10 +56,18 @@ def vary(
 
 
 def _scenarios(name: str, settings: Sequence[str]) -> dict[str, Scenario]:
-    """The scenario at each xi, all checked before the first one runs."""
-    xi = load_scenario(name, settings).xi
-    changed = {part: f"xi={xi * factor!r}" for part, factor in FACTORS.items()}
-    return {part: load_scenario(name, [*settings, text]) for part, text in changed.items()}
+    """The scenario at each xi, all checked before the first one runs.
+
+    Where xi follows from xi_height or speed_max these stay, for expressions may use them.
+    """
+    given = load_scenario(name, settings)
+    if given.xi_height is None and given.speed_max is None:
+        changed = {part: f"xi={given.xi * factor!r}" for part, factor in FACTORS.items()}
+        return {part: load_scenario(name, [*settings, text]) for part, text in changed.items()}
+    scenarios = {part: load_scenario(name, settings) for part in FACTORS}
+    for part, factor in FACTORS.items():
+        scenarios[part].xi = given.xi * factor
+    return scenarios
 
 
 def measured(run: Run) -> Measured:

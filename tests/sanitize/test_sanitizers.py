@@ -64,14 +64,17 @@ def build(folder: Path, flags: str) -> Path:
 def exercise(
     site: Path, preload: str, threads: int, size: float, **variables: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run exercise.py on the module in `site` with runtime libraries loaded before all others."""
+    """Run exercise.py on the module in `site` with runtime libraries loaded before all others.
+
+    Without site packages (-S), for an editable installation of doseki comes before any path.
+    """
     environment = {
-        "PYTHONPATH": str(site),
+        "PYTHONPATH": os.pathsep.join([str(site), *filter(None, sys.path)]),
         "LD_PRELOAD": preload,
         "DOSEKI_ISA": "scalar",
     } | variables
     return subprocess.run(
-        [sys.executable, HERE / "exercise.py", str(threads), str(size)],
+        [sys.executable, "-S", HERE / "exercise.py", str(threads), str(size), site],
         env=os.environ | environment,
         capture_output=True,
         text=True,
@@ -86,7 +89,7 @@ def test_addresses_and_undefined_behaviour(tmp_path):
     # Python itself frees nothing at its end, which would count as leaks.
     done = exercise(site, preload, 2, 1.0, ASAN_OPTIONS="detect_leaks=0", DOSEKI_POISON="1")
     assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("\n") == 4
+    assert done.stdout.count("\n") == 6
 
 
 @pytest.mark.full
@@ -112,7 +115,7 @@ def test_threads_do_not_race(tmp_path):
     done = exercise(site, preload, 4, 3.0, TSAN_OPTIONS="exitcode=66")
     assert "WARNING: ThreadSanitizer" not in done.stderr, done.stderr[:3000]
     assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("\n") == 4
+    assert done.stdout.count("\n") == 6
 
 
 POISONED = """
@@ -121,8 +124,8 @@ from doseki.core import build_simulation, load_core
 from doseki.scenario import load_scenario
 load_core().set_threads(1)
 digest = hashlib.blake2b()
-for name in ("film", "flume", "hang"):
-    simulation, _ = build_simulation(load_scenario(name, sys.argv[1:]))
+for name in sys.argv[1].split(","):
+    simulation, _ = build_simulation(load_scenario(name, sys.argv[2:]))
     simulation.advance(limit=1.0, pause=1.0, max_steps=300)
     for values in simulation.state().values():
         digest.update(values.tobytes())
@@ -130,14 +133,22 @@ print(digest.hexdigest())
 """
 
 
-@pytest.mark.parametrize("precision", ["double", "float"])
-def test_poisoned_records_survive_no_pass_and_change_no_bit(precision):
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["film,flume,hang", "precision=double"],
+        ["film,flume,hang", "precision=float"],
+        ["film,dambreak", "scheme=resolved", "speed_max=3"],
+    ],
+    ids=["double", "float", "resolved"],
+)
+def test_poisoned_records_survive_no_pass_and_change_no_bit(arguments):
     """NaN in every output before each pass: all of it is overwritten before it is read."""
     digests = []
     paths = os.pathsep.join([str(PACKAGE.parent), os.environ.get("PYTHONPATH", "")])
     for variables in ({}, {"DOSEKI_POISON": "1"}):
         done = subprocess.run(
-            [sys.executable, "-c", POISONED, f"precision={precision}"],
+            [sys.executable, "-c", POISONED, *arguments],
             env=os.environ | {"PYTHONPATH": paths} | variables,
             capture_output=True,
             text=True,

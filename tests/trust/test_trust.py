@@ -14,6 +14,7 @@ from doseki.record import Recorder
 from doseki.run import RunOptions, run_scenario
 from doseki.scenario import load_scenario
 from doseki.summary import summary_text
+from doseki.vary import vary
 
 SCENARIO = """\
 schema = 1
@@ -179,6 +180,44 @@ def test_what_the_record_cannot_tell_is_not_available(record):
     assert verdicts(periodic)["energy balance"] == "not available"
 
 
+RESOLVED = 'scheme = "resolved"'
+
+
+def test_the_resolved_scheme_has_tension_but_not_on_its_surface(record):
+    """No pressure below rho0: the free surface; the record tells it by a pressure of zero."""
+
+    def stretched(state, row):
+        dense(0.9)(state, row)
+        state["pressure"][:480] = -1e4
+
+    assert verdicts(record(dense(0.9), more=RESOLVED))["density fluctuation"] == "good"
+    assert verdicts(record(stretched, more=RESOLVED))["density fluctuation"] == "bad"
+    assert verdicts(record(stretched))["density fluctuation"] == "good"
+    assert verdicts(record(dense(1.02), more=RESOLVED))["density fluctuation"] == "doubtful"
+
+
+def test_walls_that_take_or_give_energy_leave_the_balance_unknown(record):
+    def belt(state, row):
+        state["motion"][:40] = 1
+
+    def wall(state, row):
+        belt(state, row)
+        state["velocity"][:40] = 0.0
+
+    for bed, unknown in (("rough", True), ("no_slip", False)):
+        body = f'{RESOLVED}\n[body.bed]\nwall = "{bed}"\nks = 0.01'
+        found = verdicts(record(wall, more=body))["energy balance"]
+        assert (found == "not available") == unknown
+    for scheme in (RESOLVED, ""):
+        assert verdicts(record(belt, more=scheme))["energy balance"] == "not available"
+
+
+@pytest.mark.parametrize(("share", "expected"), [(1e-4, "good"), (5e-3, "doubtful"), (0.1, "bad")])
+def test_shifting_is_allowed_some_momentum(record, share, expected):
+    found = verdicts(record(momentum(share), more=RESOLVED))
+    assert {found.pop("momentum"), *found.values()} == {expected, "good"}
+
+
 def test_nearest_pair_is_that_of_all_pairs():
     points = np.random.default_rng(1).uniform(size=(60, 3))
     gaps = np.linalg.norm(points[:, None] - points, axis=2) + 9 * np.eye(60)
@@ -213,6 +252,97 @@ def test_half_and_double_xi(tmp_path, capsys):
     assert "momentum_y" not in moved
     for part in ("half", "base", "double"):
         assert (folder / part / "trust.json").is_file()
+
+
+COLUMN = """\
+dim = 2
+dp = 0.02
+time_max = 0.1
+time_out = 0.02
+scheme = "resolved"
+{speed}
+gravity = [0, -9.8]
+
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+wall = "{wall}"
+ks = 0.01
+min = [-0.4, -0.06]
+max = [0.6, 0]
+
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.2, 0.2]
+velocity = ["= 0.1*{key}", 0]
+"""
+DROP = """\
+dim = 2
+dp = 0.02
+time_max = 0.2
+time_out = 0.02
+scheme = "resolved"
+speed_max = 1
+
+[body.water]
+shape = "disc"
+material = "water"
+centre = [0, 0]
+radius = 0.2
+velocity = ["= x + 0.5", "= -y"]
+"""
+
+
+def column(folder, key="speed_max", wall="no_slip"):
+    """A scenario file: a column of water falls on a floor; its start depends on `key`."""
+    text = COLUMN.format(speed=f"{key} = 2", wall=wall, key=key)
+    (folder / "column.toml").write_text(text)
+    return str(folder / "column.toml")
+
+
+def judged(name, folder):
+    """The checks of a run of a scenario, by name."""
+    run_scenario(load_scenario(name), folder / "run", RunOptions(threads=1))
+    return {check["name"]: check for check in load(folder / "run").trust["checks"]}
+
+
+def test_a_drop_of_the_resolved_scheme_is_judged(tmp_path):
+    (tmp_path / "drop.toml").write_text(DROP)
+    checks = judged(str(tmp_path / "drop.toml"), tmp_path)
+    judgement = {name: check["verdict"] for name, check in checks.items()}
+    assert judgement.pop("particles per flow depth") == "not available"
+    assert judgement.pop("closest approach") == "not available"
+    assert set(judgement.values()) == {"good"}
+    assert "stands in the residual" in checks["energy balance"]["counted"]
+    assert "both signs inside" in checks["density fluctuation"]["counted"]
+
+
+def test_a_column_of_the_resolved_scheme_is_judged(tmp_path):
+    checks = judged(column(tmp_path), tmp_path)
+    assert checks["Mach number"]["verdict"] == "good"
+    assert checks["energy balance"]["value"] < 0.1
+    assert checks["particles per flow depth"]["value"] == pytest.approx(10, rel=0.2)
+    rough = tmp_path / "rough"
+    rough.mkdir()
+    checks = judged(column(rough, wall="rough"), rough)
+    assert checks["energy balance"]["verdict"] == "not available"
+    assert "rough walls" in checks["energy balance"]["counted"]
+
+
+@pytest.mark.parametrize("key", ["speed_max", "xi_height"])
+def test_xi_is_varied_where_it_follows_from_something_else(key, tmp_path):
+    """What is given stays, since expressions may use it; only the sound speed changes."""
+    report = vary(column(tmp_path, key), ["time_max=0.02"], "xi", tmp_path / "out", 1)
+    assert np.array(report["values"]) / report["values"][1] == pytest.approx([0.5, 1, 2])
+    runs = [load(folder) for folder in report["directories"]]
+    sound = [run[0]["sound_speed"][run[0]["motion"] == 0].max() for run in runs]
+    assert np.array(sound) / sound[1] == pytest.approx([0.5, 1, 2])
+    assert [run[0]["velocity"].max() for run in runs] == pytest.approx([0.2] * 3)
+    moved = {entry["name"]: entry["moved_percent"] for entry in report["quantities"]}
+    assert np.abs(moved["water: mean speed"]).max() < 20
 
 
 def test_only_xi_can_be_varied(tmp_path):
