@@ -120,7 +120,7 @@ def _kept(scenario: Scenario, name: str, body: LatticeBody, position: np.ndarray
     """The positions where the body's `where` is above zero."""
     if body.where is None:
         return position
-    kept = position[_field(scenario, name, "where", body.where, position) > 0]
+    kept = position[field_of(scenario, name, "where", body.where, position) > 0]
     if not len(kept):
         message = f"body.{name}.where: it is above zero at no particle of the body"
         raise scenario.where.error(("body", name, "where"), message)
@@ -133,7 +133,7 @@ def _compression(
     """rho/rho0 - 1 of the initial pressure, p = c^2 (rho - rho0) with the c of the run."""
     if body.pressure is None:
         return np.zeros(len(position))
-    pressure = _field(scenario, name, "pressure", body.pressure, position)
+    pressure = field_of(scenario, name, "pressure", body.pressure, position)
     stiffness = _stiffness(scenario, body.material)
     if (pressure <= -stiffness).any():
         message = (
@@ -193,11 +193,11 @@ def _velocity(scenario: Scenario, name: str, body: ShapedBody, position: np.ndar
     """Initial velocities (N, dim): numbers, or expressions of the position."""
     velocity = np.zeros_like(position)
     for axis, entry in enumerate(body.velocity or []):
-        velocity[:, axis] = _field(scenario, name, "velocity", entry, position)
+        velocity[:, axis] = field_of(scenario, name, "velocity", entry, position)
     return velocity
 
 
-def _field(
+def field_of(
     scenario: Scenario, name: str, key: str, entry: float | str, position: np.ndarray
 ) -> np.ndarray:
     """A number, or an expression of the position, at each of the positions."""

@@ -153,9 +153,7 @@ def _is_fluid(names: np.ndarray, materials: Mapping[str, Material]) -> np.ndarra
     return np.isin(names, [name for name, entry in materials.items() if entry.law == "fluid"])
 
 
-def _clamped(
-    scenario: Mapping[str, Any], fluid: np.ndarray, pressure: np.ndarray
-) -> np.ndarray:
+def _clamped(scenario: Mapping[str, Any], fluid: np.ndarray, pressure: np.ndarray) -> np.ndarray:
     """Which particles have no pressure, hence no meaning, below rho0.
 
     In the resolved scheme those are particles of the free surface, whatever `tension` says.

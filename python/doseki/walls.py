@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from .bodies import field_of
 from .lattice import rotation_matrix
 from .particles import FIXED, ParticleSet
 from .scenario import Scenario
@@ -38,6 +39,8 @@ class _Wall:
         given = getattr(self.body, "normal", None)
         if given is not None:
             return self._along(position, given / np.linalg.norm(given))
+        if getattr(self.body, "where", None) is not None:
+            return self._carved(position)
         if isinstance(self.body, Box):
             return self._box(position)
         if isinstance(self.body, Disc):
@@ -49,6 +52,23 @@ class _Wall:
             ("body", self.name),
             f"body.{self.name}: a wall of points needs its normal = [...] into the fluid",
         )
+
+    def _carved(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A surface where the body's `where` is zero: its gradient points into the wall."""
+        step = 1e-3 * self.scenario.dp
+        inside = self._where(position)
+        gradient = np.stack(
+            [
+                (self._where(position + shift) - self._where(position - shift)) / (2 * step)
+                for shift in step * np.eye(self.scenario.dim)
+            ],
+            axis=1,
+        )
+        slope = np.maximum(np.linalg.norm(gradient, axis=1), 1e-300)
+        return -gradient / slope[:, None], inside / slope
+
+    def _where(self, position: np.ndarray) -> np.ndarray:
+        return field_of(self.scenario, self.name, "where", self.body.where, position)
 
     def _along(self, position: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """A plane wall: its surface is half a spacing beyond the foremost particles."""

@@ -182,3 +182,16 @@ radius = 0.45
     out = particles.position[ball] - [3, 0, 0]
     np.testing.assert_allclose(depth[ball], 0.45 - np.linalg.norm(out, axis=1), atol=1e-12)
     np.testing.assert_allclose((normal[ball] * out).sum(axis=1), np.linalg.norm(out, axis=1))
+
+
+def test_carved_from_a_box(geometry):
+    """The surface is where `where` vanishes: here a slope of 3 in 4 and a wave."""
+    slope = 'where = "= 1 - 0.75*x - y"'
+    position, normal, depth = geometry("bed", WATER + wall("bed", [0, -1], [1, 1], slope))
+    np.testing.assert_allclose(normal, np.tile([0.6, 0.8], (len(normal), 1)), atol=1e-6)
+    expected = (1 - 0.75 * position[:, 0] - position[:, 1]) / 1.25
+    np.testing.assert_allclose(depth, expected, atol=1e-9)
+    wave = 'where = "= 0.1*sin(3*x) - y"'
+    position, normal, _ = geometry("bed", WATER + wall("bed", [0, -1], [1, 1], wave))
+    tilt = -0.3 * np.cos(3 * position[:, 0])
+    np.testing.assert_allclose(normal[:, 0] / normal[:, 1], tilt, atol=1e-5)
