@@ -140,5 +140,5 @@ def _check_resolved(scenario: Scenario) -> None:
         if scenario.materials[inflow.material].law != "fluid":
             raise scenario.where.error(
                 ("inflow", name, "material"),
-                f"inflow.{name}: the resolved scheme moves fluids only; {inflow.material} is a solid",
+                f"inflow.{name}: the resolved scheme moves fluids only, not {inflow.material}",
             )

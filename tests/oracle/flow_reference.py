@@ -182,16 +182,23 @@ class FlowReference:
         return length**2 * np.sqrt(2 * (D**2).sum(axis=(1, 2)))
 
     def _mixing_length(self, least: float) -> np.ndarray:
-        """kappa z sqrt(1 - z/d) with bed and depth of the column of plan in which a particle is."""
-        width = 4 * self.options.dp
+        """kappa z sqrt(1 - z/d) with bed and depth of the column of plan in which a particle is.
+
+        Columns are about 4 dp wide; whole ones fill a period.  Only what faces upwards is a bed.
+        """
+        period = self.options.period[: self.dim - 1]
+        whole = np.maximum(np.floor(period / (4 * self.options.dp)), 1)
+        bounded = np.where(np.isfinite(period), period, 0)
+        width = np.where(bounded > 0, bounded / whole, 4 * self.options.dp)
         column, of_wall = (np.floor(x[:, :-1] / width) for x in (self.x, self.x_w))
         length = np.full(len(self.x), least)
         for i, key in enumerate(column):
             here = (column == key).all(axis=1)
-            top = (self.x_w[:, -1] + self.depth)[(of_wall == key).all(axis=1)]
+            bed = (of_wall == key).all(axis=1) & (self.normal[:, -1] >= 0.5)
+            top = (self.x_w[:, -1] + self.depth)[bed]
             top = top[top < self.x[here, -1].mean()]
             if len(top):
-                d = self.volume[here].sum() / width ** (self.dim - 1)
+                d = self.volume[here].sum() / width.prod()
                 z = np.clip(self.x[i, -1] - top.max(), 0, d)
                 length[i] = max(least, KAPPA * z * np.sqrt(1 - z / d))
         return length

@@ -16,7 +16,12 @@ STEPS = 12
 MOST_PARTICLES = 20_000
 
 # Coarser than shipped, where a 3-D run would have too many particles for a quick test.
-COARSE = {("flume", 3): 0.025, ("flume-strength", 3): 0.025, ("dambreak", 3): 0.03}
+COARSE = {
+    ("flume", 3): 0.025,
+    ("flume-strength", 3): 0.025,
+    ("dambreak", 3): 0.03,
+    ("channel", 3): 0.0075,
+}
 
 
 def coarse_scenario(name, dim, *more):
