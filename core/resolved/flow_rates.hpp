@@ -79,7 +79,7 @@ public:
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("next_timestep", timestep_), archive("av_power", power_), archive("liveliness", liveliness_);
+        archive("next_timestep", timestep_), archive("av_power", power_), archive("liveliness", liveliness_), archive("strain", strain_);
     }
 
     std::size_t bytes() const {
@@ -128,7 +128,7 @@ private:
 
     /// Time, in h/c, in which the density that follows from motion is drawn to that of the arrangement of
     /// particles: what continuity sums up over many steps forgets how far apart they are.
-    static constexpr double relaxation = 100.0;
+    static constexpr double relaxation = 100.0, relaxation_at_rest = 1000.0;
     /// Of rho0. What tears apart leaves a void, not water under tension.
     static constexpr double least_density = 0.98;
     /// Root mean square of |L| h/c below which a fluid counts as at rest.
@@ -182,6 +182,7 @@ private:
     PhaseTimer phases_;
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;
+    double strain_ = 0.0;        // root mean square of |L| [1/s]
     double liveliness_ = 0.0;    // 0: fluid at rest, whose momentum pairs conserve; 1: flow
     Fault fault_;
     std::int64_t limiting_ = -1;
@@ -319,18 +320,23 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     double norm = 0.0;
     for (double element : L.element) norm += element * element;
     summary_[p / lanes<double>].strain += norm;
-    // Away from walls and surface the mean pressure does nothing; what disorder makes of it is noise.
-    if (sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface)
-        a = a + (2.0 * liveliness_ * record.p / rho) * sums.concentration_gradient;
+    // Away from walls and surface the mean pressure does nothing, and gradients need not be those of
+    // pairs; what disorder makes of either is noise.
+    if (sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface) {
+        const Vec<double, D> noise = sums.pressure_gradient - flow.pressure_gradient[p];
+        a = a + (liveliness_ / rho) * (2.0 * record.p * sums.concentration_gradient + noise);
+        rate += liveliness_ * rho * (trace(sums.velocity_gradient) - trace(L));
+    }
     if (shifted && measure.x < SurfaceMeasure::surface) {
-        Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), 0.01 * constants_.c / h), h);
+        Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), strain_), h);
         if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
         flow.shift[p] = shift;
         for (int k = 0; k < D; ++k)
             for (int l = 0; l < D; ++l) a[k] += L(k, l) * shift[l];
         rate += dot(flow.pressure_gradient[p], shift) / (constants_.c * constants_.c);
     }
-    rate += (measure.filling * rho0 - rho) * constants_.c / (relaxation * h);
+    const double memory = (relaxation + (1.0 - liveliness_) * (relaxation_at_rest - relaxation)) * h / constants_.c;
+    rate += (measure.filling * rho0 - rho) / memory;
     if (rho < least_density * rho0) rate = std::max(0.0, rate);
     particles.acceleration[p] = a;
     particles.density_rate[p] = rate;
@@ -367,7 +373,7 @@ void FlowRates<D>::reduce_summaries() {
     }
     if (fluid_count_ > 0) {
         const double h = options_.eta * options_.flow.dp, rms = std::sqrt(strain / static_cast<double>(fluid_count_));
-        liveliness_ = std::clamp(h * rms / (at_rest * constants_.c) - 1.0, 0.0, 1.0);
+        strain_ = rms, liveliness_ = std::clamp(h * rms / (at_rest * constants_.c) - 1.0, 0.0, 1.0);
     }
 }
 

@@ -22,7 +22,7 @@ SUPPORT = {"wendland_c2": 2.0, "wendland_c6": 2.5}
 SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surface
 LEAST_CONCENTRATION = 0.6
 LEAST_BETA = 0.05  # of the Riemann dissipation
-RELAXATION = 100.0  # of density, h/c
+RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
 LEAST_DENSITY = 0.98  # rho0
 AT_REST = 5e-4  # rms |L| h/c
 LEAST_FILLED = 0.05  # of a rough wall's kernel
@@ -127,7 +127,7 @@ class FlowReference:
         self.pressure_gradient = np.zeros((n, self.dim))
         self.L = np.zeros((n, self.dim, self.dim))
         self.surface = np.zeros(n)
-        self.liveliness = 0.0
+        self.strain = self.liveliness = 0.0
 
     def _take_fluid(self, particles: Any, materials: Sequence[Mapping[str, Any]]) -> None:
         self.fluid = particles.motion != FIXED
@@ -274,8 +274,8 @@ class FlowReference:
             self._add_shift()
         self._relax_density()
         self._set_timestep()
-        strain = np.sqrt((self.L**2).sum() / len(self.x))
-        self.liveliness = np.clip(self.h * strain / (AT_REST * self.c) - 1, 0, 1)
+        self.strain = np.sqrt((self.L**2).sum() / len(self.x))
+        self.liveliness = np.clip(self.h * self.strain / (AT_REST * self.c) - 1, 0, 1)
         self.surface = self.measure
 
     def _pair_sums(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -318,6 +318,7 @@ class FlowReference:
         L = -np.einsum("ij,ija,ijb->iab", VF_f, v_ij, r_f)
         L -= np.einsum("ij,ija,ijb->iab", VF_w, contact["jump"], r_w)
         self.old_gradient, self.old_L = self.pressure_gradient, self.L
+        self.plain_gradient, self.plain_L = plain, L
         self.pressure_gradient = np.einsum("iab,ib->ia", inverse, plain)
         self.L = np.einsum("ibc,iac->iab", inverse, L)
         self.concentration_gradient = np.einsum("ij,ija->ia", VF_f, r_f)
@@ -336,15 +337,19 @@ class FlowReference:
         self.nearby = np.where(self.ff.F < 0, self.surface[None], 0).max(axis=1)
 
     def _add_pressure_difference(self) -> None:
-        """Away from walls and surface, while it flows, only differences of pressure act."""
+        """Away from walls and surface, while it flows, corrected gradients take the place of pairs."""
         self.inside = (self.share_of_walls == 0) & (self.nearby < SURFACE)
-        push = 2 * self.liveliness * self.p / self.rho * self.inside
-        self.acceleration += push[:, None] * self.concentration_gradient
+        push = 2 * self.p[:, None] * self.concentration_gradient
+        push += self.plain_gradient - self.pressure_gradient
+        share = self.liveliness * self.inside
+        self.acceleration += (share / self.rho)[:, None] * push
+        trace = np.einsum("iaa->i", self.plain_L - self.L)
+        self.density_rate += share * self.rho * trace
 
     def _add_shift(self) -> None:
         """What moving relative to the fluid does to velocity and density."""
         norm = np.sqrt((self.L**2).sum(axis=(1, 2)))
-        rate = np.maximum(norm, 0.01 * self.c / self.h)
+        rate = np.maximum(norm, self.strain)
         slope = np.linalg.norm(self.concentration_gradient, axis=1)
         speed = np.minimum(SHIFT_STRENGTH * self.h * slope, SHIFT_MOST) * self.h * rate
         shift = -speed[:, None] * unit_or_zero(self.concentration_gradient)
@@ -361,7 +366,9 @@ class FlowReference:
         self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2
 
     def _relax_density(self) -> None:
-        self.density_rate += (self.filling * self.rho0 - self.rho) * self.c / (RELAXATION * self.h)
+        live = self.liveliness
+        memory = (live * RELAXATION + (1 - live) * RELAXATION_AT_REST) * self.h / self.c
+        self.density_rate += (self.filling * self.rho0 - self.rho) / memory
         void = self.rho < LEAST_DENSITY * self.rho0
         self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
 

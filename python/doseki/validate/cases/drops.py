@@ -149,6 +149,7 @@ PATCH = Case(
             SPIN,
             (small(0.01), small(0.01), small(0.01)),
             "no torque acts; forces along the line of centres keep it, corrections do not quite",
+            short="corrected gradients inside the patch do not keep it",
         ),
         Criterion(ROOM, (small(0.01),), "water keeps its volume, stretched as it is"),
         Criterion(
