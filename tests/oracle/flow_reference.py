@@ -337,7 +337,7 @@ class FlowReference:
         self.nearby = np.where(self.ff.F < 0, self.surface[None], 0).max(axis=1)
 
     def _add_pressure_difference(self) -> None:
-        """Away from walls and surface, while it flows, corrected gradients take the place of pairs."""
+        """Away from walls and surface, while it flows, gradients are the corrected ones."""
         self.inside = (self.share_of_walls == 0) & (self.nearby < SURFACE)
         push = 2 * self.p[:, None] * self.concentration_gradient
         push += self.plain_gradient - self.pressure_gradient
