@@ -157,7 +157,7 @@ PATCH = Case(
             (at_most(0.02), at_most(0.01), at_most(0.01)),
             "pieces that fly freely keep energy and momentum too, so it must stay whole; loose is "
             "what has fewer than three others within 1.6 spacings",
-            short="the thin ends of the arms come apart into rows of particles",
+            short="the outer row of the hollow faces stays behind: a surface takes no tension",
         ),
     ),
     axes=("x (m)", "y (m)"),
