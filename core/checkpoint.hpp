@@ -44,6 +44,11 @@ struct Numbers<StressRecord<T, D>> {
 };
 
 template <int D>
+struct Numbers<BodyPoint<D>> {
+    using type = double;
+    static constexpr std::size_t count = sizeof(BodyPoint<D>) / sizeof(double);
+};
+template <int D>
 struct Numbers<BodyState<D>> {
     using type = double;
     static constexpr std::size_t count = sizeof(BodyState<D>) / sizeof(double);

@@ -30,6 +30,67 @@ struct BodyState {
     double removed;                 // 1: gone
 };
 
+/// A point of the surface or inside of a rigid body, in its frame; numbers only, as BodyState.
+template <int D>
+struct BodyPoint {
+    double body;
+    Vec<double, D> offset, normal;
+
+    std::int32_t index() const { return static_cast<std::int32_t>(body); }
+};
+
+/// Shapes and rigid bodies as one vector for each member, as archives keep them.
+template <int D>
+struct BodyColumns {
+    std::vector<double> radius, mass;
+    std::vector<Vec<double, D>> corners, samples;    // of all shapes in turn
+    std::vector<std::int32_t> facet_count, sample_count, shape, material, body;
+    std::vector<std::uint8_t> fixed;
+    std::vector<Mat<double, 3>> inertia;
+
+    BodyColumns() = default;
+    BodyColumns(const std::vector<Shape<D>>& shapes, const std::vector<RigidBody<D>>& bodies) {
+        for (const Shape<D>& each : shapes) {
+            radius.push_back(each.radius);
+            for (const auto& facet : each.facets) corners.insert(corners.end(), facet.begin(), facet.end());
+            samples.insert(samples.end(), each.samples.begin(), each.samples.end());
+            facet_count.push_back(static_cast<std::int32_t>(each.facets.size()));
+            sample_count.push_back(static_cast<std::int32_t>(each.samples.size()));
+        }
+        for (const RigidBody<D>& each : bodies) {
+            shape.push_back(each.shape), material.push_back(each.material), body.push_back(each.body);
+            fixed.push_back(each.fixed), mass.push_back(each.mass), inertia.push_back(each.inertia);
+        }
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("shape_radius", radius), archive("shape_corners", corners), archive("shape_samples", samples);
+        archive("shape_facets", facet_count), archive("shape_sample_count", sample_count);
+        archive("body_shape", shape), archive("body_material", material), archive("body_named", body);
+        archive("body_fixed", fixed), archive("body_mass", mass), archive("body_inertia", inertia);
+    }
+
+    std::vector<Shape<D>> shapes() const {
+        std::vector<Shape<D>> result(radius.size());
+        auto corner = corners.begin(), sample = samples.begin();
+        for (std::size_t k = 0; k < result.size(); ++k) {
+            result[k].radius = radius[k];
+            for (int f = 0; f < facet_count.at(k); ++f, corner += D) {
+                result[k].facets.emplace_back();
+                std::copy_n(corner, D, result[k].facets.back().begin());
+            }
+            result[k].samples.assign(sample, sample + sample_count.at(k));
+            sample += sample_count[k];
+        }
+        return result;
+    }
+
+    RigidBody<D> rigid(std::size_t k) const {
+        return {shape.at(k), material.at(k), body.at(k), fixed.at(k) != 0, mass.at(k), inertia.at(k)};
+    }
+};
+
 /// Bodies that move on their own: rigid ones, and the contacts among them and with walls. They are
 /// kicked by the fluid together with it; gravity and contacts, which are stiffer, act in steps of their own
 /// within the drift.
@@ -59,12 +120,12 @@ public:
     void bind(Particles<D>& particles, std::size_t p, std::size_t k) {
         const Mat<double, 3> R = states_[k].orientation.matrix();
         particles.flow.point[p] = static_cast<std::int32_t>(points_.size());
-        points_.push_back({static_cast<std::int32_t>(k), rotated_back(R, particles.position[p] - states_[k].centre),
+        points_.push_back({static_cast<double>(k), rotated_back(R, particles.position[p] - states_[k].centre),
                            rotated_back(R, particles.flow.normal[p])});
     }
     /// Index of the body of a particle; -1: none.
     std::int32_t body_of(const Particles<D>& particles, std::size_t p) const {
-        return particles.has_flow && particles.tag[p].motion == Motion::bound ? points_[static_cast<std::size_t>(particles.flow.point[p])].body : -1;
+        return particles.has_flow && particles.tag[p].motion == Motion::bound ? points_[static_cast<std::size_t>(particles.flow.point[p])].index() : -1;
     }
 
     /// Call once after everything is in.
@@ -91,7 +152,12 @@ public:
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("bodies", states_), archive("bodies_moved", moved_), archive("bodies_margin", margin_);
+        BodyColumns<D> columns;
+        if constexpr (!Archive::loading) columns = BodyColumns<D>(shapes, bodies_);
+        columns.serialise(archive);
+        archive("bodies", states_), archive("body_points", points_);
+        if constexpr (Archive::loading) restore(columns);
+        archive("bodies_moved", moved_);
         contacts_.serialise(archive);
         if constexpr (Archive::loading) pose(), contacts_.restore(contactors_, solids_);
     }
@@ -100,13 +166,8 @@ private:
     /// Steps of contact in one step of the run, where no fluid asks for shorter ones.
     static constexpr double longest_leap = 50.0;
 
-    /// A point of the surface or inside of a rigid body, in its frame.
-    struct Point {
-        std::int32_t body;
-        Vec<double, D> offset, normal;
-    };
-
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
+    void restore(const BodyColumns<D>& columns);
     bool at_work(std::size_t k) const { return !bodies_[k].fixed && states_[k].removed == 0.0; }
     /// Also short against the margin of the pairs.
     double longest_part() const {
@@ -126,7 +187,7 @@ private:
     Contacts<D> contacts_;
     std::vector<RigidBody<D>> bodies_;
     std::vector<BodyState<D>> states_;
-    std::vector<Point> points_;
+    std::vector<BodyPoint<D>> points_;
     std::vector<Vec<double, D>> contact_force_;
     std::vector<Vec3> contact_torque_;
     // Views of the bodies for the contacts: contactors in the order of bodies, with the sample of each.
@@ -165,6 +226,17 @@ void Bodies<D>::add(const RigidBody<D>& body, const BodyState<D>& state, const V
     if (!body.fixed) margin_ = margin_ > 0.0 ? std::min(margin_, 0.3 * shape.radius) : 0.3 * shape.radius;
 }
 
+/// Makes the bodies of an archive, in whose state they are already.
+template <int D>
+void Bodies<D>::restore(const BodyColumns<D>& columns) {
+    const std::vector<BodyState<D>> states = std::move(states_);
+    shapes = columns.shapes();
+    bodies_.clear(), states_.clear(), contact_force_.clear(), contact_torque_.clear();
+    contactors_ = {}, sample_.clear(), solids_.clear(), moving_ = 0, margin_ = 0.0;
+    for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});
+    states_ = states;
+}
+
 /// omega = R I^-1 R^T L.
 template <int D>
 Vec3 Bodies<D>::spin_of(std::size_t k, const Vec3& L) const {
@@ -195,7 +267,7 @@ void Bodies<D>::gather(const Particles<D>& particles) {
     std::vector<Mat<double, 3>> R;
     for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
     for (std::size_t q = 0; q < points_.size(); ++q) {
-        const auto k = static_cast<std::size_t>(points_[q].body);
+        const auto k = static_cast<std::size_t>(points_[q].index());
         states_[k].flow_force = states_[k].flow_force + force[q];
         states_[k].flow_torque = states_[k].flow_torque + cross(in_space(rotated(R[k], points_[q].offset)), in_space(force[q]));
     }
@@ -342,8 +414,8 @@ double Bodies<D>::place(Particles<D>& particles) const {
 #pragma omp parallel for schedule(static) reduction(max : farthest) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
         if (particles.tag[p].motion != Motion::bound) continue;
-        const Point& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
-        const auto k = static_cast<std::size_t>(point.body);
+        const BodyPoint<D>& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
+        const auto k = static_cast<std::size_t>(point.index());
         const BodyState<D>& state = states_[k];
         const Vec<double, D> lever = rotated(R[k], point.offset);
         const Vec<double, D> step = contacts_.nearest_image(state.centre + lever - particles.position[p]);
@@ -369,8 +441,8 @@ void Bodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
 #pragma omp parallel for schedule(static) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
         if (particles.tag[p].motion != Motion::bound) continue;
-        const Point& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
-        const auto k = static_cast<std::size_t>(point.body);
+        const BodyPoint<D>& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
+        const auto k = static_cast<std::size_t>(point.index());
         particles.velocity[p] = states_[k].velocity + (ahead / bodies_[k].mass) * states_[k].flow_force +
                                 turning_velocity(spins[k], rotated(R[k], point.offset));
     }
