@@ -61,7 +61,9 @@ def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
     tables = []
     moving = _moving_materials(scenario)
     for name in scenario.material_names:
-        table = asdict(scenario.materials[name].scaled(scenario.xi))
+        material = scenario.materials[name]
+        table = asdict(material.scaled(scenario.xi))
+        table["young_modulus"], table["poisson_ratio"] = material.elasticity
         if not scenario.strength or name not in moving:
             table["shear_modulus"] = 0.0
         tables.append(table)

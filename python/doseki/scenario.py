@@ -90,7 +90,7 @@ class Scenario(ScenarioTable):
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
         given["material"] = {name: asdict(self.materials[name]) for name in self.material_names}
         for material in given["material"].values():
-            del material["name"]
+            del material["name"]  # to_toml leaves out what is None
         for name, body in self.body.items():
             if isinstance(body, ParticleFile):
                 given["body"][name]["file"] = str(_particle_path(self, name, body).resolve())
