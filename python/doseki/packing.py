@@ -32,16 +32,17 @@ def pack(radius: np.ndarray, low: np.ndarray, high: np.ndarray, seed: int) -> np
         raise PackingError(0.0)
     random = np.random.default_rng(seed)
     wall = radius[:, None]
-    centre = random.uniform(low + wall, high - wall)
+    centre, best = random.uniform(low + wall, high - wall), 0.0
     for _ in range(ATTEMPTS):
         soft = _SoftBalls(radius * (1 + MARGIN), low + wall, high - wall)
         centre = soft.relaxed(centre)
         least = _closeness(centre, radius)
         if least >= 1:
             return centre
+        best = max(best, least)
         shaken = centre + SHAKE * 2 * radius.mean() * random.uniform(-1, 1, centre.shape)
         centre = np.clip(shaken, low + wall, high - wall)
-    raise PackingError(solid_fraction(radius, low, high) * least ** len(low))
+    raise PackingError(solid_fraction(radius, low, high) * best ** len(low))
 
 
 def solid_fraction(radius: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:

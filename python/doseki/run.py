@@ -14,9 +14,11 @@ from .errors import PhysicsError, ResourceError
 from .failure import Failure, explain_failure
 from .folder import RunFolder
 from .gauges import GaugeReader, build_gauges
+from .grains import is_grain
 from .loading import load
 from .record import Recorder
 from .rewind import Rewind
+from .rigid_bodies import grain_table
 from .scenario import Scenario
 from .schedule import CheckpointClock, OutputTimes, StopRequests
 from .trust import write_trust
@@ -85,6 +87,11 @@ class ActiveRun:
             (gauge, OutputTimes(gauge.interval, scenario.time_max))
             for gauge in build_gauges(scenario, body_names)
         ]
+        self._moving = {
+            body_names.index(name)
+            for name, body in scenario.body.items()
+            if is_grain(scenario, body)
+        }
         self._started = time.perf_counter()
 
     @property
@@ -96,7 +103,11 @@ class ActiveRun:
         """Write the state; the next snapshot is due one interval later."""
         simulation = self.simulation
         self.recorder.snapshot(
-            simulation.state(), time=simulation.time, step=simulation.steps, dt=simulation.timestep
+            simulation.state(),
+            time=simulation.time,
+            step=simulation.steps,
+            dt=simulation.timestep,
+            grains=grain_table(simulation, self._moving),
         )
         self.position.outputs += 1
         self.position.snapshots += 1
