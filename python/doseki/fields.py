@@ -61,7 +61,13 @@ FIELDS = (
     ParticleField("material", "Material", "", "", "scalar", "index of the material", "int32"),
     ParticleField("body", "Body", "", "", "scalar", "index of the body", "int32"),
     ParticleField(
-        "motion", "Motion", "", "", "scalar", "0 free, 1 fixed, 2 driven by an inflow, 3 bound", "int32"
+        "motion",
+        "Motion",
+        "",
+        "",
+        "scalar",
+        "0 free, 1 fixed, 2 driven by an inflow, 3 bound",
+        "int32",
     ),
     ParticleField("id", "Id", "", "", "scalar", "number that stays with the particle", "int64"),
     ParticleField("grain", "Grain", "", "", "scalar", "index of its grain, or -1", "int32", -1),

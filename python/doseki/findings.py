@@ -165,7 +165,11 @@ def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterat
         return
     for body, name in names.items():
         of_it = state["body"] == body
-        if not np.isin(state["motion"][of_it], (FREE, BOUND)).all() or not of_it.any() or of_it.all():
+        if (
+            not np.isin(state["motion"][of_it], (FREE, BOUND)).all()
+            or not of_it.any()
+            or of_it.all()
+        ):
             continue
         others = ~of_it & (state["motion"] != DRIVEN)
         gap = (

@@ -131,7 +131,9 @@ def _distance(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 def _common_width(one: _Block, other: _Block) -> float:
     """Diameter of the largest ball that lies in both, m; below zero where they are apart."""
     normal = np.concatenate([one.normal, other.normal])
-    offset = np.concatenate([one.offset - one.normal @ one.centre, other.offset - other.normal @ one.centre])
+    offset = np.concatenate(
+        [one.offset - one.normal @ one.centre, other.offset - other.normal @ one.centre]
+    )
     rows = np.column_stack([normal, np.ones(len(normal))])
     aim = np.append(np.zeros(normal.shape[1]), -1.0)
     found = linprog(aim, A_ub=rows, b_ub=offset, bounds=(None, None))

@@ -89,10 +89,10 @@ def _box(scenario: Scenario, name: str, body: Box) -> Group:
         message = f"body.{name}: every entry of min must be below that of max"
         raise scenario.where.error(("body", name, "max"), message)
     pivot = body.min if body.pivot is None else body.pivot
-    centre = rotated(
-        0.5 * (body.min + body.max)[None, :], body.rotate, pivot, body.rotate_axis
-    )[0]
-    return _group(body, name, box_shape(body.max - body.min), centre, orientation=turn(scenario, body))
+    centre = rotated(0.5 * (body.min + body.max)[None, :], body.rotate, pivot, body.rotate_axis)[0]
+    return _group(
+        body, name, box_shape(body.max - body.min), centre, orientation=turn(scenario, body)
+    )
 
 
 def _polygon(scenario: Scenario, name: str, body: Polygon) -> Group:
@@ -242,9 +242,7 @@ def inside_bodies(group: Group, position: np.ndarray, dim: int) -> np.ndarray:
     return inside
 
 
-def contact_groups(
-    scenario: Scenario, names: list[str], particles: ParticleSet
-) -> Iterator[Group]:
+def contact_groups(scenario: Scenario, names: list[str], particles: ParticleSet) -> Iterator[Group]:
     """What fixed bodies without bodies of their own are for those that touch them.
 
     A whole box is a convex body, a disc or sphere a ball; of points, of what a file holds and of
@@ -264,7 +262,9 @@ def contact_groups(
             yield from _grit(scenario, name, particles, mine)
 
 
-def _grit(scenario: Scenario, name: str, particles: ParticleSet, mine: np.ndarray) -> Iterator[Group]:
+def _grit(
+    scenario: Scenario, name: str, particles: ParticleSet, mine: np.ndarray
+) -> Iterator[Group]:
     """One ball for each particle."""
     rho0 = np.array([scenario.materials[m].rho0 for m in scenario.material_names])
     kinds = particles.material[mine]

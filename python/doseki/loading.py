@@ -79,7 +79,6 @@ class Snapshot(Mapping[str, np.ndarray]):
         with _readable(self.path):
             return vtkhdf.read_field(self.path, FIELD_BY_KEY[key], self.dim)
 
-
     @cached_property
     def grains(self) -> dict[str, np.ndarray]:
         """The bodies that move, by the keys of fields.GRAIN_FIELDS; empty where there are none.

@@ -32,7 +32,13 @@ MATERIAL_PARAMETERS = (
     MaterialParameter("nu", "m2/s", "kinematic viscosity (fluids)", least=0.0, default=0.0),
     # Of bodies that touch.  Of a pair, the means of restitution and of the frictions count.
     MaterialParameter(
-        "restitution", "", "coefficient of restitution", above=0.0, below=None, most=1.0, default=0.7
+        "restitution",
+        "",
+        "coefficient of restitution",
+        above=0.0,
+        below=None,
+        most=1.0,
+        default=0.7,
     ),
     MaterialParameter("friction", "", "coefficient of friction", least=0.0, default=0.6),
     MaterialParameter(
@@ -42,7 +48,12 @@ MATERIAL_PARAMETERS = (
         "young_modulus", "Pa", "Young's modulus (default: of c0 and mu0)", above=0.0, optional=True
     ),
     MaterialParameter(
-        "poisson_ratio", "", "Poisson's ratio (default: of c0 and mu0)", least=0.0, below=0.5, optional=True
+        "poisson_ratio",
+        "",
+        "Poisson's ratio (default: of c0 and mu0)",
+        least=0.0,
+        below=0.5,
+        optional=True,
     ),
 )
 

@@ -16,7 +16,8 @@ class ParticleSet:
     """N particles in `dim` dimensions, SI units, C-contiguous arrays.
 
     In 2-D a mass is per metre of thickness.  `material` and `body` are indices into the lists of
-    names kept beside the set; `motion` is FREE, FIXED, DRIVEN (moved by an inflow) or BOUND (to a body that moves).
+    names kept beside the set; `motion` is FREE, FIXED, DRIVEN (moved by an inflow) or BOUND (a
+    point of a body that moves).
     """
 
     position: np.ndarray  # (N, dim) float64, m

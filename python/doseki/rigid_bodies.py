@@ -73,14 +73,11 @@ def add_bodies(simulation: Any, scenario: Scenario, bodies: Bodies, names: list[
         simulation.bind_points(np.ascontiguousarray(bodies.grain, np.int32))
 
 
-def grain_table(simulation: Any, moving: set[int]) -> dict[str, np.ndarray]:
-    """The bodies that move as fields.GRAIN_FIELDS has them; empty where there are none.
-
-    `moving` are the indices of the named bodies that are made of them.
-    """
-    if not moving:
-        return {}
+def grain_table(simulation: Any) -> dict[str, np.ndarray]:
+    """The bodies that move as fields.GRAIN_FIELDS has them; empty where there are none."""
     table = {key: np.asarray(values) for key, values in simulation.grains().items()}
-    table["position"], table["diameter"] = table["centre"], 2 * table["radius"]
-    keep = np.isin(table["body"], list(moving))
-    return {field.key: table[field.key][keep] for field in GRAIN_FIELDS}
+    moves = ~table["fixed"]
+    if not moves.any():
+        return {}
+    table |= {"position": table["centre"], "diameter": 2 * table["radius"]}
+    return {field.key: table[field.key][moves] for field in GRAIN_FIELDS}

@@ -14,7 +14,6 @@ from .errors import PhysicsError, ResourceError
 from .failure import Failure, explain_failure
 from .folder import RunFolder
 from .gauges import GaugeReader, build_gauges
-from .grains import is_grain
 from .loading import load
 from .record import Recorder
 from .rewind import Rewind
@@ -87,11 +86,6 @@ class ActiveRun:
             (gauge, OutputTimes(gauge.interval, scenario.time_max))
             for gauge in build_gauges(scenario, body_names)
         ]
-        self._moving = {
-            body_names.index(name)
-            for name, body in scenario.body.items()
-            if is_grain(scenario, body)
-        }
         self._started = time.perf_counter()
 
     @property
@@ -107,7 +101,7 @@ class ActiveRun:
             time=simulation.time,
             step=simulation.steps,
             dt=simulation.timestep,
-            grains=grain_table(simulation, self._moving),
+            grains=grain_table(simulation),
         )
         self.position.outputs += 1
         self.position.snapshots += 1

@@ -143,7 +143,9 @@ def test_fixed_bodies_are_what_grains_touch(write):
     assert [len(shape.get("vertices", ())) for shape in calls["shapes"]] == [0, 4, 0]
     assert calls["shapes"][2] == {"radius": pytest.approx(0.05)}
     assert calls["bodies"]["fixed"].tolist() == [False, True, True, True]
-    assert calls["bodies"]["body"].tolist() == [scene.names.index(n) for n in ("stone", "floor", "g", "g")]
+    assert calls["bodies"]["body"].tolist() == [
+        scene.names.index(n) for n in ("stone", "floor", "g", "g")
+    ]
     assert set(calls["grain"]) == {-1, 0}
     assert len(calls["grain"]) == len(scene.particles)
 
@@ -179,7 +181,10 @@ def test_mass_and_grading(write):
         (BLOCK + "spin = 1", ["body.block.spin", "only solids"]),
         (DISC + FLOOR.replace("0.699", "0.75"), ["body.stone", "overlaps floor by 0.05 m"]),
         (DISC + DISC.replace("stone", "b"), ["body.stone", "overlaps b by 1 m"]),
-        (FLOOR + FLOOR.replace("floor", "slab").replace("fixed = true\n", ""), ["body.slab", "overlaps floor"]),
+        (
+            FLOOR + FLOOR.replace("floor", "slab").replace("fixed = true\n", ""),
+            ["body.slab", "overlaps floor"],
+        ),
         (LOAD + "packing = 0.95", ["body.load", "fraction of 0.9", "was reached"]),
         (LOAD + "count = 120\npacking = 0.7", ["body.load", "120 grains", "do not fit", "0.942"]),
         (LOAD + "count = 1\nmass_total = 3", ["count and mass_total exclude each other"]),
@@ -187,8 +192,16 @@ def test_mass_and_grading(write):
         (LOAD + 'mass_total = "3 lb"', ["body.load.mass_total", 'such as "20 kg"']),
         (LOAD + "mass_total = 1", ["body.load", "not one grain"]),
         (LOAD.replace("basalt", "water"), ["body.load", "solid material, not water"]),
-        (DISC.replace("disc", "stl").replace("centre", "file = 'a.stl'\ncentre").replace("radius = 0.5", ""), ["3-D run"]),
-        ("[material.basalt]\nfriction = -0.1" + DISC, ["material.basalt.friction = -0.1", "at least 0"]),
+        (
+            DISC.replace("disc", "stl")
+            .replace("centre", "file = 'a.stl'\ncentre")
+            .replace("radius = 0.5", ""),
+            ["3-D run"],
+        ),
+        (
+            "[material.basalt]\nfriction = -0.1" + DISC,
+            ["material.basalt.friction = -0.1", "at least 0"],
+        ),
         ("[material.basalt]\nrestitution = 1.1" + DISC, ["restitution = 1.1", "at most 1"]),
         ("[material.basalt]\nrestitution = 0" + DISC, ["restitution = 0", "greater than 0"]),
         ("[material.basalt]\npoisson_ratio = 0.5" + DISC, ["poisson_ratio = 0.5", "less than 0.5"]),
