@@ -163,8 +163,9 @@ def _of_bodies(
     body, n, dim = scenario.body[group.name], len(owner), scenario.dim
     rho0 = scenario.materials[group.material].rho0
     measure = np.array([shape.measure for shape in group.shapes])[group.shape]
+    wet = np.array([shape.wet_measure for shape in group.shapes])[group.shape]
     mass = (rho0 * measure / np.bincount(owner, minlength=len(group)))[owner]
-    density = np.full(n, rho0)
+    density = rho0 * (measure / wet)[owner]
     arm = position - group.centre[owner]
     spin = _spin(body)
     turning = np.cross(spin, np.pad(arm, ((0, 0), (0, 3 - dim))))[:, :dim]
@@ -173,7 +174,7 @@ def _of_bodies(
         velocity=_velocity(scenario, group.name, body, group.centre)[owner] + turning,
         mass=mass,
         density=density,
-        smoothing_length=smoothing_length(scenario, mass, density),
+        smoothing_length=np.full(n, scenario.eta * scenario.dp),
         material=np.full(n, scenario.material_names.index(group.material), np.int32),
         body=np.full(n, names.index(group.name), np.int32),
         motion=np.full(n, FIXED if group.fixed else BOUND, np.int32),

@@ -171,7 +171,7 @@ def _packed(scenario: Scenario, name: str, body: Grains) -> Group:
         raise _unreachable(scenario, name, fraction, error.reached, len(kind), "reached") from None
     pivot = body.min if body.pivot is None else body.pivot
     centre = rotated(centre, body.rotate, pivot, body.rotate_axis)
-    shapes: list[Shape] = [Ball(0.5 * d, scenario.dim) for d in diameters]
+    shapes: list[Shape] = [Ball(0.5 * d, scenario.dim, body.wetted) for d in diameters]
     upright = np.tile(UPRIGHT, (len(kind), 1))
     return Group(name, shapes, kind.astype(np.int32), centre, upright, body.material, body.fixed)
 

@@ -235,6 +235,13 @@ class Grains(TurnedBody):
         description="solid fraction; with count or mass_total the box is filled up to a level, and "
         "without packing evenly all over (default 0.75, in 3-D 0.55)",
     )
+    wetted: float = Field(
+        1.0,
+        gt=0.3,
+        le=1,
+        description="diameter that water sees over the true one; below 1 in 2-D, where discs that "
+        "touch would leave water no way between them",
+    )
     random_seed: int = Field(1, ge=0, description="of the packing")
     settle: bool | Positive = Field(
         False, description="settle dry under gravity before the start: true, until at rest, or s"
