@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from .lattice import rotated
 from .packing import PackingError, pack, solid_fraction
@@ -231,6 +230,8 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
 
 def inside_bodies(group: Group, position: np.ndarray, dim: int) -> np.ndarray:
     """Whether each position (N, dim) lies inside a body of the group."""
+    from scipy.spatial import cKDTree
+
     inside = np.zeros(len(position), bool)
     if not len(position):
         return inside
