@@ -25,6 +25,7 @@ from .memory import available_bytes
 from .overlaps import describe_overlaps
 from .particle_checks import check_particles
 from .particles import BOUND, FIXED, FREE, ParticleSet, concatenate
+from .periodic import wrapped
 from .rigid_bodies import Bodies
 from .scenario import Scenario
 from .schema import Box, Disc, Grains, LatticeBody, ParticleFile, Points, ShapedBody
@@ -105,7 +106,7 @@ def _with_bodies(
     of_name = {g.name: g for g in reversed(groups)}
     for name, body in scenario.body.items():
         if name in parts:
-            sets.append(_outside(parts[name], groups, dim))
+            sets.append(_outside(scenario, parts[name], groups))
             n = len(sets[-1])
             none = np.full(n, -1, np.int32), np.zeros(n, bool), np.zeros((n, dim)), np.zeros(n)
             tables.append(none)
@@ -170,7 +171,7 @@ def _of_bodies(
     spin = _spin(body)
     turning = np.cross(spin, np.pad(arm, ((0, 0), (0, 3 - dim))))[:, :dim]
     return ParticleSet(
-        position=position,
+        position=wrapped(scenario, position),
         velocity=_velocity(scenario, group.name, body, group.centre)[owner] + turning,
         mass=mass,
         density=density,
@@ -182,12 +183,12 @@ def _of_bodies(
     )
 
 
-def _outside(particles: ParticleSet, groups: list[Group], dim: int) -> ParticleSet:
+def _outside(scenario: Scenario, particles: ParticleSet, groups: list[Group]) -> ParticleSet:
     """The particles without the free ones that lie inside a body that moves."""
     inside = np.zeros(len(particles), bool)
     for group in groups:
         if not group.fixed:
-            inside |= inside_bodies(group, particles.position, dim)
+            inside |= inside_bodies(scenario, group, particles.position)
     keep = ~inside | (particles.motion != FREE)
     if keep.all():
         return particles

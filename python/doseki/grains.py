@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from .lattice import rotated
 from .packing import PackingError, pack, solid_fraction
 from .particles import FIXED, ParticleSet
+from .periodic import nearest_image, periods, wrapped
 from .scenario import Scenario
 from .schema import Box, Disc, Grains, Mesh, ParticleFile, Points, Polygon, ShapedBody, TurnedBody
 from .schemes import RESOLVED
@@ -229,16 +229,20 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
     return Particles(*joined), owner[order]
 
 
-def inside_bodies(group: Group, position: np.ndarray, dim: int) -> np.ndarray:
+def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:
     """Whether each position (N, dim) lies inside a body of the group."""
+    from scipy.spatial import cKDTree
+
     inside = np.zeros(len(position), bool)
     if not len(position):
         return inside
-    tree = cKDTree(position)
-    for k, turned in enumerate(matrices(group.orientation, dim)):
+    period = periods(scenario)
+    tree = cKDTree(wrapped(scenario, position), boxsize=period)
+    for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
         shape = group.shapes[group.shape[k]]
         near = np.array(tree.query_ball_point(group.centre[k], shape.reach), dtype=np.int64)
-        inside[near[shape.contains((position[near] - group.centre[k]) @ turned)]] = True
+        offset = nearest_image(position[near] - group.centre[k], period)
+        inside[near[shape.contains(offset @ turned)]] = True
     return inside
 
 
