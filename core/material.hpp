@@ -1,6 +1,8 @@
 #pragma once
 #include <string>
 
+#include "bodies/contacts.hpp"
+
 namespace doseki {
 
 enum class Law { fluid, solid };
@@ -13,6 +15,7 @@ struct Material {
     double c0 = 1400.0;             // [m/s]
     double shear_modulus = 0.0;     // [Pa]; 0 = no strength
     double nu = 0.0;                // kinematic viscosity [m^2/s]
+    Surface surface{};              // of a solid, where it touches another
 };
 
 }  // namespace doseki
