@@ -1,7 +1,6 @@
 // Deformable bodies by themselves: without water, contact or record.
 
-#include "bound_arrays.hpp"
-#include "elastic/elastic_bodies.hpp"
+#include "bound_elastic.hpp"
 
 namespace doseki {
 namespace {
@@ -12,15 +11,8 @@ public:
     void add(const nb::dict& d, Input<double> position, Input<double> velocity, Input<std::uint8_t> clamped) {
         if (position.size() != clamped.size() * D || velocity.size() != position.size())
             throw nb::value_error("point arrays of unequal length");
-        ElasticBody body;
-        body.rho0 = get<double>(d, "rho0");
-        body.lame = Lame<double>::of(get<double>(d, "young_modulus"), get<double>(d, "poisson_ratio"));
-        body.law = get<std::string>(d, "law", "") == "neo_hookean" ? ElasticLaw::neo_hookean : ElasticLaw::st_venant_kirchhoff;
-        body.spacing = get<double>(d, "spacing");
-        body.hourglass = get(d, "hourglass", body.hourglass);
-        body.damping = get(d, "damping", body.damping);
         const auto x = rows(position), v = rows(velocity);
-        bodies_.add(body, x, v, {clamped.data(), clamped.size()});
+        bodies_.add(elastic_body(d), x, v, {clamped.data(), clamped.size()});
     }
 
     void start() { bodies_.start(); }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -26,6 +27,22 @@ struct ElasticBody {
     double support() const { return 1.6 * spacing; }
     double wave_speed() const { return p_wave_speed(lame, rho0); }
     double viscosity() const { return damping * rho0 * wave_speed() * spacing; }
+    /// Cauchy stress along z of a plane state of strain.
+    double stress_across(const Mat<double, 2>& F) const {
+        const double J = determinant(F);
+        if (law == ElasticLaw::neo_hookean) return lame.lambda * std::log(J) / J;
+        const Sym<double, 2> strain = green_strain(F);
+        return lame.lambda * (strain(0, 0) + strain(1, 1)) / J;
+    }
+
+    static constexpr std::size_t count = 7;
+    std::array<double, count> numbers() const {
+        return {rho0, lame.lambda, lame.mu, law == ElasticLaw::neo_hookean ? 1.0 : 0.0, spacing, hourglass, damping};
+    }
+    static ElasticBody of(const double* n) {
+        return {n[0], {n[1], n[2]}, n[3] > 0.0 ? ElasticLaw::neo_hookean : ElasticLaw::st_venant_kirchhoff, n[4], n[5], n[6]};
+    }
+
     /// How many times faster waves are in a state of strain, at most.
     template <int D>
     double stiffening(const Mat<double, D>& F) const {
@@ -106,6 +123,30 @@ public:
     /// Of strain, without that of the springs [J], 2-D: [J/m].
     double strain_energy() const;
     double kinetic_energy() const;
+
+    /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points alone.
+    template <class Archive>
+    void serialise(Archive& archive) {
+        std::vector<double> numbers;
+        if constexpr (!Archive::loading)
+            for (const ElasticBody& body : bodies_) {
+                const auto of_body = body.numbers();
+                numbers.insert(numbers.end(), of_body.begin(), of_body.end());
+            }
+        archive("elastic_numbers", numbers), archive("elastic_apart", apart_), archive("elastic_rest", rest_);
+        archive("elastic_position", x), archive("elastic_velocity", v), archive("elastic_body", body_);
+        archive("elastic_clamped", clamped_), archive("elastic_slot", slot_);
+        std::vector<Vec<double, D>> accelerations = a;
+        std::vector<Mat<double, D>> deformations = deformation_;
+        archive("elastic_acceleration", accelerations), archive("elastic_deformation", deformations);
+        if constexpr (Archive::loading) {
+            const auto slots = slot_;
+            bodies_.clear();
+            for (std::size_t k = 0; k < numbers.size(); k += ElasticBody::count) bodies_.push_back(ElasticBody::of(&numbers[k]));
+            start();
+            a = accelerations, deformation_ = deformations, slot_ = slots;
+        }
+    }
 
     std::vector<Vec<double, D>> x, v, a;      // [m], [m/s], [m/s^2]
     std::vector<Vec<double, D>> load;         // force of others within a step [N], 2-D: [N/m]
