@@ -162,7 +162,7 @@ private:
 
     /// The spring between points of deformable bodies only keeps them apart: it is this many times as stiff as
     /// what they belong to, does not damp, and its step is this part of its time.
-    static constexpr double firmness = 4.0, steps_of_firmness = 5.0;
+    static constexpr double firmness = 2.0, steps_of_firmness = 5.0;
 
     Domain<D> domain_;
     ContactOptions options_;
