@@ -141,7 +141,9 @@ def test_a_bar_under_tension_has_hooke_s_stretch(elastic):
     box, sigma = lattice((40, 8), DP), 1e3
     bodies = elastic((box, np.zeros_like(box)), spacing=DP, damping=0.2)
     force = np.zeros_like(box)
-    force[:, 0] = np.where(box[:, 0] > 0.19, 1.0, np.where(box[:, 0] < -0.19, -1.0, 0.0)) * sigma * DP
+    force[:, 0] = (
+        np.where(box[:, 0] > 0.19, 1.0, np.where(box[:, 0] < -0.19, -1.0, 0.0)) * sigma * DP
+    )
     bodies.set_load(force)
     bodies.advance(3.0)
     state = bodies.state()

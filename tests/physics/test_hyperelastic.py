@@ -71,7 +71,9 @@ def test_neo_hookean_is_its_definition(point, dim, random):
     inverse = np.linalg.inv(F).transpose(0, 2, 1)
     log_J = np.log(np.linalg.det(F))
     P, energy = stress(point, "neo_hookean", F, dim)
-    np.testing.assert_allclose(P, MU * (F - inverse) + LAMBDA * log_J[:, None, None] * inverse, atol=1e-13)
+    np.testing.assert_allclose(
+        P, MU * (F - inverse) + LAMBDA * log_J[:, None, None] * inverse, atol=1e-13
+    )
     expected = MU / 2 * ((F**2).sum((1, 2)) - dim) - MU * log_J + LAMBDA / 2 * log_J**2
     np.testing.assert_allclose(energy, expected, rtol=1e-12, atol=1e-15)
 
@@ -113,7 +115,9 @@ def test_damping_resists_strain_and_not_rotation(point, dim, random):
     P = matrices(point("kelvin_voigt", *columns(F), *columns(rate), eta, dim=dim), dim)
     E_rate = 0.5 * (F.transpose(0, 2, 1) @ rate + rate.transpose(0, 2, 1) @ F)
     np.testing.assert_allclose(P, F @ (2 * eta * E_rate), atol=1e-12)
-    np.testing.assert_allclose((P * rate).sum((1, 2)), 2 * eta * (E_rate**2).sum((1, 2)), rtol=1e-10)
+    np.testing.assert_allclose(
+        (P * rate).sum((1, 2)), 2 * eta * (E_rate**2).sum((1, 2)), rtol=1e-10
+    )
     spin = rate - rate.transpose(0, 2, 1)
     none = point("kelvin_voigt", *columns(F), *columns(spin @ F), eta, dim=dim)
     np.testing.assert_allclose(none, 0, atol=1e-12)
