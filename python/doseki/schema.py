@@ -153,6 +153,18 @@ class ShapedBody(Part):
         description="free solids of the resolved scheme: rigid (the default), elastic, or single: "
         "one particle per grain",
     )
+    clamped: ScalarField | None = Field(
+        None, description="elastic: points do not move where this expression of x, y, z is above 0"
+    )
+    elastic_law: Literal["st_venant_kirchhoff", "neo_hookean"] | None = Field(
+        None, description="elastic: law of stress; default st_venant_kirchhoff"
+    )
+    damping: float | None = Field(
+        None, ge=0, le=1, description="elastic: viscosity over rho0 c_P dp; default 0.02"
+    )
+    hourglass: float | None = Field(
+        None, ge=0, le=1, description="elastic: springs over the shear modulus; default 0.2"
+    )
     spin: float | Vector | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
     )

@@ -83,6 +83,23 @@ class Ball:
         normal = position / np.maximum(distance, 1e-300)[:, None]
         return Particles(position, normal, radius - distance)
 
+    def hexagonal(self, dp: float) -> Particles:
+        """A disc of rings of 6, 12, 18 ... particles around one, a hexagonal lattice that is bent.
+
+        Neighbours lie alike everywhere, and any two such discs meet point to point along x.
+        """
+        number = max(1, round(self.radius / dp - 0.5))
+        step = self.radius / (number + 0.5)
+        angles = [2 * np.pi * np.arange(6 * k) / (6 * k) for k in range(1, number + 1)]
+        rings = [
+            k * step * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            for k, angle in enumerate(angles, start=1)
+        ]
+        position = np.concatenate([np.zeros((1, 2)), *rings])
+        distance = np.linalg.norm(position, axis=1)
+        normal = position / np.maximum(distance, 1e-300)[:, None]
+        return Particles(position, normal, self.radius - distance)
+
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""
         return (position**2).sum(axis=1) < (self.wetted * self.radius) ** 2
