@@ -19,6 +19,7 @@ __all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 
 # Margin of the first lists of a run that chooses its own.
 FIRST_SKIN = 0.05
+STRENGTH = ("shear_modulus", "yield_strength", "cohesion", "friction_angle")
 
 
 def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
@@ -57,13 +58,13 @@ def _wall_condition(body: Any) -> dict[str, Any]:
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
-    """Materials in the order of their indices, scaled by xi; mu = 0 where no stress is evolved."""
+    """Materials in the order of their indices, scaled by xi; no strength where no stress is evolved."""
     tables = []
     moving = _moving_materials(scenario)
     for name in scenario.material_names:
         table = asdict(scenario.materials[name].scaled(scenario.xi))
         if not scenario.strength or name not in moving:
-            table["shear_modulus"] = 0.0
+            table |= dict.fromkeys(STRENGTH, 0.0)
         tables.append(table)
     return tables
 

@@ -14,7 +14,7 @@ from pydantic import (
     model_validator,
 )
 
-from .materials import LAWS, LIMIT, MATERIAL_PARAMETERS, MaterialParameter
+from .materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
 from .value_types import (
     Axis,
     Corner,
@@ -78,7 +78,7 @@ def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
     description = f"{parameter.doc}, {parameter.unit}"
     return (
         float | None,
-        Field(None, gt=parameter.above, ge=parameter.least, lt=LIMIT, description=description),
+        Field(None, gt=parameter.above, ge=parameter.least, lt=parameter.below, description=description),
     )
 
 
@@ -86,6 +86,9 @@ MaterialTable = create_model(
     "MaterialTable",
     __base__=Table,
     law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    rheology=(
+        Literal[RHEOLOGIES] | None, Field(None, description="how a fluid's viscosity follows")
+    ),
     based_on=(str | None, Field(None, description="material that supplies what is not given")),
     **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},
 )
