@@ -204,6 +204,9 @@ void bind_physics(nb::module_& m) {
         const auto eos = BirchMurnaghan<std::decay_t<decltype(in[0])>>::at(in[0], in[1], in[2]);
         out[0] = eos.pressure, out[1] = eos.sound_speed, out[2] = eos.bulk_energy;
     });
+    define(m, "pair_viscosity", 2, [](const auto& in, auto& out) {    // mu_i, mu_j -> mean, harmonic mean
+        out[0] = pair_viscosity(in[0], in[1], false), out[1] = pair_viscosity(in[0], in[1], true);
+    });
     define_numbers(m, "von_mises", 2, [](const auto& in, auto& out) {    // Y -> alpha, k
         const auto surface = von_mises(in[0]);
         out[0] = surface.alpha, out[1] = surface.k;

@@ -58,7 +58,7 @@ def _wall_condition(body: Any) -> dict[str, Any]:
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
-    """Materials in the order of their indices, scaled by xi; no strength where no stress is evolved."""
+    """Materials in the order of their indices, scaled by xi; no strength where none is evolved."""
     tables = []
     moving = _moving_materials(scenario)
     for name in scenario.material_names:

@@ -78,7 +78,13 @@ def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
     description = f"{parameter.doc}, {parameter.unit}"
     return (
         float | None,
-        Field(None, gt=parameter.above, ge=parameter.least, lt=parameter.below, description=description),
+        Field(
+            None,
+            gt=parameter.above,
+            ge=parameter.least,
+            lt=parameter.below,
+            description=description,
+        ),
     )
 
 
@@ -87,7 +93,8 @@ MaterialTable = create_model(
     __base__=Table,
     law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
     rheology=(
-        Literal[RHEOLOGIES] | None, Field(None, description="how a fluid's viscosity follows")
+        Literal[RHEOLOGIES] | None,
+        Field(None, description="how a fluid's viscosity follows"),
     ),
     based_on=(str | None, Field(None, description="material that supplies what is not given")),
     **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},

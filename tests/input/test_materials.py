@@ -1,4 +1,4 @@
-"""Strength and rheology of materials: what is refused, and what comes back from a stored scenario."""
+"""Strength and rheology of materials: what is refused, and what a stored scenario brings back."""
 
 from __future__ import annotations
 
@@ -75,7 +75,8 @@ def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of):
 
 
 @pytest.mark.parametrize(
-    ("name", "table", "top"), [("mud", MUD, RESOLVED), ("beads", BEADS, RESOLVED), ("sand", SAND, "")]
+    ("name", "table", "top"),
+    [("mud", MUD, RESOLVED), ("beads", BEADS, RESOLVED), ("sand", SAND, "")],
 )
 def test_a_stored_scenario_has_the_same_material(write, tmp_path, name, table, top):
     scenario = load_scenario(write(top=top, tables=block_of(name) + table))
@@ -83,4 +84,6 @@ def test_a_stored_scenario_has_the_same_material(write, tmp_path, name, table, t
     stored.write_text(scenario.effective_toml(), encoding="utf-8")
     again = load_scenario(str(stored))
     assert again.materials[name] == scenario.materials[name]
-    assert again.materials[name].scaled(0.1).friction_angle == scenario.materials[name].friction_angle
+    assert (
+        again.materials[name].scaled(0.1).friction_angle == scenario.materials[name].friction_angle
+    )

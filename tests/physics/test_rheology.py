@@ -59,3 +59,11 @@ def test_without_pressure_there_is_no_friction(point):
 
 def test_friction_at_rest_is_limited(point):
     assert point("mu_i", 0.0, 200.0, *BEADS, 40.0)[0, 0] == 40
+
+
+def test_mean_viscosities_of_a_pair(point):
+    mean, harmonic = point(
+        "pair_viscosity", np.array([1.0, 3.0, 0.0, 1e6]), np.array([3.0, 1, 0, 1])
+    )
+    np.testing.assert_allclose(mean, [2, 2, 0, 500000.5])
+    np.testing.assert_allclose(harmonic, [1.5, 1.5, 0, 2e6 / 1000001], atol=1e-20)

@@ -102,7 +102,9 @@ def test_tension_never_goes_beyond_the_cut(point, dim):
     p = np.array([-1e9, -k / (3 * alpha) * 1.001, -10.0, 0.0, 1e9])
     cut = point("tension_cut", p, alpha, k)[0]
     np.testing.assert_allclose(cut, np.maximum(p, -k / (3 * alpha)), rtol=1e-14)
-    at_apex = returned(point, np.full((1, 3, 3), 0.0) + np.diag([1.0, -1.0, 0.0]), cut[:1], (alpha, k), dim)
+    at_apex = returned(
+        point, np.full((1, 3, 3), 0.0) + np.diag([1.0, -1.0, 0.0]), cut[:1], (alpha, k), dim
+    )
     np.testing.assert_allclose(at_apex, 0, atol=1e-11)
 
 
