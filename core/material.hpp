@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "bodies/contacts.hpp"
 #include "physics/rheology.hpp"
 
 namespace doseki {
@@ -27,6 +28,7 @@ struct Material {
     Rheology rheology = Rheology::newtonian;
     HerschelBulkley<double> herschel_bulkley{};
     MuI<double> mu_i{};
+    Surface surface{};              // of a solid, where it touches another
 };
 
 }  // namespace doseki

@@ -35,6 +35,7 @@ public:
             constants_.harmonic |= material.rheology == Rheology::herschel_bulkley;
         }
         constants_.dp = options.flow.dp;
+        for (int k = 1; k <= D; ++k) spacing_power_[k] = spacing_power_[k - 1] * options.flow.dp;
         const double support = kernel_support() * options.eta * options.flow.dp;
         const auto lattice = options.flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(options.flow.dp, support)
                                                       : lattice_sums<WendlandC2<D>, D>(options.flow.dp, support);
@@ -72,7 +73,7 @@ public:
     /// Pressure and energy of a particle; of a wall particle, those of the fluid at its place.
     Thermodynamics thermodynamics(const Particles<D>& particles, std::size_t p) const {
         const Material& material = materials_[particles.tag[p].material];
-        if (particles.is_fixed(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
+        if (particles.is_wall(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
         const double rho = particles.density[p], e = rho / material.rho0;
         const bool linear = options_.flow.pressure_law == PressureLaw::linear;
         const double energy = linear ? std::log(e) + 1.0 / e - 1.0 : (std::pow(e, 6.0) / 6.0 + 1.0 / e - 7.0 / 6.0) / 7.0;
@@ -164,7 +165,10 @@ private:
 
     template <class Kernel>
     void sum_all(Particles<D>& particles, const Neighbours<D>& neighbours) {
-        if (fluid_count_ == 0) return;
+        if (fluid_count_ == 0) {
+            std::fill(particles.flow.wall_force.begin(), particles.flow.wall_force.end(), Vec<double, D>{});
+            return;
+        }
         const FlowRecords<D> records{motion_, fluid_, wall_, motion_[0].inverse_support};
         if (!wall_.empty()) sum_walls<Kernel>(particles, neighbours, records);
         sum_fluid<Kernel>(particles, neighbours, records);
@@ -191,6 +195,7 @@ private:
     bool periodic_;
     FlowConstants constants_{};
     double lattice_concentration_ = 1.0;
+    std::array<double, D + 1> spacing_power_{1.0};    // dp^k
     CoordinateFrame<double, D> frame_;
     std::vector<MotionRecord<double, D>> motion_;
     std::vector<FluidRecord<D>> fluid_;
@@ -231,7 +236,7 @@ void FlowRates<D>::pack_wall(const Particles<D>& particles, std::size_t p) {
     const Vec<double, D>& normal = particles.flow.normal[p];
     record.normal = normal.component;
     record.traction = {};
-    record.volume = std::pow(options_.flow.dp, D);
+    record.volume = particles.is_bound(p) ? particles.mass[p] / particles.density[p] : spacing_power_[D];
     record.depth = particles.flow.wall_depth[p];
     record.g_normal = std::max(0.0, dot(particles.acceleration[p] - options_.gravity, normal));
     record.stick = options_.flow.walls.at(static_cast<std::size_t>(particles.tag[p].body)).stick ? 1.0 : 0.0;
@@ -293,7 +298,7 @@ void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p, const Wal
         const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - particles.velocity[p];
         const Vec<double, D> along = tangential(u, particles.flow.normal[p]);
         const double rho = sums.density / sums.weight;
-        const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * std::pow(dp, D - 1);
+        const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * spacing_power_[D - 1];
         const Vec<double, D> drag = friction * std::sqrt(dot(along, along)) * along;
         record.traction = ((-1.0 / sums.weight) * drag).component;
         force = force + drag;

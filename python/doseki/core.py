@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from .bodies import build_bodies
+from .bodies import build_scene
 from .core_modules import available_instruction_sets, load_core
 from .inflows import InflowSection, build_inflows
 from .motions import wall_motions
-from .scenario import Scenario
+from .rigid_bodies import add_bodies
+from .scenario import Scenario, min_sound_speed
 from .schemes import RESOLVED
 from .walls import wall_geometry
 
@@ -29,7 +30,9 @@ def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     axes = "xyz"[: scenario.dim]
     zeros = [0.0] * scenario.dim
     low, high = scenario.domain_min, scenario.domain_max
-    flow = {"flow": _flow_options(scenario, body_names)} if scenario.scheme == RESOLVED else {}
+    flow: dict[str, Any] = {}
+    if scenario.scheme == RESOLVED:
+        flow = {"flow": _flow_options(scenario, body_names), "contact": _contact_options(scenario)}
     return (
         flow
         | {name: getattr(scenario, name) for name in names}
@@ -52,6 +55,14 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     }
 
 
+def _contact_options(scenario: Scenario) -> dict[str, Any]:
+    """How bodies touch; the speed to expect is a tenth of the sound speed of the run."""
+    options = scenario.contact.model_dump()
+    if options["speed"] is None:
+        options["speed"] = 0.1 * scenario.xi * min_sound_speed(scenario)
+    return options
+
+
 def _wall_condition(body: Any) -> dict[str, Any]:
     wall = getattr(body, "wall", "no_slip")
     return {"stick": wall == "no_slip", "ks": body.ks if wall == "rough" else 0.0}
@@ -62,7 +73,9 @@ def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
     tables = []
     moving = _moving_materials(scenario)
     for name in scenario.material_names:
-        table = asdict(scenario.materials[name].scaled(scenario.xi))
+        material = scenario.materials[name]
+        table = asdict(material.scaled(scenario.xi))
+        table["young_modulus"], table["poisson_ratio"] = material.elasticity
         if not scenario.strength or name not in moving:
             table |= dict.fromkeys(STRENGTH, 0.0)
         tables.append(table)
@@ -113,7 +126,8 @@ def empty_simulation(scenario: Scenario, body_names: list[str], isa: str | None 
 
 def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, list[str]]:
     """A core simulation of `scenario` that is yet to be started, and the names of its bodies."""
-    particles, body_names = build_bodies(scenario)
+    scene = build_scene(scenario)
+    particles, body_names = scene.particles, scene.names
     build_inflows(scenario, body_names, particles)  # for its checks against the particles
     simulation = empty_simulation(scenario, body_names, isa)
     simulation.add_particles(
@@ -121,7 +135,11 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, 
     )
     if scenario.scheme == RESOLVED:
         normal, depth = wall_geometry(scenario, particles, body_names)
+        bodies = scene.bodies
+        normal[bodies.shaped] = bodies.normal[bodies.shaped]
+        depth[bodies.shaped] = bodies.depth[bodies.shaped]
         simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
+        add_bodies(simulation, scenario, bodies, body_names)
     return simulation, body_names
 
 

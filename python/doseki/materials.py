@@ -14,15 +14,17 @@ LIMIT = 1e15  # of any parameter, in SI units: beyond it is a slip of the keyboa
 
 @dataclass(frozen=True)
 class MaterialParameter:
-    """One number that describes a material: > above, or >= least; always < below."""
+    """One number that describes a material: > above or >= least, < below or <= most."""
 
     name: str
     unit: str
     doc: str
     above: float | None = None
     least: float | None = None
-    below: float = LIMIT
-    default: float | None = None  # None: a new material must give it
+    below: float | None = LIMIT
+    most: float | None = None
+    default: float | None = None
+    optional: bool = False  # else a new material must give what has no default
     law: str | None = None  # the only one it belongs to
     rheologies: tuple[str, ...] = ()  # those it belongs to; none: any
 
@@ -50,15 +52,42 @@ MATERIAL_PARAMETERS = (
     _strength("friction_angle", "degrees", "angle of friction of Drucker and Prager (solids)", 90),
     _rheology("yield_stress", "Pa", "yield stress", HERSCHEL_BULKLEY),
     _rheology("consistency", "Pa s^n", "consistency", HERSCHEL_BULKLEY),
-    _rheology("flow_index", "1", "flow index", HERSCHEL_BULKLEY, default=1.0),
+    _rheology("flow_index", "", "flow index", HERSCHEL_BULKLEY, default=1.0),
     _rheology("regularisation", "s", "Papanastasiou's regularisation", HERSCHEL_BULKLEY),
-    _rheology("mu_s", "1", "static coefficient of friction", MU_I),
-    _rheology("mu_2", "1", "limiting coefficient of friction", MU_I),
-    _rheology("inertial_number", "1", "reference inertial number", MU_I),
+    _rheology("mu_s", "", "static coefficient of friction", MU_I),
+    _rheology("mu_2", "", "limiting coefficient of friction", MU_I),
+    _rheology("inertial_number", "", "reference inertial number", MU_I),
     _rheology("grain_diameter", "m", "diameter of the grains", MU_I),
     _rheology("grain_density", "kg/m3", "density of the grains", MU_I),
     _rheology("viscosity_max", "Pa s", "greatest viscosity", HERSCHEL_BULKLEY, MU_I),
+    # Of bodies that touch.  Of a pair, the means of restitution and of the frictions count.
+    MaterialParameter(
+        "restitution",
+        "",
+        "coefficient of restitution",
+        above=0.0,
+        below=None,
+        most=1.0,
+        default=0.7,
+    ),
+    MaterialParameter("friction", "", "coefficient of friction", least=0.0, default=0.6),
+    MaterialParameter(
+        "rolling_friction", "", "coefficient of rolling friction", least=0.0, default=0.0
+    ),
+    MaterialParameter(
+        "young_modulus", "Pa", "Young's modulus (default: of c0 and mu0)", above=0.0, optional=True
+    ),
+    MaterialParameter(
+        "poisson_ratio",
+        "",
+        "Poisson's ratio (default: of c0 and mu0)",
+        least=0.0,
+        below=0.5,
+        optional=True,
+    ),
 )
+
+_DEFAULT = {parameter.name: parameter.default for parameter in MATERIAL_PARAMETERS}
 
 
 @dataclass(frozen=True)
@@ -77,6 +106,11 @@ class Material:
     speedsound: float
     shear_modulus: float
     nu: float
+    restitution: float = _DEFAULT["restitution"]
+    friction: float = _DEFAULT["friction"]
+    rolling_friction: float = _DEFAULT["rolling_friction"]
+    young_modulus: float | None = None
+    poisson_ratio: float | None = None
     yield_strength: float = 0.0
     cohesion: float = 0.0
     friction_angle: float = 0.0
@@ -92,6 +126,20 @@ class Material:
     viscosity_max: float = 0.0
     rheology: str = "newtonian"
 
+    @property
+    def elasticity(self) -> tuple[float, float]:
+        """Young's modulus, Pa, and Poisson's ratio; what is not given follows from the others.
+
+        K = rho0 c0^2 and mu give nu = (3K - 2 mu)/(6K + 2 mu) and E = 3K (1 - 2 nu) of isotropic
+        elasticity; without a shear modulus nu is 1/4.
+        """
+        bulk, shear = self.rho0 * self.speedsound**2, self.shear_modulus
+        ratio = self.poisson_ratio
+        if ratio is None:
+            ratio = max(0.0, (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear)) if shear else 0.25
+        modulus = self.young_modulus
+        return (3 * bulk * (1 - 2 * ratio) if modulus is None else modulus), ratio
+
     def scaled(self, xi: float) -> Material:
         """The material of a run with reduced sound speed: c0 -> xi c0, mu -> xi^2 mu (eq. 19).
 
@@ -102,11 +150,14 @@ class Material:
         )
 
 
-# Table 1 of the paper; the viscosity of water is given under eq. 7.
+# Table 1 of the paper; the viscosity of water is given under eq. 7.  Contacts: friction of rock is
+# Byerlee's (1978) at low stress, 0.6; that of aluminium is such that rock on it has 0.5;
+# restitution is the middle of the usual range of rock, 0.5 to 0.9.  Typical values, not
+# measurements: what is measured of a pair is always better.
 BUILT_IN = {
     "water": Material("water", "fluid", 1000.0, 1400.0, 0.0, 1e-6),
-    "basalt": Material("basalt", "solid", 2750.0, 3116.0, 22.7e9, 0.0),
-    "aluminium": Material("aluminium", "solid", 2700.0, 5277.0, 25.5e9, 0.0),
+    "basalt": Material("basalt", "solid", 2750.0, 3116.0, 22.7e9, 0.0, 0.7, 0.6),
+    "aluminium": Material("aluminium", "solid", 2700.0, 5277.0, 25.5e9, 0.0, 0.7, 0.4),
 }
 
 
@@ -148,9 +199,9 @@ def _over(base: Material | None, name: str, table: Mapping[str, Any]) -> Materia
     """The values of `table` laid over `base`, or over the defaults when there is no base."""
     if base is not None:
         return _checked(replace(base, name=name, **table))
-    values = {p.name: p.default for p in MATERIAL_PARAMETERS}
-    values |= {"law": None, "rheology": "newtonian"} | dict(table)
-    missing = [key for key, value in values.items() if value is None]
+    values = _DEFAULT | {"law": None, "rheology": "newtonian"} | dict(table)
+    optional = {p.name for p in MATERIAL_PARAMETERS if p.optional}
+    missing = [key for key, value in values.items() if value is None and key not in optional]
     if missing:
         raise MaterialError(
             name,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import UserError
 from .gauge_tables import check_gauges
+from .grain_checks import check_grains
 from .motions import check_motions
 from .nearest import suggestion
 from .quantities import check_quantity
@@ -29,6 +30,7 @@ def check_scenario(scenario: Scenario) -> None:
         _check_resolved(scenario)
     else:
         _check_ueta2022(scenario)
+    check_grains(scenario)
     check_motions(scenario)
     check_gauges(scenario)
 
@@ -138,13 +140,6 @@ def _check_resolved(scenario: Scenario) -> None:
         )
     for name, body in scenario.body.items():
         keys = ("body", name)
-        law = scenario.materials[body.material].law if body.material else "fluid"
-        if not body.fixed and law != "fluid":
-            raise scenario.where.error(
-                (*keys, "material"),
-                f"body.{name}: the resolved scheme moves fluids only; {body.material} is a solid: "
-                "set fixed = true, or use the scheme ueta2022",
-            )
         normal = getattr(body, "normal", None)
         if normal is not None and not normal.any():
             raise scenario.where.error((*keys, "normal"), f"body.{name}.normal must not be zero")
