@@ -1,4 +1,4 @@
-"""The command line: doseki run | plot | export | list | bench | validate."""
+"""The command line: doseki run | plot | census | export | list | bench | validate."""
 
 from __future__ import annotations
 
@@ -235,6 +235,36 @@ def plot(
         typer.echo(str(picture))
     if movie:
         typer.echo(str(make_movie(load(directory), movie, colour=colour)))
+
+
+@app.command()
+def census(
+    directory: Directory,
+    window: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help='Of the speeds [the window "outlet", else all].'),
+    ] = None,
+    start: Annotated[
+        float, typer.Option("--from", metavar="SECONDS", help="Of the speeds.")
+    ] = float("-inf"),
+    end: Annotated[float, typer.Option("--to", metavar="SECONDS", help="Of the speeds.")] = float(
+        "inf"
+    ),
+    sections: Annotated[
+        list[float] | None,
+        typer.Option("--section", metavar="X", help="Where passing is counted, m; repeatable [0]."),
+    ] = None,
+    sample: Annotated[int, typer.Option(min=1, help="Grains in a random sample.")] = 30,
+    draws: Annotated[int, typer.Option(min=1, max=100_000, help="Number of samples.")] = 2000,
+    bin_width: Annotated[float, typer.Option(min=1e-6, help="Of the histogram, m/s.")] = 0.1,
+) -> None:
+    """Take a census of the grains of a run into DIR/census: tables and figures."""
+    from .census_output import CensusOptions, write_census
+
+    chosen = tuple(sections or [0.0])
+    options = CensusOptions(window, start, end, chosen, sample, draws, bin_width)
+    for line in write_census(directory, options):
+        typer.echo(line)
 
 
 @app.command()
