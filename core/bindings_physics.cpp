@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "bodies/shape.hpp"
+#include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
 #include "physics/free_surface.hpp"
 #include "physics/kernel.hpp"
@@ -154,9 +156,58 @@ void bind_flow_numbers(nb::module_& m) {
     });
 }
 
+/// Laws of contact, which no pair loop calls.
+void bind_contact(nb::module_& m) {
+    define_numbers(m, "damping_ratio", 1, [](const auto& in, auto& out) {    // restitution, hertz
+        out[0] = damping_ratio(in[0], in[1] > 0.0);
+    });
+    define_numbers(m, "hertz_spring", 2, [](const auto& in, auto& out) {    // E*, R*, overlap -> F, dF/doverlap
+        const auto spring = hertz_spring(in[0], in[1], in[2]);
+        out[0] = spring.force, out[1] = spring.stiffness;
+    });
+    define_numbers(m, "hertz_encounter", 2, [](const auto& in, auto& out) {    // E*, R*, m*, v -> overlap, time
+        const auto meeting = hertz_encounter(in[0], in[1], in[2], in[3]);
+        out[0] = meeting.overlap, out[1] = meeting.time;
+    });
+    define_numbers(m, "linear_encounter", 2, [](const auto& in, auto& out) {    // k, m*, v -> overlap, time
+        const auto meeting = linear_encounter(in[0], in[1], in[2]);
+        out[0] = meeting.overlap, out[1] = meeting.time;
+    });
+    define_numbers(m, "contact_force", 1, [](const auto& in, auto& out) {    // hertz, zeta, E*, R*, m*, overlap, v
+        const bool hertz = in[0] > 0.0;
+        const NormalSpring spring = hertz ? hertz_spring(in[2], in[3], in[5]) : linear_spring(in[2], in[5]);
+        out[0] = normal_force(spring, contact_damping(hertz, in[1], spring.stiffness, in[4]), in[6]);
+    });
+    define_numbers(m, "sliding_spring", 6, [](const auto& in, auto& out) {    // stretch, speed, dt, k, c, limit
+        auto stretch = vector<3>(in, 0);
+        const auto force = sliding_spring(stretch, vector<3>(in, 3), in[6], in[7], in[8], in[9]);
+        for (int a = 0; a < 3; ++a) out[static_cast<std::size_t>(a)] = force[a], out[static_cast<std::size_t>(3 + a)] = stretch[a];
+    });
+}
+
+/// Distance and normal of points (n, D) from the surface of the convex shape with the facets (m, D, D).
+template <int D>
+void bind_shape(nb::module_& m) {
+    m.def("surface_from", [](const Table& corners, const Table& points) {
+        Shape<D> shape;
+        for (std::size_t k = 0; k + D <= corners.size(); k += D) {
+            shape.facets.emplace_back();
+            for (std::size_t a = 0; a < D; ++a) shape.facets.back()[a] = vector<D>(corners[k + a], 0);
+        }
+        Table result;
+        for (const Column& point : points) {
+            const auto surface = shape.surface_from(vector<D>(point, 0));
+            result.push_back({surface.distance});
+            result.back().insert(result.back().end(), surface.normal.component.begin(), surface.normal.component.end());
+        }
+        return result;
+    }, nb::arg("corners"), nb::arg("points"));
+}
+
 template <int D>
 void bind_dimension(nb::module_& m) {
     bind_flow<D>(m);
+    bind_shape<D>(m);
     define(m, "kernel", 2, [](const auto& in, auto& out) {    // r, 1/R -> W, F
         out[0] = WendlandC6<D>::value(in[0], in[1]);
         out[1] = WendlandC6<D>::gradient_factor(in[0], in[1]);
@@ -200,6 +251,7 @@ void bind_physics(nb::module_& m) {
     bind_dimension<2>(two);
     bind_dimension<3>(three);
     bind_flow_numbers(m);
+    bind_contact(m);
     define(m, "equation_of_state", 3, [](const auto& in, auto& out) {    // rho, rho0, c0 -> p, c, u
         const auto eos = BirchMurnaghan<std::decay_t<decltype(in[0])>>::at(in[0], in[1], in[2]);
         out[0] = eos.pressure, out[1] = eos.sound_speed, out[2] = eos.bulk_energy;

@@ -67,7 +67,7 @@ public:
     Contacts(const Domain<D>& domain, const ContactOptions& options, std::vector<Surface> surfaces)
         : domain_(domain), options_(options), surfaces_(std::move(surfaces)) {
         for (const Surface& a : surfaces_)
-            for (const Surface& b : surfaces_) damping_.push_back(damping_ratio(0.5 * (a.restitution + b.restitution)));
+            for (const Surface& b : surfaces_) damping_.push_back(damping_ratio(0.5 * (a.restitution + b.restitution), hertz()));
     }
 
     /// Pairs that may touch before anything has moved by half of `margin`; springs of pairs that are

@@ -22,16 +22,6 @@ inline double restitution_of(double zeta) {
     return std::exp(-zeta / w * std::log((zeta + w) / (zeta - w)));
 }
 
-/// The damping ratio that gives a restitution in (0, 1].
-inline double damping_ratio(double restitution) {
-    double low = 0.0, high = 1e3;
-    for (int k = 0; k < 200; ++k) {
-        const double middle = 0.5 * (low + high);
-        (restitution_of(middle) > restitution ? low : high) = middle;
-    }
-    return low;
-}
-
 /// Normal spring of a pair at its overlap: force and tangent stiffness.
 struct NormalSpring {
     double force, stiffness;
@@ -71,6 +61,33 @@ Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& spe
         if (held > longest) stretch = (longest / held) * stretch;
     }
     return force;
+}
+
+/// Restitution of a Hertz spring with that dashpot, which depends on neither speed nor stiffness; from
+/// the motion itself, x'' = -F(x, x') with x'(0) = 1.
+inline double restitution_of_hertz(double zeta) {
+    constexpr double E = 0.75, dt = 1e-3;    // F = x^(3/2)
+    auto pull = [zeta](double x, double v) {
+        const NormalSpring spring = hertz_spring(E, 1.0, x);
+        return -(spring.force + contact_damping(true, zeta, spring.stiffness, 1.0) * v);
+    };
+    double x = 0.5 * dt, v = 1.0;    // drift, kick, drift
+    for (int n = 0; n < 20000 && x > 0.0; ++n) {
+        const double half = v + 0.5 * dt * pull(x, v), a = pull(x, half);
+        if (a > 0.0) break;    // it would pull
+        v += dt * a, x += dt * v;
+    }
+    return std::max(0.0, -v);
+}
+
+/// The damping ratio that gives a restitution in (0, 1].
+inline double damping_ratio(double restitution, bool hertz = false) {
+    double low = 0.0, high = hertz ? 3.0 : 1e3;
+    for (int k = 0; k < (hertz ? 40 : 200); ++k) {
+        const double middle = 0.5 * (low + high);
+        ((hertz ? restitution_of_hertz(middle) : restitution_of(middle)) > restitution ? low : high) = middle;
+    }
+    return low;
 }
 
 /// Overlap that a pair reaches at a speed of approach, and the time that it touches, without damping.

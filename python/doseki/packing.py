@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 MARGIN = 2e-3
 SKIN = 0.15  # of the mean diameter: margin of the pair lists
 STEPS = 400  # of one minimisation
-ATTEMPTS = 12  # each from the last arrangement, shaken
+ATTEMPTS = 6  # each from the last arrangement, shaken
 SHAKE = 0.05  # of the mean diameter
 
 
