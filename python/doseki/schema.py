@@ -16,7 +16,7 @@ from pydantic import (
     model_validator,
 )
 
-from .materials import LAWS, MATERIAL_PARAMETERS, MaterialParameter
+from .materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
 from .value_types import (
     Axis,
     Corner,
@@ -97,6 +97,10 @@ MaterialTable = create_model(
     "MaterialTable",
     __base__=Table,
     law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    rheology=(
+        Literal[RHEOLOGIES] | None,
+        Field(None, description="how a fluid's viscosity follows"),
+    ),
     based_on=(str | None, Field(None, description="material that supplies what is not given")),
     **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},
 )
