@@ -19,7 +19,7 @@ struct ElasticBody {
     Lame<double> lame{};       // [Pa]
     ElasticLaw law = ElasticLaw::st_venant_kirchhoff;
     double spacing = 0.0;      // of its points at rest [m]
-    double hourglass = 0.2;    // stiffness and damping of the springs over those of the body in shear
+    double hourglass = 0.5;    // stiffness and damping of the springs over those of the body in shear
     double damping = 0.02;     // viscosity of Kelvin-Voigt's damper over rho0 c_P spacing
 
     /// Radius of the kernel. Points at rest are evenly spread, so that the nearest suffice; the farther

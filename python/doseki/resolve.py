@@ -21,7 +21,7 @@ from .toml_source import KeyPath, Where, dotted
 
 DIMENSION_KEYS = {"d2", "d3"}
 WORDS = {"schema", "title", "description"}  # top-level keys that no expression needs
-SPATIAL_KEYS = ("velocity", "pressure", "where")  # of a body: may use x, y, z
+SPATIAL_KEYS = ("velocity", "pressure", "where", "clamped")  # of a body: may use x, y, z
 SWITCHED_SECTIONS = ("body", "inflow", "outflow", "gauge", "window", "figure")
 
 
