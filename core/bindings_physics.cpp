@@ -15,12 +15,14 @@
 #include "physics/hyperelastic.hpp"
 #include "physics/kernel.hpp"
 #include "physics/momentum.hpp"
+#include "physics/rheology.hpp"
 #include "physics/riemann.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
 #include "physics/velocity_gradient.hpp"
 #include "physics/viscosity.hpp"
 #include "physics/wall.hpp"
+#include "physics/yield.hpp"
 
 namespace nb = nanobind;
 using namespace doseki;
@@ -262,6 +264,16 @@ void bind_dimension(nb::module_& m) {
         const auto stress = stress_over_rho_squared(in[size], deviator<D>(in, 0), in[size + 1]);
         std::copy(stress.element.begin(), stress.element.end(), out.begin());
     });
+    define(m, "return_map", Deviator<double, D>::size, [](const auto& in, auto& out) {    // S, p, alpha, k
+        constexpr std::size_t size = Deviator<double, D>::size;
+        const YieldSurface<std::decay_t<decltype(in[0])>> surface{in[size + 1], in[size + 2]};
+        const auto mapped = return_map(deviator<D>(in, 0), in[size], surface);
+        std::copy(mapped.element.begin(), mapped.element.end(), out.begin());
+    });
+    define_numbers(m, "drucker_prager", 2, [](const auto& in, auto& out) {    // cohesion, angle -> alpha, k
+        const auto surface = drucker_prager<D>(in[0], in[1]);
+        out[0] = surface.alpha, out[1] = surface.k;
+    });
     define(m, "shear_energy", 1, [](const auto& in, auto& out) {    // S, mu, rho
         constexpr std::size_t size = Deviator<double, D>::size;
         out[0] = shear_energy(deviator<D>(in, 0), in[size], in[size + 1]);
@@ -279,6 +291,22 @@ void bind_physics(nb::module_& m) {
     define(m, "equation_of_state", 3, [](const auto& in, auto& out) {    // rho, rho0, c0 -> p, c, u
         const auto eos = BirchMurnaghan<std::decay_t<decltype(in[0])>>::at(in[0], in[1], in[2]);
         out[0] = eos.pressure, out[1] = eos.sound_speed, out[2] = eos.bulk_energy;
+    });
+    define(m, "pair_viscosity", 2, [](const auto& in, auto& out) {    // mu_i, mu_j -> mean, harmonic mean
+        out[0] = pair_viscosity(in[0], in[1], false), out[1] = pair_viscosity(in[0], in[1], true);
+    });
+    define_numbers(m, "von_mises", 2, [](const auto& in, auto& out) {    // Y -> alpha, k
+        const auto surface = von_mises(in[0]);
+        out[0] = surface.alpha, out[1] = surface.k;
+    });
+    define(m, "tension_cut", 1, [](const auto& in, auto& out) {    // p, alpha, k
+        out[0] = tension_cut(YieldSurface<std::decay_t<decltype(in[0])>>{in[1], in[2]}, in[0]);
+    });
+    define(m, "herschel_bulkley", 1, [](const auto& in, auto& out) {    // rate, tau_y, K, n, m, greatest
+        out[0] = HerschelBulkley<std::decay_t<decltype(in[0])>>{in[1], in[2], in[3], in[4], in[5]}.viscosity(in[0]);
+    });
+    define(m, "mu_i", 1, [](const auto& in, auto& out) {    // rate, p, mu_s, mu_2, I_0, d, rho_s, greatest
+        out[0] = MuI<std::decay_t<decltype(in[0])>>{in[2], in[3], in[4], in[5], in[6], in[7]}.viscosity(in[0], in[1]);
     });
     define(m, "approach_speed", 1, [](const auto& in, auto& out) { out[0] = approach_speed(in[0], in[1]); });
     define(m, "signal_velocity", 1, [](const auto& in, auto& out) { out[0] = signal_velocity(in[0], in[1], in[2]); });

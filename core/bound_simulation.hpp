@@ -8,6 +8,7 @@
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
+#include <numbers>
 #include <numeric>
 
 #include "bound_arrays.hpp"
@@ -35,8 +36,25 @@ inline Surface surface(const nb::dict& d) {
 }
 
 inline Material material(const nb::dict& d) {
-    return {get<std::string>(d, "name"), get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid,
-            get<double>(d, "rho0"), get<double>(d, "speedsound"), get<double>(d, "shear_modulus"), get<double>(d, "nu"), surface(d)};
+    auto number = [&d](const char* key, double otherwise = 0.0) { return get<double>(d, key, otherwise); };
+    Material m;
+    m.name = get<std::string>(d, "name");
+    m.law = get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid;
+    m.rho0 = get<double>(d, "rho0"), m.c0 = get<double>(d, "speedsound");
+    m.shear_modulus = get<double>(d, "shear_modulus"), m.nu = get<double>(d, "nu");
+    m.yield_strength = number("yield_strength"), m.cohesion = number("cohesion");
+    m.friction_angle = number("friction_angle") * std::numbers::pi / 180.0;
+    const auto rheology = get<std::string>(d, "rheology", "newtonian");
+    m.rheology = rheology == "herschel_bulkley" ? Rheology::herschel_bulkley
+                 : rheology == "mu_i"           ? Rheology::mu_i
+                                                : Rheology::newtonian;
+    const double greatest = number("viscosity_max");
+    m.herschel_bulkley = {number("yield_stress"), number("consistency"), number("flow_index", 1.0),
+                          number("regularisation"), greatest};
+    m.mu_i = {number("mu_s"), number("mu_2"), number("inertial_number"), number("grain_diameter"),
+              number("grain_density"), greatest};
+    m.surface = surface(d);
+    return m;
 }
 
 inline ContactOptions contact_options(const nb::dict& d) {

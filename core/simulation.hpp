@@ -165,6 +165,7 @@ void Simulation<Scheme>::step(double limit) {
     update_neighbours(before, moved);
     update_rates(0.5 * dt);
     kick(0.5 * dt);
+    if constexpr (!Scheme::has_flow) rates_.yield(particles);
     bodies.set_velocities(particles, 0.0);
     av_dissipation_ += 0.5 * dt * (old_power + rates_.av_power());
     last_dt_ = dt;

@@ -123,7 +123,7 @@ public:
     void bind(Particles<D>& particles, std::size_t p, std::size_t k) {
         const Mat<double, 3> R = states_[k].orientation.matrix();
         particles.flow.point[p] = static_cast<std::int32_t>(points_.size());
-        points_.push_back({static_cast<double>(k), rotated_back(R, particles.position[p] - states_[k].centre),
+        points_.push_back({static_cast<double>(k), rotated_back(R, contacts_.nearest_image(particles.position[p] - states_[k].centre)),
                            rotated_back(R, particles.flow.normal[p])});
     }
     /// Index of the rigid body of a particle; -1: none.

@@ -26,6 +26,7 @@ from .memory import available_bytes
 from .overlaps import describe_overlaps
 from .particle_checks import check_particles
 from .particles import BOUND, FIXED, FREE, ParticleSet, concatenate
+from .periodic import wrapped
 from .rigid_bodies import Bodies
 from .scenario import Scenario
 from .schema import Box, Disc, Grains, LatticeBody, ParticleFile, Points, ShapedBody
@@ -109,7 +110,7 @@ def _with_bodies(
     of_name = {g.name: g for g in reversed(groups)}
     for name, body in scenario.body.items():
         if name in parts:
-            sets.append(_outside(parts[name], groups, dim))
+            sets.append(_outside(scenario, parts[name], groups))
             n = len(sets[-1])
             none = np.full(n, -1, np.int32), np.zeros(n, bool), np.zeros((n, dim)), np.zeros(n)
             tables.append(none)
@@ -187,18 +188,19 @@ def _of_bodies(
     body, n, dim = scenario.body[group.name], len(owner), scenario.dim
     rho0 = scenario.materials[group.material].rho0
     measure = np.array([shape.measure for shape in group.shapes])[group.shape]
+    wet = np.array([shape.wet_measure for shape in group.shapes])[group.shape]
     mass = (rho0 * measure / np.bincount(owner, minlength=len(group)))[owner]
-    density = np.full(n, rho0)
+    density = rho0 * (measure / wet)[owner]
     arm = position - group.centre[owner]
     spin = _spin(body)
     turning = np.cross(spin, np.pad(arm, ((0, 0), (0, 3 - dim))))[:, :dim]
     where = position if group.elastic else group.centre[owner]
     return ParticleSet(
-        position=position,
+        position=wrapped(scenario, position),
         velocity=_velocity(scenario, group.name, body, where) + turning,
         mass=mass,
         density=density,
-        smoothing_length=smoothing_length(scenario, mass, density),
+        smoothing_length=np.full(n, scenario.eta * scenario.dp),
         material=np.full(n, scenario.material_names.index(group.material), np.int32),
         body=np.full(n, names.index(group.name), np.int32),
         motion=np.full(n, FIXED if group.fixed else BOUND, np.int32),
@@ -206,12 +208,12 @@ def _of_bodies(
     )
 
 
-def _outside(particles: ParticleSet, groups: list[Group], dim: int) -> ParticleSet:
+def _outside(scenario: Scenario, particles: ParticleSet, groups: list[Group]) -> ParticleSet:
     """The particles without the free ones that lie inside a body that moves."""
     inside = np.zeros(len(particles), bool)
     for group in groups:
         if not group.fixed:
-            inside |= inside_bodies(group, particles.position, dim)
+            inside |= inside_bodies(scenario, group, particles.position)
     keep = ~inside | (particles.motion != FREE)
     if keep.all():
         return particles

@@ -91,10 +91,6 @@ def _check_moving(scenario: Scenario, name: str, body: Any) -> None:
             f"body.{name}: points of a solid move as grains of one particle: set kinematics = "
             '"single", or fixed = true, or use the scheme ueta2022',
         )
-    if getattr(body, "settle", False):
-        raise scenario.where.error(
-            ("body", name, "settle"), f"body.{name}.settle does not exist yet; remove it"
-        )
     useless = OF_PARTICLES if isinstance(body, LatticeBody) else OF_PARTICLES[:1]
     for key in useless:
         if key in body.model_fields_set:
@@ -107,14 +103,14 @@ def _check_moving(scenario: Scenario, name: str, body: Any) -> None:
 
 def _check_not_moving(scenario: Scenario, name: str, body: Any) -> None:
     why = "only solids of the resolved scheme that are not fixed have it"
-    _check_no_keys(scenario, name, body, ("kinematics", "spin", *ELASTIC_KEYS), why)
+    _check_no_keys(scenario, name, body, ("kinematics", "spin", "settle", *ELASTIC_KEYS), why)
 
 
 def _check_no_keys(
     scenario: Scenario, name: str, body: Any, keys: tuple[str, ...], why: str
 ) -> None:
     for key in keys:
-        if getattr(body, key) is not None:
+        if getattr(body, key, None) not in (None, False):
             raise scenario.where.error(("body", name, key), f"body.{name}.{key}: {why}")
 
 

@@ -7,8 +7,6 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import cKDTree
 
 from .grains import Group, matrices
 from .scenario import Scenario
@@ -93,6 +91,8 @@ def _blocks(group: Group, dim: int) -> Iterator[_Block]:
 
 def _of_balls(one: _Ball, other: _Ball) -> Iterator[Overlap]:
     """The worst overlap of two sets of balls."""
+    from scipy.spatial import cKDTree
+
     reach = one.radius + other.radius
     if one is other:
         pairs = cKDTree(one.centre).query_pairs(reach, output_type="ndarray")
@@ -136,6 +136,8 @@ def _distance(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 def _common_width(one: _Block, other: _Block) -> float:
     """Diameter of the largest ball that lies in both, m; below zero where they are apart."""
+    from scipy.optimize import linprog
+
     normal = np.concatenate([one.normal, other.normal])
     offset = np.concatenate(
         [one.offset - one.normal @ one.centre, other.offset - other.normal @ one.centre]

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from .elastic_bodies import is_elastic
 from .lattice import rotated
 from .packing import PackingError, pack, solid_fraction
 from .particles import FIXED, ParticleSet
+from .periodic import nearest_image, periods, wrapped
 from .scenario import Scenario
 from .schema import Box, Disc, Grains, Mesh, ParticleFile, Points, Polygon, ShapedBody, TurnedBody
 from .schemes import RESOLVED
@@ -174,7 +174,7 @@ def _packed(scenario: Scenario, name: str, body: Grains) -> Group:
         raise _unreachable(scenario, name, fraction, error.reached, len(kind), "reached") from None
     pivot = body.min if body.pivot is None else body.pivot
     centre = rotated(centre, body.rotate, pivot, body.rotate_axis)
-    shapes: list[Shape] = [Ball(0.5 * d, scenario.dim) for d in diameters]
+    shapes: list[Shape] = [Ball(0.5 * d, scenario.dim, body.wetted) for d in diameters]
     upright = np.tile(UPRIGHT, (len(kind), 1))
     return Group(name, shapes, kind.astype(np.int32), centre, upright, body.material, body.fixed)
 
@@ -241,16 +241,20 @@ def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
     return shape.particles(spacing)
 
 
-def inside_bodies(group: Group, position: np.ndarray, dim: int) -> np.ndarray:
+def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:
     """Whether each position (N, dim) lies inside a body of the group."""
+    from scipy.spatial import cKDTree
+
     inside = np.zeros(len(position), bool)
     if not len(position):
         return inside
-    tree = cKDTree(position)
-    for k, turned in enumerate(matrices(group.orientation, dim)):
+    period = periods(scenario)
+    tree = cKDTree(wrapped(scenario, position), boxsize=period)
+    for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
         shape = group.shapes[group.shape[k]]
         near = np.array(tree.query_ball_point(group.centre[k], shape.reach), dtype=np.int64)
-        inside[near[shape.contains((position[near] - group.centre[k]) @ turned)]] = True
+        offset = nearest_image(position[near] - group.centre[k], period)
+        inside[near[shape.contains(offset @ turned)]] = True
     return inside
 
 

@@ -16,7 +16,7 @@ from pydantic import (
     model_validator,
 )
 
-from .materials import LAWS, MATERIAL_PARAMETERS, MaterialParameter
+from .materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
 from .value_types import (
     Axis,
     Corner,
@@ -97,6 +97,10 @@ MaterialTable = create_model(
     "MaterialTable",
     __base__=Table,
     law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    rheology=(
+        Literal[RHEOLOGIES] | None,
+        Field(None, description="how a fluid's viscosity follows"),
+    ),
     based_on=(str | None, Field(None, description="material that supplies what is not given")),
     **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},
 )
@@ -247,9 +251,17 @@ class Grains(TurnedBody):
         description="solid fraction; with count or mass_total the box is filled up to a level, and "
         "without packing evenly all over (default 0.75, in 3-D 0.55)",
     )
+    wetted: float = Field(
+        1.0,
+        gt=0.3,
+        le=1,
+        description="diameter that water sees over the true one; below 1 in 2-D, where discs that "
+        "touch would leave water no way between them",
+    )
     random_seed: int = Field(1, ge=0, description="of the packing")
     settle: bool | Positive = Field(
-        False, description="settle dry under gravity before the start: true, until at rest, or s"
+        False, description="settle dry under gravity before the start, between the sides of "
+        "the box: true, until at rest, or s"
     )
 
     @model_validator(mode="after")
