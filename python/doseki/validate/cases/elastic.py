@@ -92,7 +92,7 @@ def beam(particles: float, *overrides: str) -> Outcome:
     """CSM3: the first two times that the tip is lowest."""
     run = Running("elastic-beam", f"particles={particles:g}", *overrides)
     tip = tip_of(run, "beam", (0.6, 0.2))
-    times = np.arange(1, 301) * 0.005
+    times = np.arange(1, 331) * 0.005
     sag = heights(run, "beam", tip, times) - 0.2
     low = [k for k in range(1, len(sag) - 1) if sag[k - 1] > sag[k] <= sag[k + 1]]
     first, second = (vertex(times[k - 1 : k + 2], sag[k - 1 : k + 2]) for k in low[:2])
