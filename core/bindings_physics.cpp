@@ -11,6 +11,8 @@
 #include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
 #include "physics/free_surface.hpp"
+#include "physics/hourglass.hpp"
+#include "physics/hyperelastic.hpp"
 #include "physics/kernel.hpp"
 #include "physics/momentum.hpp"
 #include "physics/rheology.hpp"
@@ -136,6 +138,39 @@ void bind_flow(nb::module_& m) {
     });
 }
 
+/// Of elastic solids. F, dF/dt and stresses are matrices, row by row.
+template <int D>
+void bind_elastic_points(nb::module_& m) {
+    constexpr std::size_t full = D * D;
+    auto put = [](const auto& tensor, auto& out) { std::copy(tensor.element.begin(), tensor.element.end(), out.begin()); };
+    define(m, "green_strain", Sym<double, D>::size, [put](const auto& in, auto& out) {    // F
+        put(green_strain(matrix<D>(in, 0)), out);
+    });
+    define(m, "st_venant_kirchhoff", full + 1, [put](const auto& in, auto& out) {    // F, lambda, mu -> P, energy
+        const Lame<std::decay_t<decltype(in[0])>> lame{in[full], in[full + 1]};
+        put(st_venant_kirchhoff(matrix<D>(in, 0), lame), out);
+        out[full] = st_venant_kirchhoff_energy(matrix<D>(in, 0), lame);
+    });
+    define(m, "neo_hookean", full + 1, [put](const auto& in, auto& out) {    // F, lambda, mu -> P, energy
+        const Lame<std::decay_t<decltype(in[0])>> lame{in[full], in[full + 1]};
+        put(neo_hookean(matrix<D>(in, 0), lame), out);
+        out[full] = neo_hookean_energy(matrix<D>(in, 0), lame);
+    });
+    define(m, "kelvin_voigt", full, [put](const auto& in, auto& out) {    // F, dF/dt, eta
+        put(kelvin_voigt(matrix<D>(in, 0), matrix<D>(in, full), in[2 * full]), out);
+    });
+    define(m, "cauchy_stress", Sym<double, D>::size, [put](const auto& in, auto& out) {    // P, F
+        put(cauchy_stress(matrix<D>(in, 0), matrix<D>(in, full)), out);
+    });
+    define(m, "elastic_pair_force", D, [](const auto& in, auto& out) {    // P_i, P_j, F_i, F_j, kappa, R_ij, r_ij
+        const auto kappa = in[4 * full];
+        const auto Q_i = less_springs(matrix<D>(in, 0), kappa, matrix<D>(in, 2 * full));
+        const auto Q_j = less_springs(matrix<D>(in, full), kappa, matrix<D>(in, 3 * full));
+        const auto force = elastic_pair_force(Q_i, Q_j, kappa + kappa, vector<D>(in, 4 * full + 1), vector<D>(in, 4 * full + 1 + D));
+        std::copy(force.component.begin(), force.component.end(), out.begin());
+    });
+}
+
 /// Those that have no dimension.
 void bind_flow_numbers(nb::module_& m) {
     define(m, "approach_pressure", 1, [](const auto& in, auto& out) {    // dU, rho, c
@@ -207,6 +242,7 @@ void bind_shape(nb::module_& m) {
 template <int D>
 void bind_dimension(nb::module_& m) {
     bind_flow<D>(m);
+    bind_elastic_points<D>(m);
     bind_shape<D>(m);
     define(m, "kernel", 2, [](const auto& in, auto& out) {    // r, 1/R -> W, F
         out[0] = WendlandC6<D>::value(in[0], in[1]);

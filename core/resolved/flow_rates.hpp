@@ -134,6 +134,9 @@ private:
     static constexpr double relaxation = 100.0, relaxation_at_rest = 1000.0;
     /// Of rho0. What tears apart leaves a void, not water under tension.
     static constexpr double least_density = 0.98;
+    /// Over the sound speed: half of the fastest flow. A gap that bodies close would shift particles out of
+    /// the world.
+    static constexpr double largest_shift = 0.05;
     /// Root mean square of |L| h/c below which a fluid counts as at rest.
     static constexpr double at_rest = 5e-4;
 
@@ -354,6 +357,8 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     if (shifted && measure.x < SurfaceMeasure::surface) {
         Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), strain_), h);
         if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
+        const double fastest = largest_shift * constants_.c, speed = std::sqrt(dot(shift, shift));
+        if (speed > fastest) shift = (fastest / speed) * shift;
         flow.shift[p] = shift;
         for (int k = 0; k < D; ++k)
             for (int l = 0; l < D; ++l) a[k] += L(k, l) * shift[l];

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,15 @@ from .motions import wall_motions
 from .rigid_bodies import add_bodies
 from .scenario import Scenario, min_sound_speed
 from .schemes import RESOLVED
+from .settling import settled
 from .walls import wall_geometry
 
 __all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 
 # Margin of the first lists of a run that chooses its own.
 FIRST_SKIN = 0.05
+# Of contacts while grains settle: restitution and steps at most.
+CALM, CALM_STEPS = 0.2, 12
 STRENGTH = ("shear_modulus", "yield_strength", "cohesion", "friction_angle")
 
 
@@ -109,11 +113,24 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
     }
 
 
+def _kind(scenario: Scenario, isa: str | None) -> Any:
+    """The class of core simulations that `scenario` needs."""
+    scheme = "Resolved" if scenario.scheme == RESOLVED else ""
+    name = f"{scheme}Simulation{scenario.dim}{scenario.precision.capitalize()}"
+    return getattr(load_core(isa), name)
+
+
+def _dry_simulation(scenario: Scenario, body_names: list[str], isa: str | None = None) -> Any:
+    """For grains that settle: where they come to rest is wanted, not how they bounce before."""
+    materials, options = core_materials(scenario), core_options(scenario, body_names)
+    calm = [table | {"restitution": min(CALM, table["restitution"])} for table in materials]
+    options["contact"] |= {"steps": min(CALM_STEPS, options["contact"]["steps"])}
+    return _kind(scenario, isa)(calm, options)
+
+
 def empty_simulation(scenario: Scenario, body_names: list[str], isa: str | None = None) -> Any:
     """A core simulation of `scenario` without particles, to be filled or restored."""
-    core = load_core(isa)
-    scheme = "Resolved" if scenario.scheme == RESOLVED else ""
-    kind = getattr(core, f"{scheme}Simulation{scenario.dim}{scenario.precision.capitalize()}")
+    kind = _kind(scenario, isa)
     simulation = kind(core_materials(scenario), core_options(scenario, body_names))
     for section in build_inflows(scenario, body_names):
         simulation.add_inflow(_inflow_table(section))
@@ -126,7 +143,8 @@ def empty_simulation(scenario: Scenario, body_names: list[str], isa: str | None 
 
 def filled_simulation(scenario: Scenario, isa: str | None = None) -> tuple[Any, list[str]]:
     """A core simulation of `scenario` that is yet to be started, and the names of its bodies."""
-    scene = build_scene(scenario)
+    make = partial(_dry_simulation, isa=isa)
+    scene = build_scene(scenario, partial(settled, make=make))
     particles, body_names = scene.particles, scene.names
     build_inflows(scenario, body_names, particles)  # for its checks against the particles
     simulation = empty_simulation(scenario, body_names, isa)

@@ -7,8 +7,6 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.spatial import cKDTree
 
 from .grains import Group, matrices
 from .scenario import Scenario
@@ -38,13 +36,19 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     blocks = [block for group in groups for block in _blocks(group, scenario.dim)]
     allowed = scenario.contact.overlap
     for name, other, overlap, size in _overlaps(balls, blocks):
-        if overlap > allowed * size:
+        if overlap > allowed * size and not _is_held_by(scenario, name, other):
             whom = "another of its own" if name == other else other
             raise scenario.where.error(
                 ("body", name),
                 f"body.{name}: a body of it overlaps {whom} by {overlap:.3g} m at the start; "
                 f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m",
             )
+
+
+def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
+    """Whether a body is clamped and may therefore lie in what holds it."""
+    body, holder = scenario.body.get(name), scenario.body.get(other)
+    return getattr(body, "clamped", None) is not None and getattr(holder, "fixed", False)
 
 
 Overlap = tuple[str, str, float, float]  # of a body that moves, with, by m, its size in m
@@ -87,6 +91,8 @@ def _blocks(group: Group, dim: int) -> Iterator[_Block]:
 
 def _of_balls(one: _Ball, other: _Ball) -> Iterator[Overlap]:
     """The worst overlap of two sets of balls."""
+    from scipy.spatial import cKDTree
+
     reach = one.radius + other.radius
     if one is other:
         pairs = cKDTree(one.centre).query_pairs(reach, output_type="ndarray")
@@ -130,6 +136,8 @@ def _distance(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 def _common_width(one: _Block, other: _Block) -> float:
     """Diameter of the largest ball that lies in both, m; below zero where they are apart."""
+    from scipy.optimize import linprog
+
     normal = np.concatenate([one.normal, other.normal])
     offset = np.concatenate(
         [one.offset - one.normal @ one.centre, other.offset - other.normal @ one.centre]

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
-from scipy.spatial import cKDTree
 
 # Radii are blown up by this while overlaps are relaxed away, so that they end above nothing.
 MARGIN = 2e-3
@@ -53,6 +51,8 @@ def solid_fraction(radius: np.ndarray, low: np.ndarray, high: np.ndarray) -> flo
 
 def _closeness(centre: np.ndarray, radius: np.ndarray) -> float:
     """Least distance of two balls over the sum of their radii; inf without neighbours."""
+    from scipy.spatial import cKDTree
+
     pairs = cKDTree(centre).query_pairs(2 * radius.max(), output_type="ndarray")
     i, j = pairs.T
     distance = np.linalg.norm(centre[i] - centre[j], axis=1)
@@ -70,21 +70,24 @@ class _SoftBalls:
 
     def relaxed(self, centre: np.ndarray) -> np.ndarray:
         """Centres at a minimum of the energy, or where no true overlap is left."""
+        from scipy.optimize import minimize
+        from threadpoolctl import threadpool_limits
 
         def stop(_: np.ndarray) -> None:
             if self._worst < 0.99 * MARGIN:
                 raise StopIteration
 
         bounds = np.stack([self.low.ravel(), self.high.ravel()], axis=1) / self.scale
-        found = minimize(
-            self._energy,
-            centre.ravel() / self.scale,
-            jac=True,
-            method="L-BFGS-B",
-            bounds=bounds,
-            callback=stop,
-            options={"maxiter": STEPS, "maxfun": 2 * STEPS, "ftol": 0.0, "gtol": 1e-9},
-        )
+        with threadpool_limits(1):  # threads that wait for one another take forty times as long
+            found = minimize(
+                self._energy,
+                centre.ravel() / self.scale,
+                jac=True,
+                method="L-BFGS-B",
+                bounds=bounds,
+                callback=stop,
+                options={"maxiter": STEPS, "maxfun": 2 * STEPS, "ftol": 0.0, "gtol": 1e-9},
+            )
         return found.x.reshape(centre.shape) * self.scale
 
     def _energy(self, x: np.ndarray) -> tuple[float, np.ndarray]:
@@ -104,6 +107,8 @@ class _SoftBalls:
         return 0.5 * float(overlap @ overlap), gradient.ravel()
 
     def _update_list(self, centre: np.ndarray) -> None:
+        from scipy.spatial import cKDTree
+
         skin = SKIN * self.scale
         if self._listed_at is not None:
             moved = np.abs(centre - self._listed_at).max(initial=0.0)

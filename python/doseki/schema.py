@@ -157,6 +157,18 @@ class ShapedBody(Part):
         description="free solids of the resolved scheme: rigid (the default), elastic, or single: "
         "one particle per grain",
     )
+    clamped: ScalarField | None = Field(
+        None, description="elastic: points do not move where this expression of x, y, z is above 0"
+    )
+    elastic_law: Literal["st_venant_kirchhoff", "neo_hookean"] | None = Field(
+        None, description="elastic: law of stress; default st_venant_kirchhoff"
+    )
+    damping: float | None = Field(
+        None, ge=0, le=1, description="elastic: viscosity over rho0 c_P dp; default 0.02"
+    )
+    hourglass: float | None = Field(
+        None, ge=0, le=1, description="elastic: springs over the shear modulus; default 0.2"
+    )
     spin: float | Vector | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
     )
@@ -239,9 +251,17 @@ class Grains(TurnedBody):
         description="solid fraction; with count or mass_total the box is filled up to a level, and "
         "without packing evenly all over (default 0.75, in 3-D 0.55)",
     )
+    wetted: float = Field(
+        1.0,
+        gt=0.3,
+        le=1,
+        description="diameter that water sees over the true one; below 1 in 2-D, where discs that "
+        "touch would leave water no way between them",
+    )
     random_seed: int = Field(1, ge=0, description="of the packing")
     settle: bool | Positive = Field(
-        False, description="settle dry under gravity before the start: true, until at rest, or s"
+        False, description="settle dry under gravity before the start, between the sides of "
+        "the box: true, until at rest, or s"
     )
 
     @model_validator(mode="after")

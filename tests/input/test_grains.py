@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.bodies import build_scene
+from doseki.core import build_simulation
 from doseki.packing import PackingError, pack, solid_fraction
 from doseki.particles import BOUND, FREE
 from doseki.rigid_bodies import add_bodies, rigid_tables
@@ -121,6 +122,27 @@ def test_a_disc_is_one_body_and_water_makes_room(write):
     assert shapes == [{"radius": 0.5}]
     assert table["inertia"][0, 2, 2] == pytest.approx(2750 * np.pi * 0.5**4 / 2)
     assert (table["velocity"][0].tolist(), table["spin"][0].tolist()) == ([1, 2], [0, 0, 3])
+
+
+def test_a_disc_across_a_periodic_side(write):
+    """It is whole on both sides, in the water and when it moves."""
+    top = TOP + '\nperiodic = ["x"]\ndomain_min = [0, -1]\ndomain_max = [2, 3]'
+    tables = BLOCK.replace("[1, 0.5]", "[2, 2]") + DISC.replace("[0.5, 1.2]", "[0.1, 1]")
+    _, scene = scene_of(write, tables, top)
+
+    def from_centre(position, x):
+        offset = position - [x, 1]
+        offset[:, 0] -= 2 * np.rint(offset[:, 0] / 2)
+        return np.linalg.norm(offset, axis=1)
+
+    particles, stone = scene.particles, scene.particles.motion == BOUND
+    assert from_centre(particles.position[stone], 0.1).max() == pytest.approx(0.45)
+    assert from_centre(particles.position[~stone], 0.1).min() >= 0.5
+    scenario = load_scenario(write(top=top, tables=DISC.replace("[0.5, 1.2]", "[0.1, 1]")), [])
+    simulation, _ = build_simulation(scenario)
+    simulation.advance(limit=0.01, pause=0.01, max_steps=10**6)
+    state = simulation.state()
+    assert from_centre(state["position"], 0.1).max() == pytest.approx(0.45)
 
 
 def test_fixed_bodies_are_what_grains_touch(write):
