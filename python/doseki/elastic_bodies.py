@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .scenario import Scenario
 from .schema import ShapedBody
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
 
 LEAST_ACROSS = 2  # particles; fewer do not span a body
 ELASTIC_KEYS = ("clamped", "damping", "elastic_law", "hourglass")  # of deformable bodies alone
