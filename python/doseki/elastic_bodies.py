@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .schema import ShapedBody
-
 if TYPE_CHECKING:
     from .scenario import Scenario
 
@@ -34,7 +32,7 @@ def is_elastic(body: Any) -> bool:
 
 def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
     """The argument of the core's add_elastic_body."""
-    table: ShapedBody = scenario.body[body.name]
+    table = scenario.body[body.name]
     material = scenario.materials[table.material]
     modulus, ratio = material.elasticity
     given = {"law": table.elastic_law, "damping": table.damping, "hourglass": table.hourglass}
