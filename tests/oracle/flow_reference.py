@@ -391,8 +391,8 @@ class FlowReference:
         )
         near_surface = (self.nearby > SURFACE)[:, None]
         shift = np.where(near_surface, tangential(shift, surface_gradient), shift)
-        fastest = SHIFT_FASTEST * self.c
-        shift = shift * np.minimum(1, fastest / np.maximum(np.linalg.norm(shift, axis=1), 1e-300))[:, None]
+        speed = np.linalg.norm(shift, axis=1)[:, None]
+        shift = shift * np.minimum(1, SHIFT_FASTEST * self.c / np.maximum(speed, 1e-300))
         self.shift = np.where((self.measure < SURFACE)[:, None], shift, 0)
         self.acceleration += np.einsum("iab,ib->ia", self.L, self.shift)
         self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2
