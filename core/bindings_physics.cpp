@@ -11,14 +11,18 @@
 #include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
 #include "physics/free_surface.hpp"
+#include "physics/hourglass.hpp"
+#include "physics/hyperelastic.hpp"
 #include "physics/kernel.hpp"
 #include "physics/momentum.hpp"
+#include "physics/rheology.hpp"
 #include "physics/riemann.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
 #include "physics/velocity_gradient.hpp"
 #include "physics/viscosity.hpp"
 #include "physics/wall.hpp"
+#include "physics/yield.hpp"
 
 namespace nb = nanobind;
 using namespace doseki;
@@ -134,6 +138,39 @@ void bind_flow(nb::module_& m) {
     });
 }
 
+/// Of elastic solids. F, dF/dt and stresses are matrices, row by row.
+template <int D>
+void bind_elastic_points(nb::module_& m) {
+    constexpr std::size_t full = D * D;
+    auto put = [](const auto& tensor, auto& out) { std::copy(tensor.element.begin(), tensor.element.end(), out.begin()); };
+    define(m, "green_strain", Sym<double, D>::size, [put](const auto& in, auto& out) {    // F
+        put(green_strain(matrix<D>(in, 0)), out);
+    });
+    define(m, "st_venant_kirchhoff", full + 1, [put](const auto& in, auto& out) {    // F, lambda, mu -> P, energy
+        const Lame<std::decay_t<decltype(in[0])>> lame{in[full], in[full + 1]};
+        put(st_venant_kirchhoff(matrix<D>(in, 0), lame), out);
+        out[full] = st_venant_kirchhoff_energy(matrix<D>(in, 0), lame);
+    });
+    define(m, "neo_hookean", full + 1, [put](const auto& in, auto& out) {    // F, lambda, mu -> P, energy
+        const Lame<std::decay_t<decltype(in[0])>> lame{in[full], in[full + 1]};
+        put(neo_hookean(matrix<D>(in, 0), lame), out);
+        out[full] = neo_hookean_energy(matrix<D>(in, 0), lame);
+    });
+    define(m, "kelvin_voigt", full, [put](const auto& in, auto& out) {    // F, dF/dt, eta
+        put(kelvin_voigt(matrix<D>(in, 0), matrix<D>(in, full), in[2 * full]), out);
+    });
+    define(m, "cauchy_stress", Sym<double, D>::size, [put](const auto& in, auto& out) {    // P, F
+        put(cauchy_stress(matrix<D>(in, 0), matrix<D>(in, full)), out);
+    });
+    define(m, "elastic_pair_force", D, [](const auto& in, auto& out) {    // P_i, P_j, F_i, F_j, kappa, R_ij, r_ij
+        const auto kappa = in[4 * full];
+        const auto Q_i = less_springs(matrix<D>(in, 0), kappa, matrix<D>(in, 2 * full));
+        const auto Q_j = less_springs(matrix<D>(in, full), kappa, matrix<D>(in, 3 * full));
+        const auto force = elastic_pair_force(Q_i, Q_j, kappa + kappa, vector<D>(in, 4 * full + 1), vector<D>(in, 4 * full + 1 + D));
+        std::copy(force.component.begin(), force.component.end(), out.begin());
+    });
+}
+
 /// Those that have no dimension.
 void bind_flow_numbers(nb::module_& m) {
     define(m, "approach_pressure", 1, [](const auto& in, auto& out) {    // dU, rho, c
@@ -205,6 +242,7 @@ void bind_shape(nb::module_& m) {
 template <int D>
 void bind_dimension(nb::module_& m) {
     bind_flow<D>(m);
+    bind_elastic_points<D>(m);
     bind_shape<D>(m);
     define(m, "kernel", 2, [](const auto& in, auto& out) {    // r, 1/R -> W, F
         out[0] = WendlandC6<D>::value(in[0], in[1]);
@@ -226,6 +264,16 @@ void bind_dimension(nb::module_& m) {
         const auto stress = stress_over_rho_squared(in[size], deviator<D>(in, 0), in[size + 1]);
         std::copy(stress.element.begin(), stress.element.end(), out.begin());
     });
+    define(m, "return_map", Deviator<double, D>::size, [](const auto& in, auto& out) {    // S, p, alpha, k
+        constexpr std::size_t size = Deviator<double, D>::size;
+        const YieldSurface<std::decay_t<decltype(in[0])>> surface{in[size + 1], in[size + 2]};
+        const auto mapped = return_map(deviator<D>(in, 0), in[size], surface);
+        std::copy(mapped.element.begin(), mapped.element.end(), out.begin());
+    });
+    define_numbers(m, "drucker_prager", 2, [](const auto& in, auto& out) {    // cohesion, angle -> alpha, k
+        const auto surface = drucker_prager<D>(in[0], in[1]);
+        out[0] = surface.alpha, out[1] = surface.k;
+    });
     define(m, "shear_energy", 1, [](const auto& in, auto& out) {    // S, mu, rho
         constexpr std::size_t size = Deviator<double, D>::size;
         out[0] = shear_energy(deviator<D>(in, 0), in[size], in[size + 1]);
@@ -243,6 +291,22 @@ void bind_physics(nb::module_& m) {
     define(m, "equation_of_state", 3, [](const auto& in, auto& out) {    // rho, rho0, c0 -> p, c, u
         const auto eos = BirchMurnaghan<std::decay_t<decltype(in[0])>>::at(in[0], in[1], in[2]);
         out[0] = eos.pressure, out[1] = eos.sound_speed, out[2] = eos.bulk_energy;
+    });
+    define(m, "pair_viscosity", 2, [](const auto& in, auto& out) {    // mu_i, mu_j -> mean, harmonic mean
+        out[0] = pair_viscosity(in[0], in[1], false), out[1] = pair_viscosity(in[0], in[1], true);
+    });
+    define_numbers(m, "von_mises", 2, [](const auto& in, auto& out) {    // Y -> alpha, k
+        const auto surface = von_mises(in[0]);
+        out[0] = surface.alpha, out[1] = surface.k;
+    });
+    define(m, "tension_cut", 1, [](const auto& in, auto& out) {    // p, alpha, k
+        out[0] = tension_cut(YieldSurface<std::decay_t<decltype(in[0])>>{in[1], in[2]}, in[0]);
+    });
+    define(m, "herschel_bulkley", 1, [](const auto& in, auto& out) {    // rate, tau_y, K, n, m, greatest
+        out[0] = HerschelBulkley<std::decay_t<decltype(in[0])>>{in[1], in[2], in[3], in[4], in[5]}.viscosity(in[0]);
+    });
+    define(m, "mu_i", 1, [](const auto& in, auto& out) {    // rate, p, mu_s, mu_2, I_0, d, rho_s, greatest
+        out[0] = MuI<std::decay_t<decltype(in[0])>>{in[2], in[3], in[4], in[5], in[6], in[7]}.viscosity(in[0], in[1]);
     });
     define(m, "approach_speed", 1, [](const auto& in, auto& out) { out[0] = approach_speed(in[0], in[1]); });
     define(m, "signal_velocity", 1, [](const auto& in, auto& out) { out[0] = signal_velocity(in[0], in[1], in[2]); });

@@ -8,46 +8,16 @@
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
+#include <numbers>
 #include <numeric>
 
+#include "bound_arrays.hpp"
+#include "bound_elastic.hpp"
 #include "checkpoint.hpp"
 #include "pair_probe.hpp"
 #include "simulation.hpp"
 
 namespace doseki {
-
-namespace nb = nanobind;
-
-template <class T>
-using Array = nb::ndarray<nb::numpy, T>;
-template <class T>
-using Input = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
-
-/// New numpy array of n rows of the given shape.
-template <class T>
-struct Output {
-    explicit Output(std::vector<std::size_t> shape) : shape(std::move(shape)) {
-        data = new T[std::accumulate(this->shape.begin(), this->shape.end(), std::size_t{1}, std::multiplies<>())]();
-    }
-    Array<T> release() {
-        nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-        return Array<T>(data, shape.size(), shape.data(), owner);
-    }
-    std::vector<std::size_t> shape;
-    T* data;
-};
-
-using Column = std::vector<double>;
-
-template <class T>
-T get(const nb::dict& dict, const char* key) {
-    return nb::cast<T>(dict[key]);
-}
-
-template <class T>
-T get(const nb::dict& dict, const char* key, T otherwise) {
-    return dict.contains(key) ? get<T>(dict, key) : otherwise;
-}
 
 template <int D>
 Vec<double, D> vector(const nb::handle& sequence) {
@@ -66,8 +36,25 @@ inline Surface surface(const nb::dict& d) {
 }
 
 inline Material material(const nb::dict& d) {
-    return {get<std::string>(d, "name"), get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid,
-            get<double>(d, "rho0"), get<double>(d, "speedsound"), get<double>(d, "shear_modulus"), get<double>(d, "nu"), surface(d)};
+    auto number = [&d](const char* key, double otherwise = 0.0) { return get<double>(d, key, otherwise); };
+    Material m;
+    m.name = get<std::string>(d, "name");
+    m.law = get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid;
+    m.rho0 = get<double>(d, "rho0"), m.c0 = get<double>(d, "speedsound");
+    m.shear_modulus = get<double>(d, "shear_modulus"), m.nu = get<double>(d, "nu");
+    m.yield_strength = number("yield_strength"), m.cohesion = number("cohesion");
+    m.friction_angle = number("friction_angle") * std::numbers::pi / 180.0;
+    const auto rheology = get<std::string>(d, "rheology", "newtonian");
+    m.rheology = rheology == "herschel_bulkley" ? Rheology::herschel_bulkley
+                 : rheology == "mu_i"           ? Rheology::mu_i
+                                                : Rheology::newtonian;
+    const double greatest = number("viscosity_max");
+    m.herschel_bulkley = {number("yield_stress"), number("consistency"), number("flow_index", 1.0),
+                          number("regularisation"), greatest};
+    m.mu_i = {number("mu_s"), number("mu_2"), number("inertial_number"), number("grain_diameter"),
+              number("grain_density"), greatest};
+    m.surface = surface(d);
+    return m;
 }
 
 inline ContactOptions contact_options(const nb::dict& d) {
@@ -216,6 +203,19 @@ public:
             if (body.data()[p] >= 0) sim_.bodies.bind(particles, p, static_cast<std::size_t>(body.data()[p]));
     }
 
+    /// A deformable body of particles that have been added: {material, rho0, young_modulus, poisson_ratio, law,
+    /// spacing, damping} and, for each of its particles, its number in the order of adding, whether it is clamped
+    /// and whether it is on the surface. Call after set_walls.
+    void add_elastic_body(const nb::dict& d) {
+        const auto members = get<Input<std::int32_t>>(d, "particles");
+        const auto clamped = get<Input<std::uint8_t>>(d, "clamped"), surface = get<Input<std::uint8_t>>(d, "surface");
+        if (clamped.size() != members.size() || surface.size() != members.size())
+            throw nb::value_error("arrays of an elastic body of unequal length");
+        if (!sim_.particles.has_flow) throw nb::value_error("the scheme has no bodies");
+        sim_.bodies.deformable.add(sim_.particles, elastic_body(d), get<std::int32_t>(d, "material"), {members.data(), members.size()},
+                                   {clamped.data(), clamped.size()}, {surface.data(), surface.size()});
+    }
+
     /// The bodies, in the order in which they were added.
     nb::dict grains() const {
         const Bodies<D>& bodies = sim_.bodies;
@@ -241,6 +241,7 @@ public:
         }
         bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
             for (const std::int32_t k : {a, b}) {
+                if (static_cast<std::size_t>(k) >= n) continue;    // a deformable one
                 ++contacts.data[k];
                 overlap.data[k] = std::max(overlap.data[k], share);
             }
@@ -350,6 +351,7 @@ public:
             motion.data[k] = static_cast<std::int32_t>(tag.motion), id.data[k] = tag.id;
             fill_tensor(deviator.data + 9 * k, 0.0, particles.stress(p));
             fill_tensor(stress.data + 9 * k, eos.pressure, sim_.rates().deviator(particles, p));
+            if (const auto& bodies = sim_.bodies.deformable; bodies.has(particles, p)) bodies.stress(particles, p, stress.data + 9 * k);
         }
         nb::dict d;
         d["position"] = position.release(), d["velocity"] = velocity.release();
@@ -536,6 +538,7 @@ void bind_simulation(nb::module_& m, const char* name) {
         .def("add_shapes", &B::add_shapes, nb::arg("shapes"))
         .def("add_rigid_bodies", &B::add_rigid_bodies, nb::arg("bodies"))
         .def("bind_points", &B::bind_points, nb::arg("body"))
+        .def("add_elastic_body", &B::add_elastic_body, nb::arg("body"))
         .def("grains", &B::grains, "State of the rigid bodies, in the order in which they were added.")
         .def("add_inflow", &B::add_inflow)
         .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))

@@ -40,6 +40,7 @@ struct Particles {
         std::vector<Vec<double, D>> shift;                // velocity relative to the fluid [m/s]
         std::vector<double> surface;                      // of the last step, see SurfaceMeasure
         std::vector<double> mixing_length;                // [m]
+        std::vector<double> mean_pressure;                // over a time, where friction depends on it [Pa]
         // Of wall particles:
         std::vector<Vec<double, D>> normal;        // into the fluid
         std::vector<double> wall_depth;            // below the surface of the wall [m]
@@ -65,6 +66,7 @@ struct Particles {
         if (has_flow) {
             f("pressure_gradient", flow.pressure_gradient), f("velocity_gradient", flow.velocity_gradient);
             f("shift", flow.shift), f("surface", flow.surface), f("mixing_length", flow.mixing_length);
+            f("mean_pressure", flow.mean_pressure);
             f("normal", flow.normal), f("wall_depth", flow.wall_depth);
             f("wall_force", flow.wall_force), f("wall_pressure", flow.wall_pressure);
             f("point", flow.point);

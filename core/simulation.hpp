@@ -41,7 +41,7 @@ public:
             if (particles.is_counted(p)) sources.ledger.initial += particles.mass[p];
         walls.set_velocities(particles, time_);
         sources.feed(particles, time_);
-        bodies.start();
+        bodies.start(particles);
         bodies.set_velocities(particles, 0.0);
         rebuild_neighbours();
         first_rates();
@@ -92,6 +92,7 @@ public:
     Totals<D> totals() const {
         Totals<D> sum = doseki::totals(particles, rates_);
         sum.kinetic_energy += bodies.kinetic_energy();
+        sum.shear_energy += bodies.deformable.elastic.strain_energy();
         return sum;
     }
 
@@ -164,6 +165,7 @@ void Simulation<Scheme>::step(double limit) {
     update_neighbours(before, moved);
     update_rates(0.5 * dt);
     kick(0.5 * dt);
+    if constexpr (!Scheme::has_flow) rates_.yield(particles);
     bodies.set_velocities(particles, 0.0);
     av_dissipation_ += 0.5 * dt * (old_power + rates_.av_power());
     last_dt_ = dt;

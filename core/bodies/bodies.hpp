@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bodies/contacts.hpp"
+#include "elastic/deformable_bodies.hpp"
 #include "particles.hpp"
 #include "walls.hpp"
 
@@ -91,7 +92,7 @@ struct BodyColumns {
     }
 };
 
-/// Bodies that move on their own: rigid ones, and the contacts among them and with walls. They are
+/// Bodies that move on their own: rigid and deformable ones, and the contacts among them and with walls. They are
 /// kicked by the fluid together with it; gravity and contacts, which are stiffer, act in steps of their own
 /// within the drift.
 template <int D>
@@ -103,9 +104,11 @@ public:
         : gravity_(gravity), memory_(memory), contacts_(domain, options, std::move(surfaces)) {}
 
     std::vector<Shape<D>> shapes;
+    DeformableBodies<D> deformable;
 
-    bool empty() const { return bodies_.empty(); }
-    bool any_moves() const { return moving_ > 0; }
+    bool empty() const { return bodies_.empty() && deformable.empty(); }
+    bool any_moves() const { return moving_ > 0 || !deformable.empty(); }
+    /// Of the rigid ones.
     std::size_t size() const { return bodies_.size(); }
     const RigidBody<D>& body(std::size_t k) const { return bodies_[k]; }
     const BodyState<D>& state(std::size_t k) const { return states_[k]; }
@@ -123,16 +126,21 @@ public:
         points_.push_back({static_cast<double>(k), rotated_back(R, contacts_.nearest_image(particles.position[p] - states_[k].centre)),
                            rotated_back(R, particles.flow.normal[p])});
     }
-    /// Index of the body of a particle; -1: none.
+    /// Index of the rigid body of a particle; -1: none.
     std::int32_t body_of(const Particles<D>& particles, std::size_t p) const {
-        return particles.has_flow && particles.tag[p].motion == Motion::bound ? points_[static_cast<std::size_t>(particles.flow.point[p])].index() : -1;
+        return is_rigid_point(particles, p) ? points_[static_cast<std::size_t>(particles.flow.point[p])].index() : -1;
     }
 
     /// Call once after everything is in.
-    void start() { pose(), find_contacts(); }
+    void start(Particles<D>& particles) {
+        deformable.start(particles, gravity_, contactors_, static_cast<std::int32_t>(size()));
+        set_margin();
+        pose(), find_contacts();
+        set_elastic_step();
+    }
 
     /// Largest step that motion without a fluid may have.
-    double timestep() const { return any_moves() ? longest_leap * contacts_.timestep() : std::numeric_limits<double>::infinity(); }
+    double timestep() const { return any_moves() ? longest_leap * std::min(contacts_.timestep(), elastic_step_) : std::numeric_limits<double>::infinity(); }
 
     /// Takes over what the fluid does to the points of bodies.
     void gather(const Particles<D>& particles);
@@ -158,8 +166,15 @@ public:
         archive("bodies", states_), archive("body_points", points_);
         if constexpr (Archive::loading) restore(columns);
         archive("bodies_moved", moved_);
+        deformable.elastic.gravity = gravity_;
+        deformable.serialise(archive);
         contacts_.serialise(archive);
-        if constexpr (Archive::loading) pose(), contacts_.restore(contactors_, solids_);
+        if constexpr (Archive::loading) {
+            deformable.restore(contactors_, static_cast<std::int32_t>(size()));
+            set_margin();
+            pose(), contacts_.restore(contactors_, solids_);
+            set_elastic_step();
+        }
     }
 
 private:
@@ -169,12 +184,21 @@ private:
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
     void restore(const BodyColumns<D>& columns);
     bool at_work(std::size_t k) const { return !bodies_[k].fixed && states_[k].removed == 0.0; }
+    static bool is_rigid_point(const Particles<D>& particles, std::size_t p) {
+        return particles.has_flow && particles.is_bound(p) && !DeformableBodies<D>::is_mark(particles.flow.point[p]);
+    }
+    void set_margin() {
+        if (!deformable.empty()) margin_ = margin_ > 0.0 ? std::min(margin_, deformable.margin()) : deformable.margin();
+    }
+    void set_elastic_step() {
+        elastic_step_ = deformable.empty() ? std::numeric_limits<double>::infinity() : deformable.elastic.timestep();
+    }
     /// Also short against the margin of the pairs.
     double longest_part() const {
-        double fastest = 0.0;
+        double fastest = deformable.fastest();
         for (std::size_t k = 0; k < size(); ++k)
             if (at_work(k)) fastest = std::max(fastest, norm(states_[k].velocity) + shapes[static_cast<std::size_t>(bodies_[k].shape)].radius * norm(spin(k)));
-        return std::min(contacts_.timestep(), 0.25 * margin_ / std::max(fastest, 1e-300));
+        return std::min({contacts_.timestep(), elastic_step_, 0.25 * margin_ / std::max(fastest, 1e-300)});
     }
     void drift(double dt);
     void move_walls(const Walls<D>& walls, double t, double dt);
@@ -196,6 +220,7 @@ private:
     std::vector<Solid<D>> solids_;
     std::size_t moving_ = 0;
     double moved_ = 0.0, margin_ = 0.0;
+    double elastic_step_ = std::numeric_limits<double>::infinity();    // of deformable bodies [s]
 };
 
 template <int D>
@@ -262,7 +287,8 @@ template <int D>
 void Bodies<D>::gather(const Particles<D>& particles) {
     std::vector<Vec<double, D>> force(points_.size());
     for (std::size_t p = 0; p < particles.size(); ++p)
-        if (particles.tag[p].motion == Motion::bound) force[static_cast<std::size_t>(particles.flow.point[p])] = particles.flow.wall_force[p];
+        if (is_rigid_point(particles, p)) force[static_cast<std::size_t>(particles.flow.point[p])] = particles.flow.wall_force[p];
+    deformable.gather(particles);
     for (BodyState<D>& state : states_) state.flow_force = {}, state.flow_torque = {};
     std::vector<Mat<double, 3>> R;
     for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
@@ -275,6 +301,7 @@ void Bodies<D>::gather(const Particles<D>& particles) {
 
 template <int D>
 void Bodies<D>::kick(double half_dt) {
+    if (!deformable.empty()) deformable.kick(half_dt);
     for (std::size_t k = 0; k < size(); ++k) {
         if (!at_work(k)) continue;
         states_[k].velocity = states_[k].velocity + (half_dt / bodies_[k].mass) * states_[k].flow_force;
@@ -289,6 +316,8 @@ void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
     std::vector<Vec<double, D>> before(size());
     std::vector<Vec3> spin_before(size());
     for (std::size_t k = 0; k < size(); ++k) before[k] = states_[k].velocity, spin_before[k] = spin(k);
+    deformable.begin_step();
+    set_elastic_step();
     for (double left = dt; left > 0.0;) {
         const double parts = std::max(1.0, std::ceil(left / longest_part())), part = left / parts;
         drift(0.5 * part);
@@ -297,6 +326,7 @@ void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
         if (2.0 * moved_ >= margin_) find_contacts();
         contacts_.apply(contactors_, solids_, part);
         collect_forces();
+        if (!deformable.empty()) deformable.elastic.push(part);
         for (std::size_t k = 0; k < size(); ++k) {
             if (!at_work(k)) continue;
             BodyState<D>& state = states_[k];
@@ -306,6 +336,7 @@ void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
         drift(0.5 * part);
         left = parts > 1.0 ? left - part : 0.0;
     }
+    deformable.end_step(dt, memory_);
     for (std::size_t k = 0; k < size(); ++k) {
         if (!at_work(k)) continue;
         BodyState<D>& state = states_[k];
@@ -318,7 +349,7 @@ void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
 
 template <int D>
 void Bodies<D>::drift(double dt) {
-    double farthest = 0.0;
+    double farthest = deformable.elastic.drift(dt);
     for (std::size_t k = 0; k < size(); ++k) {
         if (!at_work(k)) continue;
         BodyState<D>& state = states_[k];
@@ -377,6 +408,7 @@ void Bodies<D>::pose() {
             contactors_.force[c] = {}, contactors_.torque[c] = {}, contactors_.gone[c] = gone;
         }
     }
+    deformable.pose(contactors_);
 }
 
 template <int D>
@@ -391,6 +423,7 @@ void Bodies<D>::collect_forces() {
     std::fill(contact_torque_.begin(), contact_torque_.end(), Vec3{});
     for (std::size_t c = 0; c < contactors_.size_of_all(); ++c) {
         const auto k = static_cast<std::size_t>(contactors_.body[c]);
+        if (k >= size()) break;    // deformable ones come last
         const Vec3 lever = in_space(contactors_.position[c] - states_[k].centre);
         contact_force_[k] = contact_force_[k] + contactors_.force[c];
         contact_torque_[k] = contact_torque_[k] + contactors_.torque[c] + cross(lever, in_space(contactors_.force[c]));
@@ -400,6 +433,7 @@ void Bodies<D>::collect_forces() {
         contact_force_[k] = contact_force_[k] + solid.force;
         contact_torque_[k] = contact_torque_[k] + solid.torque;
     }
+    deformable.collect(contactors_);
 }
 
 template <int D>
@@ -409,11 +443,12 @@ double Bodies<D>::place(Particles<D>& particles) const {
     for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
     std::vector<Vec3> spins;
     for (std::size_t k = 0; k < size(); ++k) spins.push_back(spin(k));
-    double farthest = 0.0;
+    const double bent = deformable.place(particles, [this](const Vec<double, D>& r) { return contacts_.nearest_image(r); });
+    double farthest = bent * bent;
     const std::size_t n = particles.size();
 #pragma omp parallel for schedule(static) reduction(max : farthest) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
-        if (particles.tag[p].motion != Motion::bound) continue;
+        if (!is_rigid_point(particles, p)) continue;
         const BodyPoint<D>& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
         const auto k = static_cast<std::size_t>(point.index());
         const BodyState<D>& state = states_[k];
@@ -431,6 +466,7 @@ double Bodies<D>::place(Particles<D>& particles) const {
 template <int D>
 void Bodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
     if (!any_moves()) return;
+    deformable.set_velocities(particles, ahead);
     std::vector<Vec3> spins;
     std::vector<Mat<double, 3>> R;
     for (std::size_t k = 0; k < size(); ++k) {
@@ -440,7 +476,7 @@ void Bodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
     const std::size_t n = particles.size();
 #pragma omp parallel for schedule(static) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
-        if (particles.tag[p].motion != Motion::bound) continue;
+        if (!is_rigid_point(particles, p)) continue;
         const BodyPoint<D>& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
         const auto k = static_cast<std::size_t>(point.index());
         particles.velocity[p] = states_[k].velocity + (ahead / bodies_[k].mass) * states_[k].flow_force +
@@ -464,7 +500,7 @@ double Bodies<D>::drain(const Particles<D>& particles, const Box& box, std::vect
 
 template <int D>
 double Bodies<D>::kinetic_energy() const {
-    double energy = 0.0;
+    double energy = deformable.elastic.kinetic_energy();
     for (std::size_t k = 0; k < size(); ++k)
         if (at_work(k))
             energy += 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) + 0.5 * dot(spin(k), states_[k].angular_momentum);

@@ -22,7 +22,13 @@ struct ContactOptions {
 struct Surface {
     double restitution = 0.5, friction = 0.5, rolling_friction = 0.0;
     double young_modulus = 0.0, poisson_ratio = 0.0;    // [Pa]
+
+    /// (1 - nu^2)/E; none of what has no modulus.
+    double compliance() const { return young_modulus > 0.0 ? (1.0 - poisson_ratio * poisson_ratio) / young_modulus : 0.0; }
 };
+
+/// E* of two materials that touch.
+inline double contact_modulus(const Surface& a, const Surface& b) { return 1.0 / (a.compliance() + b.compliance()); }
 
 /// Balls that touch: whole bodies, samples of the surface of a convex one (radius 0), surface points of
 /// a deformable one. Bodies are numbered over all kinds.
@@ -33,15 +39,17 @@ struct Contactors {
     std::vector<double> radius, mass, size;    // size: diameter that overlaps are compared with
     std::vector<std::int32_t> body, material;
     std::vector<std::uint8_t> fixed, gone;
+    std::vector<std::uint8_t> deformable;    // a point of a body that gives way itself
     // What the contacts do to them; torque about their own centre.
     std::vector<Vec<double, D>> force;
     std::vector<Vec3> torque;
 
     std::size_t size_of_all() const { return radius.size(); }
-    void add(std::int32_t of_body, std::int32_t of_material, double r, double m, double diameter, bool is_fixed) {
+    void add(std::int32_t of_body, std::int32_t of_material, double r, double m, double diameter, bool is_fixed,
+             bool is_deformable = false) {
         position.push_back({}), velocity.push_back({}), spin.push_back({}), force.push_back({}), torque.push_back({});
         radius.push_back(r), mass.push_back(m), size.push_back(diameter);
-        body.push_back(of_body), material.push_back(of_material), fixed.push_back(is_fixed), gone.push_back(0);
+        body.push_back(of_body), material.push_back(of_material), fixed.push_back(is_fixed), gone.push_back(0), deformable.push_back(is_deformable);
     }
 };
 
@@ -115,6 +123,7 @@ private:
         double stiffness, mass, radius, size;    // k or E*, m*, R* (0: does not roll), smaller diameter
         double zeta, friction, rolling;
         double tangential;    // stiffness of friction over the normal one
+        bool deformable = false;
         double overlap = 0.0;
 
         double curvature() const { return radius > 0.0 ? radius : 0.5 * size; }
@@ -149,6 +158,11 @@ private:
         return after > 0.0 ? (before / after) * stretch : stretch;
     }
     bool hertz() const { return D == 3 && options_.hertz; }
+    bool hertz(const Pairing& pair) const { return hertz() && !pair.deformable; }
+
+    /// The spring between points of deformable bodies only keeps them apart: it is this many times as stiff as
+    /// what they belong to, does not damp, and its step is this part of its time.
+    static constexpr double firmness = 2.0, steps_of_firmness = 5.0;
 
     Domain<D> domain_;
     ContactOptions options_;
@@ -251,7 +265,12 @@ auto Contacts<D>::pairing(const Contactors<D>& contactors, const std::vector<Sol
     pair.zeta = damping_[static_cast<std::size_t>(first) * surfaces_.size() + static_cast<std::size_t>(second)];
     pair.friction = 0.5 * (u.friction + v.friction);
     pair.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
-    pair.stiffness = stiffness_of(pair, u, v);
+    pair.deformable = contactors.deformable[a] || (!solid && contactors.deformable[b]);
+    if (pair.deformable) {
+        const double spacing = 2.0 * (solid ? radius_a : std::min(radius_a, radius_b));
+        pair.stiffness = firmness * contact_modulus(u, v) * (D == 3 ? spacing : 1.0);
+        pair.zeta = pair.rolling = 0.0;
+    } else pair.stiffness = stiffness_of(pair, u, v);
     // Linear: equal times of both springs for balls. Hertz: Mindlin's 4 G*/E*.
     const double nu = 0.5 * (u.poisson_ratio + v.poisson_ratio);
     pair.tangential = hertz() ? 2.0 * (1.0 - nu) / (2.0 - nu) : 2.0 / 7.0;
@@ -266,8 +285,7 @@ double Contacts<D>::stiffness_of(const Pairing& pair, const Surface& a, const Su
     const double soft_k = pair.mass * v * v / (overlap * overlap);
     const double soft_E = 15.0 / 16.0 * pair.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));
     if (options_.softened) return hertz() ? soft_E : soft_k;
-    auto compliance = [](const Surface& s) { return (1.0 - s.poisson_ratio * s.poisson_ratio) / s.young_modulus; };
-    const double E = 1.0 / (compliance(a) + compliance(b));
+    const double E = contact_modulus(a, b);
     if (hertz()) return E;
     if constexpr (D == 2) return 0.25 * std::numbers::pi * E;    // of a line contact, per length
     const double same = hertz_encounter(E, radius, pair.mass, v).overlap;
@@ -278,9 +296,9 @@ template <int D>
 void Contacts<D>::set_timestep() {
     timestep_ = std::numeric_limits<double>::infinity();
     for (const Pairing& pair : pairs_) {
-        const Encounter meeting = hertz() ? hertz_encounter(pair.stiffness, pair.curvature(), pair.mass, options_.speed)
-                                          : linear_encounter(pair.stiffness, pair.mass, options_.speed);
-        timestep_ = std::min(timestep_, meeting.time / options_.steps);
+        const Encounter meeting = hertz(pair) ? hertz_encounter(pair.stiffness, pair.curvature(), pair.mass, options_.speed)
+                                              : linear_encounter(pair.stiffness, pair.mass, options_.speed);
+        timestep_ = std::min(timestep_, meeting.time / (pair.deformable ? steps_of_firmness : options_.steps));
     }
 }
 
@@ -316,8 +334,8 @@ template <int D>
 auto Contacts<D>::action(const Pairing& pair, Springs& springs, double overlap, const Vec3& n, const Vec3& speed,
                          const Vec3& spin, double dt) const -> Action {
     const double approach = dot(speed, n);
-    const NormalSpring spring = hertz() ? hertz_spring(pair.stiffness, pair.curvature(), overlap) : linear_spring(pair.stiffness, overlap);
-    const double damping = contact_damping(hertz(), pair.zeta, spring.stiffness, pair.mass);
+    const NormalSpring spring = hertz(pair) ? hertz_spring(pair.stiffness, pair.curvature(), overlap) : linear_spring(pair.stiffness, overlap);
+    const double damping = contact_damping(hertz(pair), pair.zeta, spring.stiffness, pair.mass);
     const double normal = normal_force(spring, damping, approach);
     const double along = pair.tangential * spring.stiffness, dashpot = pair.tangential * damping;
     Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);

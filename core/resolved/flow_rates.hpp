@@ -30,8 +30,10 @@ public:
 
     FlowRates(std::vector<Material> materials, const Options<D>& options, bool periodic)
         : materials_(std::move(materials)), options_(options), periodic_(periodic) {
-        for (const Material& material : materials_)
+        for (const Material& material : materials_) {
             if (material.law == Law::fluid) constants_.c = std::max(constants_.c, material.c0);
+            constants_.harmonic |= material.rheology == Rheology::herschel_bulkley;
+        }
         constants_.dp = options.flow.dp;
         for (int k = 1; k <= D; ++k) spacing_power_[k] = spacing_power_[k - 1] * options.flow.dp;
         const double support = kernel_support() * options.eta * options.flow.dp;
@@ -132,8 +134,18 @@ private:
     static constexpr double relaxation = 100.0, relaxation_at_rest = 1000.0;
     /// Of rho0. What tears apart leaves a void, not water under tension.
     static constexpr double least_density = 0.98;
+    /// Over the sound speed: half of the fastest flow. A gap that bodies close would shift particles out of
+    /// the world.
+    static constexpr double largest_shift = 0.05;
     /// Root mean square of |L| h/c below which a fluid counts as at rest.
     static constexpr double at_rest = 5e-4;
+
+    /// Of the liquid itself [Pa s].
+    static double molecular_viscosity(const Material& material, const Mat<double, D>& L, double rho, double mean_pressure) {
+        if (material.rheology == Rheology::herschel_bulkley) return material.herschel_bulkley.viscosity(strain_rate(L));
+        if (material.rheology == Rheology::mu_i) return material.mu_i.viscosity(strain_rate(L), mean_pressure);
+        return rho * material.nu;
+    }
 
     double eddy_viscosity(const Particles<D>& particles, std::size_t p) const {
         if (options_.flow.turbulence == Turbulence::none) return 0.0;
@@ -142,8 +154,16 @@ private:
         return l * l * strain_rate(particles.flow.velocity_gradient[p]);
     }
 
+    /// Sound that runs to and fro is no load on a contact between grains: friction takes the mean over
+    /// the relaxation time of the density. What never had a pressure takes the first it gets.
+    void update_mean_pressure(Particles<D>& particles, std::size_t p, double dt) {
+        double& mean = particles.flow.mean_pressure[p];
+        const double share = dt * constants_.c / (relaxation * particles.smoothing_length[p]);
+        mean = mean == 0.0 ? fluid_[p].p : mean + std::min(share, 1.0) * (fluid_[p].p - mean);
+    }
+
     void pack(Particles<D>& particles, double half_dt, bool poisoned);
-    void pack_fluid(const Particles<D>& particles, std::size_t p, double half_dt);
+    void pack_fluid(Particles<D>& particles, std::size_t p, double half_dt);
     void pack_wall(const Particles<D>& particles, std::size_t p);
 
     template <class Kernel>
@@ -194,7 +214,7 @@ private:
 };
 
 template <int D>
-void FlowRates<D>::pack_fluid(const Particles<D>& particles, std::size_t p, double half_dt) {
+void FlowRates<D>::pack_fluid(Particles<D>& particles, std::size_t p, double half_dt) {
     FluidRecord<D>& record = fluid_[p];
     const Material& material = materials_[particles.tag[p].material];
     const double rho = particles.density[p] + half_dt * particles.density_rate[p];
@@ -202,7 +222,9 @@ void FlowRates<D>::pack_fluid(const Particles<D>& particles, std::size_t p, doub
     record.volume = particles.mass[p] / rho, record.rest_volume = particles.mass[p] / material.rho0;
     record.surface = particles.flow.surface[p];
     record.p = pressure(material, rho, record.surface);
-    record.mu = rho * (material.nu + eddy_viscosity(particles, p));
+    update_mean_pressure(particles, p, 2.0 * half_dt);
+    record.mu = molecular_viscosity(material, particles.flow.velocity_gradient[p], rho, particles.flow.mean_pressure[p]) +
+                rho * eddy_viscosity(particles, p);
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) {
             const Mat<double, D>& L = particles.flow.velocity_gradient[p];
@@ -335,6 +357,8 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     if (shifted && measure.x < SurfaceMeasure::surface) {
         Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), strain_), h);
         if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
+        const double fastest = largest_shift * constants_.c, speed = std::sqrt(dot(shift, shift));
+        if (speed > fastest) shift = (fastest / speed) * shift;
         flow.shift[p] = shift;
         for (int k = 0; k < D; ++k)
             for (int l = 0; l < D; ++l) a[k] += L(k, l) * shift[l];

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .elastic_bodies import ElasticBody
 from .errors import ResourceError
 from .expressions import ExpressionError, evaluate_at, is_expression
 from .grain_checks import resolution_warnings
@@ -29,6 +30,7 @@ from .periodic import wrapped
 from .rigid_bodies import Bodies
 from .scenario import Scenario
 from .schema import Box, Disc, Grains, LatticeBody, ParticleFile, Points, ShapedBody
+from .solid_shapes import Particles
 from .wetting import covered_share
 
 MAX_PARTICLES = 2_000_000_000
@@ -102,7 +104,9 @@ def _with_bodies(
     dim = scenario.dim
     sets: list[ParticleSet] = []
     tables: list[tuple[np.ndarray, ...]] = []  # grain, shaped, normal, depth
-    first = dict(zip((g.name for g in groups), _first_indices(groups), strict=True))
+    kept = [group for group in groups if not group.elastic] if moves else []
+    first = dict(zip((g.name for g in kept), _first_indices(kept), strict=True))
+    elastic: list[ElasticBody] = []
     of_name = {g.name: g for g in reversed(groups)}
     for name, body in scenario.body.items():
         if name in parts:
@@ -113,16 +117,36 @@ def _with_bodies(
             continue
         group = of_name[name]
         placed, owner = particles_of(group, body_spacing(scenario, body), dim)
+        if group.elastic:
+            elastic += _elastic_bodies(scenario, group, placed, owner, sum(map(len, sets)))
         sets.append(_of_bodies(scenario, group, names, placed.position, owner))
         n = len(owner)
-        grain = np.full(n, -1) if group.fixed else first[name] + owner
+        grain = np.full(n, -1) if group.fixed or group.elastic else first[name] + owner
         tables.append((grain.astype(np.int32), np.ones(n, bool), placed.normal, placed.depth))
     particles = concatenate(sets, dim)
     empty = np.zeros(0, np.int32), np.zeros(0, bool), np.zeros((0, dim)), np.zeros(0)
     grain, shaped, normal, depth = (np.concatenate(c) for c in zip(empty, *tables, strict=True))
-    kept = groups if moves else []
     velocity, spin = _velocities(scenario, kept)
-    return Scene(particles, names, Bodies(kept, velocity, spin, grain, shaped, normal, depth))
+    bodies = Bodies(kept, velocity, spin, grain, shaped, normal, depth, elastic)
+    return Scene(particles, names, bodies)
+
+
+def _elastic_bodies(
+    scenario: Scenario, group: Group, placed: Particles, owner: np.ndarray, first: int
+) -> list[ElasticBody]:
+    """The deformable bodies of a group, whose particles are numbered from `first`."""
+    body = scenario.body[group.name]
+    clamped = np.zeros(len(owner), bool)
+    if body.clamped is not None:
+        clamped = field_of(scenario, group.name, "clamped", body.clamped, placed.position) > 0
+    made = []
+    for k in range(len(group)):
+        own = np.flatnonzero(owner == k)
+        volume = group.shapes[group.shape[k]].measure / len(own)
+        spacing = volume ** (1 / scenario.dim)
+        surface = placed.depth[own] < spacing
+        made.append(ElasticBody(group.name, first + own, spacing, clamped[own], surface))
+    return made
 
 
 def body_spacing(scenario: Scenario, body: ShapedBody) -> float:
@@ -164,17 +188,19 @@ def _of_bodies(
     body, n, dim = scenario.body[group.name], len(owner), scenario.dim
     rho0 = scenario.materials[group.material].rho0
     measure = np.array([shape.measure for shape in group.shapes])[group.shape]
+    wet = np.array([shape.wet_measure for shape in group.shapes])[group.shape]
     mass = (rho0 * measure / np.bincount(owner, minlength=len(group)))[owner]
-    density = np.full(n, rho0)
+    density = rho0 * (measure / wet)[owner]
     arm = position - group.centre[owner]
     spin = _spin(body)
     turning = np.cross(spin, np.pad(arm, ((0, 0), (0, 3 - dim))))[:, :dim]
+    where = position if group.elastic else group.centre[owner]
     return ParticleSet(
         position=wrapped(scenario, position),
-        velocity=_velocity(scenario, group.name, body, group.centre)[owner] + turning,
+        velocity=_velocity(scenario, group.name, body, where) + turning,
         mass=mass,
         density=density,
-        smoothing_length=smoothing_length(scenario, mass, density),
+        smoothing_length=np.full(n, scenario.eta * scenario.dp),
         material=np.full(n, scenario.material_names.index(group.material), np.int32),
         body=np.full(n, names.index(group.name), np.int32),
         motion=np.full(n, FIXED if group.fixed else BOUND, np.int32),

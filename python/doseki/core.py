@@ -24,6 +24,7 @@ __all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 FIRST_SKIN = 0.05
 # Of contacts while grains settle: restitution and steps at most.
 CALM, CALM_STEPS = 0.2, 12
+STRENGTH = ("shear_modulus", "yield_strength", "cohesion", "friction_angle")
 
 
 def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
@@ -72,7 +73,7 @@ def _wall_condition(body: Any) -> dict[str, Any]:
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
-    """Materials in the order of their indices, scaled by xi; mu = 0 where no stress is evolved."""
+    """Materials in the order of their indices, scaled by xi; no strength where none is evolved."""
     tables = []
     moving = _moving_materials(scenario)
     for name in scenario.material_names:
@@ -80,7 +81,7 @@ def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
         table = asdict(material.scaled(scenario.xi))
         table["young_modulus"], table["poisson_ratio"] = material.elasticity
         if not scenario.strength or name not in moving:
-            table["shear_modulus"] = 0.0
+            table |= dict.fromkeys(STRENGTH, 0.0)
         tables.append(table)
     return tables
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .elastic_bodies import ELASTIC_KEYS
+from .elastic_bodies import LEAST_ACROSS as LEAST_ELASTIC
 from .schema import Disc, Grains, LatticeBody, Mesh, ParticleFile, Points, Polygon
 from .schemes import RESOLVED
 
@@ -75,10 +77,8 @@ def _check_dimension(scenario: Scenario, name: str, body: Any) -> None:
 
 def _check_moving(scenario: Scenario, name: str, body: Any) -> None:
     keys = ("body", name, "kinematics")
-    if body.kinematics == "elastic":
-        raise scenario.where.error(
-            keys, f'body.{name}.kinematics = "elastic" does not exist yet; choose rigid or single'
-        )
+    if body.kinematics != "elastic":
+        _check_no_keys(scenario, name, body, ELASTIC_KEYS, 'only kinematics = "elastic" has it')
     if body.kinematics == "single" and not isinstance(body, Disc | Grains | Points):
         raise scenario.where.error(
             keys,
@@ -102,12 +102,16 @@ def _check_moving(scenario: Scenario, name: str, body: Any) -> None:
 
 
 def _check_not_moving(scenario: Scenario, name: str, body: Any) -> None:
-    for key in ("kinematics", "spin", "settle"):
-        if getattr(body, key, None):
-            raise scenario.where.error(
-                ("body", name, key),
-                f"body.{name}.{key}: only solids of the resolved scheme that are not fixed have it",
-            )
+    why = "only solids of the resolved scheme that are not fixed have it"
+    _check_no_keys(scenario, name, body, ("kinematics", "spin", "settle", *ELASTIC_KEYS), why)
+
+
+def _check_no_keys(
+    scenario: Scenario, name: str, body: Any, keys: tuple[str, ...], why: str
+) -> None:
+    for key in keys:
+        if getattr(body, key, None) not in (None, False):
+            raise scenario.where.error(("body", name, key), f"body.{name}.{key}: {why}")
 
 
 def resolution_warnings(scenario: Scenario, groups: list[Group]) -> Iterator[str]:
@@ -117,9 +121,26 @@ def resolution_warnings(scenario: Scenario, groups: list[Group]) -> Iterator[str
             continue
         spacing = getattr(scenario.body[group.name], "dp", None) or scenario.dp
         across = min(shape.width for shape in group.shapes) / spacing
-        if across < LEAST_ACROSS - 1e-6:
+        if group.elastic:
+            yield from _elastic_warnings(scenario, group.name, across)
+        elif across < LEAST_ACROSS - 1e-6:
             yield (
                 f"{group.name}: {across:.2g} particles across its bodies; below {LEAST_ACROSS} the "
                 f"flow around them is not resolved: dp = {across * spacing / LEAST_ACROSS:.2g} "
                 'would do, or kinematics = "single"'
             )
+
+
+def _elastic_warnings(scenario: Scenario, name: str, across: float) -> Iterator[str]:
+    """As resolution_warnings; raises UserError for a body that its particles do not span."""
+    if across < LEAST_ELASTIC - 1e-6:
+        raise scenario.where.error(
+            ("body", name),
+            f"body.{name}: {across:.2g} particles across an elastic body; it needs at least "
+            f"{LEAST_ELASTIC}: make dp smaller",
+        )
+    if across < LEAST_ACROSS - 1e-6:
+        yield (
+            f"{name}: {across:.2g} particles across an elastic body; below {LEAST_ACROSS} it bends "
+            "by a tenth too easily or more: make dp smaller"
+        )

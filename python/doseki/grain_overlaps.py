@@ -36,13 +36,19 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     blocks = [block for group in groups for block in _blocks(group, scenario.dim)]
     allowed = scenario.contact.overlap
     for name, other, overlap, size in _overlaps(balls, blocks):
-        if overlap > allowed * size:
+        if overlap > allowed * size and not _is_held_by(scenario, name, other):
             whom = "another of its own" if name == other else other
             raise scenario.where.error(
                 ("body", name),
                 f"body.{name}: a body of it overlaps {whom} by {overlap:.3g} m at the start; "
                 f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m",
             )
+
+
+def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
+    """Whether a body is clamped and may therefore lie in what holds it."""
+    body, holder = scenario.body.get(name), scenario.body.get(other)
+    return getattr(body, "clamped", None) is not None and getattr(holder, "fixed", False)
 
 
 Overlap = tuple[str, str, float, float]  # of a body that moves, with, by m, its size in m

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .elastic_bodies import is_elastic
 from .lattice import rotated
 from .packing import PackingError, pack, solid_fraction
 from .particles import FIXED, ParticleSet
@@ -35,6 +36,7 @@ class Group:
     material: str
     fixed: bool = False
     single: bool = False  # one particle each
+    elastic: bool = False  # deformable
 
     def __len__(self) -> int:
         return len(self.centre)
@@ -68,7 +70,8 @@ def build_group(scenario: Scenario, name: str) -> Group:
         Mesh: _mesh,
         Points: _points,
     }
-    return replace(build[type(body)](scenario, name, body), single=is_single(body))
+    group = build[type(body)](scenario, name, body)
+    return replace(group, single=is_single(body), elastic=is_elastic(body))
 
 
 def _group(body: ShapedBody, name: str, shape: Shape, centre: np.ndarray, **other: Any) -> Group:
@@ -171,7 +174,7 @@ def _packed(scenario: Scenario, name: str, body: Grains) -> Group:
         raise _unreachable(scenario, name, fraction, error.reached, len(kind), "reached") from None
     pivot = body.min if body.pivot is None else body.pivot
     centre = rotated(centre, body.rotate, pivot, body.rotate_axis)
-    shapes: list[Shape] = [Ball(0.5 * d, scenario.dim) for d in diameters]
+    shapes: list[Shape] = [Ball(0.5 * d, scenario.dim, body.wetted) for d in diameters]
     upright = np.tile(UPRIGHT, (len(kind), 1))
     return Group(name, shapes, kind.astype(np.int32), centre, upright, body.material, body.fixed)
 
@@ -215,7 +218,7 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
     owners: list[np.ndarray] = []
     turns = matrices(group.orientation, dim)
     for k, shape in enumerate(group.shapes):
-        own = shape.single() if group.single else shape.particles(spacing)
+        own = _own_particles(group, shape, spacing)
         which = np.flatnonzero(group.shape == k)
         turned = np.einsum("nab,pb->npa", turns[which], own.position)
         normal = np.einsum("nab,pb->npa", turns[which], own.normal)
@@ -227,6 +230,15 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
     order = np.argsort(owner, kind="stable")
     joined = [np.concatenate(arrays)[order] for arrays in zip(*parts, strict=True)]
     return Particles(*joined), owner[order]
+
+
+def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
+    """The particles of one body in its frame."""
+    if group.single:
+        return shape.single()
+    if group.elastic and isinstance(shape, Ball) and shape.dim == 2:
+        return shape.hexagonal(spacing)
+    return shape.particles(spacing)
 
 
 def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 LAWS = ("fluid", "solid")
+HERSCHEL_BULKLEY, MU_I = "herschel_bulkley", "mu_i"
+RHEOLOGIES = ("newtonian", HERSCHEL_BULKLEY, MU_I)
 LIMIT = 1e15  # of any parameter, in SI units: beyond it is a slip of the keyboard
 
 
@@ -23,6 +25,21 @@ class MaterialParameter:
     most: float | None = None
     default: float | None = None
     optional: bool = False  # else a new material must give what has no default
+    law: str | None = None  # the only one it belongs to
+    rheologies: tuple[str, ...] = ()  # those it belongs to; none: any
+
+
+def _strength(name: str, unit: str, doc: str, below: float = LIMIT) -> MaterialParameter:
+    return MaterialParameter(name, unit, doc, least=0.0, below=below, default=0.0, law="solid")
+
+
+def _rheology(
+    name: str, unit: str, doc: str, *rheologies: str, default: float = 0.0
+) -> MaterialParameter:
+    doc += f" ({', '.join(rheologies)})"
+    return MaterialParameter(
+        name, unit, doc, least=0.0, default=default, law="fluid", rheologies=rheologies
+    )
 
 
 MATERIAL_PARAMETERS = (
@@ -30,6 +47,19 @@ MATERIAL_PARAMETERS = (
     MaterialParameter("speedsound", "m/s", "sound speed at the reference density", above=0.0),
     MaterialParameter("shear_modulus", "Pa", "shear modulus (solids)", least=0.0, default=0.0),
     MaterialParameter("nu", "m2/s", "kinematic viscosity (fluids)", least=0.0, default=0.0),
+    _strength("yield_strength", "Pa", "yield strength of von Mises; 0: none (solids)"),
+    _strength("cohesion", "Pa", "cohesion of Drucker and Prager (solids)"),
+    _strength("friction_angle", "degrees", "angle of friction of Drucker and Prager (solids)", 90),
+    _rheology("yield_stress", "Pa", "yield stress", HERSCHEL_BULKLEY),
+    _rheology("consistency", "Pa s^n", "consistency", HERSCHEL_BULKLEY),
+    _rheology("flow_index", "", "flow index", HERSCHEL_BULKLEY, default=1.0),
+    _rheology("regularisation", "s", "Papanastasiou's regularisation", HERSCHEL_BULKLEY),
+    _rheology("mu_s", "", "static coefficient of friction", MU_I),
+    _rheology("mu_2", "", "limiting coefficient of friction", MU_I),
+    _rheology("inertial_number", "", "reference inertial number", MU_I),
+    _rheology("grain_diameter", "m", "diameter of the grains", MU_I),
+    _rheology("grain_density", "kg/m3", "density of the grains", MU_I),
+    _rheology("viscosity_max", "Pa s", "greatest viscosity", HERSCHEL_BULKLEY, MU_I),
     # Of bodies that touch.  Of a pair, the means of restitution and of the frictions count.
     MaterialParameter(
         "restitution",
@@ -65,7 +95,9 @@ class Material:
     """A material with the values of the laboratory, not yet scaled by xi.
 
     `law` says how stress follows from motion: "fluid" (viscous, eqs. 6-7) or "solid" (elastic,
-    eqs. 3-5).  The numbers are those of MATERIAL_PARAMETERS, in their units.
+    eqs. 3-5, within a yield surface, eqs. 61-63).  `rheology` says how the viscosity of a fluid
+    follows from the rate of strain (eqs. 64-65).  The numbers are those of MATERIAL_PARAMETERS, in
+    their units.
     """
 
     name: str
@@ -79,6 +111,20 @@ class Material:
     rolling_friction: float = _DEFAULT["rolling_friction"]
     young_modulus: float | None = None
     poisson_ratio: float | None = None
+    yield_strength: float = 0.0
+    cohesion: float = 0.0
+    friction_angle: float = 0.0
+    yield_stress: float = 0.0
+    consistency: float = 0.0
+    flow_index: float = 1.0
+    regularisation: float = 0.0
+    mu_s: float = 0.0
+    mu_2: float = 0.0
+    inertial_number: float = 0.0
+    grain_diameter: float = 0.0
+    grain_density: float = 0.0
+    viscosity_max: float = 0.0
+    rheology: str = "newtonian"
 
     @property
     def elasticity(self) -> tuple[float, float]:
@@ -95,7 +141,10 @@ class Material:
         return (3 * bulk * (1 - 2 * ratio) if modulus is None else modulus), ratio
 
     def scaled(self, xi: float) -> Material:
-        """The material of a run with reduced sound speed: c0 -> xi c0, mu -> xi^2 mu (eq. 19)."""
+        """The material of a run with reduced sound speed: c0 -> xi c0, mu -> xi^2 mu (eq. 19).
+
+        Strengths stay: they stand against gravity, which is not reduced.
+        """
         return replace(
             self, speedsound=xi * self.speedsound, shear_modulus=xi**2 * self.shear_modulus
         )
@@ -149,8 +198,8 @@ def _complete(
 def _over(base: Material | None, name: str, table: Mapping[str, Any]) -> Material:
     """The values of `table` laid over `base`, or over the defaults when there is no base."""
     if base is not None:
-        return replace(base, name=name, **table)
-    values = _DEFAULT | {"law": None} | dict(table)
+        return _checked(replace(base, name=name, **table))
+    values = _DEFAULT | {"law": None, "rheology": "newtonian"} | dict(table)
     optional = {p.name for p in MATERIAL_PARAMETERS if p.optional}
     missing = [key for key, value in values.items() if value is None and key not in optional]
     if missing:
@@ -158,4 +207,41 @@ def _over(base: Material | None, name: str, table: Mapping[str, Any]) -> Materia
             name,
             f"a new material needs {', '.join(sorted(missing))}, or based_on = a known material",
         )
-    return Material(name=name, **values)
+    return _checked(Material(name=name, **values))
+
+
+# What each rheology cannot do without.
+_NEEDED = {
+    HERSCHEL_BULKLEY: ("consistency", "regularisation", "flow_index", "viscosity_max"),
+    MU_I: ("mu_s", "inertial_number", "grain_diameter", "grain_density", "viscosity_max"),
+    "newtonian": (),
+}
+
+
+def _checked(material: Material) -> Material:
+    """The material, if its numbers fit together and none of them would be left unused."""
+
+    def refuse(message: str) -> None:
+        raise MaterialError(material.name, message)
+
+    if material.law == "solid" and material.rheology != "newtonian":
+        refuse(f'rheology = "{material.rheology}" is for fluids; this material is a solid')
+    for parameter in MATERIAL_PARAMETERS:
+        if getattr(material, parameter.name) in (parameter.default, None):
+            continue
+        if parameter.law not in (None, material.law):
+            refuse(f"{parameter.name} is for {parameter.law}s; this material is a {material.law}")
+        if parameter.rheologies and material.rheology not in parameter.rheologies:
+            allowed = " or ".join(f'"{rheology}"' for rheology in parameter.rheologies)
+            refuse(
+                f"{parameter.name} is for rheology = {allowed}; "
+                f'this material is "{material.rheology}"'
+            )
+    for name in _NEEDED[material.rheology]:
+        if getattr(material, name) <= 0:
+            refuse(f'rheology = "{material.rheology}" needs {name}, greater than 0')
+    if material.mu_2 < material.mu_s:
+        refuse(f"mu_2 = {material.mu_2:g} must be at least mu_s = {material.mu_s:g}")
+    if material.yield_strength > 0 and (material.cohesion > 0 or material.friction_angle > 0):
+        refuse("yield_strength excludes cohesion and friction_angle: give one or the others")
+    return material

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from .elastic_bodies import ElasticBody, add_elastic_bodies
 from .fields import GRAIN_FIELDS
 from .grains import Group
 from .scenario import Scenario
@@ -27,6 +28,7 @@ class Bodies:
     shaped: np.ndarray  # (N,) bool
     normal: np.ndarray  # (N, dim)
     depth: np.ndarray  # (N,)
+    elastic: list[ElasticBody] = field(default_factory=list)  # deformable ones, not in `groups`
 
     def __len__(self) -> int:
         return sum(len(group) for group in self.groups)
@@ -71,6 +73,7 @@ def add_bodies(simulation: Any, scenario: Scenario, bodies: Bodies, names: list[
         simulation.add_shapes(shapes)
         simulation.add_rigid_bodies(table)
         simulation.bind_points(np.ascontiguousarray(bodies.grain, np.int32))
+    add_elastic_bodies(simulation, scenario, bodies.elastic)
 
 
 def grain_table(simulation: Any) -> dict[str, np.ndarray]:

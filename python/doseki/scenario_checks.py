@@ -28,9 +28,8 @@ def check_scenario(scenario: Scenario) -> None:
     _check_periodic(scenario)
     if scenario.scheme == "resolved":
         _check_resolved(scenario)
-    elif scenario.kernel != "wendland_c6":
-        message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
-        raise scenario.where.error(("kernel",), message)
+    else:
+        _check_ueta2022(scenario)
     check_grains(scenario)
     check_motions(scenario)
     check_gauges(scenario)
@@ -110,6 +109,21 @@ def _check_periodic(scenario: Scenario) -> None:
             raise scenario.where.error(("periodic",), f'periodic: a 2-D run has no axis "{axis}"')
         if scenario.domain_min is None or scenario.domain_max is None:
             raise scenario.where.error(("periodic",), "periodic needs domain_min and domain_max")
+
+
+def _check_ueta2022(scenario: Scenario) -> None:
+    """What the scheme of the paper does not have."""
+    if scenario.kernel != "wendland_c6":
+        message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
+        raise scenario.where.error(("kernel",), message)
+    for name in (part.material for part in [*scenario.body.values(), *scenario.inflow.values()]):
+        rheology = scenario.materials[name].rheology if name else "newtonian"
+        if rheology != "newtonian":
+            raise scenario.where.error(
+                ("material", name, "rheology"),
+                f'material.{name}.rheology = "{rheology}": the scheme ueta2022 has newtonian '
+                'fluids alone; use scheme = "resolved"',
+            )
 
 
 def _check_resolved(scenario: Scenario) -> None:

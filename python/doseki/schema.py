@@ -16,7 +16,7 @@ from pydantic import (
     model_validator,
 )
 
-from .materials import LAWS, MATERIAL_PARAMETERS, MaterialParameter
+from .materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
 from .value_types import (
     Axis,
     Corner,
@@ -97,6 +97,10 @@ MaterialTable = create_model(
     "MaterialTable",
     __base__=Table,
     law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    rheology=(
+        Literal[RHEOLOGIES] | None,
+        Field(None, description="how a fluid's viscosity follows"),
+    ),
     based_on=(str | None, Field(None, description="material that supplies what is not given")),
     **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},
 )
@@ -152,6 +156,18 @@ class ShapedBody(Part):
         None,
         description="free solids of the resolved scheme: rigid (the default), elastic, or single: "
         "one particle per grain",
+    )
+    clamped: ScalarField | None = Field(
+        None, description="elastic: points do not move where this expression of x, y, z is above 0"
+    )
+    elastic_law: Literal["st_venant_kirchhoff", "neo_hookean"] | None = Field(
+        None, description="elastic: law of stress; default st_venant_kirchhoff"
+    )
+    damping: float | None = Field(
+        None, ge=0, le=1, description="elastic: viscosity over rho0 c_P dp; default 0.02"
+    )
+    hourglass: float | None = Field(
+        None, ge=0, le=1, description="elastic: springs over the shear modulus; default 0.5"
     )
     spin: float | Vector | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
@@ -234,6 +250,13 @@ class Grains(TurnedBody):
         lt=1,
         description="solid fraction; with count or mass_total the box is filled up to a level, and "
         "without packing evenly all over (default 0.75, in 3-D 0.55)",
+    )
+    wetted: float = Field(
+        1.0,
+        gt=0.3,
+        le=1,
+        description="diameter that water sees over the true one; below 1 in 2-D, where discs that "
+        "touch would leave water no way between them",
     )
     random_seed: int = Field(1, ge=0, description="of the packing")
     settle: bool | Positive = Field(

@@ -33,15 +33,21 @@ class Particles(NamedTuple):
 
 @dataclass(frozen=True)
 class Ball:
-    """A disc (dim = 2) or sphere (dim = 3)."""
+    """A disc (dim = 2) or sphere (dim = 3); fluid meets it at `wetted` times its radius."""
 
     radius: float
     dim: int
+    wetted: float = 1.0
 
     @property
     def measure(self) -> float:
         """Area, m2, or volume, m3."""
         return ball_measure(self.radius, self.dim)
+
+    @property
+    def wet_measure(self) -> float:
+        """Area or volume that fluid cannot enter."""
+        return ball_measure(self.wetted * self.radius, self.dim)
 
     @property
     def inertia(self) -> np.ndarray:
@@ -61,11 +67,12 @@ class Ball:
 
     def particles(self, dp: float) -> Particles:
         """Concentric rings or shells dp apart, the outermost dp/2 below the surface."""
-        outermost = self.radius - 0.5 * dp
+        radius = self.radius * self.wetted
+        outermost = radius - 0.5 * dp
         if outermost < 0.25 * dp:
             return self.single()
         radii = _ring_radii(outermost, dp)
-        edges = np.append(0.5 * (radii[1:] + radii[:-1]), self.radius)
+        edges = np.append(0.5 * (radii[1:] + radii[:-1]), radius)
         shares = np.diff([0.0, *(ball_measure(r, self.dim) for r in edges)]) / dp**self.dim
         rings = [
             r * _directions(max(1, round(share)), self.dim, k * GOLDEN)
@@ -74,16 +81,33 @@ class Ball:
         position = np.concatenate(rings)
         distance = np.linalg.norm(position, axis=1)
         normal = position / np.maximum(distance, 1e-300)[:, None]
+        return Particles(position, normal, radius - distance)
+
+    def hexagonal(self, dp: float) -> Particles:
+        """A disc of rings of 6, 12, 18 ... particles around one, a hexagonal lattice that is bent.
+
+        Neighbours lie alike everywhere, and any two such discs meet point to point along x.
+        """
+        number = max(1, round(self.radius / dp))
+        step = self.radius / (number + 0.5)
+        angles = [2 * np.pi * np.arange(6 * k) / (6 * k) for k in range(1, number + 1)]
+        rings = [
+            k * step * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            for k, angle in enumerate(angles, start=1)
+        ]
+        position = np.concatenate([np.zeros((1, 2)), *rings])
+        distance = np.linalg.norm(position, axis=1)
+        normal = position / np.maximum(distance, 1e-300)[:, None]
         return Particles(position, normal, self.radius - distance)
 
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""
-        return (position**2).sum(axis=1) < self.radius**2
+        return (position**2).sum(axis=1) < (self.wetted * self.radius) ** 2
 
     def single(self) -> Particles:
         """One particle in the centre."""
         zero = np.zeros((1, self.dim))
-        return Particles(zero, zero.copy(), np.array([self.radius]))
+        return Particles(zero, zero.copy(), np.array([self.wetted * self.radius]))
 
     def table(self, dp: float) -> dict[str, Any]:
         """The shape as the core reads it."""
@@ -123,6 +147,11 @@ class Convex:
     faces: np.ndarray  # (m, dim) int32
     measure: float
     inertia: np.ndarray  # (3, 3) over the mass, m2; 2-D: only [2, 2]
+
+    @property
+    def wet_measure(self) -> float:
+        """Area or volume that fluid cannot enter."""
+        return self.measure
 
     @property
     def dim(self) -> int:
