@@ -260,8 +260,9 @@ class Grains(TurnedBody):
     )
     random_seed: int = Field(1, ge=0, description="of the packing")
     settle: bool | Positive = Field(
-        False, description="settle dry under gravity before the start, between the sides of "
-        "the box: true, until at rest, or s"
+        False,
+        description="settle dry under gravity before the start, between the sides of "
+        "the box: true, until at rest, or s",
     )
 
     @model_validator(mode="after")

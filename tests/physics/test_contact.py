@@ -84,7 +84,8 @@ def test_friction_slides_at_its_limit_and_forgets_the_rest(physics):
 
 def test_without_pressure_there_is_no_friction(physics):
     force, stretch = spring(physics, [0.05, 0, 0], [0, 3.0, 0], limit=0.0)
-    assert np.all(force == 0) and np.all(stretch == 0)
+    assert np.all(force == 0)
+    assert np.all(stretch == 0)
 
 
 SQUARE = [[-2, -1], [2, -1], [2, -1], [2, 1], [2, 1], [-2, 1], [-2, 1], [-2, -1]]
