@@ -165,7 +165,8 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
     return {
         key: value
         for key, value in table.items()
-        if key in TOP_LEVEL_KEYS - WORDS and (not isinstance(value, dict | list) or _chooses(value) is not None)
+        if key in TOP_LEVEL_KEYS - WORDS
+        and (not isinstance(value, dict | list) or _chooses(value) is not None)
     }
 
 

@@ -84,9 +84,9 @@ def test_exact_solutions():
 
 
 def test_what_lies_apart_is_no_part_of_the_heap():
-    heap = np.stack([np.arange(5.0), np.zeros(5)], axis=1)
-    both = np.concatenate([heap + [20, 0], [[8.0, 0], [9.0, 0]], [[40.0, 3]]])
-    assert np.array_equal(estimators.largest_cluster(both, 1.1), heap + [20, 0])
+    heap, shift = np.stack([np.arange(5.0), np.zeros(5)], axis=1), np.array([20, 0])
+    both = np.concatenate([heap + shift, [[8.0, 0], [9.0, 0]], [[40.0, 3]]])
+    assert np.array_equal(estimators.largest_cluster(both, 1.1), heap + shift)
 
 
 def test_slope_of_a_heap_with_a_plateau():

@@ -88,7 +88,7 @@ SETTLING = Case(
             (within(0.1), within(0.05), within(0.05)),
             "5 % at 12 particles across",
             unit="m/s",
-            short="39 % too slow at 8 particles across: too much drag on a curved body in creeping flow",
+            short="39 % too slow at 8 particles across: too much drag in creeping flow",
         ),
     ),
     axes=("time (s)", "speed (m/s)"),
