@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .core import core_material
 from .core_modules import load_core
 from .errors import ResourceError
 from .materials import BUILT_IN
@@ -90,15 +91,17 @@ def make_simulation(case: Case) -> Any:
         raise ResourceError(f"{case.n} particles do not fit in the memory that is free")
     core = load_core(case.isa)
     core.set_threads(case.threads)
-    materials = [BUILT_IN[name].scaled(XI) for name in MATERIALS[case.scheme]]
+    materials = [core_material(BUILT_IN[name], XI) for name in MATERIALS[case.scheme]]
     prefix = "Resolved" if case.scheme == RESOLVED else ""
     kind = getattr(core, f"{prefix}Simulation{case.dim}{case.precision.capitalize()}")
-    simulation = kind([vars(material) for material in materials], _options(case))
+    simulation = kind(materials, _options(case))
 
     position = block(case.dim, case.n)
-    timestep = case.cflnumber * case.eta * DP / max(material.speedsound for material in materials)
+    timestep = (
+        case.cflnumber * case.eta * DP / max(material["speedsound"] for material in materials)
+    )
     index = (position[:, 0] > position[:, 0].mean()).astype(np.int32)
-    density = np.array([material.rho0 for material in materials])[index]
+    density = np.array([material["rho0"] for material in materials])[index]
     zeros = np.zeros(case.n, np.int32)
     simulation.add_particles(
         position=position,

@@ -11,6 +11,7 @@ import numpy as np
 from .bodies import build_scene
 from .core_modules import available_instruction_sets, load_core
 from .inflows import InflowSection, build_inflows
+from .materials import Material
 from .motions import wall_motions
 from .rigid_bodies import add_bodies
 from .scenario import Scenario, min_sound_speed
@@ -72,14 +73,19 @@ def _wall_condition(body: Any) -> dict[str, Any]:
     return {"stick": wall == "no_slip", "ks": body.ks if wall == "rough" else 0.0}
 
 
+def core_material(material: Material, xi: float) -> dict[str, Any]:
+    """A material as the core reads it, scaled by xi but for what contacts have."""
+    table = asdict(material.scaled(xi))
+    table["young_modulus"], table["poisson_ratio"] = material.elasticity
+    return table
+
+
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
     """Materials in the order of their indices, scaled by xi; no strength where none is evolved."""
     tables = []
     moving = _moving_materials(scenario)
     for name in scenario.material_names:
-        material = scenario.materials[name]
-        table = asdict(material.scaled(scenario.xi))
-        table["young_modulus"], table["poisson_ratio"] = material.elasticity
+        table = core_material(scenario.materials[name], scenario.xi)
         if not scenario.strength or name not in moving:
             table |= dict.fromkeys(STRENGTH, 0.0)
         tables.append(table)

@@ -238,7 +238,7 @@ STRONG = Case(
     name="elastic-plate-wide",
     title="Twenty wide swings of a clamped plate",
     across="H/dp",
-    resolutions=(5, 10),
+    resolutions=(5, 10, 20),
     run=strong_swing,
     criteria=(
         Criterion(PERIOD, (within(0.06), within(0.03)), "the clamp's half spacing, and bending"),
@@ -252,7 +252,7 @@ BEAM = Case(
     name="elastic-beam",
     title="CSM3: an elastic beam behind a cylinder",
     across="H/dp",
-    resolutions=(10, 20),
+    resolutions=(10, 20, 40),
     run=beam,
     criteria=(
         Criterion(
@@ -292,7 +292,7 @@ BRAZILIAN = Case(
     name="brazilian-disc",
     title="An elastic disc is squeezed between two plates",
     across="d/dp",
-    resolutions=(20, 40),
+    resolutions=(20, 40, 80),
     run=squeezed,
     criteria=(
         Criterion(

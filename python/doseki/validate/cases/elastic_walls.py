@@ -68,7 +68,7 @@ PLATE = Case(
     name="hydrostatic-plate",
     title="Water stands on an elastic plate",
     across="layers",
-    resolutions=(5, 10),
+    resolutions=(5, 10, 20),
     run=loaded_plate,
     criteria=(
         Criterion(
@@ -85,7 +85,7 @@ GATE = Case(
     name="elastic-gate",
     title="Water pushes an elastic gate open",
     across="layers",
-    resolutions=(3, 5),
+    resolutions=(3, 5, 10),
     run=gate,
     criteria=(
         Criterion(
