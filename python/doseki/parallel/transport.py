@@ -5,7 +5,9 @@ Arrays that come in are the core's own memory: nothing is copied on the way to M
 
 from __future__ import annotations
 
+import os
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -28,20 +30,22 @@ class Transport:
         self._comm = comm
         self._pending: list[Any] = []
         self._swaps = 0
+        self._crowded = is_crowded(comm)
 
     def largest(self, values: np.ndarray) -> None:
         """The largest of each value over all ranks, in place."""
-        self._comm.Allreduce(MPI.IN_PLACE, values, MPI.MAX)
+        self._wait([self._comm.Iallreduce(MPI.IN_PLACE, values, MPI.MAX)])
 
     def sum(self, values: np.ndarray) -> None:
         """The sum of each value over all ranks, in place."""
-        self._comm.Allreduce(MPI.IN_PLACE, values, MPI.SUM)
+        self._wait([self._comm.Iallreduce(MPI.IN_PLACE, values, MPI.SUM)])
 
     def gather(self, part: np.ndarray) -> np.ndarray:
         """The parts of all ranks one after another."""
-        counts = self._comm.allgather(len(part))
-        everything = np.empty(sum(counts))
-        self._comm.Allgatherv(part, (everything, counts))
+        counts = np.empty(self.ranks, np.int64)
+        self._wait([self._comm.Iallgather(np.array([len(part)]), counts)])
+        everything = np.empty(counts.sum())
+        self._wait([self._comm.Iallgatherv(part, (everything, counts))])
         return everything
 
     def tell(self, text: str, root: int) -> str:
@@ -67,6 +71,8 @@ class Transport:
                 came[status.source] = content
             elif barrier is None and MPI.Request.Testall(sent):
                 barrier = comm.Ibarrier()
+            elif self._crowded:
+                os.sched_yield()
         return dict(sorted(came.items()))
 
     def wants_cuts(self, busy: float) -> bool:
@@ -109,5 +115,19 @@ class Transport:
 
     def finish(self) -> None:
         """Returns once everything that was started is done."""
-        MPI.Request.Waitall(self._pending)
+        self._wait(self._pending)
         self._pending.clear()
+
+    def _wait(self, requests: Sequence[Any]) -> None:
+        """Where ranks share cores, one that waits lets others work: MPI itself waits by looking."""
+        while self._crowded and not MPI.Request.Testall(requests):
+            os.sched_yield()
+        MPI.Request.Waitall(requests)
+
+
+def is_crowded(comm: Any) -> bool:
+    """Whether more ranks than cores are on this machine."""
+    neighbours = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    crowded = neighbours.size > len(os.sched_getaffinity(0))
+    neighbours.Free()
+    return crowded
