@@ -132,17 +132,18 @@ class ManyRanks(OneRank):
             if self.is_root:
                 say(text)
             sys.exit(exit_code)
-        say(f"rank {self.rank} failed: {text}")
-        if self._directory is not None:
-            at = self._simulation.core if self._simulation else None
-            RankFailure(
-                self.rank, text, at.time if at else 0.0, at.steps if at else 0
-            ).write(self._directory)
-        self.done()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        self._comm.Abort(exit_code)
+        try:
+            say(f"rank {self.rank} failed: {text}")
+            self._report(text)
+            self.done()
+        finally:
+            self._comm.Abort(exit_code)
         raise AssertionError("ranks go on after MPI_Abort")
+
+    def _report(self, text: str) -> None:
+        if self._directory is not None and self._simulation is not None:
+            core = self._simulation.core
+            RankFailure(self.rank, text, core.time, core.steps).write(self._directory)
 
     def _all_fail(self) -> bool:
         barrier = self._last_words.Ibarrier()
