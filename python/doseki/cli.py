@@ -315,6 +315,10 @@ def bench(
     scheme: Annotated[
         str | None, typer.Option(metavar="NAME", help="ueta2022 or resolved [ueta2022].")
     ] = None,
+    ranks: Annotated[
+        str | None,
+        typer.Option(metavar="R,...", help="Scaling over MPI ranks of this machine instead."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     append: Annotated[
         Path | None,
@@ -326,7 +330,15 @@ def bench(
 
     options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
     options |= {"--threads": threads, "--isa": isa, "--scheme": scheme}
-    bench_command(make_plan(options, quick), as_json, append)
+    plan = make_plan(options, quick)
+    if ranks is None:
+        bench_command(plan, as_json, append)
+        return
+    from .bench import counts_of
+    from .parallel.bench import bench_ranks
+
+    counts = counts_of("--ranks", ranks, 100_000)
+    bench_ranks(counts, plan.dims, plan.scheme, next(iter(plan.sizes), None), as_json)
 
 
 @app.command()
