@@ -23,14 +23,14 @@ def assert_same(found, ranks):
 
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_clouds_on_ranks_are_those_of_one(work, ranks):
-    assert_same(work("clouds", ranks, "multisection"), ranks)
+    assert_same(work("clouds_on_ranks", ranks, "multisection"), ranks)
 
 
 @pytest.mark.minutes
 def test_clouds_on_four_ranks(work):
-    assert_same(work("clouds", 4, "multisection"), 4)
+    assert_same(work("clouds_on_ranks", 4, "multisection"), 4)
 
 
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_clouds_cut_by_zoltan(open_mpi, ranks):
-    assert_same(open_mpi("clouds", ranks, "zoltan"), ranks)
+    assert_same(open_mpi("clouds_on_ranks", ranks, "zoltan"), ranks)
