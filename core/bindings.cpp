@@ -7,6 +7,7 @@ namespace nb = nanobind;
 using namespace doseki;
 
 void bind_resolved(nb::module_& m);
+void bind_elastic(nb::module_& m);
 void bind_physics(nb::module_& m);
 
 NB_MODULE(DOSEKI_MODULE, m) {
@@ -20,6 +21,7 @@ NB_MODULE(DOSEKI_MODULE, m) {
     bind_simulation<Rates<float, 2>>(m, "Simulation2Float");
     bind_simulation<Rates<float, 3>>(m, "Simulation3Float");
     bind_resolved(m);
+    bind_elastic(m);
     nb::module_ physics = m.def_submodule("physics", "Point functions, each on scalars and on packs.");
     bind_physics(physics);
 }

@@ -9,47 +9,17 @@
 #include <omp.h>
 
 #include <memory>
+#include <numbers>
 #include <numeric>
 
+#include "bound_arrays.hpp"
+#include "bound_elastic.hpp"
 #include "bound_exchange.hpp"
 #include "checkpoint.hpp"
 #include "pair_probe.hpp"
 #include "simulation.hpp"
 
 namespace doseki {
-
-namespace nb = nanobind;
-
-template <class T>
-using Array = nb::ndarray<nb::numpy, T>;
-template <class T>
-using Input = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
-
-/// New numpy array of n rows of the given shape.
-template <class T>
-struct Output {
-    explicit Output(std::vector<std::size_t> shape) : shape(std::move(shape)) {
-        data = new T[std::accumulate(this->shape.begin(), this->shape.end(), std::size_t{1}, std::multiplies<>())]();
-    }
-    Array<T> release() {
-        nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-        return Array<T>(data, shape.size(), shape.data(), owner);
-    }
-    std::vector<std::size_t> shape;
-    T* data;
-};
-
-using Column = std::vector<double>;
-
-template <class T>
-T get(const nb::dict& dict, const char* key) {
-    return nb::cast<T>(dict[key]);
-}
-
-template <class T>
-T get(const nb::dict& dict, const char* key, T otherwise) {
-    return dict.contains(key) ? get<T>(dict, key) : otherwise;
-}
 
 template <int D>
 Vec<double, D> vector(const nb::handle& sequence) {
@@ -60,9 +30,43 @@ Vec<double, D> vector(const nb::handle& sequence) {
     return v;
 }
 
+inline Surface surface(const nb::dict& d) {
+    const Surface usual;
+    return {get(d, "restitution", usual.restitution), get(d, "friction", usual.friction),
+            get(d, "rolling_friction", usual.rolling_friction), get(d, "young_modulus", usual.young_modulus),
+            get(d, "poisson_ratio", usual.poisson_ratio)};
+}
+
 inline Material material(const nb::dict& d) {
-    return {get<std::string>(d, "name"), get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid,
-            get<double>(d, "rho0"), get<double>(d, "speedsound"), get<double>(d, "shear_modulus"), get<double>(d, "nu")};
+    auto number = [&d](const char* key, double otherwise = 0.0) { return get<double>(d, key, otherwise); };
+    Material m;
+    m.name = get<std::string>(d, "name");
+    m.law = get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid;
+    m.rho0 = get<double>(d, "rho0"), m.c0 = get<double>(d, "speedsound");
+    m.shear_modulus = get<double>(d, "shear_modulus"), m.nu = get<double>(d, "nu");
+    m.yield_strength = number("yield_strength"), m.cohesion = number("cohesion");
+    m.friction_angle = number("friction_angle") * std::numbers::pi / 180.0;
+    const auto rheology = get<std::string>(d, "rheology", "newtonian");
+    m.rheology = rheology == "herschel_bulkley" ? Rheology::herschel_bulkley
+                 : rheology == "mu_i"           ? Rheology::mu_i
+                                                : Rheology::newtonian;
+    const double greatest = number("viscosity_max");
+    m.herschel_bulkley = {number("yield_stress"), number("consistency"), number("flow_index", 1.0),
+                          number("regularisation"), greatest};
+    m.mu_i = {number("mu_s"), number("mu_2"), number("inertial_number"), number("grain_diameter"),
+              number("grain_density"), greatest};
+    m.surface = surface(d);
+    return m;
+}
+
+inline ContactOptions contact_options(const nb::dict& d) {
+    ContactOptions o;
+    o.hertz = get<std::string>(d, "law") == "hertz";
+    o.softened = get<std::string>(d, "stiffness") == "softened";
+    o.overlap = get<double>(d, "overlap");
+    o.speed = get<double>(d, "speed");
+    o.steps = get<double>(d, "steps");
+    return o;
 }
 
 inline FlowOptions flow_options(const nb::dict& d) {
@@ -98,6 +102,7 @@ Options<D> options(const nb::dict& d) {
     const auto tension = get<std::string>(d, "tension");
     o.tension = tension == "free" ? Tension::free : tension == "clamp_all" ? Tension::clamp_all : Tension::clamp_fluid;
     o.h_mode = get<std::string>(d, "h_mode") == "eq10" ? SmoothingLengthMode::eq10 : SmoothingLengthMode::constant;
+    if (d.contains("contact")) o.contact = contact_options(nb::cast<nb::dict>(d["contact"]));
     if (d.contains("flow")) o.flow = flow_options(nb::cast<nb::dict>(d["flow"]));
     return o;
 }
@@ -156,6 +161,103 @@ public:
         }
     }
 
+    /// Balls {radius}, or convex shapes {vertices, faces, samples}, which bodies name by their index.
+    void add_shapes(const std::vector<nb::dict>& dicts) {
+        for (const nb::dict& d : dicts) {
+            Shape<D> shape;
+            if (d.contains("radius")) shape.radius = get<double>(d, "radius");
+            else read_facets(d, shape);
+            sim_.bodies.shapes.push_back(std::move(shape));
+        }
+    }
+
+    void add_rigid_bodies(const nb::dict& d) {
+        const auto shape = get<Input<std::int32_t>>(d, "shape"), material = get<Input<std::int32_t>>(d, "material"),
+                   named = get<Input<std::int32_t>>(d, "body");
+        const auto fixed = get<Input<bool>>(d, "fixed");
+        const auto centre = get<Input<double>>(d, "centre"), orientation = get<Input<double>>(d, "orientation"),
+                   velocity = get<Input<double>>(d, "velocity"), spin = get<Input<double>>(d, "spin"),
+                   mass = get<Input<double>>(d, "mass"), inertia = get<Input<double>>(d, "inertia");
+        const std::size_t n = shape.size();
+        if (centre.size() != n * D || velocity.size() != n * D || orientation.size() != 4 * n || spin.size() != 3 * n ||
+            inertia.size() != 9 * n || mass.size() != n || material.size() != n || named.size() != n || fixed.size() != n)
+            throw nb::value_error("arrays of bodies of unequal length");
+        for (std::size_t k = 0; k < n; ++k) {
+            RigidBody<D> body{shape.data()[k], material.data()[k], named.data()[k], fixed.data()[k], mass.data()[k], {}};
+            BodyState<D> state{};
+            Vec3 turn;
+            std::copy_n(inertia.data() + 9 * k, 9, body.inertia.element.begin());
+            std::copy_n(spin.data() + 3 * k, 3, turn.component.begin());
+            std::copy_n(centre.data() + D * k, D, state.centre.component.begin());
+            std::copy_n(velocity.data() + D * k, D, state.velocity.component.begin());
+            const double* q = orientation.data() + 4 * k;
+            state.orientation = {q[0], q[1], q[2], q[3]};
+            sim_.bodies.add(body, state, turn);
+        }
+    }
+
+    /// Index of its rigid body for each particle in the order in which they were added, or -1. Call after
+    /// set_walls.
+    void bind_points(Input<std::int32_t> body) {
+        auto& particles = sim_.particles;
+        if (body.size() != particles.size()) throw nb::value_error("one body, or -1, for each particle");
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            if (body.data()[p] >= 0) sim_.bodies.bind(particles, p, static_cast<std::size_t>(body.data()[p]));
+    }
+
+    /// A deformable body of particles that have been added: {material, rho0, young_modulus, poisson_ratio, law,
+    /// spacing, damping} and, for each of its particles, its number in the order of adding, whether it is clamped
+    /// and whether it is on the surface. Call after set_walls.
+    void add_elastic_body(const nb::dict& d) {
+        const auto members = get<Input<std::int32_t>>(d, "particles");
+        const auto clamped = get<Input<std::uint8_t>>(d, "clamped"), surface = get<Input<std::uint8_t>>(d, "surface");
+        if (clamped.size() != members.size() || surface.size() != members.size())
+            throw nb::value_error("arrays of an elastic body of unequal length");
+        if (!sim_.particles.has_flow) throw nb::value_error("the scheme has no bodies");
+        sim_.bodies.deformable.add(sim_.particles, elastic_body(d), get<std::int32_t>(d, "material"), {members.data(), members.size()},
+                                   {clamped.data(), clamped.size()}, {surface.data(), surface.size()});
+    }
+
+    /// The bodies, in the order in which they were added.
+    nb::dict grains() const {
+        const Bodies<D>& bodies = sim_.bodies;
+        const std::size_t n = bodies.size();
+        Output<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}), flow_force({n, D}),
+            contact_force({n, D}), mass({n}), radius({n}), overlap({n});
+        Output<std::int32_t> contacts({n}), named({n}), material({n});
+        Output<bool> fixed({n}), removed({n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const RigidBody<D>& body = bodies.body(k);
+            const BodyState<D>& state = bodies.state(k);
+            const Vec3 turn = bodies.spin(k);
+            std::copy_n(state.centre.component.begin(), D, centre.data + D * k);
+            std::copy_n(state.velocity.component.begin(), D, velocity.data + D * k);
+            std::copy_n(turn.component.begin(), 3, spin.data + 3 * k);
+            std::copy_n(state.flow_force.component.begin(), D, flow_force.data + D * k);
+            std::copy_n(bodies.contact_force(k).component.begin(), D, contact_force.data + D * k);
+            const double q[] = {state.orientation.w, state.orientation.x, state.orientation.y, state.orientation.z};
+            std::copy_n(q, 4, orientation.data + 4 * k);
+            mass.data[k] = body.mass, radius.data[k] = bodies.shapes[static_cast<std::size_t>(body.shape)].radius;
+            named.data[k] = body.body, material.data[k] = body.material, fixed.data[k] = body.fixed;
+            removed.data[k] = state.removed != 0.0;
+        }
+        bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
+            for (const std::int32_t k : {a, b}) {
+                if (static_cast<std::size_t>(k) >= n) continue;    // a deformable one
+                ++contacts.data[k];
+                overlap.data[k] = std::max(overlap.data[k], share);
+            }
+        });
+        nb::dict d;
+        d["centre"] = centre.release(), d["velocity"] = velocity.release(), d["spin"] = spin.release();
+        d["orientation"] = orientation.release(), d["flow_force"] = flow_force.release();
+        d["contact_force"] = contact_force.release(), d["mass"] = mass.release(), d["radius"] = radius.release();
+        d["contacts"] = contacts.release(), d["overlap"] = overlap.release(), d["body"] = named.release();
+        d["material"] = material.release(), d["fixed"] = fixed.release(), d["removed"] = removed.release();
+        d["worst_overlap"] = bodies.contacts().worst_overlap();
+        return d;
+    }
+
     void add_inflow(const nb::dict& d) {
         Inflow<D> inflow;
         for (const auto& row : nb::cast<std::vector<std::vector<double>>>(d["layer"])) {
@@ -203,6 +305,8 @@ public:
         exchange_ = std::make_unique<PythonExchange>(std::move(transport));
         sim_.join(*exchange_);
     }
+
+    bool has_bodies() const { return !sim_.bodies.empty(); }
 
     /// What this rank has spent beside its steps, what it has sent, how many particles it holds [s].
     nb::dict shares() const {
@@ -294,6 +398,7 @@ public:
             motion.data[k] = static_cast<std::int32_t>(tag.motion), id.data[k] = tag.id;
             fill_tensor(deviator.data + 9 * k, 0.0, particles.stress(p));
             fill_tensor(stress.data + 9 * k, eos.pressure, sim_.rates().deviator(particles, p));
+            if (const auto& bodies = sim_.bodies.deformable; bodies.has(particles, p)) bodies.stress(particles, p, stress.data + 9 * k);
         }
         nb::dict d;
         d["position"] = position.release(), d["velocity"] = velocity.release();
@@ -302,7 +407,7 @@ public:
         d["deviatoric_stress"] = deviator.release(), d["stress"] = stress.release();
         d["material"] = material.release(), d["body"] = body.release(), d["motion"] = motion.release();
         d["id"] = id.release();
-        if (particles.has_flow) add_flow_state(d, order);
+        if (particles.has_flow) add_flow_state(d, order), add_grain_numbers(d, order);
         return d;
     }
 
@@ -403,6 +508,12 @@ public:
 private:
     auto eos_of(std::size_t p) const { return sim_.rates().thermodynamics(sim_.particles, p); }
 
+    void add_grain_numbers(nb::dict& d, const std::vector<std::size_t>& order) const {
+        Output<std::int32_t> grain({order.size()});
+        for (std::size_t k = 0; k < order.size(); ++k) grain.data[k] = sim_.bodies.body_of(sim_.particles, order[k]);
+        d["grain"] = grain.release();
+    }
+
     /// Forces on walls, and the measure of the free surface, by id.
     void add_flow_state(nb::dict& d, const std::vector<std::size_t>& order) const {
         const auto& flow = sim_.particles.flow;
@@ -430,6 +541,23 @@ private:
             failure_ = {failure.kind, failure.particle};
             throw;
         }
+    }
+
+    static void read_facets(const nb::dict& d, Shape<D>& shape) {
+        const auto vertices = get<Input<double>>(d, "vertices"), samples = get<Input<double>>(d, "samples");
+        const auto faces = get<Input<std::int32_t>>(d, "faces");
+        auto row = [](const Input<double>& table, std::size_t k) {
+            Vec<double, D> x;
+            std::copy_n(table.data() + D * k, D, x.component.begin());
+            return x;
+        };
+        for (std::size_t f = 0; f < faces.size() / D; ++f) {
+            typename Shape<D>::Facet facet;
+            for (int a = 0; a < D; ++a) facet[a] = row(vertices, static_cast<std::size_t>(faces.data()[f * D + a]));
+            shape.facets.push_back(facet);
+        }
+        for (std::size_t k = 0; k < samples.size() / D; ++k) shape.samples.push_back(row(samples, k));
+        for (std::size_t k = 0; k < vertices.size() / D; ++k) shape.radius = std::max(shape.radius, norm(row(vertices, k)));
     }
 
     static std::vector<Material> make_materials(const std::vector<nb::dict>& dicts) {
@@ -468,6 +596,11 @@ void bind_simulation(nb::module_& m, const char* name) {
              nb::arg("mass"), nb::arg("density"), nb::arg("smoothing_length"), nb::arg("material"), nb::arg("body"),
              nb::arg("motion"), nb::arg("id"))
         .def("set_walls", &B::set_walls, nb::kw_only(), nb::arg("normal"), nb::arg("depth"))
+        .def("add_shapes", &B::add_shapes, nb::arg("shapes"))
+        .def("add_rigid_bodies", &B::add_rigid_bodies, nb::arg("bodies"))
+        .def("bind_points", &B::bind_points, nb::arg("body"))
+        .def("add_elastic_body", &B::add_elastic_body, nb::arg("body"))
+        .def("grains", &B::grains, "State of the rigid bodies, in the order in which they were added.")
         .def("add_inflow", &B::add_inflow)
         .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))
         .def("move_body", &B::move_body, "Give a fixed body a prescribed motion.")
@@ -481,6 +614,7 @@ void bind_simulation(nb::module_& m, const char* name) {
         .def("restore_shared", &B::restore_shared, nb::arg("arrays"),
              "restore() of a state that all ranks have read and that is to be divided among them.")
         .def("join", &B::join, nb::arg("transport"), "Become one of several ranks.")
+        .def_prop_ro("has_bodies", &B::has_bodies, "Whether bodies move on their own.")
         .def("shares", &B::shares, "Seconds by share, what was sent, particles and ghosts of this rank.")
         .def("neighbour_counts", &B::neighbour_counts, "How many others are within support of each particle.")
         .def_prop_ro("particle_arrays", &B::particle_arrays)

@@ -10,6 +10,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include "bodies/bodies.hpp"
 #include "particles.hpp"
 #include "records.hpp"
 
@@ -40,6 +41,17 @@ template <class T, int D>
 struct Numbers<StressRecord<T, D>> {
     using type = T;
     static constexpr std::size_t count = Sym<T, D>::size + 3;
+};
+
+template <int D>
+struct Numbers<BodyPoint<D>> {
+    using type = double;
+    static constexpr std::size_t count = sizeof(BodyPoint<D>) / sizeof(double);
+};
+template <int D>
+struct Numbers<BodyState<D>> {
+    using type = double;
+    static constexpr std::size_t count = sizeof(BodyState<D>) / sizeof(double);
 };
 
 /// Tags as one vector for each member: a Tag has padding, which is not state.

@@ -7,7 +7,8 @@
 namespace doseki {
 
 /// Totals over the particles. Mass, momentum and kinetic energy count free particles; elastic energy
-/// counts fixed ones as well, since a bed is compressed too. Driven particles have not entered yet.
+/// counts fixed ones as well, since a bed is compressed too. The kinetic energy of bodies is theirs to
+/// tell. Driven particles have not entered yet.
 template <int D>
 struct Totals {
     double mass = 0.0;
@@ -34,7 +35,7 @@ Totals<D> totals(const Particles<D>& particles, const Scheme& scheme) {
             sum.shear_energy += m * shear_energy(particles.deviatoric_stress[p], material.shear_modulus, rho);
         sum.mass += m;
         sum.momentum = sum.momentum + m * particles.velocity[p];
-        sum.kinetic_energy += 0.5 * m * dot(particles.velocity[p], particles.velocity[p]);
+        if (tag.motion != Motion::bound) sum.kinetic_energy += 0.5 * m * dot(particles.velocity[p], particles.velocity[p]);
         ++sum.count[tag.material];
     }
     return sum;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/vec.hpp"
 #include "rank_clock.hpp"
 
 namespace doseki {
@@ -69,7 +70,7 @@ public:
         exchange_->largest(values);
     }
     void sum(std::span<double> values) const {
-        if (alone()) return;
+        if (alone() || values.empty()) return;
         const auto timing = clock.measure(Share::wait);
         exchange_->sum(values);
     }
@@ -96,5 +97,12 @@ public:
 private:
     Exchange* exchange_ = nullptr;
 };
+
+/// Vectors as the numbers that they consist of.
+template <int D>
+std::span<double> numbers_of(std::vector<Vec<double, D>>& vectors) {
+    static_assert(sizeof(Vec<double, D>) == D * sizeof(double));
+    return {reinterpret_cast<double*>(vectors.data()), D * vectors.size()};
+}
 
 }  // namespace doseki

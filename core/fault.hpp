@@ -50,7 +50,7 @@ Fault traced_to_its_source(Fault fault, const Particles<D>& particles, const Mat
     if (fault.rank == Fault::none) return fault;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         if (!has_finite_state(particles, p)) fault.note(Fault::state, p);
-        if (particles.has_flow && particles.is_fixed(p)) continue;    // whose density means nothing
+        if (particles.has_flow && particles.is_wall(p)) continue;    // whose density means nothing
         fault.note_density(particles.density[p], materials[particles.tag[p].material].rho0, p);
     }
     return fault;

@@ -53,7 +53,8 @@ public:
     /// Finds the particles that other ranks need.
     void find_exports(std::span<const Vec<double, D>> position, std::span<const double> support,
                       std::span<const std::uint8_t> is_fixed, double skin);
-    bool is_exported(std::size_t p) const { return !exported_.empty() && exported_[p]; }
+    /// 1 for those, until announce(); empty on one rank.
+    std::span<const std::uint8_t> exported() const { return exported_; }
 
     /// Particle k is now what was particle order[k].
     void renumber(std::span<const std::uint32_t> order);

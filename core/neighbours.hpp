@@ -49,11 +49,11 @@ public:
     explicit Neighbours(const Domain<D>& domain) : domain_(domain) { fill_image_shifts(); }
 
     /// Order in which particles are to be stored: moving ones before fixed ones, and among each those that
-    /// are near other ranks last.
+    /// are near other ranks last; none are where `is_near` is empty.
     std::vector<std::uint32_t> sort(std::span<const Vec<double, D>> position,
                                     std::span<const double> support,
                                     std::span<const std::uint8_t> is_fixed,
-                                    std::span<const std::uint8_t> is_near);
+                                    std::span<const std::uint8_t> is_near = {});
 
     /// Order in which ghosts are to be stored after the particles: moving ones first. They are
     /// neighbours, and have none themselves.

@@ -109,7 +109,7 @@ std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> p
         throw ResourceFailure("more than 2^27 particles on one rank");
     Classes classes;
     for (std::uint32_t p = 0; p < position.size(); ++p)
-        classes[{is_fixed[p] != 0, is_near[p] != 0, std::ilogb(support[p])}].push_back(p);
+        classes[{is_fixed[p] != 0, !is_near.empty() && is_near[p] != 0, std::ilogb(support[p])}].push_back(p);
     grids_.clear();
     size_ = position.size(), moving_ = 0, inner_ = 0;
     for (const auto& [name, members] : classes) {

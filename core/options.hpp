@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "base/vec.hpp"
+#include "bodies/contacts.hpp"
 
 namespace doseki {
 
@@ -53,6 +54,7 @@ struct Options {
     Tension tension = Tension::clamp_fluid;
     SmoothingLengthMode h_mode = SmoothingLengthMode::constant;
     FlowOptions flow;
+    ContactOptions contact;
 };
 
 }  // namespace doseki

@@ -9,8 +9,9 @@
 namespace doseki {
 
 /// How a particle's position changes. Fixed particles give interactions but never move (the paper's
-/// slope); driven ones move with a prescribed velocity (the inflow buffer).
-enum class Motion : std::uint8_t { free, fixed, driven };
+/// slope); driven ones move with a prescribed velocity (the inflow buffer); bound ones are points of a
+/// body that moves as a whole.
+enum class Motion : std::uint8_t { free, fixed, driven, bound };
 
 /// What a particle is, in one machine word and a half.
 struct Tag {
@@ -39,11 +40,13 @@ struct Particles {
         std::vector<Vec<double, D>> shift;                // velocity relative to the fluid [m/s]
         std::vector<double> surface;                      // of the last step, see SurfaceMeasure
         std::vector<double> mixing_length;                // [m]
+        std::vector<double> mean_pressure;                // over a time, where friction depends on it [Pa]
         // Of wall particles:
         std::vector<Vec<double, D>> normal;        // into the fluid
         std::vector<double> wall_depth;            // below the surface of the wall [m]
         std::vector<Vec<double, D>> wall_force;    // of the fluid on it [N], 2-D: [N/m]
         std::vector<double> wall_pressure;         // of the fluid at its place [Pa]
+        std::vector<std::int32_t> point;           // of bound ones: index among the points of bodies
     } flow;
     bool has_flow = false;    // without, the arrays of `flow` stay empty
     std::vector<double> mass;                // [kg], 2-D: [kg/m]
@@ -63,8 +66,10 @@ struct Particles {
         if (has_flow) {
             f("pressure_gradient", flow.pressure_gradient), f("velocity_gradient", flow.velocity_gradient);
             f("shift", flow.shift), f("surface", flow.surface), f("mixing_length", flow.mixing_length);
+            f("mean_pressure", flow.mean_pressure);
             f("normal", flow.normal), f("wall_depth", flow.wall_depth);
             f("wall_force", flow.wall_force), f("wall_pressure", flow.wall_pressure);
+            f("point", flow.point);
         }
         f("mass", mass), f("smoothing_length", smoothing_length), f("tag", tag);
     }
@@ -97,6 +102,11 @@ struct Particles {
 
     bool is_free(std::size_t p) const { return tag[p].motion == Motion::free; }
     bool is_fixed(std::size_t p) const { return tag[p].motion == Motion::fixed; }
+    bool is_bound(std::size_t p) const { return tag[p].motion == Motion::bound; }
+    /// One that fluid meets as it meets a wall.
+    bool is_wall(std::size_t p) const { return is_fixed(p) || is_bound(p); }
+    /// One that is in the account of masses.
+    bool is_counted(std::size_t p) const { return is_free(p) || is_bound(p); }
 };
 
 }  // namespace doseki

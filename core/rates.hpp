@@ -17,12 +17,23 @@
 #include "physics/equation_of_state.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
+#include "physics/yield.hpp"
 #include "terms.hpp"
 
 namespace doseki {
 
 template <class real, int D>
 class PairProbe;
+
+/// Where a solid yields.
+template <int D>
+YieldSurface<double> yield_surface(const Material& material) {
+    if (material.law != Law::solid) return unyielding();
+    if (material.yield_strength > 0.0) return von_mises(material.yield_strength);
+    if (material.cohesion > 0.0 || material.friction_angle > 0.0)
+        return drucker_prager<D>(material.cohesion, material.friction_angle);
+    return unyielding();
+}
 
 /// Pressure and sound speed of a particle as its scheme sees them: Eqs. (8), (17) and the rule on
 /// tension.
@@ -55,7 +66,12 @@ public:
     static constexpr bool has_flow = false;
 
     Rates(std::vector<Material> materials, const Options<D>& options, bool periodic)
-        : materials_(std::move(materials)), options_(options), periodic_(periodic) {}
+        : materials_(std::move(materials)), options_(options), periodic_(periodic) {
+        for (const Material& material : materials_) {
+            surfaces_.push_back(yield_surface<D>(material));
+            yields_ |= std::isfinite(surfaces_.back().k);
+        }
+    }
 
     /// Fills the rates of `particles`, whose density, stress and velocity are half a step behind: the
     /// values predicted with the old rates over `half_dt` are what enters the sums. Two passes over
@@ -84,7 +100,18 @@ public:
     static constexpr double kernel_support() { return WendlandC6<D>::support; }
     Thermodynamics thermodynamics(const Particles<D>& particles, std::size_t p) const {
         const Tag& tag = particles.tag[p];
-        return equation_of_state(materials_[tag.material], particles.density[p], tag.motion, options_.tension);
+        return thermodynamics(tag, particles.density[p]);
+    }
+    /// Eq. (63) for every particle, at the end of a step.
+    void yield(Particles<D>& particles) const {
+        if (!yields_ || !particles.has_strength) return;
+#pragma omp parallel for schedule(static) if (particles.size() > light_loop)
+        for (std::size_t p = 0; p < particles.size(); ++p) {
+            const YieldSurface<double>& surface = surfaces_[static_cast<std::size_t>(particles.tag[p].material)];
+            if (particles.is_free(p) && std::isfinite(surface.k))
+                particles.deviatoric_stress[p] =
+                    return_map(particles.deviatoric_stress[p], thermodynamics(particles, p).pressure, surface);
+        }
     }
     double timestep() const { return timestep_; }
     /// Of the particles of this rank.
@@ -104,7 +131,7 @@ public:
         if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free || stress_.size() <= p) return tau;
         const StressRecord<real, D>& record = stress_[p];
         const double rho = static_cast<double>(record.rho);
-        const auto eos = equation_of_state(materials_[tag.material], rho, tag.motion, options_.tension);
+        const auto eos = thermodynamics(tag, rho);
         for (int a = 0; a < D; ++a)
             for (int b = a; b < D; ++b)
                 if (a < 2 || b < 2)
@@ -136,6 +163,12 @@ private:
         std::int64_t limiting = -1;
     };
 
+    /// With the tension cut of what yields, Eq. (62).
+    Thermodynamics thermodynamics(const Tag& tag, double rho) const {
+        auto state = equation_of_state(materials_[tag.material], rho, tag.motion, options_.tension);
+        state.pressure = tension_cut(surfaces_[tag.material], state.pressure);
+        return state;
+    }
     void pack_motion(Particles<D>& particles, const Halo<D>& halo, double half_dt);
     void agree_on_h(const Particles<D>& particles, const Ranks& ranks);
     double smoothing_length(const Particles<D>& particles, std::size_t p, double rho) const;
@@ -161,6 +194,8 @@ private:
     }
 
     std::vector<Material> materials_;
+    std::vector<YieldSurface<double>> surfaces_;    // by material
+    bool yields_ = false;                           // any of them
     Options<D> options_;
     bool periodic_;
     bool equal_h_ = true;
@@ -236,7 +271,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
     const double rho = particles.density[p] + half_dt * particles.density_rate[p];
     for (double& element : L.element) element /= rho;
 
-    const auto eos = equation_of_state(material, rho, tag.motion, options_.tension);
+    const auto eos = thermodynamics(tag, rho);
     summary_[p / lanes<real>].fault.note_density(rho, material.rho0, p);
     Deviator<double, D> stress{}, rate{};
     if (tag.motion == Motion::free) {
@@ -245,6 +280,7 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
         } else if (material.shear_modulus > 0.0) {
             stress = particles.deviatoric_stress[p];
             add_scaled(stress, half_dt, particles.deviatoric_stress_rate[p]);
+            if (yields_) stress = return_map(stress, eos.pressure, surfaces_[tag.material]);
             rate = elastic_stress_rate(L, stress, material.shear_modulus);
         }
     }

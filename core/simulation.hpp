@@ -5,6 +5,7 @@
 
 #include <omp.h>
 
+#include "bodies/bodies.hpp"
 #include "diagnostics.hpp"
 #include "domain.hpp"
 #include "halo.hpp"
@@ -24,8 +25,8 @@ public:
     static constexpr int width = lanes<typename Scheme::Real>;
 
     Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
-        : options_(options), domain_(domain), neighbours_(domain), halo_(domain),
-          rates_(std::move(materials), options, domain.any_periodic()) {
+        : bodies(domain, options.gravity, options.contact, surfaces_of(materials), memory_of(materials, options)), options_(options), domain_(domain),
+          neighbours_(domain), halo_(domain), rates_(std::move(materials), options, domain.any_periodic()) {
         particles.has_strength = false;
         particles.has_flow = Scheme::has_flow;
         for (const Material& material : rates_.materials()) {
@@ -37,6 +38,7 @@ public:
     Particles<D> particles;
     Sources<D> sources;
     Walls<D> walls;
+    Bodies<D> bodies;
 
     /// Makes this one of several ranks. Every call that steps or sorts is then made by all of them.
     void join(Exchange& exchange) {
@@ -54,10 +56,13 @@ public:
 
     /// Sorts, builds lists and takes the first rates. Call once, after the particles are in.
     void start() {
+        if (halo_.ranks.rank() > 0) particles.resize(0);    // was filled for the sake of bodies
         for (std::size_t p = 0; p < particles.size(); ++p)
-            if (particles.is_free(p)) sources.ledger.initial += particles.mass[p];
+            if (particles.is_counted(p)) sources.ledger.initial += particles.mass[p];
         walls.set_velocities(particles, time_);
         sources.feed(particles, time_);
+        bodies.start(particles);
+        bodies.set_velocities(particles, 0.0);
         rebuild_neighbours();
         first_rates();
     }
@@ -77,6 +82,7 @@ public:
         archive("moved", moved_), archive("skin_width", skin_width_), archive("skin", skin_), archive("rebuild_step", rebuild_step_), archive("least_timestep", least_timestep_);
         particles.serialise(archive);
         sources.serialise(archive);
+        bodies.serialise(archive);
         rates_.serialise(archive);
         neighbours_.serialise(archive);
         neighbours_.set_size(particles.size());
@@ -94,7 +100,7 @@ public:
 
     double time() const { return time_; }
     double last_timestep() const { return last_dt_; }
-    double next_timestep() const { return rates_.timestep(); }
+    double next_timestep() const { return min(rates_.timestep(), bodies.timestep()); }
     /// Of the particles of this rank, as are updates() and totals().
     double av_dissipation() const { return av_dissipation_; }
     std::int64_t steps() const { return steps_; }
@@ -109,12 +115,30 @@ public:
     /// Margin of the lists over the smallest support radius, as a fraction of it.
     double skin() const { return skin_; }
 
-    Totals<D> totals() const { return doseki::totals(particles, rates_); }
+    Totals<D> totals() const {
+        Totals<D> sum = doseki::totals(particles, rates_);
+        if (halo_.ranks.rank() > 0) return sum;    // every rank has all bodies
+        sum.kinetic_energy += bodies.kinetic_energy();
+        sum.shear_energy += bodies.deformable.elastic.strain_energy();
+        return sum;
+    }
 
     /// Bytes held per particle: state, records, lists.
     double bytes_per_particle() const;
 
 private:
+    static std::vector<Surface> surfaces_of(const std::vector<Material>& materials) {
+        std::vector<Surface> surfaces;
+        for (const Material& material : materials) surfaces.push_back(material.surface);
+        return surfaces;
+    }
+    /// Several times what sound takes from one particle to the next.
+    static double memory_of(const std::vector<Material>& materials, const Options<D>& options) {
+        double c = 0.0;
+        for (const Material& material : materials)
+            if (material.law == Law::fluid) c = max(c, material.c0);
+        return c > 0.0 ? 5.0 * options.flow.dp / c : 0.0;
+    }
     void step(double limit);
     void kick(double half_dt);
     double drift(double dt);
@@ -166,16 +190,19 @@ template <class Scheme>
 void Simulation<Scheme>::step(double limit) {
     const auto timing = halo_.ranks.clock.measure_total();
     const double before = time_, end = min(limit, next_event());
-    const double dt = min(rates_.timestep(), end - time_), old_power = rates_.av_power();
+    const double dt = min(next_timestep(), end - time_), old_power = rates_.av_power();
     kick(0.5 * dt);
     const double own_moved = drift(dt), moved = halo_.ranks.largest(own_moved);
     time_ = dt < end - time_ ? time_ + dt : end;
     if (moved > largest_mach * sound_speed_ * dt) report_failure("speed", own_moved < moved ? -1 : fastest_particle());
     walls.set_velocities(particles, time_);
+    bodies.set_velocities(particles, 0.5 * dt);
     sources.settle(particles, time_);
     update_neighbours(before, moved);
     update_rates(0.5 * dt);
     kick(0.5 * dt);
+    if constexpr (!Scheme::has_flow) rates_.yield(particles);
+    bodies.set_velocities(particles, 0.0);
     av_dissipation_ += 0.5 * dt * (old_power + rates_.av_power());
     last_dt_ = dt;
     ++steps_;
@@ -186,13 +213,15 @@ template <class Scheme>
 void Simulation<Scheme>::kick(double half_dt) {
     const auto timing = phases().measure(Phase::integrate);
     doseki::kick(particles, half_dt);
+    bodies.kick(half_dt);
 }
 
 template <class Scheme>
 double Simulation<Scheme>::drift(double dt) {
     const auto timing = phases().measure(Phase::integrate);
     sources.drive(particles, time_, dt);
-    return max(doseki::drift(particles, dt), walls.move(particles, time_, dt));
+    bodies.advance(walls, time_, dt);
+    return max(max(doseki::drift(particles, dt), walls.move(particles, time_, dt)), bodies.place(particles));
 }
 
 /// The next time that a step must meet exactly.
@@ -224,7 +253,7 @@ template <class Scheme>
 void Simulation<Scheme>::rebuild_neighbours() {
     check_positions();
     wrap_positions();
-    sources.drain(particles);
+    sources.drain(particles, bodies);
     cut_space();
     drop_removed();
     if (halo_.ranks.sum(static_cast<double>(particles.size())) == 0.0) throw PhysicsFailure("no particle is left in the domain", "empty", -1);
@@ -271,9 +300,7 @@ void Simulation<Scheme>::build_lists() {
     }
     {
         const auto timing = phases().measure(Phase::sort);
-        std::vector<std::uint8_t> near(particles.size());
-        for (std::size_t p = 0; p < near.size(); ++p) near[p] = halo_.is_exported(p);
-        const auto order = neighbours_.sort(particles.position, support, fixed, near);
+        const auto order = neighbours_.sort(particles.position, support, fixed, halo_.exported());
         particles.reorder(order);
         halo_.renumber(order);
     }
@@ -304,7 +331,7 @@ void Simulation<Scheme>::build_lists_with_ghosts() {
 template <class Scheme>
 std::vector<std::uint8_t> Simulation<Scheme>::fixed_ones() const {
     std::vector<std::uint8_t> fixed(particles.size());
-    for (std::size_t p = 0; p < particles.size(); ++p) fixed[p] = particles.is_fixed(p);
+    for (std::size_t p = 0; p < particles.size(); ++p) fixed[p] = particles.is_wall(p);
     return fixed;
 }
 
@@ -345,6 +372,7 @@ template <class Scheme>
 void Simulation<Scheme>::update_rates(double half_dt) {
     rates_.compute(particles, neighbours_, halo_, half_dt, new_lists_);
     new_lists_ = false;
+    bodies.gather(particles, halo_.ranks);
     if (const Fault& fault = rates_.fault(); fault.rank != Fault::none)
         report_failure(fault.rank == Fault::density ? "density" : "not_finite", fault.particle);
     if (rates_.timestep() < least_timestep_ && halo_.ranks.largest(static_cast<double>(rates_.limiting_particle())) >= 0.0)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "particles.hpp"
 #include "speed_table.hpp"
 
@@ -107,8 +108,8 @@ public:
         set_speeds(particles, [t](const SpeedTable& table) { return table.speed_at(t); });
     }
 
-    /// Free particles inside an outflow, to be dropped at the next sort.
-    void drain(const Particles<D>& particles);
+    /// Free particles, and bodies whose centre is, inside an outflow, to be dropped at the next sort.
+    void drain(const Particles<D>& particles, Bodies<D>& bodies);
 
     std::vector<std::uint8_t> removed;
 
@@ -207,8 +208,9 @@ bool Sources<D>::feed(Particles<D>& particles, double t) {
 }
 
 template <int D>
-void Sources<D>::drain(const Particles<D>& particles) {
+void Sources<D>::drain(const Particles<D>& particles, Bodies<D>& bodies) {
     removed.resize(particles.size(), 0);
+    for (const Outflow<D>& outflow : outflows) ledger.left += bodies.drain(particles, outflow, removed);
     for (std::size_t p = 0; p < particles.size(); ++p)
         for (const Outflow<D>& outflow : outflows)
             if (!removed[p] && particles.is_free(p) && outflow.contains(particles.position[p])) {

@@ -23,6 +23,12 @@ struct WallMotion {
 
     bool moves(double t) const { return start <= t && t < stop; }
 
+    Vec<double, 3> spin_at(double t) const {
+        Vec<double, 3> w;
+        if (moves(t)) w.component = spin;
+        return w;
+    }
+
     Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
         if (!moves(t)) return {};
         return velocity + cross_spin(x - pivot_at(t));
@@ -123,6 +129,12 @@ public:
         return true;
     }
 
+    /// Null for a body that stands still.
+    const WallMotion<D>* motion_of(std::int32_t named) const {
+        const auto body = static_cast<std::size_t>(named);
+        return body < of_body_.size() && of_body_[body] >= 0 ? &motions_[static_cast<std::size_t>(of_body_[body])] : nullptr;
+    }
+
 private:
     static bool vanishes(const WallMotion<D>& motion, double before, double t) {
         return before < motion.removed_at && motion.removed_at <= t;
@@ -134,10 +146,7 @@ private:
     }
 
     const WallMotion<D>* motion_of(const Tag& tag) const {
-        const auto body = static_cast<std::size_t>(tag.body);
-        if (tag.motion != Motion::fixed || body >= of_body_.size() || of_body_[body] < 0)
-            return nullptr;
-        return &motions_[static_cast<std::size_t>(of_body_[body])];
+        return tag.motion == Motion::fixed ? motion_of(tag.body) : nullptr;
     }
 
     std::vector<WallMotion<D>> motions_;

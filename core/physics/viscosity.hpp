@@ -21,6 +21,14 @@ DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D
     return form.along_jump * v_ij + along * r_ij;
 }
 
+/// Mean viscosity of a pair. Beside a plug that varies by orders of magnitude, and the harmonic mean is the
+/// one whose stress is continuous (Cleary & Monaghan, J. Comput. Phys. 148, 1999).
+template <class T>
+DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
+    const T sum = mu_i + mu_j;
+    return harmonic ? T(2) * mu_i * mu_j / max(sum, number<T>(1e-30)) : number<T>(0.5) * sum;
+}
+
 /// |D| = sqrt(2 D:D) of the strain rate, the symmetric part of L [1/s].
 template <int D>
 double strain_rate(const Mat<double, D>& L) {

@@ -31,7 +31,7 @@ public:
         });
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
-            if (found == columns_.end() || particles.flow.normal[p][D - 1] < 0.5) continue;
+            if (found == columns_.end() || particles.is_bound(p) || particles.flow.normal[p][D - 1] < 0.5) continue;
             Column& column = found->second;
             const double top = particles.position[p][D - 1] + particles.flow.wall_depth[p];
             if (top < column.height / column.count) column.bed = std::max(column.bed, top);

@@ -31,9 +31,12 @@ public:
 
     FlowRates(std::vector<Material> materials, const Options<D>& options, bool periodic)
         : materials_(std::move(materials)), options_(options), periodic_(periodic) {
-        for (const Material& material : materials_)
+        for (const Material& material : materials_) {
             if (material.law == Law::fluid) constants_.c = std::max(constants_.c, material.c0);
+            constants_.harmonic |= material.rheology == Rheology::herschel_bulkley;
+        }
         constants_.dp = options.flow.dp;
+        for (int k = 1; k <= D; ++k) spacing_power_[k] = spacing_power_[k - 1] * options.flow.dp;
         const double support = kernel_support() * options.eta * options.flow.dp;
         const auto lattice = options.flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(options.flow.dp, support)
                                                       : lattice_sums<WendlandC2<D>, D>(options.flow.dp, support);
@@ -72,7 +75,7 @@ public:
     /// Pressure and energy of a particle; of a wall particle, those of the fluid at its place.
     Thermodynamics thermodynamics(const Particles<D>& particles, std::size_t p) const {
         const Material& material = materials_[particles.tag[p].material];
-        if (particles.is_fixed(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
+        if (particles.is_wall(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
         const double rho = particles.density[p], e = rho / material.rho0;
         const bool linear = options_.flow.pressure_law == PressureLaw::linear;
         const double energy = linear ? std::log(e) + 1.0 / e - 1.0 : (std::pow(e, 6.0) / 6.0 + 1.0 / e - 7.0 / 6.0) / 7.0;
@@ -133,8 +136,18 @@ private:
     static constexpr double relaxation = 100.0, relaxation_at_rest = 1000.0;
     /// Of rho0. What tears apart leaves a void, not water under tension.
     static constexpr double least_density = 0.98;
+    /// Over the sound speed: half of the fastest flow. A gap that bodies close would shift particles out of
+    /// the world.
+    static constexpr double largest_shift = 0.05;
     /// Root mean square of |L| h/c below which a fluid counts as at rest.
     static constexpr double at_rest = 5e-4;
+
+    /// Of the liquid itself [Pa s].
+    static double molecular_viscosity(const Material& material, const Mat<double, D>& L, double rho, double mean_pressure) {
+        if (material.rheology == Rheology::herschel_bulkley) return material.herschel_bulkley.viscosity(strain_rate(L));
+        if (material.rheology == Rheology::mu_i) return material.mu_i.viscosity(strain_rate(L), mean_pressure);
+        return rho * material.nu;
+    }
 
     double eddy_viscosity(const Particles<D>& particles, std::size_t p) const {
         if (options_.flow.turbulence == Turbulence::none) return 0.0;
@@ -143,8 +156,16 @@ private:
         return l * l * strain_rate(particles.flow.velocity_gradient[p]);
     }
 
+    /// Sound that runs to and fro is no load on a contact between grains: friction takes the mean over
+    /// the relaxation time of the density. What never had a pressure takes the first it gets.
+    void update_mean_pressure(Particles<D>& particles, std::size_t p, double dt) {
+        double& mean = particles.flow.mean_pressure[p];
+        const double share = dt * constants_.c / (relaxation * particles.smoothing_length[p]);
+        mean = mean == 0.0 ? fluid_[p].p : mean + std::min(share, 1.0) * (fluid_[p].p - mean);
+    }
+
     void pack(Particles<D>& particles, const Halo<D>& halo, double half_dt, bool poisoned);
-    void pack_fluid(const Particles<D>& particles, std::size_t p, double half_dt);
+    void pack_fluid(Particles<D>& particles, std::size_t p, double half_dt);
     void pack_wall(const Particles<D>& particles, std::size_t p);
 
     template <class Kernel>
@@ -174,6 +195,7 @@ private:
     bool periodic_;
     FlowConstants constants_{};
     double lattice_concentration_ = 1.0;
+    std::array<double, D + 1> spacing_power_{1.0};    // dp^k
     CoordinateFrame<double, D> frame_;
     std::vector<MotionRecord<double, D>> motion_;
     std::vector<FluidRecord<D>> fluid_;
@@ -189,7 +211,7 @@ private:
 };
 
 template <int D>
-void FlowRates<D>::pack_fluid(const Particles<D>& particles, std::size_t p, double half_dt) {
+void FlowRates<D>::pack_fluid(Particles<D>& particles, std::size_t p, double half_dt) {
     FluidRecord<D>& record = fluid_[p];
     const Material& material = materials_[particles.tag[p].material];
     const double rho = particles.density[p] + half_dt * particles.density_rate[p];
@@ -197,7 +219,9 @@ void FlowRates<D>::pack_fluid(const Particles<D>& particles, std::size_t p, doub
     record.volume = particles.mass[p] / rho, record.rest_volume = particles.mass[p] / material.rho0;
     record.surface = particles.flow.surface[p];
     record.p = pressure(material, rho, record.surface);
-    record.mu = rho * (material.nu + eddy_viscosity(particles, p));
+    update_mean_pressure(particles, p, 2.0 * half_dt);
+    record.mu = molecular_viscosity(material, particles.flow.velocity_gradient[p], rho, particles.flow.mean_pressure[p]) +
+                rho * eddy_viscosity(particles, p);
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) {
             const Mat<double, D>& L = particles.flow.velocity_gradient[p];
@@ -212,7 +236,7 @@ void FlowRates<D>::pack_wall(const Particles<D>& particles, std::size_t p) {
     const Vec<double, D>& normal = particles.flow.normal[p];
     record.normal = normal.component;
     record.traction = {};
-    record.volume = std::pow(options_.flow.dp, D);
+    record.volume = particles.is_bound(p) ? particles.mass[p] / particles.density[p] : spacing_power_[D];
     record.depth = particles.flow.wall_depth[p];
     record.g_normal = std::max(0.0, dot(particles.acceleration[p] - options_.gravity, normal));
     record.stick = options_.flow.walls.at(static_cast<std::size_t>(particles.tag[p].body)).stick ? 1.0 : 0.0;
@@ -250,7 +274,8 @@ void FlowRates<D>::sum_all(Particles<D>& particles, const Neighbours<D>& neighbo
     const auto count = static_cast<std::uint32_t>(particles.size()), fluid_count = static_cast<std::uint32_t>(fluid_count_);
     const double inverse_support = 1.0 / (kernel_support() * (count > 0 ? particles.smoothing_length[0] : 1.0));
     const FlowRecords<D> records{motion_, fluid_, wall_, fluid_count, count, inverse_support};
-    const bool has_walls = count > fluid_count && fluid_count + halo.moving_ghosts() > 0;
+    const bool has_fluid = fluid_count + halo.moving_ghosts() > 0, has_walls = count > fluid_count && has_fluid;
+    if (!has_fluid) std::fill(particles.flow.wall_force.begin(), particles.flow.wall_force.end(), Vec<double, D>{});
     if (rough || halo.alone()) {
         halo.finish();
         if (has_walls) sum_walls<Kernel>(particles, neighbours, records);
@@ -300,7 +325,7 @@ void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p, const Wal
         const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - particles.velocity[p];
         const Vec<double, D> along = tangential(u, particles.flow.normal[p]);
         const double rho = sums.density / sums.weight;
-        const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * std::pow(dp, D - 1);
+        const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * spacing_power_[D - 1];
         const Vec<double, D> drag = friction * std::sqrt(dot(along, along)) * along;
         record.traction = ((-1.0 / sums.weight) * drag).component;
         force = force + drag;
@@ -356,6 +381,8 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     if (shifted && measure.x < SurfaceMeasure::surface) {
         Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), strain_), h);
         if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
+        const double fastest = largest_shift * constants_.c, speed = std::sqrt(dot(shift, shift));
+        if (speed > fastest) shift = (fastest / speed) * shift;
         flow.shift[p] = shift;
         for (int k = 0; k < D; ++k)
             for (int l = 0; l < D; ++l) a[k] += L(k, l) * shift[l];

@@ -14,6 +14,7 @@ struct FlowConstants {
     double dp;
     double gradient_scale;    // of kernel gradients, so that their moment on a lattice is 1
     ViscousForm<double> form;
+    bool harmonic = false;    // see pair_viscosity
 };
 
 /// Sums over the neighbours of a fluid particle i; gradients are those of the plain kernel.
@@ -111,7 +112,7 @@ struct FluidSum {
         const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
         const T extra = approach_pressure((smooth - v_dot_r) / pair.r, rho, c);
         const T p = half * (i.p + j.p) + extra;
-        const T mu = half * (i.mu + j.mu);
+        const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
         const ViscousForm<T> form{T(constants.form.along_jump), T(constants.form.along_pair)};
         const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, pair.r, pair.r_ij);
         for (int a = 0; a < D; ++a) sums.force[a] -= VF * (p * pair.r_ij[a] - mu * viscous[a]);

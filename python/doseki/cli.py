@@ -1,4 +1,4 @@
-"""The command line: doseki run | plot | export | list | bench | validate."""
+"""The command line: doseki run | plot | census | compare | export | list | bench | validate."""
 
 from __future__ import annotations
 
@@ -261,6 +261,73 @@ def plot(
         typer.echo(str(picture))
     if movie:
         typer.echo(str(make_movie(load(directory), movie, colour=colour)))
+
+
+@app.command()
+def compare(
+    name: Annotated[str, typer.Argument(metavar="flume", help="What to compare.")],
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[RUN RUN]", help="Runs of both schemes [both are run now]."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", "--output", metavar="DIR", help="[runs/NAME-comparison]"),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+) -> None:
+    """Compare the paper's scheme, the resolved one and the experiment, on one page."""
+    from .compare import check_name, compare_runs, run_both
+    from .run import RunOptions
+
+    check_name(name)
+    if runs and len(runs) != 2:
+        raise UserError(f"compare takes two runs, one of each scheme, or none; not {len(runs)}")
+    if runs and settings:
+        raise UserError("--set changes a scenario that is run; these runs are made already")
+    directory = output or _free_directory(f"{name}-comparison")
+    folders = runs or run_both(
+        name,
+        settings or [],
+        directory,
+        RunOptions(threads),
+        lambda text: typer.echo(text, err=True),
+    )
+    comparison = compare_runs(folders, directory)
+    typer.echo((directory / "comparison.json").read_text() if as_json else comparison.text())
+    typer.echo(f"In {directory}: comparison.md, pictures", err=as_json)
+
+
+@app.command()
+def census(
+    directory: Directory,
+    window: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help='Of the speeds [the window "outlet", else all].'),
+    ] = None,
+    start: Annotated[
+        float, typer.Option("--from", metavar="SECONDS", help="Of the speeds.")
+    ] = float("-inf"),
+    end: Annotated[float, typer.Option("--to", metavar="SECONDS", help="Of the speeds.")] = float(
+        "inf"
+    ),
+    sections: Annotated[
+        list[float] | None,
+        typer.Option("--section", metavar="X", help="Where passing is counted, m; repeatable [0]."),
+    ] = None,
+    sample: Annotated[int, typer.Option(min=1, help="Grains in a random sample.")] = 30,
+    draws: Annotated[int, typer.Option(min=1, max=100_000, help="Number of samples.")] = 2000,
+    bin_width: Annotated[float, typer.Option(min=1e-6, help="Of the histogram, m/s.")] = 0.1,
+) -> None:
+    """Take a census of the grains of a run into DIR/census: tables and figures."""
+    from .census_output import CensusOptions, write_census
+
+    chosen = tuple(sections or [0.0])
+    options = CensusOptions(window, start, end, chosen, sample, draws, bin_width)
+    for line in write_census(directory, options):
+        typer.echo(line)
 
 
 @app.command()

@@ -101,7 +101,7 @@ def _particle(
         "id": int(state["id"][k]),
         "body": bodies[state["body"][k]],
         "material": materials[state["material"][k]],
-        "motion": ("free", "fixed", "driven")[state["motion"][k]],
+        "motion": ("free", "fixed", "driven", "bound")[state["motion"][k]],
         "speed": float(np.linalg.norm(state["velocity"][k])),
         **known,
     }

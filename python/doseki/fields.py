@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # XX YY ZZ XY YZ XZ, as VTK has it
-SHAPES = ("scalar", "vector", "symmetric")
+SHAPES = ("scalar", "vector", "symmetric", "rows")
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class ParticleField:
     """One field: its name in Python and in files, its symbol, unit, shape and meaning.
 
     A "vector" is (N, dim) in Python and (N, 3) in files (z = 0 in 2-D); a "symmetric" tensor is
-    (N, 3, 3) in Python and (N, 6) in files, in the order of SYMMETRIC.
+    (N, 3, 3) in Python and (N, 6) in files, in the order of SYMMETRIC; "rows" are alike in both.
     """
 
     key: str
@@ -25,6 +25,7 @@ class ParticleField:
     shape: str
     doc: str
     dtype: str = "float64"
+    absent: int | None = None  # the value where a state or an older file has none
 
     def encode(self, values: np.ndarray) -> np.ndarray:
         """The array as it stands in a file, from the array as it stands in Python."""
@@ -60,9 +61,30 @@ FIELDS = (
     ParticleField("material", "Material", "", "", "scalar", "index of the material", "int32"),
     ParticleField("body", "Body", "", "", "scalar", "index of the body", "int32"),
     ParticleField(
-        "motion", "Motion", "", "", "scalar", "0 free, 1 fixed, 2 driven by an inflow", "int32"
+        "motion",
+        "Motion",
+        "",
+        "",
+        "scalar",
+        "0 free, 1 fixed, 2 driven by an inflow, 3 bound",
+        "int32",
     ),
     ParticleField("id", "Id", "", "", "scalar", "number that stays with the particle", "int64"),
+    ParticleField("grain", "Grain", "", "", "scalar", "index of its grain, or -1", "int32", -1),
 )
 
 FIELD_BY_KEY = {field.key: field for field in FIELDS}
+
+# Of bodies that move, one row each.
+GRAIN_FIELDS = (
+    ParticleField("position", "Position", "", "m", "vector", "centre of mass"),
+    ParticleField("velocity", "Velocity", "", "m/s", "vector", "of the centre of mass"),
+    ParticleField("spin", "Spin", "", "rad/s", "rows", "angular velocity (N, 3)"),
+    ParticleField("orientation", "Orientation", "", "", "rows", "quaternion w, x, y, z (N, 4)"),
+    ParticleField("diameter", "Diameter", "", "m", "scalar", "of the circumscribed ball"),
+    ParticleField("mass", "Mass", "", "kg", "scalar", "mass; in 2-D per metre of thickness"),
+    ParticleField("contacts", "Contacts", "", "", "scalar", "number of bodies it touches", "int32"),
+    ParticleField("overlap", "Overlap", "", "", "scalar", "largest overlap over the diameter"),
+    ParticleField("removed", "Removed", "", "", "scalar", "1: has left the run", "int32"),
+    ParticleField("body", "Body", "", "", "scalar", "index of the named body", "int32"),
+)

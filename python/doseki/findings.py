@@ -8,9 +8,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from .gauges import outside_everything
-from .particles import DRIVEN, FIXED, FREE
+from .particles import BOUND, DRIVEN, FIXED, FREE
 from .scenario import Scenario
 from .schema import Box
+from .schemes import UETA2022
 
 State = Mapping[str, np.ndarray]
 
@@ -82,7 +83,7 @@ def _given_speeds(scenario: Scenario) -> Iterator[float]:
 
 def _fall(scenario: Scenario, state: State) -> float:
     """g times the height that particles can fall through, m2/s2."""
-    moving = state["motion"] == FREE
+    moving = np.isin(state["motion"], (FREE, BOUND))
     along = state["position"] @ scenario.gravity
     starts = [along[moving].min()] if moving.any() else []
     starts += [float(inflow.position @ scenario.gravity) for inflow in scenario.inflow.values()]
@@ -96,7 +97,7 @@ def _extent(position: np.ndarray, scenario: Scenario) -> np.ndarray:
 
 
 def _grains(scenario: Scenario) -> Iterator[str]:
-    across = grain_spacings(scenario)
+    across = grain_spacings(scenario) if scenario.scheme == UETA2022 else None
     if across is not None and across < LEAST_ACROSS_GRAIN:
         yield (
             f"{across:.2g} particles across a grain: grains are points that neither roll nor"
@@ -164,7 +165,11 @@ def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterat
         return
     for body, name in names.items():
         of_it = state["body"] == body
-        if (state["motion"][of_it] != FREE).any() or not of_it.any() or of_it.all():
+        if (
+            not np.isin(state["motion"][of_it], (FREE, BOUND)).all()
+            or not of_it.any()
+            or of_it.all()
+        ):
             continue
         others = ~of_it & (state["motion"] != DRIVEN)
         gap = (

@@ -79,6 +79,17 @@ class Snapshot(Mapping[str, np.ndarray]):
         with _readable(self.path):
             return vtkhdf.read_field(self.path, FIELD_BY_KEY[key], self.dim)
 
+    @cached_property
+    def grains(self) -> dict[str, np.ndarray]:
+        """The bodies that move, by the keys of fields.GRAIN_FIELDS; empty where there are none.
+
+        `body` is an array of names; row k is what the field `grain` of a particle says.
+        """
+        with _readable(self.path):
+            table = vtkhdf.read_grains(self.path, self.dim)
+        names = np.array(self.body_names, dtype=str)
+        return table | {"body": names[table["body"]]} if table else {}
+
 
 class History(Mapping[str, np.ndarray]):
     """The diagnostics of a run: a mapping from column name to the values over time."""

@@ -11,7 +11,7 @@ from .errors import UserError
 from .expressions import is_expression
 from .materials import BUILT_IN
 from .nearest import suggestion
-from .schema import ALIASES, EXCLUSIVE, SECTIONS, TOP_LEVEL_KEYS
+from .schema import ALIASES, EXCLUSIVE, SECTIONS, SINGLE_TABLES, TOP_LEVEL_KEYS
 from .toml_source import KeyPath, Where
 
 
@@ -49,20 +49,22 @@ def _find(key: str, table: dict[str, Any]) -> KeyPath:
     parameters = _names_in(table, "parameters")
     if len(keys) == 1:
         keys = (ALIASES.get(key, key),)
-        if keys[0] in TOP_LEVEL_KEYS and keys[0] not in SECTIONS:
+        if keys[0] in TOP_LEVEL_KEYS - {*SECTIONS, *SINGLE_TABLES}:
             return keys
         keys = ("parameters", key)
     if keys[0] == "parameters":
         if keys[1] in parameters and keys[2:] in ((), ("value",)):
             return keys[:2]
-        known = {*TOP_LEVEL_KEYS, *ALIASES, *parameters} - set(SECTIONS)
+        known = {*TOP_LEVEL_KEYS, *ALIASES, *parameters} - {*SECTIONS, *SINGLE_TABLES}
         raise UserError(f"--set {key}: not a key of this scenario{suggestion(key, known)}")
     return _find_in_section(key, keys, table)
 
 
 def _find_in_section(key: str, keys: tuple[str, ...], table: dict[str, Any]) -> KeyPath:
     """Check a path section.name.key...; whether the last key exists is the schema's business."""
-    sections = set(SECTIONS) - {"parameters"}
+    sections = {*SECTIONS, *SINGLE_TABLES} - {"parameters"}
+    if len(keys) == 2 and keys[0] in SINGLE_TABLES:
+        return keys
     if keys[0] not in sections:
         raise UserError(f"--set {key}: no table {keys[0]}{suggestion(keys[0], sections)}")
     known = _names_in(table, keys[0]) | (set(BUILT_IN) if keys[0] == "material" else set())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-FREE, FIXED, DRIVEN = 0, 1, 2
+FREE, FIXED, DRIVEN, BOUND = 0, 1, 2, 3
 SUPPORT = 2.5  # H of the paper: a particle acts out to H h
 
 
@@ -16,7 +16,8 @@ class ParticleSet:
     """N particles in `dim` dimensions, SI units, C-contiguous arrays.
 
     In 2-D a mass is per metre of thickness.  `material` and `body` are indices into the lists of
-    names kept beside the set; `motion` is FREE, FIXED or DRIVEN (moved by an inflow).
+    names kept beside the set; `motion` is FREE, FIXED, DRIVEN (moved by an inflow) or BOUND (a
+    point of a body that moves).
     """
 
     position: np.ndarray  # (N, dim) float64, m

@@ -101,16 +101,22 @@ class Recorder:
         return self._folder.path
 
     def snapshot(
-        self, state: Mapping[str, np.ndarray], *, time: float, step: int, dt: float
+        self,
+        state: Mapping[str, np.ndarray],
+        *,
+        time: float,
+        step: int,
+        dt: float,
+        grains: Mapping[str, np.ndarray] | None = None,
     ) -> Path:
         """Write one snapshot and return its file.
 
         `state` holds every field of fields.FIELDS under its Python name and shape, SI units;
-        `time` and `dt` are in s.
+        `time` and `dt` are in s; `grains` holds every field of fields.GRAIN_FIELDS.
         """
         header = vtkhdf.Header(time, step, dt, self._dim, self._material_names, self._body_names)
         file = self._folder.snapshot(len(self._index))
-        write_whole(file, lambda temporary: vtkhdf.write(temporary, state, header))
+        write_whole(file, lambda temporary: vtkhdf.write(temporary, state, header, grains))
         self._index.append((file.name, float(time)))
         self._write_series()
         return file

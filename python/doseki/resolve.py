@@ -1,4 +1,4 @@
-"""From the table a file holds to plain values: parameters, expressions, 2-D or 3-D choices."""
+"""From the table a file holds to plain values: parameters, expressions, choices."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from .expressions import (
 )
 from .schema import EXCLUSIVE, TOP_LEVEL_KEYS, Parameter, ScenarioTable
 from .schema_errors import to_user_error
+from .schemes import RESOLVED, UETA2022
 from .toml_source import KeyPath, Where, dotted
 
-DIMENSION_KEYS = {"d2", "d3"}
+# A value may be a choice by the number of dimensions or by the scheme.
+CHOICES = {"dim": {"d2", "d3"}, "scheme": {UETA2022, RESOLVED}}
 WORDS = {"schema", "title", "description"}  # top-level keys that no expression needs
 SPATIAL_KEYS = ("velocity", "pressure", "where")  # of a body: may use x, y, z
 SWITCHED_SECTIONS = ("body", "inflow", "outflow", "gauge", "window", "figure")
@@ -74,6 +76,7 @@ class Names(Mapping[str, Any]):
         self._top_level = _defaults() | _scalars(table)
         self._values: dict[str, Any] = {}
         self._waiting: list[str] = []
+        self._scheme = self._top_level.get("scheme", UETA2022)
         self._dim = self._checked_dim()
 
     def __iter__(self) -> Iterator[str]:
@@ -94,10 +97,10 @@ class Names(Mapping[str, Any]):
         return _parameter_table(self._parameters[name]) | {"value": self[name]}
 
     def resolve(self, value: Any, keys: KeyPath) -> Any:
-        """`value`, which stands at `keys`, with expressions evaluated and dimensions chosen."""
+        """`value`, which stands at `keys`, with expressions evaluated and choices made."""
         if isinstance(value, dict):
-            if _chooses(value):
-                return self.resolve(self._for_this_dim(value, keys), keys)
+            if (by := _chooses(value)) is not None:
+                return self.resolve(self._chosen(value, by, keys), keys)
             return {key: self.resolve(inner, (*keys, key)) for key, inner in value.items()}
         if isinstance(value, list):
             return [self.resolve(inner, (*keys, index)) for index, inner in enumerate(value)]
@@ -112,12 +115,14 @@ class Names(Mapping[str, Any]):
         except ExpressionError as error:
             raise self._where.error(keys, f"{dotted(keys)}: {error}") from None
 
-    def _for_this_dim(self, choice: dict[str, Any], keys: KeyPath) -> Any:
-        if "dim" in self._waiting:
-            raise self._where.error(("dim",), "dim must not depend on itself")
-        key = f"d{self._dim}"
+    def _chosen(self, choice: dict[str, Any], by: str, keys: KeyPath) -> Any:
+        """The value for the dimension or the scheme of this run."""
+        if by in self._waiting:
+            raise self._where.error((by,), f"{by} must not depend on itself")
+        key = f"d{self._dim}" if by == "dim" else self._scheme
         if key not in choice:
-            message = f"{dotted(keys)} has no value for a {self._dim}-D run ({key} is missing)"
+            run = f"a {self._dim}-D run" if by == "dim" else f"the scheme {self._scheme}"
+            message = f"{dotted(keys)} has no value for {run} ({key} is missing)"
             raise self._where.error(keys, message)
         return choice[key]
 
@@ -152,7 +157,7 @@ class Names(Mapping[str, Any]):
 
 def _parameter_table(raw: Any) -> dict[str, Any]:
     """A parameter may be written as its bare value."""
-    return raw if isinstance(raw, dict) and not _chooses(raw) else {"value": raw}
+    return raw if isinstance(raw, dict) and _chooses(raw) is None else {"value": raw}
 
 
 def _scalars(table: dict[str, Any]) -> dict[str, Any]:
@@ -160,13 +165,15 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
     return {
         key: value
         for key, value in table.items()
-        if key in TOP_LEVEL_KEYS - WORDS and (not isinstance(value, dict | list) or _chooses(value))
+        if key in TOP_LEVEL_KEYS - WORDS and (not isinstance(value, dict | list) or _chooses(value) is not None)
     }
 
 
-def _chooses(value: Any) -> bool:
-    """Whether the value is a choice { d2 = ..., d3 = ... } by the number of dimensions."""
-    return isinstance(value, dict) and bool(value) and set(value) <= DIMENSION_KEYS
+def _chooses(value: Any) -> str | None:
+    """What the value is a choice by: { d2 = ..., d3 = ... } or { ueta2022 = ..., resolved = ... }."""
+    if not isinstance(value, dict) or not value:
+        return None
+    return next((by for by, keys in CHOICES.items() if set(value) <= keys), None)
 
 
 def _defaults() -> dict[str, Any]:

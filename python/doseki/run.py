@@ -18,6 +18,7 @@ from .loading import load
 from .ranks import OneRank
 from .record import Recorder
 from .rewind import Rewind
+from .rigid_bodies import grain_table
 from .scenario import Scenario
 from .schedule import CheckpointClock, OutputTimes, StopRequests
 from .trust import write_trust
@@ -104,7 +105,11 @@ class ActiveRun:
         """Write the state; the next snapshot is due one interval later."""
         simulation = self.simulation
         self.recorder.snapshot(
-            simulation.state(), time=simulation.time, step=simulation.steps, dt=simulation.timestep
+            simulation.state(),
+            time=simulation.time,
+            step=simulation.steps,
+            dt=simulation.timestep,
+            grains=grain_table(simulation),
         )
         self.position.outputs += 1
         self.position.snapshots += 1

@@ -18,7 +18,7 @@ from .particle_file import ParticleTable, read_particles
 from .resolve import resolve_table
 from .scenario_checks import check_scenario
 from .scenario_files import find_scenario, merged_table, read_with_bases, scenario_folder
-from .schema import SECTIONS, ParticleFile, ScenarioTable
+from .schema import SECTIONS, Mesh, ParticleFile, ScenarioTable
 from .schema_errors import to_user_error
 from .schemes import KERNEL_SUPPORT, with_scheme_defaults
 from .toml_source import Where, read_toml
@@ -90,10 +90,10 @@ class Scenario(ScenarioTable):
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
         given["material"] = {name: asdict(self.materials[name]) for name in self.material_names}
         for material in given["material"].values():
-            del material["name"]
+            del material["name"]  # to_toml leaves out what is None
         for name, body in self.body.items():
-            if isinstance(body, ParticleFile):
-                given["body"][name]["file"] = str(_particle_path(self, name, body).resolve())
+            if isinstance(body, ParticleFile | Mesh):
+                given["body"][name]["file"] = str(_file_of(self, name, body).resolve())
         return to_toml(table | {name: given.get(name, {}) for name in SECTIONS})
 
     def complete(self, where: Where, constants: dict[str, Any]) -> None:
@@ -101,7 +101,7 @@ class Scenario(ScenarioTable):
         self._where, self._constants = where, constants
         self._materials = _materials(self, where)
         self._particle_tables = {
-            name: read_particles(_particle_path(self, name, body), self.dim, body.material)
+            name: read_particles(_file_of(self, name, body), self.dim, body.material)
             for name, body in self.body.items()
             if isinstance(body, ParticleFile)
         }
@@ -134,7 +134,7 @@ def list_scenarios() -> list[tuple[str, str, Path]]:
     ]
 
 
-def _particle_path(scenario: Scenario, name: str, body: ParticleFile) -> Path:
+def _file_of(scenario: Scenario, name: str, body: ParticleFile | Mesh) -> Path:
     return scenario.where.folder(("body", name, "file")) / body.file
 
 
@@ -176,7 +176,12 @@ def _reduction_factor(scenario: Scenario) -> float:
         speed = math.sqrt(2 * g * scenario.xi_height)
     if speed is None:
         return 1.0
-    return 10 * speed / min(scenario.materials[name].speedsound for name in _elastic(scenario))
+    return 10 * speed / min_sound_speed(scenario)
+
+
+def min_sound_speed(scenario: Scenario) -> float:
+    """Least unscaled sound speed of the materials that limit the speed of the flow, m/s."""
+    return min(scenario.materials[name].speedsound for name in _elastic(scenario))
 
 
 def _elastic(scenario: Scenario) -> list[str]:

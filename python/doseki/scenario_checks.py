@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import UserError
 from .gauge_tables import check_gauges
+from .grain_checks import check_grains
 from .motions import check_motions
 from .nearest import suggestion
 from .quantities import check_quantity
@@ -27,9 +28,9 @@ def check_scenario(scenario: Scenario) -> None:
     _check_periodic(scenario)
     if scenario.scheme == "resolved":
         _check_resolved(scenario)
-    elif scenario.kernel != "wendland_c6":
-        message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
-        raise scenario.where.error(("kernel",), message)
+    else:
+        _check_ueta2022(scenario)
+    check_grains(scenario)
     check_motions(scenario)
     check_gauges(scenario)
 
@@ -110,6 +111,21 @@ def _check_periodic(scenario: Scenario) -> None:
             raise scenario.where.error(("periodic",), "periodic needs domain_min and domain_max")
 
 
+def _check_ueta2022(scenario: Scenario) -> None:
+    """What the scheme of the paper does not have."""
+    if scenario.kernel != "wendland_c6":
+        message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
+        raise scenario.where.error(("kernel",), message)
+    for name in (part.material for part in [*scenario.body.values(), *scenario.inflow.values()]):
+        rheology = scenario.materials[name].rheology if name else "newtonian"
+        if rheology != "newtonian":
+            raise scenario.where.error(
+                ("material", name, "rheology"),
+                f'material.{name}.rheology = "{rheology}": the scheme ueta2022 has newtonian '
+                'fluids alone; use scheme = "resolved"',
+            )
+
+
 def _check_resolved(scenario: Scenario) -> None:
     """What the resolved scheme needs or cannot do."""
     if scenario.precision != "double":
@@ -124,13 +140,6 @@ def _check_resolved(scenario: Scenario) -> None:
         )
     for name, body in scenario.body.items():
         keys = ("body", name)
-        law = scenario.materials[body.material].law if body.material else "fluid"
-        if not body.fixed and law != "fluid":
-            raise scenario.where.error(
-                (*keys, "material"),
-                f"body.{name}: the resolved scheme moves fluids only; {body.material} is a solid: "
-                "set fixed = true, or use the scheme ueta2022",
-            )
         normal = getattr(body, "normal", None)
         if normal is not None and not normal.any():
             raise scenario.where.error((*keys, "normal"), f"body.{name}.normal must not be zero")

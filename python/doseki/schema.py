@@ -9,18 +9,22 @@ import numpy as np
 from pydantic import (
     BaseModel,
     ConfigDict,
+    Discriminator,
     Field,
+    Tag,
     create_model,
     model_validator,
 )
 
-from .materials import LAWS, LIMIT, MATERIAL_PARAMETERS, MaterialParameter
+from .materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
 from .value_types import (
     Axis,
     Corner,
     Depth,
+    Grading,
     Hydrograph,
     Length,
+    Mass,
     NonNegative,
     Positive,
     Rate,
@@ -75,10 +79,17 @@ class Parameter(Table):
 
 
 def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
-    description = f"{parameter.doc}, {parameter.unit}"
+    description = f"{parameter.doc}, {parameter.unit}".removesuffix(", ")
     return (
         float | None,
-        Field(None, gt=parameter.above, ge=parameter.least, lt=LIMIT, description=description),
+        Field(
+            None,
+            gt=parameter.above,
+            ge=parameter.least,
+            lt=parameter.below,
+            le=parameter.most,
+            description=description,
+        ),
     )
 
 
@@ -86,6 +97,10 @@ MaterialTable = create_model(
     "MaterialTable",
     __base__=Table,
     law=(Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    rheology=(
+        Literal[RHEOLOGIES] | None,
+        Field(None, description="how a fluid's viscosity follows"),
+    ),
     based_on=(str | None, Field(None, description="material that supplies what is not given")),
     **{parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS},
 )
@@ -137,16 +152,41 @@ class ShapedBody(Part):
     normal: Vector | None = Field(
         None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
     )
+    kinematics: Literal["rigid", "elastic", "single"] | None = Field(
+        None,
+        description="free solids of the resolved scheme: rigid (the default), elastic, or single: "
+        "one particle per grain",
+    )
+    clamped: ScalarField | None = Field(
+        None, description="elastic: points do not move where this expression of x, y, z is above 0"
+    )
+    elastic_law: Literal["st_venant_kirchhoff", "neo_hookean"] | None = Field(
+        None, description="elastic: law of stress; default st_venant_kirchhoff"
+    )
+    damping: float | None = Field(
+        None, ge=0, le=1, description="elastic: viscosity over rho0 c_P dp; default 0.02"
+    )
+    hourglass: float | None = Field(
+        None, ge=0, le=1, description="elastic: springs over the shear modulus; default 0.2"
+    )
+    spin: float | Vector | None = Field(
+        None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
+    )
 
 
-class LatticeBody(ShapedBody):
-    """A body filled with particles on a lattice, which can be rotated."""
+class TurnedBody(ShapedBody):
+    """A body that can be rotated."""
 
     dp: Length | None = Field(None, description="particle spacing, m (default: the run's)")
-    mass_per_particle: Positive | None = Field(None, description="kg; default rho0 dp^dim")
     rotate: float = Field(0.0, description="degrees, from the first axis towards the last")
     rotate_axis: Vector | None = Field(None, description="3-D: axis of a right-handed rotation")
     pivot: Vector | None = Field(None, description="point about which it is rotated, m")
+
+
+class LatticeBody(TurnedBody):
+    """A body filled with particles on a lattice."""
+
+    mass_per_particle: Positive | None = Field(None, description="kg; default rho0 dp^dim")
     jitter: float = Field(
         0.0, ge=0, le=0.5, description="random displacement along each axis, in spacings"
     )
@@ -189,6 +229,70 @@ class Disc(LatticeBody):
     )
 
 
+class Grains(TurnedBody):
+    """Discs (2-D) or spheres (3-D) packed at random into a box, from its bottom upwards."""
+
+    shape: Literal["disc", "sphere"]
+    min: Vector = Field(description="lower corner of the box before rotation, m")
+    max: Vector = Field(description="upper corner of the box before rotation, m")
+    d: Length | None = Field(None, description="diameter, m; excludes grading")
+    grading: Grading | None = Field(
+        None, description="[[d, share], ...] in m and parts of the mass; excludes d"
+    )
+    count: int | None = Field(None, gt=0, description="number of grains; excludes mass_total")
+    mass_total: Mass | None = Field(
+        None, description='kg or a string such as "20 kg"; default: what fills the box'
+    )
+    width: Length = Field(1.0, description="2-D: m; mass_total is that of a slice so wide")
+    packing: float | None = Field(
+        None,
+        gt=0,
+        lt=1,
+        description="solid fraction; with count or mass_total the box is filled up to a level, and "
+        "without packing evenly all over (default 0.75, in 3-D 0.55)",
+    )
+    wetted: float = Field(
+        1.0,
+        gt=0.3,
+        le=1,
+        description="diameter that water sees over the true one; below 1 in 2-D, where discs that "
+        "touch would leave water no way between them",
+    )
+    random_seed: int = Field(1, ge=0, description="of the packing")
+    settle: bool | Positive = Field(
+        False, description="settle dry under gravity before the start, between the sides of "
+        "the box: true, until at rest, or s"
+    )
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Grains:
+        if (self.d is None) == (self.grading is None):
+            raise ValueError("give either d or grading")
+        if self.count is not None and self.mass_total is not None:
+            raise ValueError("count and mass_total exclude each other: give one")
+        if not np.all(self.min < self.max):
+            raise ValueError("every entry of min must be below that of max")
+        return self
+
+
+class Polygon(TurnedBody):
+    """A convex polygon of a 2-D run."""
+
+    shape: Literal["polygon"]
+    vertices: list[Vector] = Field(description="its corners in order, m", min_length=3)
+
+
+class Mesh(TurnedBody):
+    """A closed convex polyhedron of a 3-D run."""
+
+    shape: Literal["stl"]
+    file: str = Field(description="path, relative to this scenario file")
+    scale: Positive = Field(1.0, description="m per unit of the file")
+    centre: Vector | None = Field(
+        None, description="where its centre of mass is put, m; default: where the file has it"
+    )
+
+
 class Points(ShapedBody):
     """Particles at given positions."""
 
@@ -206,14 +310,39 @@ class ParticleFile(Part):
     material: str | None = Field(None, description="where the file has no column `material`")
 
 
-BodyTable = Annotated[Box | Disc | Points | ParticleFile, Field(discriminator="shape")]
+GRAINS = "grains"  # no word of a scenario: discs and spheres with a diameter in place of a radius
 BODY_TABLES = {
     "box": Box,
     "disc": Disc,
     "sphere": Disc,
+    "polygon": Polygon,
+    "stl": Mesh,
     "points": Points,
     "file": ParticleFile,
+    GRAINS: Grains,
 }
+
+
+def body_kind(table: Any) -> Any:
+    """The key in BODY_TABLES of a table [body.NAME], or whatever it says its shape is."""
+    if not isinstance(table, dict):
+        return GRAINS if isinstance(table, Grains) else getattr(table, "shape", None)
+    shape = table.get("shape")
+    packed = shape in ("disc", "sphere") and ("d" in table or "grading" in table)
+    return GRAINS if packed else shape
+
+
+BodyTable = Annotated[
+    Annotated[Box, Tag("box")]
+    | Annotated[Disc, Tag("disc")]
+    | Annotated[Disc, Tag("sphere")]
+    | Annotated[Polygon, Tag("polygon")]
+    | Annotated[Mesh, Tag("stl")]
+    | Annotated[Points, Tag("points")]
+    | Annotated[ParticleFile, Tag("file")]
+    | Annotated[Grains, Tag(GRAINS)],
+    Discriminator(body_kind),
+]
 
 
 class Inflow(Part):
@@ -383,6 +512,22 @@ class Figure(Part):
     gauge: str | None = Field(None, description="gauge: name of a [gauge.NAME]")
 
 
+class Contact(Table):
+    """How bodies touch: resolved scheme."""
+
+    law: Literal["linear", "hertz"] = Field("linear", description="normal force")
+    overlap: float = Field(
+        0.01, gt=0, le=0.1, description="largest overlap over the diameter, for softened contacts"
+    )
+    speed: Positive | None = Field(
+        None, description="largest speed of approach, m/s; default: speed_max"
+    )
+    stiffness: Literal["softened", "material"] = Field(
+        "softened", description="softened: so that `overlap` holds; material: of Young's modulus"
+    )
+    steps: int = Field(20, ge=5, le=1000, description="time steps in a contact")
+
+
 class ScenarioTable(Table):
     """A whole scenario file, every expression evaluated."""
 
@@ -438,6 +583,7 @@ class ScenarioTable(Table):
     periodic: list[Axis] = Field(default_factory=list, description="periodic axes")
     domain_min: Vector | None = Field(None, description="lower corner of the periodic domain, m")
     domain_max: Vector | None = Field(None, description="upper corner of the periodic domain, m")
+    contact: Contact = Field(default_factory=Contact)
     parameters: dict[str, Parameter] = Field(default_factory=dict)
     material: dict[str, MaterialTable] = Field(default_factory=dict)
     body: dict[str, BodyTable] = Field(default_factory=dict)
@@ -468,6 +614,7 @@ SECTIONS = {
 }
 
 
+SINGLE_TABLES = {"contact": Contact}  # of which a scenario has one
 KINDS = {  # sections of several kinds of tables: the key that tells, the kinds, what all have
     "body": ("shape", BODY_TABLES, ShapedBody),
     "gauge": ("kind", GAUGE_TABLES, Gauge),
@@ -478,6 +625,8 @@ def table_at(keys: tuple[str | int, ...], table: Any) -> type[Table] | None:
     """The kind of table that stands at `keys` (top level: empty) of the scenario `table`."""
     if not keys:
         return ScenarioTable
+    if len(keys) == 1 and keys[0] in SINGLE_TABLES:
+        return SINGLE_TABLES[str(keys[0])]
     if len(keys) == 3 and keys[0] == "body" and keys[2] == "motion":
         return Motion
     if len(keys) != 2 or keys[0] not in SECTIONS:
@@ -486,6 +635,7 @@ def table_at(keys: tuple[str | int, ...], table: Any) -> type[Table] | None:
         return SECTIONS[str(keys[0])]
     tag, kinds, general = KINDS[str(keys[0])]
     try:
-        return kinds.get(table[keys[0]][keys[1]][tag], general)
+        part = table[keys[0]][keys[1]]
+        return kinds.get(body_kind(part) if keys[0] == "body" else part[tag], general)
     except (KeyError, TypeError):
         return general

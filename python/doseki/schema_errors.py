@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from .errors import UserError
 from .nearest import suggestion
-from .schema import KINDS, table_at
+from .schema import GRAINS, KINDS, table_at
 from .toml_source import KeyPath, Where, dotted
 
 EXPECTED = {
@@ -66,6 +66,8 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any]) -> str:
         return f"{name} is not a known key{_nearest_key(keys, table)}"
     if kind == "missing":
         return f"{name} is missing{about}"
+    if kind == "union_tag_not_found" and not isinstance(value, dict):
+        return f"{name} = {_shown(value)} must be a table{about}"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         return _tag_sentence(name, KINDS[str(keys[0])], context.get("tag"))
     if kind == "literal_error":
@@ -85,7 +87,7 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any]) -> str:
 
 def _tag_sentence(name: str, kinds: tuple[str, dict[str, Any], Any], tag: Any) -> str:
     """About a table that does not say rightly of which kind it is."""
-    key, known, _ = kinds
+    key, known = kinds[0], [name for name in kinds[1] if name != GRAINS]
     if tag is None:
         return f"{name}.{key} is missing; choose one of {', '.join(known)}"
     return f'{name}.{key} = "{tag}" is not a {key}{suggestion(str(tag), known)}'

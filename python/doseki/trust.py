@@ -258,8 +258,11 @@ def _left_in_residual(run: Run) -> str:
             ", viscosity and walls in av_dissipation; what shifting and the smoothing of density"
             " and pressure took is not recorded and stands in the residual"
         )
-    if any(m.law == "fluid" and m.nu for m in _used(run, complete_materials(_materials(run)))):
-        return "; what viscosity nu took is not recorded and stands in the residual"
+    used = _used(run, complete_materials(_materials(run)))
+    taken = ["viscosity nu"] * any(m.law == "fluid" and m.nu > 0 for m in used)
+    taken += ["yielding"] * any(m.yield_strength or m.cohesion or m.friction_angle for m in used)
+    if taken:
+        return f"; what {' and '.join(taken)} took is not recorded and stands in the residual"
     return ""
 
 

@@ -15,6 +15,7 @@ from .expressions import is_expression
 # A length beyond these is a slip of the keyboard, and would overflow further on.
 SMALLEST, LARGEST = 1e-12, 1e12
 RATE_UNITS = {"m3/s": 1.0, "m^3/s": 1.0, "L/s": 1e-3, "l/s": 1e-3}
+MASS_UNITS = {"kg": 1.0, "g": 1e-3, "t": 1e3}
 
 
 def _of_dimension(vector: list[Any], info: ValidationInfo) -> list[Any]:
@@ -49,15 +50,33 @@ def _not_nan(value: float) -> float:
 
 def _rate(value: Any) -> Any:
     """A rate in m3/s from a number, or from a string with its unit such as "3 L/s"."""
+    wrong = 'a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"'
+    return _with_unit(value, RATE_UNITS, wrong)
+
+
+def _mass(value: Any) -> Any:
+    """A mass in kg from a number, or from a string with its unit such as "20 kg"."""
+    return _with_unit(value, MASS_UNITS, 'a mass is a number in kg or a string such as "20 kg"')
+
+
+def _with_unit(value: Any, units: dict[str, float], wrong: str) -> Any:
     if not isinstance(value, str):
         return value
     found = re.fullmatch(r"\s*([-+.\deE]+)\s*(\S+)\s*", value)
-    if not found or found[2] not in RATE_UNITS:
-        raise ValueError('a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"')
+    if not found or found[2] not in units:
+        raise ValueError(wrong)
     try:
-        return float(found[1]) * RATE_UNITS[found[2]]
+        return float(found[1]) * units[found[2]]
     except ValueError:
         raise ValueError(f"{found[1]!r} is not a number") from None
+
+
+def _grading(rows: list[list[float]]) -> list[list[float]]:
+    """Checked rows [d, share of the mass]."""
+    for row in rows:
+        if len(row) != 2 or not all(SMALLEST <= value <= LARGEST for value in row):
+            raise ValueError(f"{row} must be [d, share of the mass], both above 0")
+    return rows
 
 
 def _depth(value: float | str) -> float | str:
@@ -121,6 +140,8 @@ Bound = Annotated[
 ]
 Corner = Annotated[list[Bound], *AsArray]
 Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
+Mass = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_mass)]
+Grading = Annotated[list[list[float]], Field(min_length=1), AfterValidator(_grading)]
 Depth = Annotated[float | str, AfterValidator(_depth)]
 Hydrograph = Annotated[Any, AfterValidator(_hydrograph)]
 Axis = Literal["x", "y", "z"]

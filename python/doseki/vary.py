@@ -14,6 +14,7 @@ from .errors import UserError
 from .flow import measure_flow
 from .loading import Run, Snapshot, load
 from .measure import mean_velocity, speed
+from .particles import BOUND, FREE
 from .run import RunOptions, run_scenario
 from .scenario import Scenario, load_scenario
 
@@ -104,7 +105,7 @@ def _of_materials(run: Run) -> Measured:
 
 
 def _free(snapshot: Snapshot, material: str) -> np.ndarray:
-    return (snapshot["material"] == material) & (snapshot["motion"] == 0)
+    return (snapshot["material"] == material) & np.isin(snapshot["motion"], (FREE, BOUND))
 
 
 def _centre(snapshot: Snapshot, material: str) -> np.ndarray:

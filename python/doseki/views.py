@@ -44,7 +44,8 @@ def tables(run: Run, section: str) -> dict[str, Any]:
 
     Raises UserError for a scenario.toml that was changed by hand to something impossible.
     """
-    model = {"window": schema.Window, "figure": schema.Figure}[section]
+    models = {"window": schema.Window, "figure": schema.Figure, "inflow": schema.Inflow}
+    model = models[section]
     dim = run.scenario["dim"]
     try:
         found = {

@@ -11,7 +11,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .fields import FIELDS, ParticleField
+from .fields import FIELDS, GRAIN_FIELDS, ParticleField
 
 VERSION = (2, 0)  # of the VTKHDF format: PolyData is read by VTK >= 9.3, ParaView >= 5.12
 # gzip, because VTK's own HDF5 library can undo it; level 1 costs 1-2 s for a million particles.
@@ -31,8 +31,13 @@ class Header:
     body_names: tuple[str, ...]
 
 
-def write(path: Path, state: Mapping[str, np.ndarray], header: Header) -> None:
-    """Write every field of FIELDS from `state`; raises OSError.
+def write(
+    path: Path,
+    state: Mapping[str, np.ndarray],
+    header: Header,
+    grains: Mapping[str, np.ndarray] | None = None,
+) -> None:
+    """Write every field of FIELDS from `state`, of GRAIN_FIELDS from `grains`; raises OSError.
 
     The file is built in memory first (about 110 bytes a particle): when the disk fills up under
     HDF5's own writing, closing the file can crash the process.
@@ -46,7 +51,11 @@ def write(path: Path, state: Mapping[str, np.ndarray], header: Header) -> None:
         _write_cells(root, len(state["position"]))
         root.create_group("PointData")
         for field in FIELDS:
-            _write_array(root, _location(field), field.encode(state[field.key]), field.unit)
+            _write_array(root, _location(field), field.encode(_values(state, field)), field.unit)
+        if grains:
+            table = file.create_group("Grains")
+            for field in GRAIN_FIELDS:
+                _write_array(table, field.file_name, field.encode(grains[field.key]), field.unit)
     path.write_bytes(image.getbuffer())
 
 
@@ -64,10 +73,28 @@ def read_header(path: Path) -> Header:
         )
 
 
+def _values(state: Mapping[str, np.ndarray], field: ParticleField) -> np.ndarray:
+    if field.absent is not None and field.key not in state:
+        return np.full(len(state["position"]), field.absent)
+    return state[field.key]
+
+
 def read_field(path: Path, field: ParticleField, dim: int) -> np.ndarray:
     """Read one field, shaped as in Python."""
     with h5py.File(path, "r") as file:
-        return field.decode(file["VTKHDF"][_location(field)][...], dim)
+        root = file["VTKHDF"]
+        if field.absent is not None and _location(field) not in root:
+            return np.full(len(root["Points"]), field.absent, field.dtype)
+        return field.decode(root[_location(field)][...], dim)
+
+
+def read_grains(path: Path, dim: int) -> dict[str, np.ndarray]:
+    """The table of bodies that move, by the keys of GRAIN_FIELDS; empty where there are none."""
+    with h5py.File(path, "r") as file:
+        table = file.get("Grains")
+        if table is None:
+            return {}
+        return {f.key: f.decode(table[f.file_name][...], dim) for f in GRAIN_FIELDS}
 
 
 def _location(field: ParticleField) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .bodies import field_of
+from .grains import SOLID_SHAPES
 from .lattice import rotation_matrix
 from .particles import FIXED, ParticleSet
 from .scenario import Scenario
@@ -16,11 +17,14 @@ SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab wit
 
 
 def wall_geometry(scenario: Scenario, particles: ParticleSet, names: list[str]) -> tuple:
-    """Normals (N, dim) into the fluid and depths (N,) below it, m; zero where not fixed."""
+    """Normals (N, dim) into the fluid and depths (N,) below it, m.
+
+    Zero where not fixed, and for the fixed bodies whose particles bring their own.
+    """
     normal, depth = np.zeros_like(particles.position), np.zeros(len(particles))
     for name, body in scenario.body.items():
         of_it = (particles.motion == FIXED) & (particles.body == names.index(name))
-        if of_it.any():
+        if of_it.any() and not isinstance(body, SOLID_SHAPES):
             wall = _Wall(scenario, name, body, particles)
             normal[of_it], depth[of_it] = wall.of(particles.position[of_it])
     return normal, depth

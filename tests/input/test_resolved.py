@@ -22,7 +22,11 @@ WALL = ROCK.replace("min = [0, 0]", "min = [0, -0.5]").replace("[1, 0.5]", "[1, 
     [
         (RESOLVED, BLOCK, ["line 5", "needs the highest speed", "speed_max (m/s)", "xi"]),
         (FAST + '\nprecision = "float"', BLOCK, ["line 7", "precision", 'runs in "double"']),
-        (FAST, BLOCK + ROCK, ["body.rock", "moves fluids only", "basalt is a solid", "fixed"]),
+        (
+            FAST,
+            BLOCK + ROCK + "jitter = 0.1\n",
+            ["body.rock.jitter", "moves as a whole", "ueta2022"],
+        ),
         (FAST, BLOCK + WALL + 'wall = "rough"\n', ["body.rock", "a rough wall needs ks (m)"]),
         (FAST, BLOCK + WALL + 'wall = "slippery"\n', ["body.rock.wall", "'free_slip'", "'rough'"]),
         (FAST, BLOCK + WALL + "ks = 0\n", ["body.rock.ks = 0 is out of range"]),

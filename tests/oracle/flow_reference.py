@@ -103,7 +103,8 @@ class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
     `particles` has the arrays of doseki's ParticleSet and `normal`, `depth` of its walls;
-    `materials` are mappings with law, rho0, speedsound, nu. All smoothing lengths are eta dp, all
+    `materials` are mappings with law, rho0, speedsound, nu and, where they are not newtonian,
+    rheology and its parameters. All smoothing lengths are eta dp, all
     fixed particles have no acceleration.
     """
 
@@ -134,6 +135,9 @@ class FlowReference:
         self.x, self.v = particles.position[self.fluid], particles.velocity[self.fluid]
         self.rho, self.mass = particles.density[self.fluid], particles.mass[self.fluid]
         of = [materials[k] for k in particles.material[self.fluid]]
+        self.materials = of
+        self.harmonic = any(m.get("rheology") == "herschel_bulkley" for m in materials)
+        self.mean_pressure: np.ndarray | None = None
         self.rho0, self.c0, self.nu = (
             np.array([m[key] for m in of]) for key in ("rho0", "speedsound", "nu")
         )
@@ -158,7 +162,9 @@ class FlowReference:
     def evaluate(self) -> None:
         """Rates from the state and from what the evaluation before has left."""
         self.p = self._pressure(self.surface)
-        self.mu = self.rho * (self.nu + self._eddy_viscosity())
+        if self.mean_pressure is None:
+            self.mean_pressure = self.p
+        self.mu = self._molecular_viscosity() + self.rho * self._eddy_viscosity()
         contact = self._contact()
         self._wall_pass(contact)
         self._fluid_pass(contact)
@@ -169,7 +175,28 @@ class FlowReference:
         p = stiffness * (e - 1) if self.options.eos == "linear" else stiffness / 7 * (e**7 - 1)
         return np.where(surface > SURFACE, np.maximum(p, 0), p)
 
-    # Turbulence
+    # Viscosity
+
+    def _strain_rate(self) -> np.ndarray:
+        """sqrt(2 D:D)."""
+        D = 0.5 * (self.L + self.L.transpose(0, 2, 1))
+        return np.sqrt(2 * (D**2).sum(axis=(1, 2)))
+
+    def _molecular_viscosity(self) -> np.ndarray:
+        """rho nu, or the stress of a rheology over the rate of strain."""
+        mu = self.rho * self.nu
+        for i, (m, rate) in enumerate(zip(self.materials, self._strain_rate(), strict=True)):
+            if m.get("rheology") == "herschel_bulkley":
+                rate = max(rate, 1e-9)
+                stress = m["yield_stress"] * -np.expm1(-m["regularisation"] * rate)
+                stress += m["consistency"] * rate ** m["flow_index"]
+                mu[i] = min(stress / rate, m["viscosity_max"])
+            elif m.get("rheology") == "mu_i":
+                p, rate = max(self.mean_pressure[i], 1e-300), max(rate, 1e-9)
+                inertial = rate * m["grain_diameter"] / np.sqrt(p / m["grain_density"])
+                growth = (m["mu_2"] - m["mu_s"]) / (m["inertial_number"] / inertial + 1)
+                mu[i] = min((m["mu_s"] + growth) * p / rate, m["viscosity_max"])
+        return mu
 
     def _eddy_viscosity(self) -> np.ndarray:
         """Square of the mixing length times sqrt(2 D:D)."""
@@ -178,8 +205,7 @@ class FlowReference:
         least = self.options.smagorinsky * self.options.dp
         mixing = self.options.turbulence == "mixing_length"
         length = self._mixing_length(least) if mixing else least
-        D = 0.5 * (self.L + self.L.transpose(0, 2, 1))
-        return length**2 * np.sqrt(2 * (D**2).sum(axis=(1, 2)))
+        return length**2 * self._strain_rate()
 
     def _mixing_length(self, least: float) -> np.ndarray:
         """kappa z sqrt(1 - z/d) with bed and depth of the column of plan in which a particle is.
@@ -287,7 +313,10 @@ class FlowReference:
         smooth = np.einsum("ijab,ija,ijb->ij", self._mean(D), pairs.r_ij, pairs.r_ij)
         extra = self._dissipation((smooth - v_r) / pairs.safe_r, rho)
         p = self._mean(self.p) + extra
-        viscous = self._mean(self.mu)[..., None] * self._viscous_direction(v, v_r)
+        mu = self._mean(self.mu)
+        if self.harmonic:
+            mu = self.mu[:, None] * self.mu[None] / mu
+        viscous = mu[..., None] * self._viscous_direction(v, v_r)
         force = -2 * (VF[..., None] * (p[..., None] * pairs.r_ij - viscous)).sum(axis=1)
         jump = self.p[:, None] - self.p[None]
         jump = jump - dot(self._mean(self.old_gradient), pairs.r_ij)

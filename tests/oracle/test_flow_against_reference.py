@@ -25,6 +25,14 @@ STICK = {"stick": True, "ks": 0.0}
 SLIP = {"stick": False, "ks": 0.0}
 ROUGH = {"stick": False, "ks": 0.02}
 TOLERANCE = 1e-10
+SLURRY = {
+    "rheology": "herschel_bulkley", "yield_stress": 500.0, "consistency": 40.0, "flow_index": 0.6,
+    "regularisation": 0.5, "viscosity_max": 90.0,
+}  # fmt: skip
+GRAINS = {
+    "rheology": "mu_i", "mu_s": 0.4, "mu_2": 0.7, "inertial_number": 0.3, "grain_diameter": 0.1,
+    "grain_density": 2500.0, "viscosity_max": 90.0,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -38,11 +46,14 @@ class Case:
     fluids: int = 1
     thinned: float = 0.0  # fraction of the fluid that is taken out
     thicker: float = 1.0  # factor of the viscosities
+    rheology: dict[str, Any] = field(default_factory=dict)  # of the second fluid
 
     @property
     def materials(self) -> list[dict[str, Any]]:
         """MATERIALS with the viscosities of this case."""
-        return [m | {"nu": self.thicker * m["nu"]} for m in MATERIALS]
+        materials = [m | {"nu": self.thicker * m["nu"]} for m in MATERIALS]
+        materials[1] |= self.rheology
+        return materials
 
 
 CASES = {
@@ -60,6 +71,8 @@ CASES = {
     "wide kernel": Case({"kernel": "wendland_c6", "eta": 1.2}),
     "wide kernel, periodic": Case({"kernel": "wendland_c6", "eta": 1.2}, periodic="xyz"),
     "Monaghan and Cleary": Case({"viscosity": "monaghan_cleary"}),
+    "slurry": Case(fluids=2, rheology=SLURRY),
+    "dense grains": Case(fluids=2, rheology=GRAINS),
     "Tait": Case({"eos": "tait"}),
     "Smagorinsky": Case({"turbulence": "smagorinsky"}),
     "mixing length": Case({"turbulence": "mixing_length"}, walls=(STICK, ROUGH, SLIP)),
@@ -192,5 +205,8 @@ def test_the_cases_reach_every_branch(dim: int) -> None:
     assert (~front & (case["open"].fw.F < 0)).any()
     thick = case["viscosity limits the step"]
     assert thick.timestep == np.min(thick.h**2 * thick.rho / (8 * thick.mu))
+    for name in ("slurry", "dense grains"):
+        mu = case[name].mu[case[name].rho0 == 1300]
+        assert 0.01 < np.mean(mu == 90) < 0.9
     length = case["mixing length"]._mixing_length(0.0)
     assert (length > 0.12 / ACROSS[dim]).any()

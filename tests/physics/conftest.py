@@ -34,6 +34,12 @@ def core(request: pytest.FixtureRequest) -> ModuleType:
     return load_core(request.param)
 
 
+@pytest.fixture
+def physics(core: ModuleType) -> ModuleType:
+    """The functions that no pair loop calls, as they are bound."""
+    return core.physics
+
+
 @pytest.fixture(params=[False, True], ids=["numbers", "packs"])
 def point(core: ModuleType, request: pytest.FixtureRequest) -> PointFunctions:
     """The point functions on single numbers, then on packs."""

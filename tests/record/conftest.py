@@ -56,7 +56,12 @@ def random_state(n: int, dim: int, seed: int = 1) -> State:
         state[name] = random.uniform(0.1, 0.2, n)
     for name in ("material", "body", "motion"):
         state[name] = random.integers(0, 3, n).astype(np.int32)
-    return state | {"stress": tensor[0], "deviatoric_stress": tensor[1], "id": np.arange(n) * 7}
+    return state | {
+        "stress": tensor[0],
+        "deviatoric_stress": tensor[1],
+        "id": np.arange(n) * 7,
+        "grain": np.full(n, -1),
+    }
 
 
 def make_plain_state(position: np.ndarray, velocity: np.ndarray, kind: np.ndarray) -> State:
@@ -77,6 +82,7 @@ def make_plain_state(position: np.ndarray, velocity: np.ndarray, kind: np.ndarra
         "body": kind.astype(np.int32),
         "motion": np.where(kind == 2, 1, 0).astype(np.int32),
         "id": np.arange(n),
+        "grain": np.full(n, -1),
     }
 
 

@@ -81,11 +81,19 @@ class ManyRanks(OneRank):
         return RankedRecorder(self, Path(directory), make)
 
     def filled_simulation(self, scenario: Scenario) -> tuple[RankedSimulation, list[str]]:
-        """A simulation that rank 0 has filled; when it starts, particles go to their owners."""
+        """A simulation that rank 0 has filled; when it starts, particles go to their owners.
+
+        Bodies that move are on every rank, so that those ranks are filled as well.
+        """
         told = Told.of(lambda: filled_simulation(scenario)) if self.is_root else Told()
-        whole, names = told.value or (None, None)
-        names = self._comm.bcast(Told(names, told.error) if self.is_root else None).result()
-        core = whole if self.is_root else empty_simulation(scenario, names)
+        core, names = told.value or (None, None)
+        said = (names, core.has_bodies) if core is not None else None
+        names, everywhere = self._comm.bcast(Told(said, told.error)).result()
+        if not self.is_root:
+            if everywhere:
+                core, _ = filled_simulation(scenario)
+            else:
+                core = empty_simulation(scenario, names)
         return RankedSimulation(core, self._comm, scenario.dim), names
 
     def restored_simulation(

@@ -1,0 +1,111 @@
+#pragma once
+// Algebra of small matrices over a number type T (scalar or Pack).
+
+#include "base/vec.hpp"
+
+namespace doseki {
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> identity() {
+    Mat<T, D> one{};
+    for (int a = 0; a < D; ++a) one(a, a) = T(1);
+    return one;
+}
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> operator+(const Mat<T, D>& m, const Mat<T, D>& n) {
+    Mat<T, D> sum;
+    for (int k = 0; k < D * D; ++k) sum.element[k] = m.element[k] + n.element[k];
+    return sum;
+}
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> operator-(const Mat<T, D>& m, const Mat<T, D>& n) {
+    Mat<T, D> difference;
+    for (int k = 0; k < D * D; ++k) difference.element[k] = m.element[k] - n.element[k];
+    return difference;
+}
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> operator*(const T& s, const Mat<T, D>& m) {
+    Mat<T, D> product;
+    for (int k = 0; k < D * D; ++k) product.element[k] = s * m.element[k];
+    return product;
+}
+
+template <class T, int D>
+DOSEKI_FN Vec<T, D> operator*(const Mat<T, D>& m, const Vec<T, D>& v) {
+    Vec<T, D> product;
+    for (int a = 0; a < D; ++a) {
+        product[a] = m(a, 0) * v[0];
+        for (int b = 1; b < D; ++b) product[a] += m(a, b) * v[b];
+    }
+    return product;
+}
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> operator*(const Mat<T, D>& m, const Mat<T, D>& n) {
+    Mat<T, D> product;
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) {
+            product(a, b) = m(a, 0) * n(0, b);
+            for (int k = 1; k < D; ++k) product(a, b) += m(a, k) * n(k, b);
+        }
+    return product;
+}
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> transposed(const Mat<T, D>& m) {
+    Mat<T, D> result;
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) result(a, b) = m(b, a);
+    return result;
+}
+
+template <class T, int D>
+DOSEKI_FN Mat<T, D> full(const Sym<T, D>& s) {
+    Mat<T, D> result;
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) result(a, b) = s(min(a, b), max(a, b));
+    return result;
+}
+
+/// m + m^T, halved.
+template <class T, int D>
+DOSEKI_FN Sym<T, D> symmetric_part(const Mat<T, D>& m) {
+    Sym<T, D> result;
+    for (int a = 0; a < D; ++a)
+        for (int b = a; b < D; ++b) result(a, b) = number<T>(0.5) * (m(a, b) + m(b, a));
+    return result;
+}
+
+/// Matrix of cofactors: inverse transposed times determinant.
+template <class T, int D>
+DOSEKI_FN Mat<T, D> cofactors(const Mat<T, D>& m) {
+    Mat<T, D> c;
+    if constexpr (D == 2) {
+        c(0, 0) = m(1, 1), c(0, 1) = -m(1, 0), c(1, 0) = -m(0, 1), c(1, 1) = m(0, 0);
+    } else {
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b) {
+                const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+                c(a, b) = m(a1, b1) * m(a2, b2) - m(a1, b2) * m(a2, b1);
+            }
+    }
+    return c;
+}
+
+/// Determinant, given the cofactors.
+template <class T, int D>
+DOSEKI_FN T determinant(const Mat<T, D>& m, const Mat<T, D>& cofactors) {
+    T sum = m(0, 0) * cofactors(0, 0);
+    for (int b = 1; b < D; ++b) sum += m(0, b) * cofactors(0, b);
+    return sum;
+}
+
+template <class T, int D>
+DOSEKI_FN T determinant(const Mat<T, D>& m) {
+    return determinant(m, cofactors(m));
+}
+
+}  // namespace doseki
