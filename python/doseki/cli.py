@@ -454,7 +454,7 @@ def main(arguments: list[str] | None = None) -> Any:
     """Entry point: errors become one sentence and an exit code; a traceback only with --debug."""
     error_stream = sys.stderr
     if _is_silent():
-        sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
     try:
         return app(arguments)
     except Exception as error:

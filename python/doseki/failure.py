@@ -107,9 +107,7 @@ def _particle(
     }
 
 
-def _surroundings(
-    run: ActiveRun, state: dict[str, np.ndarray], k: int
-) -> dict[str, Any]:
+def _surroundings(run: ActiveRun, state: dict[str, np.ndarray], k: int) -> dict[str, Any]:
     """The nearest neighbours and, once rates were taken, what they do to the particle."""
     has_rates = "balsara" in state
     terms = particle_terms(run.scenario, {"balsara": np.ones(len(state["id"]))} | state, k)

@@ -51,9 +51,7 @@ def resume_run(
     if overrides:
         # The last snapshot may have been made early, at the time_max of then.
         run.position.outputs = int(checkpoint.time / scenario.time_out + 1e-9) + 1
-        options.ranks.on_root(
-            lambda: write_whole_text(folder.scenario, scenario.effective_toml())
-        )
+        options.ranks.on_root(lambda: write_whole_text(folder.scenario, scenario.effective_toml()))
     return carry_out(run, options, fresh=False), notes
 
 

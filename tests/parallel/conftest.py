@@ -74,7 +74,9 @@ def open_mpi() -> Callable[..., Any]:
     _launcher()
     found = shutil.which("mpiexec.openmpi")
     if found is None or find_spec("doseki._zoltan") is None:
-        pytest.skip("Zoltan is not here: apt-get install libtrilinos-zoltan-dev libopenmpi-dev openmpi-bin")
+        pytest.skip(
+            "Zoltan is not here: apt-get install libtrilinos-zoltan-dev libopenmpi-dev openmpi-bin"
+        )
 
     def run(name: str, ranks: int, *arguments: str) -> Any:
         script = [sys.executable, "-m", "mpi4py", str(WORKERS / f"{name}.py"), *arguments]

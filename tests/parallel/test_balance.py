@@ -8,9 +8,9 @@ import pytest
 mpi4py = pytest.importorskip("mpi4py", reason="mpi4py is not installed: pip install doseki[mpi]")
 mpi4py.rc.initialize = False  # the tests' own process is no rank
 
-from mpi4py import MPI
+from mpi4py import MPI  # noqa: E402
 
-from doseki.parallel.balance import Balance
+from doseki.parallel.balance import Balance  # noqa: E402
 
 
 class TwoRanks:

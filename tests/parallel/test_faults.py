@@ -168,4 +168,3 @@ def test_a_folder_that_is_taken_is_left_alone(command, tmp_path):
     assert done.returncode == 2
     assert done.stderr.count("exists and is not empty") == 1
     assert [file.name for file in tmp_path.iterdir()] == ["keep"]
-

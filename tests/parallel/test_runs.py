@@ -83,7 +83,9 @@ def test_a_run_on_two_ranks_is_that_on_one(command, alone, tmp_path, name):
     assert one.gauges.keys() == two.gauges.keys()
     for gauge, samples in one.gauges.items():
         for column in samples:
-            np.testing.assert_allclose(two.gauges[gauge][column], samples[column], rtol=1e-4, atol=1e-7)
+            np.testing.assert_allclose(
+                two.gauges[gauge][column], samples[column], rtol=1e-4, atol=1e-7
+            )
 
 
 def test_the_history_tells_how_the_work_is_spread(command, alone, tmp_path):

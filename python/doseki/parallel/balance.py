@@ -9,7 +9,8 @@ import numpy as np
 
 class Balance:
     """Adds up what ranks lose by waiting for the busiest one, beyond what the last cut left, until
-    that exceeds what the last cut took; then it is time for another."""
+    that exceeds what the last cut took; then it is time for another.
+    """
 
     def __init__(self, comm: Any) -> None:
         self._comm = comm

@@ -107,7 +107,9 @@ def projection(row: Row) -> str:
         total = sum(parts.values())
         shares = [f"{1e3 * seconds:.3g}" for seconds in parts.values()]
         lines.append([f"{ranks:,}", *shares, f"{1e3 * total:.3g}", f"{parts['work'] / total:.2f}"])
-    return markdown_table(["ranks", *(f"{name} ms" for name in parts), "ms/step", "efficiency"], lines)
+    return markdown_table(
+        ["ranks", *(f"{name} ms" for name in parts), "ms/step", "efficiency"], lines
+    )
 
 
 def bench_ranks(
@@ -124,7 +126,11 @@ def bench_ranks(
     print(f"{machine()}; scheme {scheme}, one thread a rank\n\n{table(rows)}")
     for row in rows:
         if row["kind"] == "weak" and row["ranks"] > 1:
-            costs = [1e6 * row["message_seconds"], 1e9 * row["byte_seconds"], 1e6 * row["reduce_seconds"]]
+            costs = [
+                1e6 * row["message_seconds"],
+                1e9 * row["byte_seconds"],
+                1e6 * row["reduce_seconds"],
+            ]
             print(
                 f"\n{row['dim']}-D, {row['ranks']} ranks: a message {costs[0]:.1f} us, a byte"
                 f" {costs[1]:.2f} ns, a reduction {costs[2]:.1f} us\n\n{projection(row)}"

@@ -53,7 +53,9 @@ def seconds_per_step(simulation: RankedSimulation, comm: Any) -> list[float]:
     return rounds
 
 
-def per_step(simulation: RankedSimulation, before: dict[str, float], steps: int) -> dict[str, float]:
+def per_step(
+    simulation: RankedSimulation, before: dict[str, float], steps: int
+) -> dict[str, float]:
     """Shares of the wall time, and what the busiest rank has sent, since `before`."""
     comm, now = simulation.comm, simulation.core.shares()
     spent = {name: now[name] - before[name] for name in before}

@@ -18,7 +18,8 @@ class Decomposition(Protocol):
 
     def cut(self, points: np.ndarray, weights: np.ndarray) -> None:
         """Choose parts of equal weight.  Every rank gives its own points (n, dim) m, and their
-        weights (n,); all ranks call it together."""
+        weights (n,); all ranks call it together.
+        """
 
     def owners(self, points: np.ndarray) -> np.ndarray:
         """The ranks (n,) to which points (n, dim) belong."""
@@ -32,7 +33,8 @@ class Decomposition(Protocol):
 
 class Multisection:
     """Slabs of equal weight along x, each cut along y, and those along z, from samples of the
-    points (Makino 2004; Ishiyama, Fukushige & Makino 2009; as in FDPS, Iwasawa et al. 2016)."""
+    points (Makino 2004; Ishiyama, Fukushige & Makino 2009; as in FDPS, Iwasawa et al. 2016).
+    """
 
     name = "multisection"
 
@@ -109,9 +111,7 @@ def _factorisations(n: int, axes: int) -> list[tuple[int, ...]]:
     return [(k, *rest) for k in divisors for rest in _factorisations(n // k, axes - 1)]
 
 
-def multisect(
-    points: np.ndarray, weights: np.ndarray, counts: tuple[int, ...]
-) -> list[np.ndarray]:
+def multisect(points: np.ndarray, weights: np.ndarray, counts: tuple[int, ...]) -> list[np.ndarray]:
     """Cuts along each axis: (1, nx - 1), (nx, ny - 1), (nx ny, nz - 1)."""
     cuts, part = [], np.zeros(len(points), np.int64)
     for axis, n in enumerate(counts):

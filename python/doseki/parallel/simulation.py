@@ -97,7 +97,8 @@ class RankedSimulation:
 
     def balance(self) -> dict[str, float]:
         """Work of the busiest rank over the mean, and the mean share of the wall time that went
-        into each of SHARES, since the last call."""
+        into each of SHARES, since the last call.
+        """
         now = self.core.shares()
         spent = np.array([now[name] - self._seen[name] for name in self._seen])
         busiest = self.comm.allreduce(spent[-1], MPI.MAX)
@@ -112,7 +113,8 @@ class RankedSimulation:
 
     def whole_checkpoint(self, state: State) -> State | None:
         """On rank 0, what `checkpoint` gave on each rank put together: the state that any number
-        of ranks can go on from.  Lists are left out."""
+        of ranks can go on from.  Lists are left out.
+        """
         particles = {name: state[name] for name in self.core.particle_arrays}
         whole = gathered(self.comm, particles)
         found = state | whole

@@ -22,9 +22,7 @@ HALO, PARCELS = 1, 2  # tags; parcels use two in turn
 class Transport:
     """One rank's way to the others."""
 
-    def __init__(
-        self, comm: Any, dim: int, decomposition: Decomposition, balance: Balance
-    ) -> None:
+    def __init__(self, comm: Any, dim: int, decomposition: Decomposition, balance: Balance) -> None:
         self.rank, self.ranks, self.dim = comm.rank, comm.size, dim
         self.decomposition, self.balance = decomposition, balance
         self._comm = comm

@@ -10,6 +10,7 @@ import json
 import os
 import select
 import signal
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -44,10 +45,9 @@ class Watchdog:
         self._send(dismissed=True)
 
     def _send(self, **said: Any) -> None:
-        try:
+        # Where nobody watches any more, that is no reason to stop.
+        with suppress(OSError):
             os.write(self._write, (json.dumps(said) + "\n").encode())
-        except OSError:
-            pass  # nobody watches any more, which is no reason to stop
 
 
 def _watch(pipe: int) -> None:
