@@ -31,7 +31,7 @@ Totals<D> totals(const Particles<D>& particles, const Scheme& scheme) {
         // Where tension is clamped away there is no force, hence no energy.
         if (rho >= material.rho0 || eos.pressure < 0.0) sum.bulk_energy += m * eos.bulk_energy;
         if (tag.motion == Motion::fixed) continue;
-        if (material.shear_modulus > 0.0)
+        if (particles.has_strength && material.shear_modulus > 0.0)
             sum.shear_energy += m * shear_energy(particles.deviatoric_stress[p], material.shear_modulus, rho);
         sum.mass += m;
         sum.momentum = sum.momentum + m * particles.velocity[p];

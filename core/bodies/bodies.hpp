@@ -149,7 +149,7 @@ public:
     void kick(double half_dt);
     /// From t to t + dt, through as many contact steps as it takes.
     void advance(const Walls<D>& walls, double t, double dt);
-    /// Puts particles where their bodies are; returns the largest distance that one went.
+    /// Puts particles where their bodies are (eq. 53); returns the largest distance that one went.
     double place(Particles<D>& particles) const;
     /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
     void set_velocities(Particles<D>& particles, double ahead) const;
@@ -264,7 +264,7 @@ void Bodies<D>::restore(const BodyColumns<D>& columns) {
     states_ = states;
 }
 
-/// omega = R I^-1 R^T L.
+/// omega = R I^-1 R^T L (eq. 51).
 template <int D>
 Vec3 Bodies<D>::spin_of(std::size_t k, const Vec3& L) const {
     if (bodies_[k].fixed) return L;
@@ -312,7 +312,7 @@ void Bodies<D>::kick(double half_dt) {
     }
 }
 
-/// Position Verlet: contacts see the velocities of the middle of a step.
+/// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
 template <int D>
 void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return;

@@ -277,7 +277,7 @@ auto Contacts<D>::pairing(const Contactors<D>& contactors, const std::vector<Sol
     return pair;
 }
 
-/// E* of a Hertz contact, k of a linear one.
+/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
 template <int D>
 double Contacts<D>::stiffness_of(const Pairing& pair, const Surface& a, const Surface& b) const {
     const double radius = pair.curvature();

@@ -19,8 +19,8 @@ struct ElasticBody {
     Lame<double> lame{};       // [Pa]
     ElasticLaw law = ElasticLaw::st_venant_kirchhoff;
     double spacing = 0.0;      // of its points at rest [m]
-    double hourglass = 0.2;    // stiffness and damping of the springs over those of the body in shear
-    double damping = 0.02;     // viscosity of Kelvin-Voigt's damper over rho0 c_P spacing
+    double hourglass = 0.5;    // stiffness and damping of the springs over those of the body in shear
+    double damping = 0.02;     // viscosity of Kelvin-Voigt's damper over rho0 c_P spacing, Eq. (82)
 
     /// Radius of the kernel. Points at rest are evenly spread, so that the nearest suffice; the farther
     /// it reaches, the softer are surfaces, whose gradients are one-sided.
@@ -289,7 +289,7 @@ double ElasticBodies<D>::largest_eigenvalue(bool of_damping) {
     return eigenvalue;
 }
 
-/// With omega^2 and gamma the eigenvalues of stiffness and damping, Verlet with predicted velocities
+/// Eq. (84). With omega^2 and gamma the eigenvalues of stiffness and damping, Verlet with predicted velocities
 /// is stable while omega^2 dt^2/4 + gamma dt < 1.
 template <int D>
 void ElasticBodies<D>::limit_timestep() {

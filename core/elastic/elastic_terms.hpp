@@ -84,7 +84,7 @@ struct DeformationSums {
     Mat<T, D> place{}, velocity{};    // sum V_j (x_j - x_i) (x) grad0 W, the same of v
 };
 
-/// Before correction: the deformation gradient and its rate; `finish(p, sums)` once for each point.
+/// Eq. (80) before correction: the deformation gradient and its rate; `finish(p, sums)` once for each point.
 template <int D, class Finish>
 struct DeformationTerm : ElasticTerm<D> {
     template <class T>
@@ -112,7 +112,7 @@ struct DeformationTerm : ElasticTerm<D> {
     }
 };
 
-/// Force per volume at rest; `finish(p, force)` once for each point.
+/// Eq. (83): force per volume at rest; `finish(p, force)` once for each point.
 template <int D, class Finish>
 struct InternalForceTerm : ElasticTerm<D> {
     template <class T>

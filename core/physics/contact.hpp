@@ -1,6 +1,5 @@
 #pragma once
-// Forces where two bodies touch. Numbers are those of the pair: m* = m1 m2/(m1 + m2), R* likewise,
-// 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+// Forces where two bodies touch, eqs. (42) to (50). Numbers are those of the pair: m*, R*, E* of eq. (43).
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,7 @@
 namespace doseki {
 
 /// Restitution of the linear spring and dashpot of damping ratio zeta, when it parts as soon as the
-/// force would pull (Schwager & Poeschel, Granular Matter 9 (2007)).
+/// force would pull (eq. 46; Schwager & Poeschel, Granular Matter 9 (2007)).
 inline double restitution_of(double zeta) {
     if (zeta < 1.0 - 1e-9) {
         const double w = std::sqrt(1.0 - zeta * zeta);    // over that of the spring alone
@@ -27,7 +26,7 @@ struct NormalSpring {
     double force, stiffness;
 };
 
-/// Hertz: F = 4/3 E* sqrt(R*) overlap^(3/2), S_n = 2 E* sqrt(R* overlap).
+/// Hertz, eqs. (44) and (45).
 inline NormalSpring hertz_spring(double E, double R, double overlap) {
     const double root = std::sqrt(R * overlap);
     return {4.0 / 3.0 * E * root * overlap, 2.0 * E * root};
@@ -35,18 +34,18 @@ inline NormalSpring hertz_spring(double E, double R, double overlap) {
 
 inline NormalSpring linear_spring(double k, double overlap) { return {k * overlap, k}; }
 
-/// Never tension: bodies do not stick. `approach` is the speed at which they come nearer.
+/// Eq. (44), never tension: bodies do not stick. `approach` is the speed at which they come nearer.
 inline double normal_force(const NormalSpring& spring, double damping, double approach) {
     return std::max(0.0, spring.force + damping * approach);
 }
 
-/// Tsuji et al. (1992): c_n = 2 sqrt(5/6) zeta sqrt(S_n m*) keeps the restitution of a Hertz contact
-/// independent of speed; a linear one has c_n = 2 zeta sqrt(k m*).
+/// Eq. (45); that of Tsuji et al. (1992) keeps the restitution of a Hertz contact
+/// independent of speed.
 inline double contact_damping(bool hertz, double zeta, double stiffness, double mass) {
     return (hertz ? 2.0 * std::sqrt(5.0 / 6.0) : 2.0) * zeta * std::sqrt(stiffness * mass);
 }
 
-/// A spring that slides at a limit (Cundall & Strack 1979): friction, and the resistance to rolling.
+/// A spring that slides at a limit: friction (eq. 49), and the resistance to rolling (eq. 50).
 /// `stretch` is carried from step to step; it is cut to what the limit can hold.
 template <int D>
 Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& speed, double dt, double stiffness,
@@ -100,7 +99,7 @@ inline Encounter linear_encounter(double k, double mass, double speed) {
     return {speed * root, std::numbers::pi * root};
 }
 
-/// (8/15) E* sqrt(R*) overlap^(5/2) = m* v^2/2; t = 2.9432 overlap/v.
+/// Eq. (48).
 inline Encounter hertz_encounter(double E, double R, double mass, double speed) {
     const double overlap = std::pow(15.0 / 16.0 * mass * speed * speed / (E * std::sqrt(R)), 0.4);
     return {overlap, 2.9432751 * overlap / speed};

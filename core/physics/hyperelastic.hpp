@@ -24,7 +24,7 @@ DOSEKI_FN Sym<T, D> green_strain(const Mat<T, D>& F) {
     return strain;
 }
 
-/// P = F S, S = lambda tr(E) 1 + 2 mu E: first Piola-Kirchhoff stress of St Venant-Kirchhoff's law.
+/// Eq. (81), P = F S, S = lambda tr(E) 1 + 2 mu E: first Piola-Kirchhoff stress of St Venant-Kirchhoff's law.
 template <class T, int D>
 DOSEKI_FN Mat<T, D> st_venant_kirchhoff(const Mat<T, D>& F, const Lame<T>& lame) {
     const Sym<T, D> strain = green_strain(F);
@@ -46,7 +46,7 @@ DOSEKI_FN T st_venant_kirchhoff_energy(const Mat<T, D>& F, const Lame<T>& lame) 
     return number<T>(0.5) * lame.lambda * sum * sum + lame.mu * square;
 }
 
-/// P = mu (F - F^-T) + lambda ln(J) F^-T: compressible neo-Hookean law (Bonet and Wood, Nonlinear
+/// Eq. (81), P = mu (F - F^-T) + lambda ln(J) F^-T: compressible neo-Hookean law (Bonet and Wood, Nonlinear
 /// Continuum Mechanics for Finite Element Analysis, 1997). Compression to nothing takes infinite work,
 /// which St Venant-Kirchhoff's law does not ask.
 template <class T, int D>
@@ -65,7 +65,7 @@ DOSEKI_FN T neo_hookean_energy(const Mat<T, D>& F, const Lame<T>& lame) {
     return number<T>(0.5) * lame.mu * square - lame.mu * log_J + number<T>(0.5) * lame.lambda * log_J * log_J;
 }
 
-/// P = F (2 eta dE/dt) with dE/dt the symmetric part of F^T dF/dt: what Kelvin-Voigt's damper adds. It resists strain, not rotation, and its power
+/// Eq. (82), P = F (2 eta dE/dt) with dE/dt the symmetric part of F^T dF/dt: what Kelvin-Voigt's damper adds. It resists strain, not rotation, and its power
 /// 2 eta dE/dt : dE/dt is never negative.
 template <class T, int D>
 DOSEKI_FN Mat<T, D> kelvin_voigt(const Mat<T, D>& F, const Mat<T, D>& F_rate, const T& eta) {

@@ -208,8 +208,10 @@ def take_census(run: Run) -> Census:
     fluids, direction = fluid_names(run), flow_direction(run)
     first: dict[int, np.ndarray] = {}
     parts: list[dict[str, np.ndarray]] = []
-    fronts = []
-    for snapshot in run:
+    fronts: list[float] = []
+    times = np.unique(run.times)
+    for time in times:  # a run that was stopped has its last time twice
+        snapshot = run.at(time)
         grains = grains_of(snapshot, fluids)
         start = np.array(
             [
@@ -218,13 +220,12 @@ def take_census(run: Run) -> Census:
             ]
         ).reshape(-1, snapshot.dim)
         kinds, front = classify(grains, start, surroundings_of(snapshot, fluids), direction)
-        times = np.full(len(grains.id), snapshot.time)
-        parts.append({"time": times} | vars(grains) | {"kind": kinds})
+        parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | {"kind": kinds})
         fronts.append(front)
     if not first:
         raise UserError(f"{run.directory}: the run has no grains to take a census of")
     table = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    return Census(run.times, np.array(fronts), table, direction)
+    return Census(times, np.array(fronts), table, direction)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from .errors import UserError
 from .figure_census import draw_classes, draw_speed_histogram
 from .figure_series import draw_curves
 from .figure_snapshot import SnapshotFigure, draw_snapshots
-from .flume_criteria import CRITERIA, LOAD, OUTLET, FlumeRun, measure_flume, verdicts
+from .flume_criteria import CRITERIA, LOAD, OUTLET, SPEED, FlumeRun, measure_flume, verdicts
 from .layout import chart_grid
 from .loading import Run, load
 from .nearest import suggestion
@@ -29,8 +29,8 @@ from .views import before_flow, named_window, with_flow
 COMPARISONS = ("flume",)
 SCHEMES = (UETA2022, RESOLVED)
 NOT_HERE = (
-    "Not measured here: change with resolution, sound speed and xi (`doseki trust flume --vary xi`, "
-    "`--set dp=...`), and contact, drag and numerical viscosity by themselves (`doseki validate`)."
+    "Not measured here: change with resolution, sound speed and xi (`doseki trust flume --vary xi`,"
+    " `--set dp=...`), and contact, drag and numerical viscosity by themselves (`doseki validate`)."
 )
 
 
@@ -159,8 +159,8 @@ def _figures(flume: FlumeRun) -> dict[str, Figure]:
 def _water_figure(flumes: Sequence[FlumeRun]) -> Figure:
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Mean velocity of the water at the slope end")
     for flume in flumes:
-        draw_curves(grid[0, 0], flume.census.times, {flume.scheme: flume.water})
-    grid[0, 0].axhspan(*_band("water velocity at the slope end"), alpha=0.15, color="black")
+        draw_curves(grid[0, 0], flume.flow.times, {flume.scheme: flume.water})
+    grid[0, 0].axhspan(*_band(SPEED), alpha=0.15, color="black")
     grid[0, 0].set(xlabel="time (s)", ylabel="m/s; grey: measured")
     return figure
 

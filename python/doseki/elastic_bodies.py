@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .scenario import Scenario
-from .schema import ShapedBody
+if TYPE_CHECKING:
+    from .scenario import Scenario
 
 LEAST_ACROSS = 2  # particles; fewer do not span a body
 ELASTIC_KEYS = ("clamped", "damping", "elastic_law", "hourglass")  # of deformable bodies alone
@@ -32,7 +32,7 @@ def is_elastic(body: Any) -> bool:
 
 def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
     """The argument of the core's add_elastic_body."""
-    table: ShapedBody = scenario.body[body.name]
+    table = scenario.body[body.name]
     material = scenario.materials[table.material]
     modulus, ratio = material.elasticity
     given = {"law": table.elastic_law, "damping": table.damping, "hourglass": table.hourglass}

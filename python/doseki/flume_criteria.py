@@ -1,7 +1,7 @@
 """What the flume experiment saw, as numbers read from the record of a run, and their bands.
 
-The statements are those of Ueta et al. (2022) about their experiment; the bands say when a simulation
-is taken to agree with them.
+The statements are those of Ueta et al. (2022) about their experiment; the bands say when a
+simulation is taken to agree with them.
 """
 
 from __future__ import annotations
@@ -91,17 +91,17 @@ def measure_flume(run: Run) -> FlumeRun:
     arrival = _reached(census, float(upstream))
     steady = (_reached(census, float(end)) + SETTLED, _supply_end(run))
     water = direction * np.array(flow.windows[OUTLET].fluid_velocity)
-    rows = census.rows(view, steady[0], steady[1])
+    steadily = (flow.times >= steady[0]) & (flow.times <= steady[1])
+    rows = census.rows(view, arrival, _supply_end(run))
     speeds = draw_speeds(measure.speed(census.table["velocity"][rows]))
-    mean_water = _mean(water, (census.times >= steady[0]) & (census.times <= steady[1]))
     values = {
-        SPEED: mean_water,
+        SPEED: _mean(water, steadily),
         BALANCE: _balance(run, float(end), direction, steady),
         AHEAD: _ahead(census, arrival, float(end)),
         FLOATS: float(census.mass_of(FLOATING).max() / census.load_mass),
         PASSED: _passed(census, float(end)),
         STUCK: _stuck(census, float(end)),
-        RATIO: float(speeds.speeds.mean() / mean_water) if len(speeds.speeds) else math.nan,
+        RATIO: _ratio(speeds.speeds, np.interp(census.table["time"][rows], flow.times, water)),
     }
     outcome = Outcome({name: Value(number) for name, number in values.items()})
     return FlumeRun(run, census, flow, speeds, arrival, outcome)
@@ -137,6 +137,12 @@ def _mean(values: np.ndarray, mask: np.ndarray) -> float:
     return float(chosen.mean()) if len(chosen) else math.nan
 
 
+def _ratio(speeds: np.ndarray, water: np.ndarray) -> float:
+    """Mean speed of grains over the mean velocity that the water had beside them."""
+    beside = np.isfinite(water)
+    return float(speeds[beside].mean() / water[beside].mean()) if beside.any() else math.nan
+
+
 def _balance(run: Run, section: float, direction: int, steady: tuple[float, float]) -> float:
     """Water that crosses the section over what enters, between two times."""
     first, last = steady
@@ -155,7 +161,7 @@ def _balance(run: Run, section: float, direction: int, steady: tuple[float, floa
 
 
 def _ahead(census: Census, arrival: float, outlet: float) -> float:
-    """Share of the load that moves ahead of the water, or has passed, when it comes to the window."""
+    """Share of the load that moves ahead of the water or has passed, when it is at the window."""
     if math.isnan(arrival):
         return math.nan
     k = int(np.searchsorted(census.times, arrival))

@@ -23,7 +23,7 @@ from .toml_source import KeyPath, Where, dotted
 # A value may be a choice by the number of dimensions or by the scheme.
 CHOICES = {"dim": {"d2", "d3"}, "scheme": {UETA2022, RESOLVED}}
 WORDS = {"schema", "title", "description"}  # top-level keys that no expression needs
-SPATIAL_KEYS = ("velocity", "pressure", "where")  # of a body: may use x, y, z
+SPATIAL_KEYS = ("velocity", "pressure", "where", "clamped")  # of a body: may use x, y, z
 SWITCHED_SECTIONS = ("body", "inflow", "outflow", "gauge", "window", "figure")
 
 
@@ -165,7 +165,8 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
     return {
         key: value
         for key, value in table.items()
-        if key in TOP_LEVEL_KEYS - WORDS and (not isinstance(value, dict | list) or _chooses(value) is not None)
+        if key in TOP_LEVEL_KEYS - WORDS
+        and (not isinstance(value, dict | list) or _chooses(value) is not None)
     }
 
 

@@ -242,6 +242,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "bytes_per_particle": simulation.bytes_per_particle,
         "list_entries_per_particle": simulation.entries_per_particle,
         "ledger_residual": balance,
+        "largest_overlap": simulation.grains()["worst_overlap"],
         "warnings": scenario.warnings,
         **last,
     }

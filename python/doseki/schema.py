@@ -167,7 +167,7 @@ class ShapedBody(Part):
         None, ge=0, le=1, description="elastic: viscosity over rho0 c_P dp; default 0.02"
     )
     hourglass: float | None = Field(
-        None, ge=0, le=1, description="elastic: springs over the shear modulus; default 0.2"
+        None, ge=0, le=1, description="elastic: springs over the shear modulus; default 0.5"
     )
     spin: float | Vector | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
@@ -260,8 +260,9 @@ class Grains(TurnedBody):
     )
     random_seed: int = Field(1, ge=0, description="of the packing")
     settle: bool | Positive = Field(
-        False, description="settle dry under gravity before the start, between the sides of "
-        "the box: true, until at rest, or s"
+        False,
+        description="settle dry under gravity before the start, between the sides of "
+        "the box: true, until at rest, or s",
     )
 
     @model_validator(mode="after")

@@ -65,7 +65,8 @@ def _at_rest(
         until = min(simulation.time + pause, end)
         simulation.advance(limit=until, pause=until, max_steps=FOREVER)
         bodies, mine = simulation.grains(), slice(len(group))
-        group = replace(group, centre=bodies["centre"][mine], orientation=bodies["orientation"][mine])
+        centre, orientation = bodies["centre"][mine], bodies["orientation"][mine]
+        group = replace(group, centre=centre, orientation=orientation)
         fastest = float(np.linalg.norm(bodies["velocity"][mine], axis=1).max())
         if _height(scenario, group.centre).min() < 2 * low - high:
             raise _error(

@@ -88,7 +88,7 @@ class Ball:
 
         Neighbours lie alike everywhere, and any two such discs meet point to point along x.
         """
-        number = max(1, round(self.radius / dp - 0.5))
+        number = max(1, round(self.radius / dp))
         step = self.radius / (number + 0.5)
         angles = [2 * np.pi * np.arange(6 * k) / (6 * k) for k in range(1, number + 1)]
         rings = [

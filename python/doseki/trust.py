@@ -19,7 +19,7 @@ from .loading import Run, Snapshot
 from .materials import Material, complete_materials
 from .measure import speed
 from .overlaps import TOO_NEAR
-from .particles import DRIVEN, FIXED, FREE
+from .particles import BOUND, DRIVEN, FIXED, FREE
 from .record import jsonable
 from .schemes import RESOLVED, UETA2022
 from .storage import write_whole_text
@@ -85,6 +85,7 @@ class Seen:
     closest: list[float] = field(default_factory=list)  # spacings
     potential: list[float] = field(default_factory=list)  # J (2-D: J/m), -m g.x of free particles
     motions: set[int] = field(default_factory=set)
+    overlap: list[float] = field(default_factory=list)  # largest of contacts, over the diameter
     walls_go: bool = False  # whether a fixed particle has a velocity
     too_many_grains: bool = False
 
@@ -97,6 +98,8 @@ def look(run: Run) -> Seen:
     for snapshot in run:
         seen.motions |= set(np.unique(snapshot["motion"]).tolist())
         free = snapshot["motion"] == FREE
+        if len(bodies := snapshot.grains):
+            seen.overlap.append(float(np.max(bodies["overlap"])))
         seen.walls_go |= bool(np.any(snapshot["velocity"][snapshot["motion"] == FIXED]))
         gravity = np.array(_gravity(run.scenario))
         along = snapshot["position"][free] @ gravity
@@ -237,6 +240,8 @@ def energy_check(run: Run, seen: Seen) -> Check:
     """Kinetic + elastic + dissipated energy against start + work of gravity."""
     name = "energy balance"
     why = _incomplete(run, seen, name) or _wrapped(run.scenario) or _driven_by_walls(run, seen)
+    if not why and BOUND in seen.motions:
+        why = "what contacts of bodies take is not recorded"
     if why:
         return _unknown(name, ENERGY, why)
     columns = {column: run.history[column] for column in ENERGIES}
@@ -286,7 +291,7 @@ def momentum_check(run: Run, seen: Seen) -> Check:
     """Momentum against that of the start and the impulse of gravity, m g t."""
     name = "momentum"
     why = _incomplete(run, seen, name)
-    if not why and seen.motions - {FREE}:
+    if not why and seen.motions - {FREE, BOUND}:
         why = "walls take part: not checked"
     if why:
         return _unknown(name, MOMENTUM, why)
@@ -333,6 +338,17 @@ def contact_check(seen: Seen, xi: float) -> Check:
     return _judged(name, float(np.min(seen.closest)), CLOSEST, counted, remedy)
 
 
+def overlap_check(run: Run, seen: Seen) -> Check:
+    """How far bodies are pressed into one another, against what contacts are stiff enough for."""
+    name, contact = "overlap of contacts", run.scenario.get("contact", {})
+    allowed = float(contact.get("overlap", 0.01))
+    limits = (allowed, 5 * allowed)
+    value = _highest(seen.overlap)
+    counted = f"bodies that move in {len(seen.overlap)} snapshots, over the diameter"
+    remedy = f"raise contact.speed {max(value / allowed, 1):.2g} times"
+    return _judged(name, value, limits, counted, remedy)
+
+
 def trust_checks(run: Run) -> list[Check]:
     """Every check of a recorded run."""
     seen, scenario = look(run), run.scenario
@@ -345,6 +361,7 @@ def trust_checks(run: Run) -> list[Check]:
         momentum_check(run, seen),
         depth_check(run, seen),
         contact_check(seen, xi),
+        *([overlap_check(run, seen)] if seen.overlap else []),
     ]
 
 

@@ -26,7 +26,7 @@ def core() -> Iterator[ModuleType]:
 
 @pytest.fixture
 def elastic(core: ModuleType) -> Callable[..., Any]:
-    """Makes started bodies of rubber: each a (position, velocity) or (position, velocity, clamped)."""
+    """Makes started bodies of rubber, each (position, velocity) with or without `clamped`."""
 
     def make(*bodies: tuple[np.ndarray, ...], spacing: float, **material: Any) -> Any:
         dim = bodies[0][0].shape[1]

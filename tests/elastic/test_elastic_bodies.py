@@ -64,7 +64,7 @@ def test_nothing_moves_a_body_at_rest(elastic, box, random):
 
 
 def test_free_flight_keeps_momentum_and_energy(elastic, box, random):
-    """Linear and angular momentum to rounding, energy to the order of the steps, without damping."""
+    """Momenta to rounding, energy to the order of the steps, without damping."""
     velocity = spinning(box, 5.0) + 0.05 * random.normal(size=box.shape) + 0.3
     bodies = elastic((box, velocity), spacing=DP, damping=0.0, hourglass=0.0)
     before = bodies.state()

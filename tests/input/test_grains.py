@@ -195,7 +195,7 @@ def test_mass_and_grading(write):
 @pytest.mark.parametrize(
     ("tables", "parts"),
     [
-        (DISC + 'kinematics = "elastic"', ["body.stone", '"elastic" does not exist yet', "single"]),
+        (DISC + "damping = 0.1", ["body.stone.damping", 'only kinematics = "elastic"']),
         (DISC + 'kinematics = "soft"', ["kinematics = 'soft' is not allowed", "'rigid'"]),
         (DISC + "jitter = 0.1", ["body.stone.jitter", "moves as a whole"]),
         (DISC + "spin = [1, 0, 0]", ["body.stone.spin", "must be a number"]),

@@ -1,4 +1,4 @@
-"""Grains that settle before the start: at rest in the run, held by their box, and what is refused."""
+"""Grains that settle before the start: at rest in the run, held by their box; what is refused."""
 
 from __future__ import annotations
 
@@ -93,6 +93,6 @@ def test_settling_for_some_time(write):
     ],
 )
 def test_errors(write, tables, top, part):
-    with pytest.raises(UserError, match="body.load") as caught:
+    with pytest.raises(UserError, match=r"body\.load") as caught:
         grains_of(write, tables, top)
     assert part in str(caught.value)

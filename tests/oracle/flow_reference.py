@@ -27,6 +27,7 @@ LEAST_DENSITY = 0.98  # rho0
 AT_REST = 5e-4  # rms |L| h/c
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 40.0, 5.0
+SHIFT_FASTEST = 0.05  # over the sound speed
 
 
 @dataclass(frozen=True)
@@ -390,6 +391,8 @@ class FlowReference:
         )
         near_surface = (self.nearby > SURFACE)[:, None]
         shift = np.where(near_surface, tangential(shift, surface_gradient), shift)
+        speed = np.linalg.norm(shift, axis=1)[:, None]
+        shift = shift * np.minimum(1, SHIFT_FASTEST * self.c / np.maximum(speed, 1e-300))
         self.shift = np.where((self.measure < SURFACE)[:, None], shift, 0)
         self.acceleration += np.einsum("iab,ib->ia", self.L, self.shift)
         self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2

@@ -25,7 +25,15 @@ def test_a_contact_gives_back_its_restitution(physics, restitution, hertz):
     encounter = physics.hertz_encounter if hertz else physics.linear_encounter
     row = [stiffness, radius, mass, speed] if hertz else [stiffness, mass, speed]
     _, (duration,) = encounter([[x] for x in row])
-    path = solve_ivp(motion, (0, 20 * duration), [0, speed], events=parted, rtol=1e-8, atol=1e-12, max_step=duration / 50)
+    path = solve_ivp(
+        motion,
+        (0, 20 * duration),
+        [0, speed],
+        events=parted,
+        rtol=1e-8,
+        atol=1e-12,
+        max_step=duration / 50,
+    )
     assert -path.y[1].min() / speed == pytest.approx(restitution, abs=2e-3)
 
 
@@ -76,7 +84,8 @@ def test_friction_slides_at_its_limit_and_forgets_the_rest(physics):
 
 def test_without_pressure_there_is_no_friction(physics):
     force, stretch = spring(physics, [0.05, 0, 0], [0, 3.0, 0], limit=0.0)
-    assert np.all(force == 0) and np.all(stretch == 0)
+    assert np.all(force == 0)
+    assert np.all(stretch == 0)
 
 
 SQUARE = [[-2, -1], [2, -1], [2, -1], [2, 1], [2, 1], [-2, 1], [-2, 1], [-2, -1]]
@@ -106,7 +115,11 @@ def test_distance_from_a_tetrahedron(physics):
     weights = rng.dirichlet([0.7] * 3, 20_000)
     surface = np.concatenate([weights @ corner[face] for face in faces])
     points = rng.uniform(-1, 1.5, (200, 3))
-    out = np.array(physics.three.surface_from(np.concatenate([corner[f] for f in faces]).tolist(), points.tolist()))
+    out = np.array(
+        physics.three.surface_from(
+            np.concatenate([corner[f] for f in faces]).tolist(), points.tolist()
+        )
+    )
     inside = (points > 0).all(axis=1) & (points.sum(axis=1) < 1)
     nearest = np.array([np.linalg.norm(surface - p, axis=1).min() for p in points])
     assert np.abs(out[:, 0]) == pytest.approx(nearest, abs=0.03)

@@ -350,3 +350,45 @@ def test_only_xi_can_be_varied(tmp_path):
         main(["trust", "collision", "--vary", "dp", "-o", str(tmp_path / "out")])
     assert stopped.value.code == 2
     assert not (tmp_path / "out").exists()
+
+
+BODIES = """
+dim = 2
+dp = 0.1
+time_max = 0.1
+time_out = 0.05
+scheme = "resolved"
+speed_max = 5
+gravity = [0, -9.81]
+[contact]
+speed = {speed}
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [-1, -0.5]
+max = [2, 0]
+[body.stone]
+shape = "disc"
+material = "basalt"
+centre = [0.4, 0.3]
+radius = 0.3
+velocity = [0, -2]
+[body.water]
+shape = "box"
+material = "water"
+min = [-1, 0]
+max = [2, 0.5]
+"""
+
+
+@pytest.mark.parametrize(("speed", "found"), [(5, trust.GOOD), (0.05, trust.BAD)])
+def test_a_run_with_bodies(tmp_path, speed, found):
+    """It ends, and contacts too soft for its speeds are told; their losses are in no balance."""
+    (tmp_path / "stone.toml").write_text(BODIES.format(speed=speed), encoding="utf-8")
+    run_scenario(load_scenario(str(tmp_path / "stone.toml")), tmp_path / "run")
+    run = load(tmp_path / "run")
+    checks = {check.name: check for check in trust.trust_checks(run)}
+    assert checks["overlap of contacts"].verdict == found
+    assert checks["energy balance"].verdict == trust.NOT_AVAILABLE
+    assert len(run[-1].grains["overlap"]) == 1

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from doseki.validate import estimators
+from doseki.validate.cases import grains_dry, grains_wet
 from doseki.validate.cases.drops import ellipse
 from doseki.validate.cases.films import KEULEGAN, nusselt_speed
 from doseki.validate.cases.poiseuille import exact_speed
@@ -80,3 +81,26 @@ def test_exact_solutions():
     y = np.linspace(0, 1, 11)
     np.testing.assert_allclose(exact_speed(y, 0.0), 0, atol=1e-4)
     np.testing.assert_allclose(exact_speed(y, 1e3), 4 * y * (1 - y), atol=1e-12)
+
+
+def test_what_lies_apart_is_no_part_of_the_heap():
+    heap, shift = np.stack([np.arange(5.0), np.zeros(5)], axis=1), np.array([20, 0])
+    both = np.concatenate([heap + shift, [[8.0, 0], [9.0, 0]], [[40.0, 3]]])
+    assert np.array_equal(estimators.largest_cluster(both, 1.1), heap + shift)
+
+
+def test_slope_of_a_heap_with_a_plateau():
+    x = np.linspace(0, 10, 400, endpoint=False)
+    y = np.minimum(4.0, 6 - 0.6 * x)
+    below = np.stack([np.tile(x, 2), np.concatenate([y, 0.5 * y])], axis=1)
+    angle, edge, top = estimators.surface_slope(below, 0.5, 10.0)
+    assert np.tan(angle) == pytest.approx(0.6, rel=1e-6)
+    assert len(edge) == len(top) == 20
+
+
+def test_closed_forms_of_grains():
+    assert grains_dry.published(2.0) == pytest.approx((2.4, 3.6))
+    assert grains_dry.published(5.0) == pytest.approx((1.9 * 5 ** (2 / 3), 2.3 * 5 ** (2 / 3)))
+    series = np.log(4) - 0.9157 + 1.7244 / 16 - 1.7302 / 256
+    net = np.pi / 4 * 1e-4 * 1000 * 9.81
+    assert grains_wet.faxen_speed(0.04) == pytest.approx(net * series / (4 * np.pi))

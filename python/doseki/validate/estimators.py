@@ -94,3 +94,32 @@ def integral(times: np.ndarray, values: np.ndarray, start: float, end: float) ->
     inside = (times >= start) & (times <= end)
     t, v = times[inside], values[inside]
     return float(np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(t)))
+
+
+def largest_cluster(position: np.ndarray, reach: float) -> np.ndarray:
+    """The points (N, dim) of the largest set in which neighbours are nearer than `reach`."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(position).query_pairs(reach, output_type="ndarray")
+    n = len(position)
+    graph = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(n, n))
+    label = connected_components(graph, directed=False)[1]
+    return position[label == np.argmax(np.bincount(label))]
+
+
+def surface_slope(
+    position: np.ndarray, bin_width: float, length: float, crest: float = 0.85
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """The downward angle, rad, of the surface of a 2-D heap over 0 <= x <= length.
+
+    A line through the highest point of each bin whose height is below `crest` of the highest; also
+    these points: angle, x, y.
+    """
+    x, y = position.T
+    cell = np.floor(x / bin_width).astype(int)
+    cells = [k for k in range(int(length / bin_width)) if (cell == k).any()]
+    best = [np.flatnonzero(cell == k)[np.argmax(y[cell == k])] for k in cells]
+    flank = [p for p in best if y[p] < crest * y[best].max()]
+    return float(np.arctan(-np.polyfit(x[flank], y[flank], 1)[0])), x[best], y[best]

@@ -41,6 +41,10 @@ class Running:
         """The particles now."""
         return self.simulation.state()
 
+    def grains(self) -> State:
+        """All bodies now, those that do not move, too, in the order in which they were added."""
+        return {key: np.asarray(values) for key, values in self.simulation.grains().items()}
+
     def advance(self, time: float, max_steps: int = FOREVER) -> State:
         """The state at `time`, or after `max_steps` steps if that comes first.
 
