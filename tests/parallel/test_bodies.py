@@ -58,7 +58,7 @@ velocity = [0, -1]
 [body.pebble]
 shape = "disc"
 material = "basalt"
-centre = [0.25, 0.17]
+centre = [0.25, 0.18]
 radius = 0.03
 velocity = [-1, -1]
 
