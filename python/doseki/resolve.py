@@ -171,7 +171,7 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _chooses(value: Any) -> str | None:
-    """What the value is a choice by: { d2 = ..., d3 = ... } or { ueta2022 = ..., resolved = ... }."""
+    """What a value chooses by: { d2 = ..., d3 = ... } or { ueta2022 = ..., resolved = ... }."""
     if not isinstance(value, dict) or not value:
         return None
     return next((by for by, keys in CHOICES.items() if set(value) <= keys), None)

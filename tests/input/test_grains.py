@@ -231,6 +231,22 @@ def test_mass_and_grading(write):
         ("[material.basalt]\nrestitution = 0" + DISC, ["restitution = 0", "greater than 0"]),
         ("[material.basalt]\npoisson_ratio = 0.5" + DISC, ["poisson_ratio = 0.5", "less than 0.5"]),
         ("[contact]\nlaw = 'hert'" + DISC, ["contact.law = 'hert'", "'hertz'"]),
+        ("[contact]\noverlap = 0.2" + DISC, ["contact.overlap = 0.2", "at most 0.1"]),
+        ("[contact]\nsteps = 2" + DISC, ["contact.steps = 2", "at least 5"]),
+        ("[contact]\nspeed = 0" + DISC, ["contact.speed = 0", "greater than 0"]),
+        ("[material.basalt]\nrolling_friction = -1" + DISC, ["rolling_friction = -1"]),
+        ("[material.basalt]\nyoung_modulus = 0" + DISC, ["young_modulus = 0", "greater than 0"]),
+        (
+            FLOOR.replace("fixed = true\n", 'kinematics = "single"\n'),
+            ["body.floor", "one particle per disc", 'shape = "box"'],
+        ),
+        (
+            LOAD.replace("d = 1\n", "grading = [[1, -1]]\n"),
+            ["body.load.grading"],
+        ),
+        (LOAD.replace("max = [10, 10]", "max = [-1, 10]"), ["every entry of min must be below"]),
+        (LOAD + "packing = 1.2", ["body.load.packing = 1.2", "less than 1"]),
+        (LOAD + "count = 0", ["body.load.count = 0", "greater than 0"]),
         ("[contact]\noverlp = 0.1" + DISC, ["contact.overlp is not a known key", "overlap"]),
     ],
 )

@@ -174,7 +174,7 @@ def test_a_disc_of_half_the_density_bobs_with_its_middle_at_the_surface(tmp_path
 
 
 def test_a_disc_released_in_water_carries_water_with_it(tmp_path):
-    """a = g (rho_w - rho_s)/(rho_w + rho_s): the added mass of a disc is that of the water in it."""
+    """a = g (rho_w - rho_s)/(rho_w + rho_s): the added mass of a disc is its volume of water."""
     for density in (500, 2650):
         speed = to(built(tmp_path, TANK, density=density), 0.02).grains()["velocity"][0, 1]
         exact = 9.81 * (1000 - density) / (1000 + density) * 0.02
