@@ -8,11 +8,13 @@
 #include <nanobind/stl/vector.h>
 #include <omp.h>
 
+#include <memory>
 #include <numbers>
 #include <numeric>
 
 #include "bound_arrays.hpp"
 #include "bound_elastic.hpp"
+#include "bound_exchange.hpp"
 #include "checkpoint.hpp"
 #include "pair_probe.hpp"
 #include "simulation.hpp"
@@ -298,6 +300,48 @@ public:
         sim_.walls.add(motion);
     }
 
+    /// Makes this one of several ranks, which `transport` joins.
+    void join(nb::object transport) {
+        exchange_ = std::make_unique<PythonExchange>(std::move(transport));
+        sim_.join(*exchange_);
+    }
+
+    bool has_bodies() const { return !sim_.bodies.empty(); }
+
+    /// What this rank has spent beside its steps, what it has sent, how many particles it holds [s].
+    nb::dict shares() const {
+        const Halo<D>& halo = sim_.halo();
+        nb::dict d;
+        for (std::size_t k = 0; k < share_names.size(); ++k) d[share_names[k]] = halo.ranks.clock.seconds()[k];
+        d["total"] = halo.ranks.clock.total(), d["busy"] = halo.ranks.clock.busy();
+        d["bytes_sent"] = halo.bytes_sent(), d["messages_sent"] = halo.messages_sent();
+        d["particles"] = sim_.particles.size(), d["ghosts"] = halo.ghosts();
+        return d;
+    }
+
+    /// Names of the arrays of a checkpoint that have one row for each particle.
+    std::vector<std::string> particle_arrays() {
+        SavingArchive archive;
+        Particles<D> none;
+        none.has_strength = sim_.particles.has_strength, none.has_flow = sim_.particles.has_flow;
+        none.serialise(archive);
+        std::vector<std::string> names;
+        for (const auto& item : archive.arrays) names.push_back(nb::cast<std::string>(item.first));
+        return names;
+    }
+
+    /// By id, how many other particles are within support.
+    nb::dict neighbour_counts() const {
+        const std::vector<double> of_particle = PairCounter(sim_.rates(), sim_.neighbours()).counts();
+        const auto order = id_order();
+        Output<std::int64_t> id({order.size()}), count({order.size()});
+        for (std::size_t k = 0; k < order.size(); ++k)
+            id.data[k] = sim_.particles.tag[order[k]].id, count.data[k] = static_cast<std::int64_t>(of_particle[order[k]]);
+        nb::dict d;
+        d["id"] = id.release(), d["count"] = count.release();
+        return d;
+    }
+
     /// What gauges read of the particles in a box, in the order of their ids.
     nb::dict sample(const std::vector<double>& low, const std::vector<double>& high) const {
         const auto& particles = sim_.particles;
@@ -310,8 +354,10 @@ public:
         const std::size_t n = found.size();
         Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}), h({n});
         Output<std::int32_t> material({n}), motion({n});
+        Output<std::int64_t> id({n});
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t p = found[k];
+            id.data[k] = particles.tag[p].id;
             for (int a = 0; a < D; ++a) {
                 position.data[k * D + a] = particles.position[p][a];
                 velocity.data[k * D + a] = particles.velocity[p][a];
@@ -325,6 +371,7 @@ public:
         d["position"] = position.release(), d["velocity"] = velocity.release();
         d["mass"] = mass.release(), d["density"] = density.release(), d["pressure"] = pressure.release();
         d["smoothing_length"] = h.release(), d["material"] = material.release(), d["motion"] = motion.release();
+        d["id"] = id.release();
         return d;
     }
 
@@ -405,15 +452,28 @@ public:
         return archive.arrays;
     }
 
-    /// False where lists had to be made anew, because this module has clusters of another width.
+    /// False where lists had to be made anew, because this module has clusters of another width (none: the
+    /// state is that of several ranks).
     bool restore(const nb::dict& arrays) {
         LoadingArchive archive(arrays);
         int width = 0;
         archive("lanes", width);
         sim_.serialise(archive);
+        if (exchange_ || width == 0) {
+            sim_.renew_order();
+            return false;
+        }
         if (width == Sim::width) return true;
         sim_.renew_lists();
         return false;
+    }
+
+    /// The same on several ranks for a state that all of them have read.
+    void restore_shared(const nb::dict& arrays) {
+        LoadingArchive archive(arrays);
+        sim_.serialise(archive);
+        sim_.leave_to_first_rank();
+        sim_.renew_order();
     }
 
     void start() { guarded([&] { sim_.start(); }); }
@@ -430,7 +490,7 @@ public:
     std::size_t size() const { return sim_.particles.size(); }
     double skin() const { return sim_.skin(); }
     double bytes_per_particle() const { return sim_.bytes_per_particle(); }
-    double entries_per_particle() const { return double(sim_.neighbours().entries()) / double(size()); }
+    double entries_per_particle() const { return double(sim_.neighbours().entries()) / double(std::max<std::size_t>(1, size())); }
 
     void time_phases(bool on) { sim_.phases().restart(on); }
     nb::dict phase_seconds() {
@@ -521,6 +581,7 @@ private:
         for (int a = 0; a < 3; ++a) out[4 * a] -= p;
     }
 
+    std::unique_ptr<Exchange> exchange_;
     Sim sim_;
     std::pair<std::string, std::int64_t> failure_{"", -1};
 };
@@ -550,6 +611,13 @@ void bind_simulation(nb::module_& m, const char* name) {
         .def("checkpoint", &B::checkpoint, "The whole state as arrays in storage order.")
         .def("restore", &B::restore, nb::arg("arrays"),
              "Go on from what checkpoint() gave; false where that changes the order of sums.")
+        .def("restore_shared", &B::restore_shared, nb::arg("arrays"),
+             "restore() of a state that all ranks have read and that is to be divided among them.")
+        .def("join", &B::join, nb::arg("transport"), "Become one of several ranks.")
+        .def_prop_ro("has_bodies", &B::has_bodies, "Whether bodies move on their own.")
+        .def("shares", &B::shares, "Seconds by share, what was sent, particles and ghosts of this rank.")
+        .def("neighbour_counts", &B::neighbour_counts, "How many others are within support of each particle.")
+        .def_prop_ro("particle_arrays", &B::particle_arrays)
         .def_prop_ro("failure", &B::failure)
         .def("time_phases", &B::time_phases, nb::arg("on"), "Start timing the phases of steps from zero, or stop.")
         .def("phase_seconds", &B::phase_seconds)

@@ -17,7 +17,8 @@ public:
         : begin_(begin), moving_words_(static_cast<std::uint32_t>(moving_words)),
           fixed_words_(static_cast<std::uint32_t>(fixed_words)) {}
 
-    bool empty() const { return moving_words_ + fixed_words_ == 0; }
+    bool empty() const { return words() == 0; }
+    std::size_t words() const { return std::size_t{moving_words_} + fixed_words_; }
 
     template <class F>
     [[gnu::always_inline]] void for_each_moving(F&& f) const { for_each(begin_, moving_words_, f); }

@@ -2,7 +2,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "base/error.hpp"
@@ -46,12 +48,21 @@ class Neighbours {
 public:
     explicit Neighbours(const Domain<D>& domain) : domain_(domain) { fill_image_shifts(); }
 
-    /// Order in which particles are to be stored; `kept` tells which particles go on existing.
+    /// Order in which particles are to be stored: moving ones before fixed ones, and among each those that
+    /// are near other ranks last; none are where `is_near` is empty.
     std::vector<std::uint32_t> sort(std::span<const Vec<double, D>> position,
                                     std::span<const double> support,
-                                    std::span<const std::uint8_t> is_fixed);
+                                    std::span<const std::uint8_t> is_fixed,
+                                    std::span<const std::uint8_t> is_near = {});
 
-    /// Lists of all clusters of `width` particles, for positions already stored in sorted order.
+    /// Order in which ghosts are to be stored after the particles: moving ones first. They are
+    /// neighbours, and have none themselves.
+    std::vector<std::uint32_t> sort_ghosts(std::span<const Vec<double, D>> position,
+                                           std::span<const double> support,
+                                           std::span<const std::uint8_t> is_fixed);
+
+    /// Lists of all clusters of `width` particles, for positions already stored in sorted order, those
+    /// of ghosts at the end.
     template <int width>
     void build(std::span<const Vec<double, D>> position, std::span<const double> support,
                double skin);
@@ -64,6 +75,11 @@ public:
     std::size_t entries() const;
     std::size_t bytes() const;
     std::size_t moving() const { return moving_; }
+    /// Particles that have neighbours, ghosts left out.
+    std::size_t size() const { return size_; }
+    /// The first moving ones, which have no ghosts among their neighbours.
+    std::size_t inner() const { return inner_; }
+    void set_size(std::size_t size) { size_ = size; }
 
     /// The lists as they are; the grids are used only while lists are built.
     template <class Archive>
@@ -89,6 +105,7 @@ private:
         bool fixed = false;
         std::uint32_t first = 0, last = 0;
         double support = 0.0;                 // largest R of the class
+        Vec<double, D> low{}, high{};         // of its particles
         Vec<double, D> cell_size{};
         Vec<double, D> origin{};
         std::array<std::int64_t, D> cells{};    // power of two, except in periodic directions
@@ -102,15 +119,21 @@ private:
         std::uint32_t image_part;
     };
 
+    struct Bounds {
+        Vec<double, D> low, high;
+        double support;
+    };
+
+    /// Particles by class: moving before fixed, far from other ranks before near, then by smoothing length.
+    using Classes = std::map<std::tuple<bool, bool, int>, std::vector<std::uint32_t>>;
+    std::vector<std::uint32_t> sort_classes(const Classes& classes, std::span<const Vec<double, D>> position,
+                                            std::span<const double> support, std::size_t first);
+    bool is_beyond(const Grid& grid, const Bounds& bounds, double radius) const;
+
     /// What a thread needs while it searches.
     struct Scratch {
         std::vector<std::uint32_t> list;
         std::array<std::vector<CellStep>, D> steps;
-    };
-
-    struct Bounds {
-        Vec<double, D> low, high;
-        double support;
     };
 
     void fill_image_shifts();
@@ -135,7 +158,7 @@ private:
     std::vector<Grid> grids_;
     std::vector<ClusterList> clusters_;
     std::vector<ListStorage> storage_;    // one per thread
-    std::size_t moving_ = 0;
+    std::size_t moving_ = 0, inner_ = 0, size_ = 0;
 };
 
 }  // namespace doseki

@@ -28,13 +28,22 @@ void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double ra
     }
 }
 
+/// Whether none of the particles of a class can be within `radius` of the bounds.
+template <int D>
+bool Neighbours<D>::is_beyond(const Grid& grid, const Bounds& bounds, double radius) const {
+    for (int a = 0; a < D; ++a)
+        if (!domain_.periodic[a] && (grid.low[a] > bounds.high[a] + radius || grid.high[a] < bounds.low[a] - radius))
+            return true;
+    return false;
+}
+
 template <int D>
 template <int width>
 void Neighbours<D>::search(const Grid& grid, const Bounds& bounds, std::uint32_t first, double skin,
                            std::span<const Vec<double, D>> position, std::span<const double> support,
                            Scratch& scratch) const {
     using Lanes = stdx::fixed_size_simd<double, width>;
-    const auto last = static_cast<std::uint32_t>(position.size() - 1);
+    const auto last = static_cast<std::uint32_t>(size_ - 1);
     Vec<Lanes, D> x;
     for (int a = 0; a < D; ++a)
         x[a] = Lanes([&](auto l) { return position[std::min<std::uint32_t>(first + l, last)][a]; });
@@ -53,7 +62,9 @@ void Neighbours<D>::search(const Grid& grid, const Bounds& bounds, std::uint32_t
             if (stdx::any_of(square < limit * limit)) scratch.list.push_back(j | code);
         }
     };
-    fill_steps(grid, bounds, std::max(bounds.support, grid.support) + skin, scratch);
+    const double radius = std::max(bounds.support, grid.support) + skin;
+    if (is_beyond(grid, bounds, radius)) return;
+    fill_steps(grid, bounds, radius, scratch);
     const auto& steps = scratch.steps;
     for (const CellStep& y : steps[1])
         for (const CellStep& x_step : steps[0]) {
@@ -68,7 +79,7 @@ template <int D>
 template <int width>
 void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<const double> support,
                           double skin) {
-    const std::size_t n = position.size(), count = (n + width - 1) / width;
+    const std::size_t n = size_, count = (n + width - 1) / width;
     clusters_.assign(count, {});
     storage_.resize(static_cast<std::size_t>(omp_get_max_threads()));
     for (ListStorage& storage : storage_) storage.clear();

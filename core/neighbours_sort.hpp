@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "neighbours.hpp"
 
@@ -68,6 +66,7 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
             low[a] = std::min(low[a], position[p][a]);
             high[a] = std::max(high[a], position[p][a]);
         }
+    grid.low = low, grid.high = high;
     std::array<std::int64_t, D> cells;
     for (int a = 0; a < D; ++a) {
         const double size = 0.5 * grid.support;
@@ -104,21 +103,44 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
 template <int D>
 std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> position,
                                                std::span<const double> support,
-                                               std::span<const std::uint8_t> is_fixed) {
+                                               std::span<const std::uint8_t> is_fixed,
+                                               std::span<const std::uint8_t> is_near) {
     if (position.size() > ListEntry::max_index)
         throw ResourceFailure("more than 2^27 particles on one rank");
-    std::map<std::pair<bool, int>, std::vector<std::uint32_t>> classes;
+    Classes classes;
     for (std::uint32_t p = 0; p < position.size(); ++p)
-        classes[{is_fixed[p] != 0, std::ilogb(support[p])}].push_back(p);
+        classes[{is_fixed[p] != 0, !is_near.empty() && is_near[p] != 0, std::ilogb(support[p])}].push_back(p);
+    grids_.clear();
+    size_ = position.size(), moving_ = 0, inner_ = 0;
+    for (const auto& [name, members] : classes) {
+        if (!std::get<0>(name)) moving_ += members.size();
+        if (!std::get<0>(name) && !std::get<1>(name)) inner_ += members.size();
+    }
+    return sort_classes(classes, position, support, 0);
+}
 
+template <int D>
+std::vector<std::uint32_t> Neighbours<D>::sort_ghosts(std::span<const Vec<double, D>> position,
+                                                      std::span<const double> support,
+                                                      std::span<const std::uint8_t> is_fixed) {
+    if (size_ + position.size() > ListEntry::max_index)
+        throw ResourceFailure("more than 2^27 particles and ghosts on one rank");
+    Classes classes;
+    for (std::uint32_t p = 0; p < position.size(); ++p)
+        classes[{is_fixed[p] != 0, true, std::ilogb(support[p])}].push_back(p);
+    return sort_classes(classes, position, support, size_);
+}
+
+/// Adds a grid for each class; the first particle is to be stored at `first`.
+template <int D>
+std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes, std::span<const Vec<double, D>> position,
+                                                       std::span<const double> support, std::size_t first) {
     std::vector<std::uint32_t> order;
     order.reserve(position.size());
-    grids_.clear();
-    moving_ = 0;
-    for (auto& [name, members] : classes) {
+    for (const auto& [name, members] : classes) {
         Grid grid;
-        grid.fixed = name.first;
-        grid.first = static_cast<std::uint32_t>(order.size());
+        grid.fixed = std::get<0>(name);
+        grid.first = static_cast<std::uint32_t>(first + order.size());
         grid.last = grid.first + static_cast<std::uint32_t>(members.size());
         for (std::uint32_t p : members) grid.support = std::max(grid.support, support[p]);
         size_grid(grid, position, members);
@@ -132,9 +154,8 @@ std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> p
         for (std::size_t c = 1; c < grid.cell_start.size(); ++c)
             grid.cell_start[c] += grid.cell_start[c - 1];
         std::vector<std::uint32_t> next(grid.cell_start.begin(), grid.cell_start.end() - 1);
-        order.resize(grid.last);
-        for (std::size_t k = 0; k < members.size(); ++k) order[next[keys[k]]++] = members[k];
-        if (!grid.fixed) moving_ = grid.last;
+        order.resize(order.size() + members.size());
+        for (std::size_t k = 0; k < members.size(); ++k) order[next[keys[k]]++ - first] = members[k];
         grids_.push_back(std::move(grid));
     }
     return order;

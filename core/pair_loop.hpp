@@ -110,7 +110,7 @@ void for_each_pair(const Neighbours<D>& neighbours, std::span<const ClusterList>
     for (std::size_t c = 0; c < clusters.size(); ++c) {
         if (skip_empty && clusters[c].empty()) continue;
         const auto first = static_cast<std::uint32_t>(first_cluster + c) * width;
-        const auto count = std::min<std::size_t>(width, records.size() - first);
+        const auto count = std::min<std::size_t>(width, neighbours.size() - first);
         term.finish(first, static_cast<int>(count), sum_over_list<periodic>(loop, clusters[c], first));
     }
 }

@@ -8,13 +8,19 @@
 
 namespace doseki {
 
+/// Neighbours of W particles, by kind.
+template <class T>
+struct Counts {
+    T moving{}, fixed{};
+};
+
 /// Counts, for each particle, the neighbours within the larger of two supports; not itself.
 template <class real, int D, class Finish>
 struct CountTerm {
     template <class T>
     using Point = MotionPoint<T, D>;
     template <class T>
-    using Sums = T;
+    using Sums = Counts<T>;
 
     std::span<const MotionRecord<real, D>> motion;
     const Finish& finish_particle;
@@ -24,19 +30,24 @@ struct CountTerm {
     DOSEKI_FN auto load_fixed(std::uint32_t j) const { return load_one(j); }
 
     template <class T>
-    DOSEKI_FN void add(T& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+    DOSEKI_FN static T is_near(const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) {
         const T q = pair.r * min(i.inverse_support, j.inverse_support);
-        count += select(q < T(1) && q > number<T>(1e-9), T(1), T(0));
+        return select(q < T(1) && q > number<T>(1e-9), T(1), T(0));
     }
     template <class T>
-    DOSEKI_FN void add_fixed(T& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
-        add(count, pair, i, j);
+    DOSEKI_FN void add(Sums<T>& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        count.moving += is_near(pair, i, j);
     }
     template <class T>
-    void moving_done(T&) const {}
+    DOSEKI_FN void add_fixed(Sums<T>& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+        count.fixed += is_near(pair, i, j);
+    }
     template <class T>
-    void finish(std::uint32_t first, int count, const T& sums) const {
-        for (int l = 0; l < count; ++l) finish_particle(first + l, static_cast<double>(sums[l]));
+    void moving_done(Sums<T>&) const {}
+    template <class T>
+    void finish(std::uint32_t first, int count, const Sums<T>& sums) const {
+        for (int l = 0; l < count; ++l)
+            finish_particle(first + l, static_cast<double>(sums.moving[l]), static_cast<double>(sums.fixed[l]));
     }
 };
 
@@ -49,14 +60,25 @@ public:
     /// Pairs (i, j), each way counted, that are within support of each other.
     double interacting_pairs() const { return count(neighbours_.clusters(), rates_.motion_); }
 
+    /// Neighbours within support of each particle, ghosts left out.
+    std::vector<double> counts() const { return counts(neighbours_.clusters(), rates_.motion_); }
+
     template <class Motion>
     double count(std::span<const ClusterList> clusters, const Motion& motion) const {
-        std::vector<double> of_particle(motion.size());
-        auto finish = [&](std::size_t p, double count) { of_particle[p] = count; };
-        for_each(clusters, motion, CountTerm<typename Rates::Real, Rates::dim, decltype(finish)>{motion, finish});
         double total = 0.0;
-        for (double count : of_particle) total += count;
+        for (double count : counts(clusters, motion)) total += count;
         return total;
+    }
+
+    template <class Motion>
+    std::vector<double> counts(std::span<const ClusterList> clusters, const Motion& motion) const {
+        std::vector<double> of_particle(motion.size());
+        // A cluster that holds moving and fixed particles lists fixed ones for both.
+        auto finish = [&](std::size_t p, double moving, double fixed) {
+            of_particle[p] = moving + (p < neighbours_.moving() ? fixed : 0.0);
+        };
+        for_each(clusters, motion, CountTerm<typename Rates::Real, Rates::dim, decltype(finish)>{motion, finish});
+        return of_particle;
     }
 
     template <class Motion, class Term>

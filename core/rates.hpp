@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "fault.hpp"
+#include "halo.hpp"
 #include "material.hpp"
 #include "neighbours.hpp"
 #include "options.hpp"
@@ -77,19 +78,23 @@ public:
     /// pairs with the stress of each particle between them. Sets timestep() and av_power().
     /// `new_lists`: neighbours were built since the last call. Where they were not, a particle of the
     /// bed that nothing comes near has the rates it had: none.
-    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt, bool new_lists) {
+    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt, bool new_lists) {
         const bool poisoned = is_poisoned_run();
         skip_empty_ = !new_lists && !poisoned;
         if (poisoned) poison<real>(motion_);
-        pack_motion(particles, half_dt);
-        stress_.resize(particles.size());
+        pack_motion(particles, halo, half_dt);
+        if (new_lists && !halo.alone()) agree_on_h(particles, halo.ranks);
+        stress_.resize(particles.size() + halo.ghosts());
         summary_.assign(neighbours.clusters().size(), {});
         if (poisoned) poison<real>(stress_), poison<double>(particles.acceleration);
-        sum_velocity_gradient(particles, neighbours, half_dt);
-        sum_momentum(particles, neighbours);
+        halo.start({halo_column(motion_)});
+        sum_velocity_gradient(particles, neighbours, halo, half_dt);
+        halo.start({halo_column(stress_)});
+        sum_momentum(particles, neighbours, halo);
         reduce_summaries();
         if (poisoned) find_survivor(particles);
         fault_ = traced_to_its_source(fault_, particles, materials_);
+        agree(halo.ranks, timestep_, limiting_, fault_);
     }
 
     static constexpr double kernel_support() { return WendlandC6<D>::support; }
@@ -109,6 +114,7 @@ public:
         }
     }
     double timestep() const { return timestep_; }
+    /// Of the particles of this rank.
     double av_power() const { return av_power_; }
     PhaseTimer& phases() { return phases_; }
     /// The particle to blame where a density is absurd or rates are not finite.
@@ -163,19 +169,23 @@ private:
         state.pressure = tension_cut(surfaces_[tag.material], state.pressure);
         return state;
     }
-    void pack_motion(Particles<D>& particles, double half_dt);
+    void pack_motion(Particles<D>& particles, const Halo<D>& halo, double half_dt);
+    void agree_on_h(const Particles<D>& particles, const Ranks& ranks);
     double smoothing_length(const Particles<D>& particles, std::size_t p, double rho) const;
     void update_particle(Particles<D>& particles, std::size_t p, Mat<double, D> L, double half_dt);
-    void sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt);
-    void sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours);
+    void sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt);
+    void sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo);
     void reduce_summaries();
     void find_survivor(Particles<D>& particles);
 
     template <class Term>
-    void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, const Term& term) {
+    void sum_over_pairs(Phase phase, const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, Halo<D>& halo, const Term& term) {
         const std::span<const MotionRecord<real, D>> records(motion_);
-        if (periodic_) for_each_pair<true>(neighbours, clusters, records, frame_, skip_empty_, term);
-        else for_each_pair<false>(neighbours, clusters, records, frame_, skip_empty_, term);
+        while_ghosts_come(halo, neighbours, clusters, lanes<real>, [&](std::span<const ClusterList> part, std::size_t first) {
+            const auto timing = phases_.measure(phase);
+            if (periodic_) for_each_pair<true>(neighbours, part, records, frame_, skip_empty_, term, first);
+            else for_each_pair<false>(neighbours, part, records, frame_, skip_empty_, term, first);
+        });
     }
 
     template <class Term>
@@ -211,17 +221,21 @@ double Rates<real, D>::smoothing_length(const Particles<D>& particles, std::size
 }
 
 template <class real, int D>
-void Rates<real, D>::pack_motion(Particles<D>& particles, double half_dt) {
+void Rates<real, D>::pack_motion(Particles<D>& particles, const Halo<D>& halo, double half_dt) {
     const auto timing = phases_.measure(Phase::pack);
     const std::size_t n = particles.size();
-    motion_.resize(n);
+    motion_.resize(n + halo.ghosts());
     if constexpr (std::is_same_v<real, float>) {
-        Vec<double, D> low = particles.position[0], high = low;
+        std::array<double, 2 * D> far;    // -low, high
+        far.fill(-std::numeric_limits<double>::max());
         for (const auto& x : particles.position)
-            for (int a = 0; a < D; ++a) low[a] = min(low[a], x[a]), high[a] = max(high[a], x[a]);
+            for (int a = 0; a < D; ++a) far[a] = max(far[a], -x[a]), far[D + a] = max(far[D + a], x[a]);
+        halo.ranks.largest(far);
+        Vec<double, D> low, high;
+        for (int a = 0; a < D; ++a) low[a] = -far[a], high[a] = far[D + a];
         frame_ = CoordinateFrame<real, D>::covering(low, high);
     }
-    const double h0 = particles.smoothing_length[0];
+    const double h0 = n > 0 ? particles.smoothing_length[0] : 0.0;
     bool equal = options_.h_mode == SmoothingLengthMode::constant;
 #pragma omp parallel for schedule(static) reduction(&& : equal) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
@@ -237,7 +251,16 @@ void Rates<real, D>::pack_motion(Particles<D>& particles, double half_dt) {
         record.inverse_support = static_cast<real>(1.0 / (WendlandC6<D>::support * h));
         equal = equal && h == h0;
     }
-    equal_h_ = equal;
+    if (halo.alone()) equal_h_ = equal;
+}
+
+/// Whether h is the same on all ranks, which it is for as long as no particle comes.
+template <class real, int D>
+void Rates<real, D>::agree_on_h(const Particles<D>& particles, const Ranks& ranks) {
+    std::array<double, 2> far{-std::numeric_limits<double>::max(), -std::numeric_limits<double>::max()};
+    for (const double h : particles.smoothing_length) far = {max(far[0], h), max(far[1], -h)};
+    ranks.largest(far);
+    equal_h_ = options_.h_mode == SmoothingLengthMode::constant && far[0] == -far[1];
 }
 
 /// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
@@ -274,24 +297,22 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
 }
 
 template <class real, int D>
-void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt) {
-    const auto timing = phases_.measure(Phase::pass_1);
+void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt) {
     auto update = [&](std::size_t p, const Mat<double, D>& gradient) {
         update_particle(particles, p, gradient, half_dt);
     };
     const std::span<const MotionRecord<real, D>> motion(motion_);
     using Update = decltype(update);
     if (options_.sym_grad && !equal_h_)
-        sum_over_pairs(neighbours, neighbours.clusters(),
+        sum_over_pairs(Phase::pass_1, neighbours, neighbours.clusters(), halo,
                        timed(VelocityGradientTerm<GradientOf::mean_h, real, D, Update>{motion, update}));
     else
-        sum_over_pairs(neighbours, neighbours.clusters(),
+        sum_over_pairs(Phase::pass_1, neighbours, neighbours.clusters(), halo,
                        timed(VelocityGradientTerm<GradientOf::own_h, real, D, Update>{motion, update}));
 }
 
 template <class real, int D>
-void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours) {
-    const auto timing = phases_.measure(Phase::pass_2);
+void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo) {
     constexpr std::size_t width = lanes<real>;
     const auto clusters = neighbours.clusters().first((neighbours.moving() + width - 1) / width);
     std::fill(particles.acceleration.begin() + static_cast<std::ptrdiff_t>(neighbours.moving()),
@@ -317,10 +338,10 @@ void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& 
     const MomentumOptions<real> constants{static_cast<real>(options_.alpha), options_.fixed_limits_dt};
     using Finish = decltype(finish);
     if (equal_h_)
-        sum_over_pairs(neighbours, clusters,
+        sum_over_pairs(Phase::pass_2, neighbours, clusters, halo,
                        MomentumTerm<GradientOf::own_h, real, D, Finish>{motion, stress, constants, finish});
     else
-        sum_over_pairs(neighbours, clusters,
+        sum_over_pairs(Phase::pass_2, neighbours, clusters, halo,
                        MomentumTerm<GradientOf::mean_h, real, D, Finish>{motion, stress, constants, finish});
 }
 

@@ -1,9 +1,14 @@
 #pragma once
 #include <cmath>
+#include <numeric>
 #include <string>
+
+#include <omp.h>
 
 #include "bodies/bodies.hpp"
 #include "diagnostics.hpp"
+#include "domain.hpp"
+#include "halo.hpp"
 #include "integrate.hpp"
 #include "rates.hpp"
 #include "skin.hpp"
@@ -21,7 +26,7 @@ public:
 
     Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
         : bodies(domain, options.gravity, options.contact, surfaces_of(materials), memory_of(materials, options)), options_(options), domain_(domain),
-          neighbours_(domain), rates_(std::move(materials), options, domain.any_periodic()) {
+          neighbours_(domain), halo_(domain), rates_(std::move(materials), options, domain.any_periodic()) {
         particles.has_strength = false;
         particles.has_flow = Scheme::has_flow;
         for (const Material& material : rates_.materials()) {
@@ -35,8 +40,23 @@ public:
     Walls<D> walls;
     Bodies<D> bodies;
 
+    /// Makes this one of several ranks. Every call that steps or sorts is then made by all of them.
+    void join(Exchange& exchange) {
+        halo_.ranks.join(&exchange);
+        sources.adds = exchange.rank == 0;
+        phases().restart(true);
+    }
+
+    /// Leaves a restored state to rank 0; the next sort sends particles to their owners.
+    void leave_to_first_rank() {
+        if (halo_.ranks.rank() == 0) return;
+        particles.resize(0);
+        sources.ledger = {}, av_dissipation_ = 0.0, updates_ = 0;
+    }
+
     /// Sorts, builds lists and takes the first rates. Call once, after the particles are in.
     void start() {
+        if (halo_.ranks.rank() > 0) particles.resize(0);    // was filled for the sake of bodies
         for (std::size_t p = 0; p < particles.size(); ++p)
             if (particles.is_counted(p)) sources.ledger.initial += particles.mass[p];
         walls.set_velocities(particles, time_);
@@ -65,6 +85,7 @@ public:
         bodies.serialise(archive);
         rates_.serialise(archive);
         neighbours_.serialise(archive);
+        neighbours_.set_size(particles.size());
     }
 
     /// Makes lists anew, for a state that was saved with clusters of another width. The run goes on
@@ -74,9 +95,13 @@ public:
         first_rates();
     }
 
+    /// The same for a state that keeps its rates: only the order of sums changes.
+    void renew_order() { rebuild_neighbours(); }
+
     double time() const { return time_; }
     double last_timestep() const { return last_dt_; }
     double next_timestep() const { return min(rates_.timestep(), bodies.timestep()); }
+    /// Of the particles of this rank, as are updates() and totals().
     double av_dissipation() const { return av_dissipation_; }
     std::int64_t steps() const { return steps_; }
     std::int64_t rebuilds() const { return rebuilds_; }
@@ -86,11 +111,13 @@ public:
     const Scheme& rates() const { return rates_; }
     const Options<D>& options() const { return options_; }
     PhaseTimer& phases() { return rates_.phases(); }
+    const Halo<D>& halo() const { return halo_; }
     /// Margin of the lists over the smallest support radius, as a fraction of it.
     double skin() const { return skin_; }
 
     Totals<D> totals() const {
         Totals<D> sum = doseki::totals(particles, rates_);
+        if (halo_.ranks.rank() > 0) return sum;    // every rank has all bodies
         sum.kinetic_energy += bodies.kinetic_energy();
         sum.shear_energy += bodies.deformable.elastic.strain_energy();
         return sum;
@@ -119,6 +146,10 @@ private:
     double next_event() const;
     void update_neighbours(double before, double moved);
     void rebuild_neighbours();
+    void build_lists();
+    void build_lists_with_ghosts();
+    std::vector<std::uint8_t> fixed_ones() const;
+    void cut_space();
     void update_rates(double half_dt);
     /// Twice where a pass reads what the one before has left.
     void first_rates() {
@@ -129,8 +160,9 @@ private:
     void drop_removed();
     std::vector<double> support_radii() const;
     void check_positions() const;
-    std::size_t fastest_particle() const;
-    [[noreturn]] void report_failure(const char* kind, std::size_t p) const;
+    std::int64_t fastest_particle() const;
+    std::string described(std::int64_t p) const;
+    [[noreturn]] void report_failure(const char* kind, std::int64_t p) const;
 
     /// Beyond these nothing is believed: speeds over the largest sound speed, timesteps over the one
     /// that matter at rest allows.
@@ -139,6 +171,7 @@ private:
     Options<D> options_;
     Domain<D> domain_;
     Neighbours<D> neighbours_;
+    Halo<D> halo_;
     Scheme rates_;
     double time_ = 0.0, last_dt_ = 0.0;
     double av_dissipation_ = 0.0;
@@ -149,16 +182,19 @@ private:
     double least_timestep_ = 0.0;  // [s]
     std::int64_t steps_ = 0, rebuilds_ = 0, updates_ = 0;
     std::int64_t rebuild_step_ = 0;    // when the lists were built
+    bool new_lists_ = false;           // since the last rates
+    double cut_busy_ = 0.0;            // of the clock, when it was last asked whether to cut [s]
 };
 
 template <class Scheme>
 void Simulation<Scheme>::step(double limit) {
+    const auto timing = halo_.ranks.clock.measure_total();
     const double before = time_, end = min(limit, next_event());
     const double dt = min(next_timestep(), end - time_), old_power = rates_.av_power();
     kick(0.5 * dt);
-    const double moved = drift(dt);
+    const double own_moved = drift(dt), moved = halo_.ranks.largest(own_moved);
     time_ = dt < end - time_ ? time_ + dt : end;
-    if (moved > largest_mach * sound_speed_ * dt) report_failure("speed", fastest_particle());
+    if (moved > largest_mach * sound_speed_ * dt) report_failure("speed", own_moved < moved ? -1 : fastest_particle());
     walls.set_velocities(particles, time_);
     bodies.set_velocities(particles, 0.5 * dt);
     sources.settle(particles, time_);
@@ -218,25 +254,85 @@ void Simulation<Scheme>::rebuild_neighbours() {
     check_positions();
     wrap_positions();
     sources.drain(particles, bodies);
+    cut_space();
     drop_removed();
-    if (particles.size() == 0) throw PhysicsFailure("no particle is left in the domain", "empty", -1);
+    if (halo_.ranks.sum(static_cast<double>(particles.size())) == 0.0) throw PhysicsFailure("no particle is left in the domain", "empty", -1);
+    if (!halo_.alone()) {
+        const auto timing = halo_.ranks.clock.measure(Share::migrate);
+        migrate(particles, halo_.ranks.exchange());
+    }
+    build_lists();
+    moved_ = 0.0;
+    new_lists_ = true;
+    ++rebuilds_;
+    rebuild_step_ = steps_;
+}
 
-    std::vector<std::uint8_t> fixed(particles.size());
-    for (std::size_t p = 0; p < particles.size(); ++p) fixed[p] = particles.is_wall(p);
+/// Space is cut anew where that pays.
+template <class Scheme>
+void Simulation<Scheme>::cut_space() {
+    if (halo_.alone()) return;
+    const auto timing = halo_.ranks.clock.measure(Share::balance);
+    Exchange& exchange = halo_.ranks.exchange();
+    const double busy = halo_.ranks.clock.busy() - cut_busy_;
+    cut_busy_ += busy;
+    if (!exchange.wants_cuts(busy)) return;
+    std::vector<std::uint32_t> everyone(particles.size());
+    std::iota(everyone.begin(), everyone.end(), 0u);
+    const auto costs = particle_costs(neighbours_.clusters(), width, neighbours_.moving(), particles.size(), phases(),
+                                      omp_get_max_threads(), Scheme::has_flow);
+    exchange.cut(coordinates_of(particles, everyone), costs);
+    phases().restart(true);
+}
+
+template <class Scheme>
+void Simulation<Scheme>::build_lists() {
+    std::vector<std::uint8_t> fixed = fixed_ones();
     const auto support = support_radii();
-    const double least_support = *std::min_element(support.begin(), support.end());
+    const double own_support = support.empty() ? std::numeric_limits<double>::max() : *std::min_element(support.begin(), support.end());
+    const double least_support = halo_.ranks.least(own_support);
     skin_ = cheapest_skin(least_support);
     skin_width_ = skin_ * least_support;
     least_timestep_ = smallest_timestep * options_.cflnumber * least_support / (rates_.kernel_support() * sound_speed_);
+    if (!halo_.alone()) {
+        const auto timing = halo_.ranks.clock.measure(Share::halo);
+        halo_.find_exports(particles.position, support, fixed, skin_width_);
+    }
     {
         const auto timing = phases().measure(Phase::sort);
-        particles.reorder(neighbours_.sort(particles.position, support, fixed));
+        const auto order = neighbours_.sort(particles.position, support, fixed, halo_.exported());
+        particles.reorder(order);
+        halo_.renumber(order);
+    }
+    if (halo_.alone()) {
+        const auto timing = phases().measure(Phase::list_build);
+        neighbours_.template build<width>(particles.position, support_radii(), skin_width_);
+        return;
+    }
+    build_lists_with_ghosts();
+}
+
+template <class Scheme>
+void Simulation<Scheme>::build_lists_with_ghosts() {
+    std::vector<Vec<double, D>> position = particles.position;
+    std::vector<double> support = support_radii();
+    std::vector<std::uint32_t> order;
+    {
+        const auto timing = halo_.ranks.clock.measure(Share::halo);
+        const auto ghosts = halo_.announce(position, support, fixed_ones());
+        order = neighbours_.sort_ghosts(ghosts.position, ghosts.support, ghosts.is_fixed);
+        halo_.place(order, position.size());
+        for (const std::uint32_t k : order) position.push_back(ghosts.position[k]), support.push_back(ghosts.support[k]);
     }
     const auto timing = phases().measure(Phase::list_build);
-    neighbours_.template build<width>(particles.position, support_radii(), skin_width_);
-    moved_ = 0.0;
-    ++rebuilds_;
-    rebuild_step_ = steps_;
+    neighbours_.template build<width>(position, support, skin_width_);
+}
+
+template <class Scheme>
+std::vector<std::uint8_t> Simulation<Scheme>::fixed_ones() const {
+    std::vector<std::uint8_t> fixed(particles.size());
+    for (std::size_t p = 0; p < particles.size(); ++p) fixed[p] = particles.is_wall(p);
+    return fixed;
 }
 
 template <class Scheme>
@@ -274,38 +370,43 @@ void Simulation<Scheme>::wrap_positions() {
 
 template <class Scheme>
 void Simulation<Scheme>::update_rates(double half_dt) {
-    rates_.compute(particles, neighbours_, half_dt, moved_ == 0.0);
-    bodies.gather(particles);
+    rates_.compute(particles, neighbours_, halo_, half_dt, new_lists_);
+    new_lists_ = false;
+    bodies.gather(particles, halo_.ranks);
     if (const Fault& fault = rates_.fault(); fault.rank != Fault::none)
-        report_failure(fault.rank == Fault::density ? "density" : "not_finite", static_cast<std::size_t>(fault.particle));
-    if (rates_.timestep() < least_timestep_ && rates_.limiting_particle() >= 0)
-        report_failure("timestep", static_cast<std::size_t>(rates_.limiting_particle()));
+        report_failure(fault.rank == Fault::density ? "density" : "not_finite", fault.particle);
+    if (rates_.timestep() < least_timestep_ && halo_.ranks.largest(static_cast<double>(rates_.limiting_particle())) >= 0.0)
+        report_failure("timestep", rates_.limiting_particle());
 }
 
 /// No particle may be lost: outside the world, or a whole box away from a domain that is given.
 template <class Scheme>
 void Simulation<Scheme>::check_positions() const {
-    for (std::size_t p = 0; p < particles.size(); ++p)
+    std::int64_t outside = -1;
+    for (std::size_t p = 0; p < particles.size() && outside < 0; ++p)
         for (int a = 0; a < D; ++a) {
             const double x = particles.position[p][a], length = domain_.length(a);
             const bool bounded = !domain_.periodic[a] && length > 0.0;
-            if (!(std::abs(x) < 1e9)) report_failure("outside", p);
-            if (bounded && (x < domain_.low[a] - length || x > domain_.high[a] + length)) report_failure("outside", p);
+            const bool strayed = bounded && (x < domain_.low[a] - length || x > domain_.high[a] + length);
+            if (!(std::abs(x) < 1e9) || strayed) outside = static_cast<std::int64_t>(p);
         }
+    if (halo_.ranks.largest(static_cast<double>(outside)) >= 0.0) report_failure("outside", outside);
 }
 
 template <class Scheme>
-std::size_t Simulation<Scheme>::fastest_particle() const {
+std::int64_t Simulation<Scheme>::fastest_particle() const {
     std::size_t fastest = 0;
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (dot(particles.velocity[p], particles.velocity[p]) > dot(particles.velocity[fastest], particles.velocity[fastest]))
             fastest = p;
-    return fastest;
+    return particles.size() > 0 ? static_cast<std::int64_t>(fastest) : -1;
 }
 
 template <class Scheme>
-void Simulation<Scheme>::report_failure(const char* kind, std::size_t p) const {
-    const Tag& tag = particles.tag[p];
+std::string Simulation<Scheme>::described(std::int64_t p) const {
+    if (p < 0) return "";
+    const auto k = static_cast<std::size_t>(p);
+    const Tag& tag = particles.tag[k];
     const Material& material = rates_.materials()[tag.material];
     auto text = [](double value) {
         char buffer[32];
@@ -313,13 +414,19 @@ void Simulation<Scheme>::report_failure(const char* kind, std::size_t p) const {
         return std::string(buffer);
     };
     std::string where;
-    for (int a = 0; a < D; ++a) where += (a ? ", " : "") + text(particles.position[p][a]);
-    const double speed = sqrt(dot(particles.velocity[p], particles.velocity[p]));
-    throw PhysicsFailure("at t = " + text(time_) + " s, step " + std::to_string(steps_ + 1) + ": particle " +
-                             std::to_string(tag.id) + " (" + material.name + ") at (" + where +
-                             ") m has speed " + text(speed) + " m/s, density " + text(particles.density[p]) +
-                             " kg/m^3 (at rest " + text(material.rho0) + ")",
-                         kind, tag.id);
+    for (int a = 0; a < D; ++a) where += (a ? ", " : "") + text(particles.position[k][a]);
+    const double speed = sqrt(dot(particles.velocity[k], particles.velocity[k]));
+    return std::to_string(tag.id) + " at t = " + text(time_) + " s, step " + std::to_string(steps_ + 1) + ": particle " +
+           std::to_string(tag.id) + " (" + material.name + ") at (" + where + ") m has speed " + text(speed) +
+           " m/s, density " + text(particles.density[k]) + " kg/m^3 (at rest " + text(material.rho0) + ")";
+}
+
+/// Throws the same on all ranks; `p` is -1 on those that have not the particle to blame.
+template <class Scheme>
+void Simulation<Scheme>::report_failure(const char* kind, std::int64_t p) const {
+    const std::string said = halo_.ranks.first_said(described(p));
+    const std::size_t id_end = said.find(' ');
+    throw PhysicsFailure(said.substr(id_end + 1), kind, std::stoll(said.substr(0, id_end)));
 }
 
 template <class Scheme>

@@ -81,8 +81,9 @@ class Sources {
 public:
     std::vector<Inflow<D>> inflows;
     std::vector<Outflow<D>> outflows;
-    Ledger ledger;
+    Ledger ledger;    // of the particles of this rank
     std::int64_t next_id = 0;
+    bool adds = true;    // on one rank only; from there particles go to their owners
 
     double next_event() const {
         double next = std::numeric_limits<double>::infinity();
@@ -143,6 +144,10 @@ void Sources<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) const {
 
 template <int D>
 void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t) {
+    if (!adds) {
+        next_id += static_cast<std::int64_t>(inflow.layer.size());
+        return;
+    }
     const std::size_t first = particles.size();
     particles.resize(first + inflow.layer.size());
     for (std::size_t row = 0; row < inflow.layer.size(); ++row) {

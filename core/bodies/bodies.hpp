@@ -4,6 +4,7 @@
 
 #include "bodies/contacts.hpp"
 #include "elastic/deformable_bodies.hpp"
+#include "exchange.hpp"
 #include "particles.hpp"
 #include "walls.hpp"
 
@@ -142,8 +143,9 @@ public:
     /// Largest step that motion without a fluid may have.
     double timestep() const { return any_moves() ? longest_leap * std::min(contacts_.timestep(), elastic_step_) : std::numeric_limits<double>::infinity(); }
 
-    /// Takes over what the fluid does to the points of bodies.
-    void gather(const Particles<D>& particles);
+    /// Takes over what the fluid does to the points of bodies. All ranks have all bodies: each point is a
+    /// particle of one of them, so that the sums are those of one rank, to the bit.
+    void gather(const Particles<D>& particles, const Ranks& ranks);
     void kick(double half_dt);
     /// From t to t + dt, through as many contact steps as it takes.
     void advance(const Walls<D>& walls, double t, double dt);
@@ -284,11 +286,12 @@ Vec3 Bodies<D>::spin_of(std::size_t k, const Vec3& L) const {
 }
 
 template <int D>
-void Bodies<D>::gather(const Particles<D>& particles) {
+void Bodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
     std::vector<Vec<double, D>> force(points_.size());
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (is_rigid_point(particles, p)) force[static_cast<std::size_t>(particles.flow.point[p])] = particles.flow.wall_force[p];
-    deformable.gather(particles);
+    ranks.sum(numbers_of(force));
+    deformable.gather(particles, ranks);
     for (BodyState<D>& state : states_) state.flow_force = {}, state.flow_torque = {};
     std::vector<Mat<double, 3>> R;
     for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());

@@ -56,8 +56,10 @@ public:
     }
 
     /// See Bodies.
-    void gather(const Particles<D>& particles) {
+    void gather(const Particles<D>& particles, const Ranks& ranks) {
+        if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
         for_each_point(particles, [&](std::size_t p, std::size_t k) { flow_force_[k] = particles.flow.wall_force[p]; });
+        ranks.sum(numbers_of(flow_force_));
     }
     void kick(double half_dt) { elastic.kick(half_dt, flow_force_); }
     void begin_step() { before_ = elastic.v; }

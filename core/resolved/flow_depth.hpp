@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "exchange.hpp"
 #include "particles.hpp"
 #include "physics/viscosity.hpp"
 
@@ -17,13 +18,17 @@ template <int D>
 class FlowDepth {
 public:
     /// `width` of a column along each axis of the plan [m].
-    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Vec<double, D - 1>& width) : width_(width) {
+    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Vec<double, D - 1>& width, const Ranks& ranks)
+        : width_(width) {
         for (std::size_t p = 0; p < fluid; ++p) {
             Column& column = columns_[key(particles.position[p])];
             column.volume += particles.mass[p] / particles.density[p];
             column.height += particles.position[p][D - 1];
             column.count += 1.0;
         }
+        merge(ranks, [](Column& column, const Column& part) {
+            column.volume += part.volume, column.height += part.height, column.count += part.count;
+        });
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
             if (found == columns_.end() || particles.is_bound(p) || particles.flow.normal[p][D - 1] < 0.5) continue;
@@ -31,6 +36,10 @@ public:
             const double top = particles.position[p][D - 1] + particles.flow.wall_depth[p];
             if (top < column.height / column.count) column.bed = std::max(column.bed, top);
         }
+        merge(ranks, [](Column& column, const Column& part) {
+            column.bed = std::max(column.bed, part.bed);
+            column.volume = part.volume, column.height = part.height, column.count = part.count;
+        });
     }
 
     /// Mixing length at a fluid particle; `least` where there is no bed.
@@ -48,6 +57,26 @@ private:
         double volume = 0.0, height = 0.0, count = 0.0, bed = -std::numeric_limits<double>::infinity();
     };
     using Key = std::array<std::int64_t, D - 1>;
+
+    /// Puts together what each rank knows of a column, in the order of ranks; `add` adds a part to what there is.
+    template <class Add>
+    void merge(const Ranks& ranks, Add&& add) {
+        if (ranks.alone()) return;
+        constexpr std::size_t numbers = D + 3;
+        std::vector<double> part;
+        for (const auto& [key, column] : columns_) {
+            for (const std::int64_t k : key) part.push_back(static_cast<double>(k));
+            part.insert(part.end(), {column.volume, column.height, column.count, column.bed});
+        }
+        const std::vector<double> all = ranks.gather(part);
+        columns_.clear();
+        for (std::size_t row = 0; row < all.size(); row += numbers) {
+            Key key;
+            for (std::size_t a = 0; a < D - 1; ++a) key[a] = static_cast<std::int64_t>(all[row + a]);
+            const double* value = &all[row + D - 1];
+            add(columns_[key], Column{value[0], value[1], value[2], value[3]});
+        }
+    }
 
     Key key(const Vec<double, D>& x) const {
         Key key;

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "fault.hpp"
+#include "halo.hpp"
 #include "material.hpp"
 #include "neighbours.hpp"
 #include "options.hpp"
@@ -48,18 +49,19 @@ public:
     double kernel_support() const { return options_.flow.wide_kernel ? WendlandC6<D>::support : WendlandC2<D>::support; }
 
     /// See Rates::compute.
-    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, double half_dt, bool new_lists) {
+    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt, bool new_lists) {
         fluid_count_ = neighbours.moving();
         const bool poisoned = is_poisoned_run();
         if (new_lists && options_.flow.turbulence == Turbulence::mixing_length)
-            set_mixing_lengths(particles, column_width(neighbours));
-        pack(particles, half_dt, poisoned);
-        if (options_.flow.wide_kernel) sum_all<WendlandC6<D>>(particles, neighbours);
-        else sum_all<WendlandC2<D>>(particles, neighbours);
-        reduce_summaries();
+            set_mixing_lengths(particles, column_width(neighbours), halo.ranks);
+        pack(particles, halo, half_dt, poisoned);
+        if (options_.flow.wide_kernel) sum_all<WendlandC6<D>>(particles, neighbours, halo);
+        else sum_all<WendlandC2<D>>(particles, neighbours, halo);
+        reduce_summaries(halo.ranks);
         const std::int64_t left = poisoned ? survivor<double>(particles.acceleration) : -1;
         if (left >= 0) fault_.note(Fault::rates, static_cast<std::size_t>(left));
         fault_ = traced_to_its_source(fault_, particles, materials_);
+        agree(halo.ranks, timestep_, limiting_, fault_);
     }
 
     double timestep() const { return timestep_; }
@@ -122,9 +124,9 @@ private:
         return width;
     }
 
-    void set_mixing_lengths(Particles<D>& particles, const Vec<double, D - 1>& width) {
+    void set_mixing_lengths(Particles<D>& particles, const Vec<double, D - 1>& width, const Ranks& ranks) {
         const double least = options_.flow.smagorinsky * options_.flow.dp;
-        const FlowDepth<D> depth(particles, fluid_count_, width);
+        const FlowDepth<D> depth(particles, fluid_count_, width, ranks);
         for (std::size_t p = 0; p < fluid_count_; ++p)
             particles.flow.mixing_length[p] = depth.mixing_length(particles.position[p], least);
     }
@@ -162,29 +164,24 @@ private:
         mean = mean == 0.0 ? fluid_[p].p : mean + std::min(share, 1.0) * (fluid_[p].p - mean);
     }
 
-    void pack(Particles<D>& particles, double half_dt, bool poisoned);
+    void pack(Particles<D>& particles, const Halo<D>& halo, double half_dt, bool poisoned);
     void pack_fluid(Particles<D>& particles, std::size_t p, double half_dt);
     void pack_wall(const Particles<D>& particles, std::size_t p);
 
     template <class Kernel>
-    void sum_all(Particles<D>& particles, const Neighbours<D>& neighbours) {
-        if (fluid_count_ == 0) {
-            std::fill(particles.flow.wall_force.begin(), particles.flow.wall_force.end(), Vec<double, D>{});
-            return;
-        }
-        const FlowRecords<D> records{motion_, fluid_, wall_, motion_[0].inverse_support};
-        if (!wall_.empty()) sum_walls<Kernel>(particles, neighbours, records);
-        sum_fluid<Kernel>(particles, neighbours, records);
-    }
+    void sum_all(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo);
     template <class Kernel>
     void sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records);
     template <class Kernel>
-    void sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records);
+    void sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, const FlowRecords<D>& records);
 
     void finish_wall(Particles<D>& particles, std::size_t p, const WallSums<double, D>& sums);
     void finish_fluid(Particles<D>& particles, std::size_t p, const FluidSums<double, D>& sums, bool shifted);
     void limit_timestep(const Particles<D>& particles, std::size_t p);
-    void reduce_summaries();
+    void reduce_summaries(const Ranks& ranks);
+    bool has_rough_walls() const {
+        return std::any_of(options_.flow.walls.begin(), options_.flow.walls.end(), [](const WallCondition& wall) { return wall.ks > 0.0; });
+    }
 
     template <class Term>
     void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, std::size_t first, const Term& term) {
@@ -246,10 +243,11 @@ void FlowRates<D>::pack_wall(const Particles<D>& particles, std::size_t p) {
 }
 
 template <int D>
-void FlowRates<D>::pack(Particles<D>& particles, double half_dt, bool poisoned) {
+void FlowRates<D>::pack(Particles<D>& particles, const Halo<D>& halo, double half_dt, bool poisoned) {
     const auto timing = phases_.measure(Phase::pack);
-    const std::size_t n = particles.size();
-    motion_.resize(n), fluid_.resize(fluid_count_), wall_.resize(n - fluid_count_);
+    const std::size_t n = particles.size(), ghosts = halo.ghosts(), moving = halo.moving_ghosts();
+    motion_.resize(n + ghosts), wall_.resize(n - fluid_count_ + ghosts);
+    fluid_.resize(moving > 0 ? n + moving : fluid_count_);
     summary_.assign((n + lanes<double> - 1) / lanes<double>, {});
     if (poisoned) poison<double>(motion_), poison<double>(fluid_), poison<double>(wall_);
 #pragma omp parallel for schedule(static) if (n > light_loop)
@@ -266,6 +264,29 @@ void FlowRates<D>::pack(Particles<D>& particles, double half_dt, bool poisoned) 
     }
 }
 
+/// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their beds, come.
+template <int D>
+template <class Kernel>
+void FlowRates<D>::sum_all(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo) {
+    const bool rough = has_rough_walls();
+    const std::size_t first_ghost_wall = fluid_count_;
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving), halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
+    const auto count = static_cast<std::uint32_t>(particles.size()), fluid_count = static_cast<std::uint32_t>(fluid_count_);
+    const double inverse_support = 1.0 / (kernel_support() * (count > 0 ? particles.smoothing_length[0] : 1.0));
+    const FlowRecords<D> records{motion_, fluid_, wall_, fluid_count, count, inverse_support};
+    const bool has_fluid = fluid_count + halo.moving_ghosts() > 0, has_walls = count > fluid_count && has_fluid;
+    if (!has_fluid) std::fill(particles.flow.wall_force.begin(), particles.flow.wall_force.end(), Vec<double, D>{});
+    if (rough || halo.alone()) {
+        halo.finish();
+        if (has_walls) sum_walls<Kernel>(particles, neighbours, records);
+        if (rough) halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed, first_ghost_wall)});
+        sum_fluid<Kernel>(particles, neighbours, halo, records);
+    } else {
+        sum_fluid<Kernel>(particles, neighbours, halo, records);
+        if (has_walls) sum_walls<Kernel>(particles, neighbours, records);
+    }
+}
+
 template <int D>
 template <class Kernel>
 void FlowRates<D>::sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records) {
@@ -278,14 +299,17 @@ void FlowRates<D>::sum_walls(Particles<D>& particles, const Neighbours<D>& neigh
 
 template <int D>
 template <class Kernel>
-void FlowRates<D>::sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records) {
-    const auto timing = phases_.measure(Phase::pass_2);
+void FlowRates<D>::sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, const FlowRecords<D>& records) {
     constexpr std::size_t width = lanes<double>;
     auto finish = [&](std::size_t p, const FluidSums<double, D>& sums) {
         finish_fluid(particles, p, sums, options_.flow.shifting);
     };
-    sum_over_pairs(neighbours, neighbours.clusters().first((fluid_count_ + width - 1) / width), 0,
-                   FluidTerm<Kernel, D, decltype(finish)>{records, constants_, finish});
+    const FluidTerm<Kernel, D, decltype(finish)> term{records, constants_, finish};
+    const auto clusters = neighbours.clusters().first((fluid_count_ + width - 1) / width);
+    while_ghosts_come(halo, neighbours, clusters, width, [&](std::span<const ClusterList> part, std::size_t first) {
+        const auto timing = phases_.measure(Phase::pass_2);
+        sum_over_pairs(neighbours, part, first, term);
+    });
 }
 
 /// Force, pressure and, on a rough bed, the friction of one wall particle.
@@ -388,20 +412,21 @@ void FlowRates<D>::limit_timestep(const Particles<D>& particles, std::size_t p) 
 }
 
 template <int D>
-void FlowRates<D>::reduce_summaries() {
+void FlowRates<D>::reduce_summaries(const Ranks& ranks) {
     // What enters next may be the first fluid there is.
     timestep_ = options_.cflnumber * options_.eta * options_.flow.dp / constants_.c;
     power_ = 0.0;
     fault_ = {}, limiting_ = -1;
-    double strain = 0.0;
+    std::array<double, 2> total{0.0, static_cast<double>(fluid_count_)};    // of |L|^2, of particles
     for (const ClusterSummary& summary : summary_) {
         if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
         power_ += summary.power;
-        strain += summary.strain;
+        total[0] += summary.strain;
         fault_.merge(summary.fault);
     }
-    if (fluid_count_ > 0) {
-        const double h = options_.eta * options_.flow.dp, rms = std::sqrt(strain / static_cast<double>(fluid_count_));
+    ranks.sum(total);
+    if (total[1] > 0.0) {
+        const double h = options_.eta * options_.flow.dp, rms = std::sqrt(total[0] / total[1]);
         strain_ = rms, liveliness_ = std::clamp(h * rms / (at_rest * constants_.c) - 1.0, 0.0, 1.0);
     }
 }

@@ -8,15 +8,18 @@
 
 namespace doseki {
 
-/// Where the records of a step lie. Fluid particles come first in storage, wall particles after them.
+/// Where the records of a step lie. Fluid particles come first in storage, wall particles after them, and
+/// then ghosts of either kind, whose records have the same places in these arrays: `fluid` has a gap where
+/// wall particles are.
 template <int D>
 struct FlowRecords {
     std::span<const MotionRecord<double, D>> motion;
     std::span<const FluidRecord<D>> fluid;
     std::span<const WallRecord<D>> wall;
+    std::uint32_t fluid_count, count;    // without ghosts
     double inverse_support;
 
-    std::uint32_t first_wall() const { return static_cast<std::uint32_t>(fluid.size()); }
+    std::uint32_t first_wall() const { return fluid_count; }
 
     DOSEKI_FN FluidPoint<Pack<double>, D> fluid_at(std::uint32_t j) const {
         return fluid_point<Pack<double>>(motion.data(), fluid.data(), [j](auto member) { return Pack<double>(member(j)); });
@@ -27,14 +30,14 @@ struct FlowRecords {
     }
     /// W in a row; lanes beyond the last fluid particle repeat it.
     FluidPoint<Pack<double>, D> fluid_lanes(std::uint32_t first) const {
-        const auto last = static_cast<std::uint32_t>(fluid.size() - 1);
+        const std::uint32_t last = fluid_count - 1;
         return fluid_point<Pack<double>>(motion.data(), fluid.data(), [=](auto member) {
             return Pack<double>([&](auto l) { return member(std::min<std::uint32_t>(first + l, last)); });
         });
     }
     /// W in a row; lanes before the first wall particle, or beyond the last, repeat it.
     WallPoint<Pack<double>, D> wall_lanes(std::uint32_t first) const {
-        const auto least = first_wall(), last = static_cast<std::uint32_t>(motion.size() - 1);
+        const std::uint32_t least = first_wall(), last = count - 1;
         return wall_point<Pack<double>>(motion.data(), wall.data(), least, [=](auto member) {
             return Pack<double>([&](auto l) { return member(std::clamp<std::uint32_t>(first + l, least, last)); });
         });

@@ -190,7 +190,8 @@ def _words(option: str, text: str | None, allowed: Sequence[str]) -> list[str]:
     return words
 
 
-def _counts(option: str, text: str | None, most: float) -> list[int]:
+def counts_of(option: str, text: str | None, most: float) -> list[int]:
+    """Whole numbers separated by commas; raises UserError for anything else."""
     try:
         counts = [float(word) for word in text.split(",")] if text else []
     except ValueError:
@@ -203,7 +204,7 @@ def _counts(option: str, text: str | None, most: float) -> list[int]:
 
 def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
     """The plan for options as typed; raises UserError for what cannot be run here."""
-    sizes = _counts("--sizes", options["--sizes"], 1e8)
+    sizes = counts_of("--sizes", options["--sizes"], 1e8)
     if sizes and min(sizes) < SMALLEST:
         raise UserError(
             f"--sizes {min(sizes)}: fewer than {SMALLEST} particles are not worth timing"
@@ -217,7 +218,7 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],
         precisions=precisions,
         sizes=sizes,
-        threads=_counts("--threads", options["--threads"], 4096),
+        threads=counts_of("--threads", options["--threads"], 4096),
         isas=_words("--isa", options["--isa"], available_instruction_sets()),
         quick=quick,
     )

@@ -87,15 +87,30 @@ def _options(case: Case) -> dict[str, Any]:
 
 def make_simulation(case: Case) -> Any:
     """The started core simulation; raises ResourceError when it would not fit in memory."""
-    if case.n * BYTES_TO_MAKE > available_bytes():
-        raise ResourceError(f"{case.n} particles do not fit in the memory that is free")
+    simulation = empty_simulation(case)
+    fill(simulation, case)
+    simulation.start()
+    return simulation
+
+
+def empty_simulation(case: Case) -> Any:
+    """The core simulation without particles."""
     core = load_core(case.isa)
     core.set_threads(case.threads)
-    materials = [core_material(BUILT_IN[name], XI) for name in MATERIALS[case.scheme]]
     prefix = "Resolved" if case.scheme == RESOLVED else ""
     kind = getattr(core, f"{prefix}Simulation{case.dim}{case.precision.capitalize()}")
-    simulation = kind(materials, _options(case))
+    return kind(_materials(case), _options(case))
 
+
+def _materials(case: Case) -> list[dict[str, Any]]:
+    return [core_material(BUILT_IN[name], XI) for name in MATERIALS[case.scheme]]
+
+
+def fill(simulation: Any, case: Case) -> None:
+    """Add the particles; raises ResourceError when they would not fit in memory."""
+    if case.n * BYTES_TO_MAKE > available_bytes():
+        raise ResourceError(f"{case.n} particles do not fit in the memory that is free")
+    materials = _materials(case)
     position = block(case.dim, case.n)
     timestep = (
         case.cflnumber * case.eta * DP / max(material["speedsound"] for material in materials)
@@ -114,5 +129,3 @@ def make_simulation(case: Case) -> Any:
         motion=zeros,
         id=np.arange(case.n),
     )
-    simulation.start()
-    return simulation

@@ -52,6 +52,11 @@ class Checkpoint:
         """Steps done."""
         return int(self.state["steps"][0])
 
+    @property
+    def is_of_many_ranks(self) -> bool:
+        """Whether several ranks wrote it: it has no lists, which any number of ranks make anew."""
+        return int(self.state["lanes"][0]) == 0
+
 
 class DamagedCheckpointError(Exception):
     """A file that is not, or no longer, a whole checkpoint."""

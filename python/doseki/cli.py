@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import traceback
 from enum import StrEnum
@@ -17,6 +18,7 @@ from . import __version__
 from .errors import DosekiError, ResourceError, UserError
 
 _debug = False  # set by --debug
+_ranks: Any = None  # those of the command, once it has joined them
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -39,6 +41,10 @@ CheckpointEvery = Annotated[
 ]
 CheckpointMinutes = Annotated[
     float, typer.Option(min=0.0, metavar="M", help="Wall time between checkpoints.")
+]
+Ranks = Annotated[
+    int | None,
+    typer.Option(min=1, max=100_000, help="MPI ranks on this machine; or start with mpiexec."),
 ]
 Figures = Annotated[bool, typer.Option(help="Draw the figures at the end.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
@@ -71,6 +77,19 @@ def _free_directory(name: str) -> Path:
     return next(path for path in candidates if not path.exists())
 
 
+def _joined(ranks: int | None) -> Any:
+    """The ranks of this command; with `--ranks` outside mpiexec, this process only starts them."""
+    global _ranks
+    from .parallel.launch import join_ranks, launched_size, spawn
+
+    if ranks is not None and launched_size() == 1 and ranks > 1:
+        raise typer.Exit(spawn(ranks, sys.argv[1:]))
+    if ranks is not None and ranks != launched_size():
+        raise UserError(f"--ranks {ranks}: mpiexec has started {launched_size()}; leave it out")
+    _ranks = join_ranks()
+    return _ranks
+
+
 @app.command()
 def run(
     scenario: Annotated[
@@ -82,6 +101,7 @@ def run(
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
+    ranks: Ranks = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")
     ] = False,
@@ -96,8 +116,9 @@ def run(
     from .run import RunOptions, run_scenario
     from .scenario import load_scenario
 
+    team = _joined(ranks)
     loaded = load_scenario(scenario, settings or [])
-    directory = output or _free_directory(scenario)
+    directory = output or team.agree(_free_directory(scenario))
 
     def tell(*started: Any) -> None:
         for line in brief_check(*started):
@@ -105,10 +126,11 @@ def run(
 
     with progress_bar(loaded.title, loaded.time_max) as progress:
         options = RunOptions(
-            threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes
+            threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes, team
         )
         summary = run_scenario(loaded, directory, options)
-    _report(directory, summary, figures, as_json)
+    if team.is_root:
+        _report(directory, summary, figures, as_json)
 
 
 def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
@@ -157,6 +179,7 @@ def resume(
         typer.Option("--from", metavar="SECONDS", help="Not from a checkpoint later than this."),
     ] = float("inf"),
     threads: Threads = None,
+    ranks: Ranks = None,
     checkpoint_every: CheckpointEvery = None,
     checkpoint_minutes: CheckpointMinutes = 10.0,
     figures: Figures = True,
@@ -168,6 +191,7 @@ def resume(
     from .resume import resume_run
     from .run import RunOptions
 
+    team = _joined(ranks)
     scenario = load(directory).scenario
     with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
         options = RunOptions(
@@ -175,11 +199,13 @@ def resume(
             progress=progress,
             checkpoint_every=checkpoint_every,
             checkpoint_minutes=checkpoint_minutes,
+            ranks=team,
         )
         summary, notes = resume_run(directory, settings or [], options, until)
     for note in notes:
         typer.echo(f"warning: {note}", err=True)
-    _report(directory, summary, figures, as_json)
+    if team.is_root:
+        _report(directory, summary, figures, as_json)
 
 
 @app.command()
@@ -356,6 +382,10 @@ def bench(
     scheme: Annotated[
         str | None, typer.Option(metavar="NAME", help="ueta2022 or resolved [ueta2022].")
     ] = None,
+    ranks: Annotated[
+        str | None,
+        typer.Option(metavar="R,...", help="Scaling over MPI ranks of this machine instead."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     append: Annotated[
         Path | None,
@@ -367,7 +397,15 @@ def bench(
 
     options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
     options |= {"--threads": threads, "--isa": isa, "--scheme": scheme}
-    bench_command(make_plan(options, quick), as_json, append)
+    plan = make_plan(options, quick)
+    if ranks is None:
+        bench_command(plan, as_json, append)
+        return
+    from .bench import counts_of
+    from .parallel.bench import bench_ranks
+
+    counts = counts_of("--ranks", ranks, 100_000)
+    bench_ranks(counts, plan.dims, plan.scheme, next(iter(plan.sizes), None), as_json)
 
 
 @app.command()
@@ -414,20 +452,39 @@ def validate(
 
 def main(arguments: list[str] | None = None) -> Any:
     """Entry point: errors become one sentence and an exit code; a traceback only with --debug."""
+    error_stream = sys.stderr
+    if _is_silent():
+        sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
     try:
         return app(arguments)
     except Exception as error:
         if _debug:
-            traceback.print_exc()
-        if isinstance(error, DosekiError):
-            typer.echo(f"doseki: {error}", err=True)
-            sys.exit(error.exit_code)
-        if isinstance(error, MemoryError):
-            typer.echo("doseki: out of memory", err=True)
-            sys.exit(ResourceError.exit_code)
-        said = " ".join(f"{type(error).__name__}: {error}".split())
-        typer.echo(f"doseki: a mistake in doseki itself: {said} (--debug shows where)", err=True)
-        sys.exit(1)
+            traceback.print_exc(file=error_stream)
+        text, exit_code = _said(error)
+        if _ranks is not None and _ranks.count > 1:
+            _ranks.fail(text, exit_code, lambda line: print(f"doseki: {line}", file=error_stream))
+        typer.echo(f"doseki: {text}", err=True)
+        sys.exit(exit_code)
+    finally:
+        if _ranks is not None and _ranks.count > 1:
+            _ranks.done()
+
+
+def _is_silent() -> bool:
+    """Whether another rank prints what is to be printed."""
+    from .parallel.launch import launched_rank
+
+    return launched_rank() > 0
+
+
+def _said(error: Exception) -> tuple[str, int]:
+    """An error as a sentence and an exit code."""
+    if isinstance(error, DosekiError):
+        return str(error), error.exit_code
+    if isinstance(error, MemoryError):
+        return "out of memory", ResourceError.exit_code
+    said = " ".join(f"{type(error).__name__}: {error}".split())
+    return f"a mistake in doseki itself: {said} (--debug shows where)", 1
 
 
 if __name__ == "__main__":

@@ -58,6 +58,10 @@ class Failure:
 def explain_failure(run: ActiveRun, failure: Failure) -> dict[str, Any]:
     """Examine the last good state, which the simulation of `run` holds; write failure.json."""
     scenario, good = run.scenario, run.simulation.state()
+    if failure.rewound:
+        good["balsara"] = run.simulation.rates()["balsara"]
+    if not run.ranks.is_root:
+        return {}
     report: dict[str, Any] = {
         "kind": failure.kind,
         "meaning": KINDS.get(failure.kind, failure.kind),
@@ -73,7 +77,7 @@ def explain_failure(run: ActiveRun, failure: Failure) -> dict[str, Any]:
         names = scenario.material_names, run.body_names
         report["particle"] = _particle(good, int(index[0]), *names)
         report["became"] = _particle(failure.state, int(after[0]), *names)
-        report |= _surroundings(run, good, int(index[0]), failure.rewound)
+        report |= _surroundings(run, good, int(index[0]))
     failure.advice = report["advice"] = remedy(report, scenario)
     write_whole_text(run.folder.failure, json.dumps(jsonable(report), indent=1) + "\n")
     return report
@@ -103,12 +107,10 @@ def _particle(
     }
 
 
-def _surroundings(
-    run: ActiveRun, state: dict[str, np.ndarray], k: int, has_rates: bool
-) -> dict[str, Any]:
+def _surroundings(run: ActiveRun, state: dict[str, np.ndarray], k: int) -> dict[str, Any]:
     """The nearest neighbours and, once rates were taken, what they do to the particle."""
-    balsara = run.simulation.rates()["balsara"] if has_rates else np.ones(len(state["id"]))
-    terms = particle_terms(run.scenario, state | {"balsara": balsara}, k)
+    has_rates = "balsara" in state
+    terms = particle_terms(run.scenario, {"balsara": np.ones(len(state["id"]))} | state, k)
     said: dict[str, Any] = {"neighbours": _neighbours(run, state, k, terms)}
     if has_rates:
         sizes = {name: float(np.linalg.norm(a)) for name, a in terms.acceleration.items()}
@@ -147,6 +149,8 @@ def explanation(folder: RunFolder) -> str:
 
 def paragraph(report: dict[str, Any]) -> str:
     """A report in words."""
+    if report["kind"] == "rank":
+        return f"{report['who']} failed: {report['message']}. {report['advice']}"
     said = [f"The run failed after step {report['step']}, at t = {report['time']:.6g} s."]
     if particle := report.get("particle"):
         said.append(_particle_sentence(report, particle, report["became"]))

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from .checkpoint import Checkpoint, CheckpointFolder
-from .core import empty_simulation, load_core
+from .core_modules import load_core
 from .errors import UserError
 from .loading import load
+from .ranks import OneRank
 from .record import Recorder
 from .run import ActiveRun, RunOptions, carry_out
 from .scenario import Scenario, load_scenario
@@ -37,6 +38,7 @@ def resume_run(
     `until`, s.  `overrides` are KEY=VALUE for keys in CHANGEABLE.  Raises as
     run_scenario does, and UserError when there is nothing to go on from.
     """
+    options = options or RunOptions()
     folder = load(directory).folder
     checkpoint, notes = CheckpointFolder(folder.checkpoints).read_last(until)
     scenario = _scenario(folder.scenario, overrides)
@@ -45,12 +47,12 @@ def resume_run(
             f"{directory}: the run has reached time_max = {scenario.time_max:g} s;"
             " go further with --set time_max=..."
         )
-    run = _restored(directory, scenario, checkpoint, notes)
+    run = _restored(directory, scenario, checkpoint, notes, options.ranks)
     if overrides:
         # The last snapshot may have been made early, at the time_max of then.
         run.position.outputs = int(checkpoint.time / scenario.time_out + 1e-9) + 1
-        write_whole_text(folder.scenario, scenario.effective_toml())
-    return carry_out(run, options or RunOptions(), fresh=False), notes
+        options.ranks.on_root(lambda: write_whole_text(folder.scenario, scenario.effective_toml()))
+    return carry_out(run, options, fresh=False), notes
 
 
 def _scenario(path: Path, overrides: Sequence[str]) -> Scenario:
@@ -71,23 +73,31 @@ def _text(value: Any) -> str:
 
 
 def _restored(
-    directory: str | Path, scenario: Scenario, checkpoint: Checkpoint, notes: list[str]
+    directory: str | Path,
+    scenario: Scenario,
+    checkpoint: Checkpoint,
+    notes: list[str],
+    ranks: OneRank,
 ) -> ActiveRun:
     if scenario.material_names != checkpoint.material_names:
         raise UserError(f"{directory}: the scenario's materials are not those of its checkpoint")
-    simulation = empty_simulation(scenario, checkpoint.body_names)
     try:
-        same_bits = simulation.restore(checkpoint.state)
+        simulation, same_bits = ranks.restored_simulation(
+            scenario, checkpoint.body_names, checkpoint.state
+        )
     except ValueError as error:
         raise UserError(f"{directory}: {error}") from None
-    if not same_bits:
+    if ranks.count > 1 or checkpoint.is_of_many_ranks:
+        notes.append("the run is, or was, spread over ranks: results agree to rounding only")
+    elif not same_bits:
         notes.append(
             "the checkpoint was written with another instruction set: results agree to rounding"
             f" only (DOSEKI_ISA chooses one; now {load_core().__name__.rpartition('_')[2]})"
         )
     position = checkpoint.position
-    recorder = Recorder.reopen(directory, position.snapshots, position.rows, position.gauge_rows)
-    run = ActiveRun(scenario, simulation, recorder, checkpoint.body_names)
+    written = position.snapshots, position.rows, position.gauge_rows
+    recorder = ranks.recorder(directory, lambda: Recorder.reopen(directory, *written))
+    run = ActiveRun(scenario, simulation, recorder, checkpoint.body_names, ranks)
     run.position = position
-    run.checkpoints.drop_later(checkpoint.step)
+    ranks.on_root(lambda: run.checkpoints.drop_later(checkpoint.step))
     return run

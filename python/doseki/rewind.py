@@ -21,13 +21,16 @@ class Rewind:
         self.last: Checkpoint | None = None
         self._next = 0.0
 
-    def look(self, take: Callable[[], Checkpoint]) -> None:
-        """Take a copy of the state if the last one is old enough."""
+    def is_due(self) -> bool:
+        """Whether the last copy is old."""
+        return time.monotonic() >= self._next
+
+    def keep(self, take: Callable[[], Checkpoint]) -> None:
+        """Take a copy of the state."""
         started = time.monotonic()
-        if started >= self._next:
-            self.last = take()
-            now = time.monotonic()
-            self._next = now + max(SECONDS, (now - started) / SHARE)
+        self.last = take()
+        now = time.monotonic()
+        self._next = now + max(SECONDS, (now - started) / SHARE)
 
     def back_to(self, simulation: Any, step: int, limit_at: Callable[[float], float]) -> bool:
         """Take `simulation` to the state after `step` steps; false if no copy was ever made.

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from .checkpoint import Checkpoint, CheckpointFolder, Position
-from .core import filled_simulation, load_core
+from .core import load_core
 from .errors import PhysicsError, ResourceError
 from .failure import Failure, explain_failure
 from .folder import RunFolder
 from .gauges import GaugeReader, build_gauges
 from .loading import load
+from .ranks import OneRank
 from .record import Recorder
 from .rewind import Rewind
 from .rigid_bodies import grain_table
@@ -48,6 +49,7 @@ class RunOptions:
     started: Started = field(default=_say_nothing)  # called before the first step
     checkpoint_every: float | None = None  # s of simulated time
     checkpoint_minutes: float = CHECKPOINT_MINUTES  # of wall time
+    ranks: OneRank = field(default_factory=OneRank)
 
 
 def history_row(simulation: Any, material_names: list[str]) -> dict[str, float]:
@@ -71,12 +73,18 @@ class ActiveRun:
     """One run in progress: the simulation, its record and where it stands in it."""
 
     def __init__(
-        self, scenario: Scenario, simulation: Any, recorder: Recorder, body_names: list[str]
+        self,
+        scenario: Scenario,
+        simulation: Any,
+        recorder: Recorder,
+        body_names: list[str],
+        ranks: OneRank,
     ) -> None:
         self.scenario = scenario
         self.simulation = simulation
         self.recorder = recorder
         self.body_names = body_names
+        self.ranks = ranks
         self.folder = RunFolder(recorder.directory)
         self.checkpoints = CheckpointFolder(self.folder.checkpoints)
         self.position = Position()
@@ -108,10 +116,15 @@ class ActiveRun:
 
     def record_history(self) -> None:
         """Write a row of diagnostics; the next one is due one interval later."""
-        self.recorder.history(history_row(self.simulation, self.scenario.material_names))
+        self.recorder.history(self.history_row())
         self.position.rows += 1
         while self.position.next_history <= self.simulation.time:
             self.position.next_history += self.scenario.time_history
+
+    def history_row(self) -> dict[str, float]:
+        """What is known of the run now."""
+        row = history_row(self.simulation, self.scenario.material_names)
+        return row | self.ranks.balance(self.simulation)
 
     def record_gauge(self, gauge: GaugeReader) -> None:
         """Write a sample."""
@@ -131,7 +144,12 @@ class ActiveRun:
         clock.reset(self.simulation.time)
         self.position.next_checkpoint = clock.next_time
         self.recorder.sync()
-        self.checkpoints.write(self.checkpoint())
+        self.store(self.checkpoint())
+
+    def store(self, checkpoint: Checkpoint) -> None:
+        """Write a copy of the state."""
+        state = self.ranks.whole_checkpoint(self.simulation, checkpoint.state)
+        self.ranks.on_root(lambda: self.checkpoints.write(replace(checkpoint, state=state)))
 
     def next_output(self) -> float:
         """Time of the next snapshot; the last one is always at time_max."""
@@ -159,12 +177,13 @@ class ActiveRun:
         )
         stopped = False
         while simulation.time < self.scenario.time_max and not stopped:
-            self.rewind.look(self.checkpoint)
+            if self.ranks.agree(self.rewind.is_due()):
+                self.rewind.keep(self.checkpoint)
             burst = self._burst(burst, clock.next_time)
-            if clock.is_due(simulation.time):
+            if self.ranks.agree(clock.is_due(simulation.time)):
                 self.write_checkpoint(clock)
             options.progress(simulation.time, simulation.timestep, simulation.steps)
-            stopped = bool(stop)
+            stopped = self.ranks.agree(bool(stop))
         self.write_checkpoint(clock)
         if stopped:
             self.record_snapshot()
@@ -186,7 +205,7 @@ class ActiveRun:
                 self.record_gauge(gauge)
         if simulation.time >= min(self.position.next_history, self.scenario.time_max):
             self.record_history()
-        return max(1, min(LAST_BURST, int(rate * BURST_SECONDS)))
+        return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))
 
     def fail(self, message: str) -> Failure:
         """Go back to the step before the failure, record that state, and explain what happened."""
@@ -197,7 +216,7 @@ class ActiveRun:
         failure.rewound = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
         if failure.rewound:
             # The step before may be past saving; the run may go on from the state well before it.
-            self.checkpoints.write(self.rewind.last)
+            self.store(self.rewind.last)
             self.write_checkpoint(CheckpointClock(None, 0.0))
         self.record_snapshot()
         explain_failure(self, failure)
@@ -206,7 +225,7 @@ class ActiveRun:
 
 def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
-    last = history_row(simulation, scenario.material_names)
+    last = run.history_row()
     balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
     return {
         "status": status,
@@ -216,6 +235,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "precision": scenario.precision,
         "dp": scenario.dp,
         "xi": scenario.xi,
+        "ranks": run.ranks.count,
         "wall_seconds": run.wall_seconds,
         "particle_updates_per_second": simulation.updates / run.wall_seconds,
         "neighbour_rebuilds": simulation.rebuilds,
@@ -239,30 +259,33 @@ def run_scenario(
     there is kept, the summary says "failed"), ResourceError when memory or disk runs out.
     """
     options = options or RunOptions()
-    simulation, body_names = filled_simulation(scenario)
-    recorder = Recorder(
+    simulation, body_names = options.ranks.filled_simulation(scenario)
+    names = scenario.material_names, body_names
+    text = scenario.effective_toml()
+    recorder = options.ranks.recorder(
         directory,
-        scenario.effective_toml(),
-        scenario.material_names,
-        body_names,
-        scenario.dim,
-        overwrite=options.overwrite,
+        lambda: Recorder(directory, text, *names, scenario.dim, overwrite=options.overwrite),
     )
-    run = ActiveRun(scenario, simulation, recorder, body_names)
+    run = ActiveRun(scenario, simulation, recorder, body_names, options.ranks)
     return carry_out(run, options, fresh=True)
 
 
 def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any]:
     """Takes a run, `fresh` or restored, to its end; see run_scenario."""
     core, directory = load_core(), run.folder.path
-    if options.threads:
-        core.set_threads(options.threads)
+    threads = run.ranks.threads(options.threads)
+    if threads:
+        core.set_threads(threads)
+    run.ranks.working_in(directory, run.simulation)
     stop = StopRequests(directory)
     try:
         with stop.listening():
             if fresh:
                 run.start()
-                options.started(run.scenario, run.simulation, run.body_names)
+                run.ranks.show(
+                    run.simulation,
+                    lambda whole: options.started(run.scenario, whole, run.body_names),
+                )
             status = run.advance(options, stop)
     except core.ResourceFailure as failure:
         raise ResourceError(str(failure)) from failure
@@ -277,5 +300,5 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
     summary = _summary(run, status)
     run.recorder.close(summary)
-    write_trust(load(directory))
+    run.ranks.on_root(lambda: write_trust(load(directory)))
     return summary

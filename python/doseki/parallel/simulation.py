@@ -1,0 +1,156 @@
+"""A core simulation that is spread over ranks, with the methods of one that is not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from .balance import Balance
+from .engines import chosen_engine
+from .transport import Transport
+
+# Of a checkpoint: what each rank has its own part of, added up over the ranks.
+SUMMED = (
+    "mass_initial", "mass_entered", "mass_left", "av_dissipation", "av_power", "updates",
+)  # fmt: skip
+SHARES = ("balance", "migrate", "halo", "wait")
+SHORT = 1e-3  # s of work; too short to tell how it is shared
+
+State = dict[str, np.ndarray]
+
+
+class RankedSimulation:
+    """The same methods as a simulation of the core; all ranks call each of them together.
+
+    What reads particles (`state`, `rates`) gives all of them to rank 0 and none to the others;
+    `sample`, `totals` and numbers are the same everywhere.  What is not listed here is the core's
+    own and the same on every rank.
+    """
+
+    def __init__(self, core: Any, comm: Any, dim: int) -> None:
+        """`core`: a simulation without particles, but on rank 0, where they are shared out."""
+        self.core, self.comm = core, comm
+        self._seen = dict.fromkeys((*SHARES, "total", "busy"), 0.0)
+        self._balance = {"imbalance": 1.0} | {f"share_{name}": 0.0 for name in SHARES}
+        core.join(Transport(comm, dim, chosen_engine(comm, dim), Balance(comm)))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.core, name)
+
+    def __len__(self) -> int:
+        return self._sum(len(self.core))
+
+    @property
+    def updates(self) -> int:
+        """Particles stepped, summed over the steps."""
+        return self._sum(self.core.updates)
+
+    @property
+    def bytes_per_particle(self) -> float:
+        """Mean over the particles."""
+        return self._mean(self.core.bytes_per_particle)
+
+    @property
+    def entries_per_particle(self) -> float:
+        """Mean over the particles."""
+        return self._mean(self.core.entries_per_particle)
+
+    def state(self) -> State:
+        """Fields of all particles in the order of their ids."""
+        return by_id(gathered(self.comm, self.core.state()))
+
+    def rates(self) -> State:
+        """Rates of all particles in the order of their ids."""
+        local = self.core.rates()
+        arrays = {key: value for key, value in local.items() if isinstance(value, np.ndarray)}
+        arrays["id"] = self.core.state()["id"]
+        found = by_id(gathered(self.comm, arrays))
+        del found["id"]
+        power = self.comm.allreduce(local["av_power"])
+        return found | {"timestep": local["timestep"], "av_power": power}
+
+    def neighbour_counts(self) -> State:
+        """Neighbours within support, in the order of ids."""
+        return by_id(gathered(self.comm, self.core.neighbour_counts()))
+
+    def sample(self, low: list[float], high: list[float]) -> State:
+        """What gauges read of the particles in a box, in the order of their ids, on every rank."""
+        parts = self.comm.allgather(self.core.sample(low, high))
+        return by_id({key: np.concatenate([part[key] for part in parts]) for key in parts[0]})
+
+    def totals(self) -> dict[str, Any]:
+        """Totals over all particles."""
+        local = self.core.totals()
+        shared = local.pop("mass_asked")  # each rank knows the whole of it
+        names = list(local)
+        flat = np.concatenate([np.atleast_1d(np.asarray(local[name], float)) for name in names])
+        self.comm.Allreduce(MPI.IN_PLACE, flat, MPI.SUM)
+        found: dict[str, Any] = {"mass_asked": shared}
+        for name in names:
+            size = np.size(local[name])
+            values, flat = flat[:size], flat[size:]
+            found[name] = values.tolist() if np.ndim(local[name]) else float(values[0])
+        return found | {"count": [int(n) for n in found["count"]]}
+
+    def balance(self) -> dict[str, float]:
+        """Work of the busiest rank over the mean, and the mean share of the wall time that went
+        into each of SHARES, since the last call.
+        """
+        now = self.core.shares()
+        spent = np.array([now[name] - self._seen[name] for name in self._seen])
+        busiest = self.comm.allreduce(spent[-1], MPI.MAX)
+        mean = self.comm.allreduce(spent) / self.comm.size
+        total, busy = mean[-2:]
+        if busy > SHORT:
+            self._seen = {name: now[name] for name in self._seen}
+            self._balance = {"imbalance": float(busiest / busy)}
+            for name, seconds in zip(SHARES, mean, strict=False):
+                self._balance[f"share_{name}"] = float(seconds / total)
+        return self._balance
+
+    def whole_checkpoint(self, state: State) -> State | None:
+        """On rank 0, what `checkpoint` gave on each rank put together: the state that any number
+        of ranks can go on from.  Lists are left out.
+        """
+        particles = {name: state[name] for name in self.core.particle_arrays}
+        whole = gathered(self.comm, particles)
+        found = state | whole
+        for name in SUMMED:
+            found[name] = self.comm.allreduce(state[name])
+        for name in ("lists_moving", "lists_fixed", "lists_entries", "stress_record"):
+            if name in found:
+                found[name] = found[name][:0]
+        found["lanes"] = np.zeros_like(state["lanes"])
+        return found if self.comm.rank == 0 else None
+
+    def _sum(self, number: int) -> int:
+        return self.comm.allreduce(number)
+
+    def _mean(self, of_particle: float) -> float:
+        count = len(self.core)
+        total, everyone = self.comm.allreduce(np.array([of_particle * count, count]))
+        return float(total / max(everyone, 1.0))
+
+
+def by_id(arrays: State) -> State:
+    """The same rows in the order of `id`."""
+    order = np.argsort(arrays["id"], kind="stable")
+    return {key: values[order] for key, values in arrays.items()}
+
+
+def gathered(comm: Any, arrays: Mapping[str, np.ndarray]) -> State:
+    """On rank 0 the rows of all ranks, in the order of ranks; none on the others."""
+    return {key: _gather_rows(comm, values) for key, values in arrays.items()}
+
+
+def _gather_rows(comm: Any, values: np.ndarray) -> np.ndarray:
+    values = np.ascontiguousarray(values)
+    row = values.itemsize * int(np.prod(values.shape[1:]))
+    counts = comm.gather(len(values))
+    whole = np.empty((sum(counts) if counts else 0, *values.shape[1:]), values.dtype)
+    sizes = [row * count for count in counts] if counts else None
+    comm.Gatherv([values, values.nbytes, MPI.BYTE], [whole, sizes, MPI.BYTE] if counts else None)
+    return whole
