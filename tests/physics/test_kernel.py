@@ -14,7 +14,7 @@ SPHERE = {2: 2 * np.pi, 3: 4 * np.pi}  # area of the unit sphere
 
 @dataclass(frozen=True)
 class Kernel:
-    """A kernel as the core names it, a polynomial of `degree`, with W''(0) = -curvature W(0)/R^2."""
+    """A kernel, a polynomial of `degree`, as the core names it; W''(0) = -curvature W(0)/R^2."""
 
     function: str
     lattice_sums: str
