@@ -171,7 +171,7 @@ IMPACT = Case(
     ),
     axes=("t* = t sqrt(g/H)", "p / rho g H"),
     controls=(
-        Control("gravity a tenth too weak", ARRIVAL, lambda n: run_against(n, "gravity=[0, -8.5]")),
+        Control("gravity a fifth too weak", ARRIVAL, lambda n: run_against(n, "gravity=[0, -7.8]")),
     ),
     data=(BAND,),
 )
