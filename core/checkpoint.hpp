@@ -140,7 +140,7 @@ public:
         const std::size_t columns = array.ndim() == 2 ? array.shape(1) : 1;
         check(array.ndim() >= 1 && array.ndim() <= 2 && columns == Numbers<T>::count, name);
         values.resize(array.shape(0));
-        std::memcpy(static_cast<void*>(values.data()), array.data(), array.size() * sizeof(Number));
+        if (array.size() > 0) std::memcpy(static_cast<void*>(values.data()), array.data(), array.size() * sizeof(Number));
     }
 
     void operator()(const char* name, bool& value) {
