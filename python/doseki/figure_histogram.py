@@ -68,7 +68,8 @@ def _draw_samples(axes: Axes, speeds: np.ndarray, what: SpeedHistogram) -> None:
     axes.stairs(mean, edges, fill=True, color=SAMPLE_COLOUR, label="mean of the samples")
     some = mean > 0
     centres = (edges[1:] + edges[:-1])[some] / 2
-    band = (mean - low)[some], (high - mean)[some]
+    # A bin that few samples reach has its mean above 95 % of them.
+    band = np.clip([(mean - low)[some], (high - mean)[some]], 0.0, None)
     axes.errorbar(
         centres, mean[some], band, fmt="none", color="black", capsize=2,
         linewidth=1, label="5 % to 95 % of them",

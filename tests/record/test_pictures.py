@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from matplotlib import colors, image
 from matplotlib.collections import EllipseCollection
+from matplotlib.figure import Figure
 from PIL import Image
 
 from doseki.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
 from doseki.dots import dots, extent_of
 from doseki.errors import UserError
+from doseki.figure_histogram import SpeedHistogram, _draw_samples
 from doseki.figure_snapshot import SnapshotFigure, draw_snapshots
 from doseki.loading import load
 from doseki.movie import make_movie
@@ -204,3 +206,9 @@ def test_movie_refuses_other_endings_and_existing_files(flow_folder, tmp_path):
         make_movie(load(flow_folder), tmp_path / "m.gif")
     with pytest.raises(UserError, match=r"\.gif or an \.mp4"):
         make_movie(load(flow_folder), tmp_path / "m.avi")
+
+
+def test_a_speed_that_few_samples_have_can_be_drawn():
+    """Its mean over the samples is above the 95th percentile, which is zero."""
+    speeds = np.r_[np.full(2000, 0.55), 3.05]
+    _draw_samples(Figure().subplots(), speeds, SpeedHistogram(whole_space(2)))
