@@ -185,6 +185,19 @@ private:
 
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
     void restore(const BodyColumns<D>& columns);
+    const Shape<D>& shape_of(std::size_t k) const { return shapes[static_cast<std::size_t>(bodies_[k].shape)]; }
+    std::vector<Mat<double, 3>> rotations() const {
+        std::vector<Mat<double, 3>> R;
+        for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
+        return R;
+    }
+    /// When the fluid will have acted for `ahead` more.
+    std::vector<Vec3> spins(double ahead) const {
+        std::vector<Vec3> w;
+        for (std::size_t k = 0; k < size(); ++k)
+            w.push_back(spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque));
+        return w;
+    }
     bool at_work(std::size_t k) const { return !bodies_[k].fixed && states_[k].removed == 0.0; }
     static bool is_rigid_point(const Particles<D>& particles, std::size_t p) {
         return particles.has_flow && particles.is_bound(p) && !DeformableBodies<D>::is_mark(particles.flow.point[p]);
@@ -199,7 +212,7 @@ private:
     double longest_part() const {
         double fastest = deformable.fastest();
         for (std::size_t k = 0; k < size(); ++k)
-            if (at_work(k)) fastest = std::max(fastest, norm(states_[k].velocity) + shapes[static_cast<std::size_t>(bodies_[k].shape)].radius * norm(spin(k)));
+            if (at_work(k)) fastest = std::max(fastest, norm(states_[k].velocity) + shape_of(k).radius * norm(spin(k)));
         return std::min({contacts_.timestep(), elastic_step_, 0.25 * margin_ / std::max(fastest, 1e-300)});
     }
     void drift(double dt);
@@ -287,14 +300,14 @@ Vec3 Bodies<D>::spin_of(std::size_t k, const Vec3& L) const {
 
 template <int D>
 void Bodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
+    if (!any_moves()) return;
     std::vector<Vec<double, D>> force(points_.size());
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (is_rigid_point(particles, p)) force[static_cast<std::size_t>(particles.flow.point[p])] = particles.flow.wall_force[p];
     ranks.sum(numbers_of(force));
     deformable.gather(particles, ranks);
     for (BodyState<D>& state : states_) state.flow_force = {}, state.flow_torque = {};
-    std::vector<Mat<double, 3>> R;
-    for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
+    const auto R = rotations();
     for (std::size_t q = 0; q < points_.size(); ++q) {
         const auto k = static_cast<std::size_t>(points_[q].index());
         states_[k].flow_force = states_[k].flow_force + force[q];
@@ -317,8 +330,8 @@ template <int D>
 void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return;
     std::vector<Vec<double, D>> before(size());
-    std::vector<Vec3> spin_before(size());
-    for (std::size_t k = 0; k < size(); ++k) before[k] = states_[k].velocity, spin_before[k] = spin(k);
+    const auto spin_before = spins(0.0);
+    for (std::size_t k = 0; k < size(); ++k) before[k] = states_[k].velocity;
     deformable.begin_step();
     set_elastic_step();
     for (double left = dt; left > 0.0;) {
@@ -359,7 +372,7 @@ void Bodies<D>::drift(double dt) {
         const Vec3 turn = dt * spin(k);
         state.centre = state.centre + dt * state.velocity;
         state.orientation = state.orientation.turned(turn);
-        const Shape<D>& shape = shapes[static_cast<std::size_t>(bodies_[k].shape)];
+        const Shape<D>& shape = shape_of(k);
         const double reach = shape.is_ball() ? 0.0 : shape.radius;
         farthest = std::max(farthest, dt * norm(state.velocity) + reach * norm(turn));
     }
@@ -380,7 +393,7 @@ void Bodies<D>::move_walls(const Walls<D>& walls, double t, double dt) {
         state.centre = state.centre + step;
         const Vec3 turn = dt * motion->spin_at(t);
         state.orientation = state.orientation.turned(turn);
-        farthest = std::max(farthest, norm(step) + shapes[static_cast<std::size_t>(bodies_[k].shape)].radius * norm(turn));
+        farthest = std::max(farthest, norm(step) + shape_of(k).radius * norm(turn));
         if (motion->removed_at > 0.0 && motion->removed_at <= t && state.removed == 0.0) state.removed = 1.0, moved_ = margin_;
     }
     moved_ += farthest;
@@ -392,7 +405,7 @@ void Bodies<D>::pose() {
     std::size_t c = 0, s = 0;
     for (std::size_t k = 0; k < size(); ++k) {
         const BodyState<D>& state = states_[k];
-        const Shape<D>& shape = shapes[static_cast<std::size_t>(bodies_[k].shape)];
+        const Shape<D>& shape = shape_of(k);
         const bool ball = shape.is_ball();
         const Vec3 w = spin(k);
         const Mat<double, 3> R = ball ? Mat<double, 3>{} : state.orientation.matrix();
@@ -442,10 +455,8 @@ void Bodies<D>::collect_forces() {
 template <int D>
 double Bodies<D>::place(Particles<D>& particles) const {
     if (!any_moves()) return 0.0;
-    std::vector<Mat<double, 3>> R;
-    for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
-    std::vector<Vec3> spins;
-    for (std::size_t k = 0; k < size(); ++k) spins.push_back(spin(k));
+    const auto R = rotations();
+    const auto w = spins(0.0);
     const double bent = deformable.place(particles, [this](const Vec<double, D>& r) { return contacts_.nearest_image(r); });
     double farthest = bent * bent;
     const std::size_t n = particles.size();
@@ -461,7 +472,7 @@ double Bodies<D>::place(Particles<D>& particles) const {
         particles.position[p] = particles.position[p] + step;
         particles.flow.normal[p] = rotated(R[k], point.normal);
         particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
-                                    turning_velocity(spins[k], turning_velocity(spins[k], lever));
+                                    turning_velocity(w[k], turning_velocity(w[k], lever));
     }
     return std::sqrt(farthest);
 }
@@ -470,12 +481,8 @@ template <int D>
 void Bodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
     if (!any_moves()) return;
     deformable.set_velocities(particles, ahead);
-    std::vector<Vec3> spins;
-    std::vector<Mat<double, 3>> R;
-    for (std::size_t k = 0; k < size(); ++k) {
-        spins.push_back(spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque));
-        R.push_back(states_[k].orientation.matrix());
-    }
+    const auto R = rotations();
+    const auto w = spins(ahead);
     const std::size_t n = particles.size();
 #pragma omp parallel for schedule(static) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
@@ -483,13 +490,14 @@ void Bodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
         const BodyPoint<D>& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
         const auto k = static_cast<std::size_t>(point.index());
         particles.velocity[p] = states_[k].velocity + (ahead / bodies_[k].mass) * states_[k].flow_force +
-                                turning_velocity(spins[k], rotated(R[k], point.offset));
+                                turning_velocity(w[k], rotated(R[k], point.offset));
     }
 }
 
 template <int D>
 template <class Box>
 double Bodies<D>::drain(const Particles<D>& particles, const Box& box, std::vector<std::uint8_t>& removed) {
+    if (!any_moves()) return 0.0;
     std::vector<std::uint8_t> leaves(size(), 0);
     double mass = 0.0;
     for (std::size_t k = 0; k < size(); ++k)

@@ -43,7 +43,10 @@ def test_without_loss_there_is_no_damping(physics):
 
 def test_hertz_stiffness_is_the_slope_of_its_force(physics):
     overlap, step = np.geomspace(1e-7, 1e-4, 20), 1e-10
-    columns = lambda x: [[5e9] * len(x), [2.5e-3] * len(x), x.tolist()]  # noqa: E731
+
+    def columns(x):
+        return [[5e9] * len(x), [2.5e-3] * len(x), x.tolist()]
+
     force, slope = physics.hertz_spring(columns(overlap))
     above, _ = physics.hertz_spring(columns(overlap + step))
     below, _ = physics.hertz_spring(columns(overlap - step))
