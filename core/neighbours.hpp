@@ -124,6 +124,12 @@ private:
         double support;
     };
 
+    /// Some particles of a cluster, by their places in it.
+    struct Part {
+        Bounds bounds;
+        int first, last;
+    };
+
     /// Particles by class: moving before fixed, far from other ranks before near, then by smoothing length.
     using Classes = std::map<std::tuple<bool, bool, int>, std::vector<std::uint32_t>>;
     std::vector<std::uint32_t> sort_classes(const Classes& classes, std::span<const Vec<double, D>> position,
@@ -133,22 +139,27 @@ private:
     /// What a thread needs while it searches.
     struct Scratch {
         std::vector<std::uint32_t> list;
+        std::vector<Part> parts;
         std::array<std::vector<CellStep>, D> steps;
     };
 
     void fill_image_shifts();
     void size_grid(Grid& grid, std::span<const Vec<double, D>> position,
                    std::span<const std::uint32_t> members) const;
+    static std::int64_t table_size(const std::array<std::int64_t, D>& cells);
+    std::array<std::int64_t, D> fold(const Grid& grid, std::array<std::int64_t, D> cells,
+                                     std::span<const Vec<double, D>> position,
+                                     std::span<const std::uint32_t> members) const;
     static void fill_key_parts(Grid& grid);
     static std::int64_t cell_of(const Grid& grid, double x, int a);
     std::int64_t wrap(const Grid& grid, std::int64_t cell, int a) const;
     std::uint32_t key_of(const Grid& grid, const Vec<double, D>& x) const;
 
-    static Bounds bounds_of(std::span<const Vec<double, D>> position, std::span<const double> support,
-                            std::size_t first, std::size_t last);
+    static void find_parts(std::span<const Vec<double, D>> position, std::span<const double> support,
+                           std::size_t first, std::size_t last, std::vector<Part>& parts);
 
     template <int width>
-    void search(const Grid& grid, const Bounds& bounds, std::uint32_t first, double skin,
+    void search(const Grid& grid, const Part& part, std::uint32_t first, double skin,
                 std::span<const Vec<double, D>> position, std::span<const double> support,
                 Scratch& scratch) const;
     void fill_steps(const Grid& grid, const Bounds& bounds, double radius, Scratch& scratch) const;

@@ -3,6 +3,8 @@
 
 #include <omp.h>
 
+#include <algorithm>
+
 #include "base/parallel.hpp"
 #include "neighbours.hpp"
 
@@ -39,7 +41,7 @@ bool Neighbours<D>::is_beyond(const Grid& grid, const Bounds& bounds, double rad
 
 template <int D>
 template <int width>
-void Neighbours<D>::search(const Grid& grid, const Bounds& bounds, std::uint32_t first, double skin,
+void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t first, double skin,
                            std::span<const Vec<double, D>> position, std::span<const double> support,
                            Scratch& scratch) const {
     using Lanes = stdx::fixed_size_simd<double, width>;
@@ -49,7 +51,7 @@ void Neighbours<D>::search(const Grid& grid, const Bounds& bounds, std::uint32_t
         x[a] = Lanes([&](auto l) { return position[std::min<std::uint32_t>(first + l, last)][a]; });
     const auto reach = Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
 
-    auto visit = [&](std::uint32_t key, std::uint32_t image) {
+    auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
         const Vec<double, D>& shift = image_shift_[image];
         const std::uint32_t code = image << ListEntry::index_bits;
         for (std::uint32_t j = grid.cell_start[key]; j < grid.cell_start[key + 1]; ++j) {
@@ -58,13 +60,19 @@ void Neighbours<D>::search(const Grid& grid, const Bounds& bounds, std::uint32_t
                 const Lanes d = x[a] - (position[j][a] + shift[a]);
                 square += d * d;
             }
-            const Lanes limit = stdx::max(reach, Lanes(support[j])) + skin;
-            if (stdx::any_of(square < limit * limit)) scratch.list.push_back(j | code);
+            Lanes limit = support[j];
+            stdx::where(limit < reach, limit) = reach;
+            limit += skin;
+            const auto near = square < limit * limit;
+            if (stdx::none_of(near)) continue;
+            // Another part finds what is near its particles, too.
+            const int lane = stdx::find_first_set(near);
+            if (part.first <= lane && lane < part.last) scratch.list.push_back(j | code);
         }
     };
-    const double radius = std::max(bounds.support, grid.support) + skin;
-    if (is_beyond(grid, bounds, radius)) return;
-    fill_steps(grid, bounds, radius, scratch);
+    const double radius = std::max(part.bounds.support, grid.support) + skin;
+    if (is_beyond(grid, part.bounds, radius)) return;
+    fill_steps(grid, part.bounds, radius, scratch);
     const auto& steps = scratch.steps;
     for (const CellStep& y : steps[1])
         for (const CellStep& x_step : steps[0]) {
@@ -91,11 +99,12 @@ void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<co
 #pragma omp for schedule(dynamic, 64)
         for (std::size_t c = 0; c < count; ++c) {
             const std::size_t first = c * width;
-            const Bounds bounds = bounds_of(position, support, first, std::min(n, first + width));
+            find_parts(position, support, first, std::min(n, first + width), scratch.parts);
             auto search_grids = [&](bool fixed) {
-                for (const Grid& grid : grids_)
-                    if (grid.fixed == fixed)
-                        search<width>(grid, bounds, static_cast<std::uint32_t>(first), skin, position, support, scratch);
+                for (const Part& part : scratch.parts)
+                    for (const Grid& grid : grids_)
+                        if (grid.fixed == fixed)
+                            search<width>(grid, part, static_cast<std::uint32_t>(first), skin, position, support, scratch);
             };
             scratch.list.clear();
             search_grids(false);
@@ -106,18 +115,27 @@ void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<co
     }
 }
 
+/// Cuts a cluster into runs of particles that lie together. Spray is stored one after the other, too, and a
+/// search around all of such a cluster would visit whatever lies between.
 template <int D>
-auto Neighbours<D>::bounds_of(std::span<const Vec<double, D>> position, std::span<const double> support,
-                              std::size_t first, std::size_t last) -> Bounds {
-    Bounds bounds{position[first], position[first], support[first]};
-    for (std::size_t p = first + 1; p < last; ++p) {
-        bounds.support = std::max(bounds.support, support[p]);
+void Neighbours<D>::find_parts(std::span<const Vec<double, D>> position, std::span<const double> support,
+                               std::size_t first, std::size_t last, std::vector<Part>& parts) {
+    constexpr double widest = 2.5;    // of the support radius
+    parts.clear();
+    for (std::size_t p = first; p < last; ++p) {
+        const int lane = static_cast<int>(p - first);
+        const Bounds alone{position[p], position[p], support[p]};
+        Bounds joined = parts.empty() ? alone : parts.back().bounds;
+        joined.support = std::max(joined.support, support[p]);
+        bool together = !parts.empty();
         for (int a = 0; a < D; ++a) {
-            bounds.low[a] = std::min(bounds.low[a], position[p][a]);
-            bounds.high[a] = std::max(bounds.high[a], position[p][a]);
+            joined.low[a] = std::min(joined.low[a], position[p][a]);
+            joined.high[a] = std::max(joined.high[a], position[p][a]);
+            together &= joined.high[a] - joined.low[a] < widest * joined.support;
         }
+        if (together) parts.back() = {joined, parts.back().first, lane + 1};
+        else parts.push_back({alone, lane, lane + 1});
     }
-    return bounds;
 }
 
 }  // namespace doseki

@@ -4,10 +4,24 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "neighbours.hpp"
 
 namespace doseki {
+
+/// The counts of layers after the upper half has been put onto the lower one.
+inline std::vector<double> folded(const std::vector<double>& layers) {
+    const std::size_t half = layers.size() / 2;
+    std::vector<double> sum(half);
+    for (std::size_t k = 0; k < half; ++k) sum[k] = layers[k] + layers[k + half];
+    return sum;
+}
+
+/// Proportional to the number of pairs within layers.
+inline double crowding(const std::vector<double>& layers) {
+    return std::inner_product(layers.begin(), layers.end(), layers.begin(), 0.0);
+}
 
 template <int D>
 void Neighbours<D>::fill_image_shifts() {
@@ -81,23 +95,46 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
             grid.cell_size[a] = size;
         }
     }
-    // A table no larger than the particles warrant; folding a direction only adds candidates.
-    const std::int64_t limit = std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
-    auto table_size = [&] {
-        std::int64_t product = 1;
-        for (int a = 0; a < D; ++a) product *= static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(cells[a])));
-        return product;
-    };
-    while (table_size() > limit) {
-        int longest = -1;
-        for (int a = 0; a < D; ++a)
-            if (!domain_.periodic[a] && cells[a] > 1 && (longest < 0 || cells[a] > cells[longest])) longest = a;
-        if (longest < 0) break;
-        cells[longest] /= 2;
-    }
-    grid.cells = cells;
+    grid.cells = fold(grid, cells, position, members);
     fill_key_parts(grid);
-    grid.cell_start.assign(static_cast<std::size_t>(table_size()) + 1, 0);
+    grid.cell_start.assign(static_cast<std::size_t>(table_size(grid.cells)) + 1, 0);
+}
+
+template <int D>
+std::int64_t Neighbours<D>::table_size(const std::array<std::int64_t, D>& cells) {
+    std::int64_t product = 1;
+    for (const std::int64_t count : cells) product *= static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(count)));
+    return product;
+}
+
+/// A table no larger than the particles warrant. Folding a direction only adds candidates, and fewest where
+/// one half is nearly empty: a long flow that splashes is folded upwards, not onto itself.
+template <int D>
+std::array<std::int64_t, D> Neighbours<D>::fold(const Grid& grid, std::array<std::int64_t, D> cells,
+                                                std::span<const Vec<double, D>> position,
+                                                std::span<const std::uint32_t> members) const {
+    const std::int64_t limit = std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
+    if (table_size(cells) <= limit) return cells;
+    std::array<std::vector<double>, D> layers;    // particles with the same cell along a direction
+    for (int a = 0; a < D; ++a) {
+        if (domain_.periodic[a]) continue;
+        layers[a].assign(static_cast<std::size_t>(cells[a]), 0.0);
+        for (const std::uint32_t p : members)
+            layers[a][static_cast<std::size_t>(cell_of(grid, position[p][a], a) % cells[a])] += 1.0;
+    }
+    while (table_size(cells) > limit) {
+        int best = -1;
+        double least = 0.0;
+        for (int a = 0; a < D; ++a) {
+            if (domain_.periodic[a] || cells[a] < 2) continue;
+            const double more = crowding(folded(layers[a])) / crowding(layers[a]);
+            if (best < 0 || more < least) best = a, least = more;
+        }
+        if (best < 0) break;
+        layers[best] = folded(layers[best]);
+        cells[best] /= 2;
+    }
+    return cells;
 }
 
 template <int D>

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from .schemes import RESOLVED, UETA2022
+
 Row = dict[str, Any]
 
 MEMORY_LIMIT = 500  # bytes per particle in 3-D and double, lists included: more is an error
@@ -17,7 +19,7 @@ MEMORY_TARGET = 350
 MEMORY_SIZE = 1_000_000  # particles, from which on the limit counts
 LARGE, FLUME_SIZE = 100_000, 4_000
 # Updates per second and core, in double, by scheme and dimensions.
-LEAST_UPDATES = {"ueta2022": {2: 3.0e6, 3: 0.9e6}, "resolved": {2: 5.0e6, 3: 1.5e6}}
+LEAST_UPDATES = {UETA2022: {2: 3.0e6, 3: 0.9e6}, RESOLVED: {2: 5.0e6, 3: 1.5e6}}
 LEAST_BARE_FRACTION = 0.5
 LEAST_OVER_SCALAR = {"v4": 2.5, "v3": 1.8}
 LEAST_FLOAT_OVER_DOUBLE = 1.5
@@ -138,7 +140,7 @@ def _ratio_checks(rows: Sequence[Row], isa: str) -> Iterator[Check]:
 
 def memory_check(rows: Sequence[Row], bound: float = MEMORY_LIMIT) -> Check | None:
     """The largest case that the limit counts for, if any was run."""
-    wanted = {"dim": 3, "precision": "double", "scheme": "ueta2022"}
+    wanted = {"dim": 3, "precision": "double", "scheme": UETA2022}
     large = [row for row in rows if wanted.items() <= row.items() and row["n"] >= MEMORY_SIZE]
     if not large:
         return None

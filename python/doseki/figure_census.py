@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .census import CLASSES, Census, SpeedDraws
+from .figure_histogram import draw_speed_row
 from .figure_series import draw_curves
 from .layout import chart_grid
 
@@ -32,20 +33,7 @@ def draw_classes(census: Census) -> Figure:
 def draw_speed_histogram(drawn: SpeedDraws, where: str) -> Figure:
     """All speeds, and what random samples of them look like."""
     figure, grid = chart_grid(1, 2, (4.2, 3.0), f"Speed of the grains, {where}")
-    every, sampled = grid[0]
-    every.stairs(drawn.counts, drawn.edges, fill=True, color="#d7301f", alpha=0.85)
-    every.set_title(f"all {len(drawn.speeds)}", fontsize="small", loc="left")
-    every.set_ylabel("number")
-    sampled.stairs(drawn.mean, drawn.edges, fill=True, color="#8c8c8c")
-    centres = 0.5 * (drawn.edges[1:] + drawn.edges[:-1])
-    band = drawn.mean - drawn.low, drawn.high - drawn.mean
-    sampled.errorbar(
-        centres, drawn.mean, np.maximum(band, 0), fmt="none", color="black", capsize=2, linewidth=1
-    )
-    name = f"samples of {drawn.size}: mean, 5 % to 95 %"
-    sampled.set_title(name, fontsize="small", loc="left")
-    for axes in grid[0]:
-        axes.set_xlabel("speed (m/s)")
+    draw_speed_row(grid[0], drawn, "grains")
     return figure
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import measure
+from .census import SpeedDraws, draw_speeds
 from .layout import chart_grid, time_text
 from .loading import Run, Snapshot
 from .views import View, select
@@ -19,7 +20,7 @@ ALL_COLOUR, SAMPLE_COLOUR = "#d7301f", "#8c8c8c"
 
 @dataclass(frozen=True)
 class SpeedHistogram:
-    """Which particles are counted and how: bins of `bin_width` m/s, samples of `sample`."""
+    """What is counted and how: bins of `bin_width` m/s, samples of `sample`."""
 
     view: View
     material: str | None = None
@@ -28,53 +29,59 @@ class SpeedHistogram:
     title: str = ""
 
     def speeds(self, snapshot: Snapshot) -> np.ndarray:
-        """Speeds of the particles that are counted, m/s."""
+        """Speeds of what is counted, m/s: particles, or the bodies that they are parts of."""
         materials = None if self.material is None else {self.material}
-        return measure.speed(snapshot["velocity"][select(snapshot, self.view, materials)])
+        chosen = select(snapshot, self.view, materials)
+        if not (bodies := snapshot.grains):
+            return measure.speed(snapshot["velocity"][chosen])
+        grain = snapshot["grain"]
+        single = snapshot["velocity"][chosen & (grain < 0)]
+        whole = np.unique(grain[chosen & (grain >= 0)])
+        whole = whole[self.view.contains(bodies["position"][whole])]
+        return measure.speed(np.concatenate([single, bodies["velocity"][whole]]))
 
 
 def draw_histogram(run: Run, snapshots: Sequence[Snapshot], what: SpeedHistogram) -> Figure:
     """A row for each snapshot: all grains in the window; random samples of them as in the paper."""
     figure, grid = chart_grid(len(snapshots), 2, (4.2, 3.0), what.title)
     for row, snapshot in zip(grid, snapshots, strict=True):
-        speeds = what.speeds(snapshot)
+        drawn = draw_speeds(what.speeds(snapshot), what.bin_width, what.sample)
         time = time_text(snapshot.time, run.times[-1])
         name = what.material or "particles"
-        if len(speeds) == 0:
+        if len(drawn.speeds) == 0:
             row[0].text(0.0, 0.5, f"{time}: no {name} in the window")
             row[0].set_axis_off()
             row[1].set_axis_off()
             continue
-        _draw_all(row[0], speeds, what.bin_width)
-        _draw_samples(row[1], speeds, what)
-        row[0].set_title(f"{time}: all {len(speeds)}", fontsize="small", loc="left")
-        row[0].set_ylabel(f"{name} per {what.bin_width:g} m/s")
-    for axes in grid[-1]:
-        axes.set_xlabel("speed (m/s)")
+        draw_speed_row(row, drawn, f"{name} per {what.bin_width:g} m/s", f"{time}: ")
     return figure
 
 
-def _draw_all(axes: Axes, speeds: np.ndarray, bin_width: float) -> None:
-    edges, counts = measure.speed_histogram(speeds, bin_width)
-    axes.stairs(counts, edges, fill=True, color=ALL_COLOUR, alpha=0.85)
-    mean = float(speeds.mean())
-    axes.axvline(mean, color="black", linewidth=1, linestyle="--", label=f"mean {mean:.2f} m/s")
-    axes.legend(fontsize="small", frameon=False)
+def draw_speed_row(row: Sequence[Axes], drawn: SpeedDraws, name: str, when: str = "") -> None:
+    """All speeds, counted as `name`, beside what random samples of them look like."""
+    every, sampled = row
+    every.stairs(drawn.counts, drawn.edges, fill=True, color=ALL_COLOUR, alpha=0.85)
+    if len(drawn.speeds):
+        mean, dashed = float(drawn.speeds.mean()), {"linewidth": 1, "linestyle": "--"}
+        every.axvline(mean, color="black", label=f"mean {mean:.2f} m/s", **dashed)
+        every.legend(fontsize="small", frameon=False)
+    every.set_title(f"{when}all {len(drawn.speeds)}", fontsize="small", loc="left")
+    every.set_ylabel(name)
+    _draw_samples(sampled, drawn)
+    for axes in row:
+        axes.set_xlabel("speed (m/s)")
 
 
-def _draw_samples(axes: Axes, speeds: np.ndarray, what: SpeedHistogram) -> None:
-    edges = measure.speed_edges(speeds, what.bin_width)
-    mean, low, high = measure.sampled_histogram(speeds, edges, what.sample)
-    axes.stairs(mean, edges, fill=True, color=SAMPLE_COLOUR, label="mean of the samples")
-    some = mean > 0
-    centres = (edges[1:] + edges[:-1])[some] / 2
+def _draw_samples(axes: Axes, drawn: SpeedDraws) -> None:
+    axes.stairs(drawn.mean, drawn.edges, fill=True, color=SAMPLE_COLOUR, label="mean of them")
+    some = drawn.mean > 0
+    centres = (drawn.edges[1:] + drawn.edges[:-1])[some] / 2
     # A bin that few samples reach has its mean above 95 % of them.
-    band = np.clip([(mean - low)[some], (high - mean)[some]], 0.0, None)
+    band = np.clip([(drawn.mean - drawn.low)[some], (drawn.high - drawn.mean)[some]], 0.0, None)
     axes.errorbar(
-        centres, mean[some], band, fmt="none", color="black", capsize=2,
+        centres, drawn.mean[some], band, fmt="none", color="black", capsize=2,
         linewidth=1, label="5 % to 95 % of them",
     )  # fmt: skip
-    size = min(what.sample, len(speeds))
-    axes.set_title(f"random samples of {size}", fontsize="small", loc="left")
-    axes.set_ylabel(f"number of {size}")
+    axes.set_title(f"random samples of {drawn.size}", fontsize="small", loc="left")
+    axes.set_ylabel(f"number of {drawn.size}")
     axes.legend(fontsize="small", frameon=False)

@@ -16,7 +16,7 @@ from .census import DEPOSITED, FLOATING, PRECEDING, Census, SpeedDraws, draw_spe
 from .errors import UserError
 from .flow import Flow, measure_flow
 from .loading import Run
-from .schemes import RESOLVED
+from .schemes import RESOLVED, UETA2022
 from .validate.case import Case, Criterion, Outcome, Value, at_most, between
 from .validate.judging import Row, judged
 from .views import fluid_names, tables, windows
@@ -67,7 +67,7 @@ class FlumeRun:
     @property
     def scheme(self) -> str:
         """Name of the scheme."""
-        return self.run.scenario.get("scheme", "ueta2022")
+        return self.run.scenario.get("scheme", UETA2022)
 
     @property
     def water(self) -> np.ndarray:

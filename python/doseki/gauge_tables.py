@@ -8,6 +8,7 @@ import numpy as np
 
 from .nearest import suggestion
 from .schema import Discharge, FlowGauge, ForceGauge, Gauge, PressureGauge, SurfaceHeight
+from .schemes import UETA2022
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -86,7 +87,7 @@ def _check_force(scenario: Scenario, name: str, gauge: ForceGauge) -> None:
             raise where.error(keys, message)
         if not scenario.body[body].fixed:
             raise where.error(keys, f'gauge.{name}.bodies: "{body}" is not a fixed body')
-    if scenario.scheme == "ueta2022":
+    if scenario.scheme == UETA2022:
         raise where.error(
             ("gauge", name, "kind"),
             f'gauge.{name}.kind = "force" needs scheme = "resolved"; {scenario.scheme} has no force'

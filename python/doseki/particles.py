@@ -7,8 +7,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from .schemes import KERNEL_SUPPORT
+
 FREE, FIXED, DRIVEN, BOUND = 0, 1, 2, 3
-SUPPORT = 2.5  # H of the paper: a particle acts out to H h
+SUPPORT = KERNEL_SUPPORT["wendland_c6"]  # H of the paper: a particle acts out to H h
 
 
 @dataclass

@@ -20,7 +20,7 @@ from .scenario_checks import check_scenario
 from .scenario_files import find_scenario, merged_table, read_with_bases, scenario_folder
 from .schema import SECTIONS, Mesh, ParticleFile, ScenarioTable
 from .schema_errors import to_user_error
-from .schemes import KERNEL_SUPPORT, with_scheme_defaults
+from .schemes import KERNEL_SUPPORT, RESOLVED, with_scheme_defaults
 from .toml_source import Where, read_toml
 from .toml_writer import to_toml
 
@@ -187,4 +187,4 @@ def min_sound_speed(scenario: Scenario) -> float:
 def _elastic(scenario: Scenario) -> list[str]:
     """Materials in use whose sound speed counts: in the resolved scheme walls have none."""
     fluids = [n for n in scenario.material_names if scenario.materials[n].law == "fluid"]
-    return fluids if scenario.scheme == "resolved" and fluids else scenario.material_names
+    return fluids if scenario.scheme == RESOLVED and fluids else scenario.material_names

@@ -12,6 +12,7 @@ from .motions import check_motions
 from .nearest import suggestion
 from .quantities import check_quantity
 from .schema import SECTIONS
+from .schemes import RESOLVED
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -26,7 +27,7 @@ def check_scenario(scenario: Scenario) -> None:
     _check_colours(scenario)
     _check_outputs(scenario)
     _check_periodic(scenario)
-    if scenario.scheme == "resolved":
+    if scenario.scheme == RESOLVED:
         _check_resolved(scenario)
     else:
         _check_ueta2022(scenario)

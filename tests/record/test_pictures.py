@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from matplotlib import colors, image
@@ -9,17 +11,18 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from PIL import Image
 
+from doseki.census import draw_speeds
 from doseki.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
 from doseki.dots import dots, extent_of
 from doseki.errors import UserError
-from doseki.figure_histogram import SpeedHistogram, _draw_samples
+from doseki.figure_histogram import SpeedHistogram, draw_speed_row
 from doseki.figure_snapshot import SnapshotFigure, draw_snapshots
 from doseki.loading import load
 from doseki.movie import make_movie
 from doseki.plot import figures, plot_run
 from doseki.quantities import quantity, quantity_label
 from doseki.raster import EMPTY, coloured, splat
-from doseki.views import named_window, whole_space
+from doseki.views import View, named_window, whole_space
 
 
 def test_splat_paints_discs_at_their_places_and_later_over_earlier():
@@ -211,4 +214,25 @@ def test_movie_refuses_other_endings_and_existing_files(flow_folder, tmp_path):
 def test_a_speed_that_few_samples_have_can_be_drawn():
     """Its mean over the samples is above the 95th percentile, which is zero."""
     speeds = np.r_[np.full(2000, 0.55), 3.05]
-    _draw_samples(Figure().subplots(), speeds, SpeedHistogram(whole_space(2)))
+    draw_speed_row(Figure().subplots(1, 2), draw_speeds(speeds), "grains")
+
+
+class OneBody(dict):
+    """A snapshot with a body of three particles, one of them beside the window, and a drop."""
+
+    grains: ClassVar = {"position": np.array([[0.5, 0.0]]), "velocity": np.array([[2.0, 0.0]])}
+
+
+def test_a_body_is_counted_once_and_drops_each():
+    snapshot = OneBody(
+        position=np.array([[0.4, 0.0], [0.6, 0.0], [1.1, 0.0], [0.2, 0.0]]),
+        velocity=np.array([[1.0, 0.0], [3.0, 0.0], [2.0, 0.0], [0.5, 0.0]]),
+        fixed=np.zeros(4, bool),
+        material=np.array(["rock", "rock", "rock", "water"]),
+        grain=np.array([0, 0, 0, -1]),
+    )
+    view = View(np.zeros(2), np.ones(2))
+    assert SpeedHistogram(view, "rock").speeds(snapshot).tolist() == [2.0]
+    assert SpeedHistogram(view).speeds(snapshot).tolist() == [0.5, 2.0]
+    apart = View(np.array([0.55, 0.0]), np.ones(2))
+    assert SpeedHistogram(apart, "rock").speeds(snapshot).tolist() == []
