@@ -1,4 +1,4 @@
-"""Grains that do not stick, and a disc that settles in a liquid."""
+"""Grains that do not stick, discs that settle in a liquid, and the drag on one."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from ..running import Running
 G = 9.81
 FALL, LAG = "fall / (g t^2/2)", "difference between grains"
 SPEED, LIGHT = "terminal speed, steel", "terminal speed, stone"
+STREAM = "mean speed"
 LATE = 0.5  # share of the run after which the disc has its speed
 LIQUID, DIAMETER = 1000.0, 0.01  # kg/m3, m
 STEEL, STONE = (8000.0, 2.6e-3), (2000.0, 1e-3)  # density of the disc, viscosity of the liquid
@@ -78,6 +79,34 @@ def faxen_speed(density: float, nu: float, width: float) -> float:
     return weight * series / (4 * math.pi * LIQUID * nu)
 
 
+def stream(across: float, *overrides: str) -> Outcome:
+    """A square array of fixed discs of 10 mm in a slow stream: its mean speed, late."""
+    run = Running("disc-array", f"across={across:g}", *overrides)
+    times = np.linspace(0, run.scenario.time_max, 41)[1:]
+    period = 2 * DIAMETER
+    speed = []
+    for state in run.sampled(times):
+        oil = run.of_body(state, "liquid")
+        speed.append(float(oil["mass"] @ oil["velocity"][:, 0]) / (LIQUID * period**2))
+    late = times > LATE * times[-1]
+    pull, nu = run.constant("pull"), run.constant("viscosity_m2")
+    expected = pull * period**2 / (array_drag(DIAMETER / period) * nu)
+    return Outcome(
+        {STREAM: Value(float(np.mean(np.array(speed)[late])), expected)},
+        [Curve("", times, np.array(speed))],
+        [Curve("Sangani and Acrivos", times, np.full(len(times), expected))],
+    )
+
+
+def array_drag(share: float) -> float:
+    """Drag over mu U on a disc of a square array, of diameter `share` of the period.
+
+    Series of Sangani and Acrivos, Int. J. Multiphase Flow 8 (1982), for slow flow.
+    """
+    c = math.pi / 4 * share**2
+    return 4 * math.pi / (-math.log(c) / 2 - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
+
+
 HANG = Case(
     name="grains-hang",
     title="Grains hung under a bed fall",
@@ -103,6 +132,7 @@ SETTLING = Case(
             (within(0.1), within(0.05), within(0.05)),
             "5 % at 12 particles across",
             unit="m/s",
+            short="6 % too slow at 12 particles across, for the reason of the one below",
         ),
         Criterion(
             LIGHT,
@@ -116,4 +146,21 @@ SETTLING = Case(
     axes=("time (s)", "speed (m/s)"),
     controls=(Control("an oil thrice as viscous", SPEED, too_viscous),),
 )
-CASES = (HANG, SETTLING)
+DRAG = Case(
+    name="grains-drag",
+    title="Drag on discs of 10 mm in a slow stream",
+    across="d/dp",
+    resolutions=(8, 12, 16),
+    run=stream,
+    criteria=(
+        Criterion(
+            STREAM,
+            (within(0.1), within(0.05), within(0.05)),
+            "the drag of a square array of discs to 5 % at 12 particles across",
+            unit="m/s",
+        ),
+    ),
+    axes=("time (s)", "mean speed (m/s)"),
+    controls=(Control("free slip", STREAM, lambda n: stream(n, "wall=free_slip")),),
+)
+CASES = (HANG, SETTLING, DRAG)
