@@ -10,7 +10,7 @@ import numpy as np
 
 from .errors import UserError
 from .folder import RunFolder
-from .forces import Terms, particle_terms
+from .forces import RATES, Terms, particle_terms
 from .loading import load
 from .record import jsonable
 from .remedy import remedy
@@ -59,7 +59,8 @@ def explain_failure(run: ActiveRun, failure: Failure) -> dict[str, Any]:
     """Examine the last good state, which the simulation of `run` holds; write failure.json."""
     scenario, good = run.scenario, run.simulation.state()
     if failure.rewound:
-        good["balsara"] = run.simulation.rates()["balsara"]
+        rates = run.simulation.rates()
+        good |= {name: rates[name] for name in RATES}
     if not run.ranks.is_root:
         return {}
     report: dict[str, Any] = {
@@ -109,8 +110,9 @@ def _particle(
 
 def _surroundings(run: ActiveRun, state: dict[str, np.ndarray], k: int) -> dict[str, Any]:
     """The nearest neighbours and, once rates were taken, what they do to the particle."""
-    has_rates = "balsara" in state
-    terms = particle_terms(run.scenario, {"balsara": np.ones(len(state["id"]))} | state, k)
+    has_rates = RATES[0] in state
+    none = {"balsara": np.ones(len(state["id"])), "acceleration": np.zeros_like(state["velocity"])}
+    terms = particle_terms(run.scenario, none | state, k)
     said: dict[str, Any] = {"neighbours": _neighbours(run, state, k, terms)}
     if has_rates:
         sizes = {name: float(np.linalg.norm(a)) for name, a in terms.acceleration.items()}

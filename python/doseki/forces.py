@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +10,15 @@ import numpy as np
 from .core import load_core
 from .particles import FREE, SUPPORT
 from .scenario import Scenario
+from .schemes import KERNEL_SUPPORT, RESOLVED
 
 State = Mapping[str, np.ndarray]
+# Of the core: the kernel, and what it sums to on a lattice.
+KERNEL_FUNCTIONS = {
+    "wendland_c2": ("wendland_c2", "lattice_sums_c2"),
+    "wendland_c6": ("kernel", "lattice_sums_c6"),
+}
+RATES = ("balsara", "acceleration")  # what the terms need of the rates of the core
 
 
 @dataclass
@@ -20,21 +27,59 @@ class Terms:
 
     neighbour: np.ndarray  # (n,) indices into the state
     distance: np.ndarray  # (n,), m
-    acceleration: dict[str, np.ndarray]  # (dim,) each, m/s2, by term of eq. (12)
-    timestep: dict[str, float]  # s, by condition of eq. (18)
+    acceleration: dict[str, np.ndarray]  # (dim,) each, m/s2, by term of eq. (12) or (27)
+    timestep: dict[str, float]  # s, by condition of eq. (18), or of the resolved scheme
 
 
 def particle_terms(scenario: Scenario, state: State, k: int) -> Terms:
-    """Terms of particle `k` of `state`: fields of the core, and `balsara`.
+    """Terms of particle `k` of `state`: fields of the core, and of its rates what `RATES` names.
 
     The sums are those of the core at the end of a step, not of the state predicted within it.
     """
     offset = _offsets(scenario, state, k)
     distance = np.linalg.norm(offset, axis=1)
+    reach = KERNEL_SUPPORT[scenario.kernel]
     h = state["smoothing_length"]
-    near = np.flatnonzero(distance < SUPPORT * np.maximum(h, h[k]))
+    near = np.flatnonzero(distance < reach * np.maximum(h, h[k]))
     near = near[near != k]
-    pairs = _Pairs(scenario, state, k, near, offset[near])
+    terms_of = _flow_terms if scenario.scheme == RESOLVED else _stress_terms
+    terms, timestep = terms_of(scenario, state, k, near, offset[near])
+    return Terms(near, distance[near], terms, timestep)
+
+
+def _flow_terms(
+    scenario: Scenario, state: State, k: int, near: np.ndarray, offset: np.ndarray
+) -> tuple[dict[str, np.ndarray], dict[str, float]]:
+    """Those of the resolved scheme: pressure among fluids, eq. (27), gravity, and what is left."""
+    total = state["acceleration"][k]
+    laws = np.array([scenario.materials[name].law for name in scenario.material_names])
+    fluid = laws[state["material"]] == "fluid"
+    among = fluid[near] & fluid[k]
+    j, r = near[among], offset[among]
+    rho, p, h = state["density"], state["pressure"], float(state["smoothing_length"][k])
+    kernel, sums = (_physics(scenario.dim, name) for name in KERNEL_FUNCTIONS[scenario.kernel])
+    inverse = np.full(len(j), 1 / scenario.support)
+    gradient = np.array(kernel([list(np.linalg.norm(r, axis=1)), list(inverse)])[1])
+    moment = sums([[scenario.dp], [scenario.support]])[1][0]
+    weight = -state["mass"][j] / rho[j] * (p[j] + p[k]) * gradient / (rho[k] * moment)
+    terms = {"pressure": weight @ r, "gravity": np.array(scenario.gravity, float)}
+    if state["motion"][k] != FREE:
+        terms = {name: np.zeros(scenario.dim) for name in terms}
+    terms["viscosity_and_walls"] = total - sum(terms.values())
+    speed, strength = (float(np.linalg.norm(v)) for v in (state["velocity"][k], total))
+    c = float(state["sound_speed"][k])
+    return terms, {
+        "the sound speed": scenario.cflnumber * h / (c + speed),
+        "the acceleration": scenario.cfl_force * float(np.sqrt(h / max(strength, 1e-300))),
+    }
+
+
+def _stress_terms(
+    scenario: Scenario, state: State, k: int, near: np.ndarray, offset: np.ndarray
+) -> tuple[dict[str, np.ndarray], dict[str, float]]:
+    """Those of the paper's scheme."""
+    h = state["smoothing_length"]
+    pairs = _Pairs(scenario, state, k, near, offset)
     terms = {
         "pressure": pairs.sum(pairs.traction(pairs.isotropic)),
         "deviatoric_stress": pairs.sum(pairs.traction(pairs.deviator)),
@@ -48,7 +93,7 @@ def particle_terms(scenario: Scenario, state: State, k: int) -> Terms:
         "the signal velocity": scenario.cflnumber * 2 * h[k] / pairs.largest_signal,
         "the acceleration": scenario.cfl_force * float(np.sqrt(h[k] / max(total, 1e-300))),
     }
-    return Terms(near, distance[near], terms, timestep)
+    return terms, timestep
 
 
 def _offsets(scenario: Scenario, state: State, k: int) -> np.ndarray:
@@ -109,10 +154,15 @@ class _Pairs:
 
 def _mean_gradient(dim: int, state: State, k: int, j: np.ndarray, r: np.ndarray) -> np.ndarray:
     """F = W'(r)/r, the mean over the smoothing lengths of k and j."""
-    physics = load_core().physics
-    kernel = (physics.two if dim == 2 else physics.three).kernel
+    kernel = _physics(dim, KERNEL_FUNCTIONS["wendland_c6"][0])
     h = state["smoothing_length"]
     if len(j) == 0:
         return np.zeros(0)
     both = [kernel([list(r), list(1 / (SUPPORT * of))])[1] for of in (np.full(len(j), h[k]), h[j])]
     return 0.5 * (np.array(both[0]) + np.array(both[1]))
+
+
+def _physics(dim: int, name: str) -> Callable[[list[list[float]]], list[list[float]]]:
+    """A point function of the core."""
+    physics = load_core().physics
+    return getattr(physics.two if dim == 2 else physics.three, name)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.core import build_simulation
-from doseki.forces import particle_terms
+from doseki.forces import RATES, particle_terms
 from doseki.scenario import load_scenario
 
 
@@ -16,10 +16,57 @@ def test_terms_add_up_to_the_acceleration(name):
     simulation, _ = build_simulation(scenario)
     simulation.advance(limit=1.0, pause=1.0, max_steps=300)
     state, rates = simulation.state(), simulation.rates()
-    state["balsara"] = rates["balsara"]
+    state |= {name: rates[name] for name in RATES}
     scale = np.linalg.norm(rates["acceleration"], axis=1).max()
     free = np.flatnonzero(state["motion"] == 0)
     for k in free[:: max(1, len(free) // 7)]:
         total = sum(particle_terms(scenario, state, k).acceleration.values())
         # The core's sums are of the state predicted within the step.
         np.testing.assert_allclose(total, rates["acceleration"][k], atol=0.02 * scale)
+
+
+COLUMN = """\
+dim = 2
+scheme = "resolved"
+speed_max = 1
+dp = 0.01
+time_max = 1
+time_out = 1
+gravity = [0, -9.81]
+
+[body.column]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.3, 0.3]
+pressure = "= 1000*9.81*(0.3 - y)"
+
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+normal = [0, 1]
+min = [-0.03, -0.03]
+max = [0.33, 0]
+"""
+
+
+def test_pressure_carries_water_inside_and_not_at_the_side(tmp_path):
+    (tmp_path / "column.toml").write_text(COLUMN)
+    scenario = load_scenario(str(tmp_path / "column.toml"))
+    simulation, _ = build_simulation(scenario)
+    simulation.advance(limit=1.0, pause=1.0, max_steps=2)
+    state, rates = simulation.state(), simulation.rates()
+    state |= {name: rates[name] for name in RATES}
+
+    def terms(x, y):
+        k = int(np.argmin(np.linalg.norm(state["position"] - [x, y], axis=1)))
+        return particle_terms(scenario, state, k).acceleration
+
+    inside, side = terms(0.155, 0.155), terms(0.005, 0.155)
+    np.testing.assert_allclose(inside["pressure"], [0, 9.81], atol=0.3)
+    np.testing.assert_allclose(inside["gravity"], [0, -9.81])
+    assert np.linalg.norm(inside["viscosity_and_walls"]) < 0.5
+    assert side["pressure"][0] < -100
+    bottom = terms(0.155, 0.005)
+    assert bottom["viscosity_and_walls"][1] > 100
