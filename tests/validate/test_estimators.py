@@ -103,4 +103,7 @@ def test_closed_forms_of_grains():
     assert grains_dry.published(5.0) == pytest.approx((1.9 * 5 ** (2 / 3), 2.3 * 5 ** (2 / 3)))
     series = np.log(4) - 0.9157 + 1.7244 / 16 - 1.7302 / 256
     net = np.pi / 4 * 1e-4 * 1000 * 9.81
-    assert grains_wet.faxen_speed(0.04) == pytest.approx(net * series / (4 * np.pi))
+    stone = grains_wet.faxen_speed(*grains_wet.STONE, 0.04)
+    assert stone == pytest.approx(net * series / (4 * np.pi))
+    for share, drag in {0.05: 15.56, 0.1: 24.83, 0.2: 51.53}.items():  # tabulated by the authors
+        assert grains_wet.array_drag(np.sqrt(4 / np.pi * share)) == pytest.approx(drag, rel=0.02)
