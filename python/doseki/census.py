@@ -25,7 +25,9 @@ WAITING, PRECEDING, CARRIED, FLOATING, ROLLING, DEPOSITED = range(len(CLASSES))
 AT_REST = 0.05  # m/s
 TOUCHING = 0.2  # diameters between a grain and a fixed body
 COLUMN = 2.0  # diameters: width of the columns of plan in which depths are taken
-FRONT_DEPTH = 0.1  # diameters of water that make a column wet
+WET_DEPTH = 0.1  # diameters of water that make a column wet
+FRONT_DEPTH = 0.4  # diameters of water that make a flow, in a column and over a stretch of them
+FRONT_STRETCH = 5  # columns
 
 
 @dataclass(frozen=True)
@@ -113,11 +115,26 @@ class Columns:
         np.maximum.at(self.bed, self._of_fixed, top)
 
     def front(self, direction: int, least: float) -> float:
-        """The edge, along the first axis, of the last column with a water depth over `least`."""
-        wet = self.keys[self.water > least, 0]
+        """The downstream edge, along the first axis, of the last column of a flow.
+
+        There the water is deeper than `least`, and so it is on the mean over FRONT_STRETCH columns
+        from there upstream; spray ahead of a flow is not part of it.  nan: there is no flow.
+        """
+        along = direction * self.keys[:, 0]
+        depth = np.zeros(int(np.ptp(along)) + 1)
+        np.maximum.at(depth, along - along.min(), self.water)
+        wet = np.flatnonzero(depth)
         if not len(wet):
             return math.nan
-        return self.width * float(wet.max() + 1 if direction > 0 else wet.min())
+        total = np.concatenate([[0.0], np.cumsum(depth[wet[0] :])])
+        end = np.arange(1, len(total))
+        start = np.maximum(end - FRONT_STRETCH, 0)
+        mean = (total[end] - total[start]) / (end - start)
+        flow = np.flatnonzero((depth[wet[0] :] > least) & (mean > least))
+        if not len(flow):
+            return math.nan
+        last = int(along.min() + wet[0] + flow[-1])
+        return self.width * (last + 1 if direction > 0 else -last)
 
 
 def classify(
@@ -131,13 +148,12 @@ def classify(
         return np.zeros(0, np.int8), math.nan
     columns = Columns(grains, around)
     d, here = grains.diameter, columns.of_grain
-    least = FRONT_DEPTH * float(d.mean())
-    front = columns.front(direction, least)
+    front = columns.front(direction, FRONT_DEPTH * float(d.mean()))
     slow = grains.speed < AT_REST
     displaced = np.linalg.norm(grains.position - start, axis=1) >= d
     ahead = direction * (grains.position[:, 0] - front) > 0 if np.isfinite(front) else ~slow
     height = grains.position[:, -1] - columns.bed[here]
-    wet = columns.water[here] > least
+    wet = columns.water[here] > WET_DEPTH * d
     kinds = np.full(len(d), CARRIED, np.int8)
     kinds[wet & (height > 0.5 * columns.depth[here])] = FLOATING
     kinds[_gap(grains, around) <= TOUCHING * d] = ROLLING

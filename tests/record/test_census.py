@@ -136,6 +136,24 @@ def test_a_drop_ahead_is_no_front(dim):
     )
 
 
+@pytest.mark.parametrize("direction", [-1, 1])
+def test_spray_ahead_is_no_front_and_a_flow_is(dim, direction):
+    """2 mm of water on the mean, or 6 mm, run 0.3 m ahead of 20 mm."""
+    some = grains(dim, [(0.3, HEIGHT[CARRIED])], [FAST])
+    block = film(dim, 0.5, 1.0, 0.02)
+    for depth, front in {0.002: 0.5, 0.006: 0.2}.items():
+        thin = film(dim, 0.2, 0.5, depth, spacing=0.001 if depth < 0.0025 else 0.002)
+        around = Surroundings(
+            np.concatenate([block.water, thin.water])
+            * np.where(np.arange(dim) == 0, -direction, 1),
+            np.concatenate([block.water_volume, thin.water_volume]),
+            block.fixed * np.where(np.arange(dim) == 0, -direction, 1),
+            block.fixed_spacing,
+        )
+        found = classify(some, some.position, around, direction)[1]
+        assert found == pytest.approx(-direction * front, abs=2 * D)
+
+
 def made_census(dim=2):
     """Two grains: one runs from 1 m to beyond 0 and vanishes, the other stays."""
     time = np.array([0.0, 0, 1, 1, 2])
