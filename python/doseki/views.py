@@ -15,6 +15,8 @@ from .loading import Run, Snapshot
 from .materials import complete_materials
 from .nearest import suggestion
 
+FLOW_SHARE = 0.5  # of the most fluid that a window ever holds
+
 
 @dataclass(frozen=True)
 class View:
@@ -114,15 +116,22 @@ def before_flow(run: Run, view: View) -> int:
 
 
 def with_flow(run: Run, view: View) -> int:
-    """Index of the first snapshot with fluid along all of the view, or along most of it."""
+    """Index of the first snapshot in which a flow fills the view, or most of it.
+
+    Then there is at least half as much fluid as there ever is; spray ahead of a flow is not one.
+    """
     fluids = fluid_names(run)
-    filled = [_filled(snapshot, view, fluids) for snapshot in run]
-    return int(np.argmax(filled)) if any(filled) else len(run) - 1
+    filled, mass = np.array([_filled(snapshot, view, fluids) for snapshot in run]).T
+    if not mass.any():
+        return len(run) - 1
+    return int(np.argmax(np.where(mass >= FLOW_SHARE * mass.max(), filled, -1)))
 
 
-def _filled(snapshot: Snapshot, view: View, fluids: set[str]) -> float:
-    position = snapshot["position"][select(snapshot, view, fluids)]
+def _filled(snapshot: Snapshot, view: View, fluids: set[str]) -> tuple[float, float]:
+    """Along which share of the view there is fluid, and the mass of it."""
+    inside = select(snapshot, view, fluids)
+    position, mass = snapshot["position"][inside], float(snapshot["mass"][inside].sum())
     start, end = view.lower[0], view.upper[0]
     if not (math.isfinite(start) and math.isfinite(end)):
-        return float(len(position) > 0)
-    return measure.filled_fraction(view.coordinates(position)[:, 0], start, end)
+        return float(len(position) > 0), mass
+    return measure.filled_fraction(view.coordinates(position)[:, 0], start, end), mass

@@ -47,6 +47,21 @@ def test_snapshots_before_and_with_the_flow(flow_folder):
     assert run[views.with_flow(run, view)].time == 3.0
 
 
+def test_spray_along_the_window_is_not_the_flow(tmp_path, record_run, plain_state):
+    """Drops fly through all of a window of one metre until 60 and then 30 of them run there."""
+
+    def state_at(time):
+        drops = {0.0: 0, 1.0: 12, 2.0: 60, 3.0: 30}[time]
+        x = np.r_[np.linspace(0.01, 0.99, drops), -1.0]
+        position = np.stack([x, np.full(len(x), 0.05)], axis=1)
+        return plain_state(position, np.zeros_like(position), np.r_[np.zeros(drops, int), 2])
+
+    record_run(tmp_path / "run", times=(0.0, 1.0, 2.0, 3.0), state_at=state_at)
+    run, view = load(tmp_path / "run"), views.View(np.zeros(2), np.ones(2))
+    assert run[views.with_flow(run, view)].time == 2.0
+    assert run[views.before_flow(run, view)].time == 0.0
+
+
 def test_fixed_particles_are_not_selected(flow_folder):
     run = load(flow_folder)
     everywhere = views.whole_space(2)
