@@ -100,7 +100,7 @@ def measure_flume(run: Run) -> FlumeRun:
         AHEAD: _ahead(census, arrival, float(end)),
         FLOATS: float(census.mass_of(FLOATING).max() / census.load_mass),
         PASSED: _passed(census, float(end)),
-        STUCK: _stuck(census, float(end)),
+        STUCK: _stuck(census, float(end), float(view.lower[-1])),
         RATIO: _ratio(speeds.speeds, np.interp(census.table["time"][rows], flow.times, water)),
     }
     outcome = Outcome({name: Value(number) for name, number in values.items()})
@@ -180,9 +180,13 @@ def _passed(census: Census, outlet: float) -> float:
     return float(share / census.load_mass)
 
 
-def _stuck(census: Census, outlet: float) -> float:
-    """Share of the load at rest upstream of the outlet at the end, moved or not."""
+def _stuck(census: Census, outlet: float, below: float) -> float:
+    """Share of the load at rest upstream of the outlet at the end, moved or not.
+
+    What lies lower than `below` lies under the flume.
+    """
     table = census.table
     upstream = census.direction * (table["position"][:, 0] - outlet) < 0
+    upstream &= table["position"][:, -1] > below
     resting = (table["kind"] == DEPOSITED) | (table["kind"] == 0)
     return float(table["mass"][census.last() & upstream & resting].sum() / census.load_mass)

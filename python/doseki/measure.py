@@ -86,18 +86,20 @@ class PassedMass:
     """Mass that has crossed a section, from snapshots given in order of time.
 
     A particle that has been seen upstream counts as passed once it is not there any more: it is
-    downstream, or an outflow has removed it.
+    downstream, or an outflow has removed it.  It stays so where it falls back below the section.
     """
 
     def __init__(self, section: float, direction: float) -> None:
         """The section x = `section`, m; the flow runs along `direction` (+1 or -1)."""
         self._section = section
         self._direction = direction
-        self._seen: dict[int, float] = {}  # mass by id of all that was ever upstream
+        self._upstream: dict[int, float] = {}  # mass by id
+        self._passed: dict[int, float] = {}
 
     def update(self, x: np.ndarray, mass: np.ndarray, ids: np.ndarray) -> float:
         """Take one snapshot of the material in question; returns the mass passed so far, kg."""
         upstream = self._direction * (x - self._section) < 0
         there = dict(zip(ids[upstream].tolist(), mass[upstream].tolist(), strict=True))
-        self._seen |= there
-        return math.fsum(mass for id_, mass in self._seen.items() if id_ not in there)
+        self._passed |= {id_: m for id_, m in self._upstream.items() if id_ not in there}
+        self._upstream = {id_: m for id_, m in there.items() if id_ not in self._passed}
+        return math.fsum(self._passed.values())

@@ -83,6 +83,8 @@ def test_passed_mass_counts_each_particle_once_and_those_removed():
     assert passed.update(np.array([-1.0, 1.0, -1.0]), mass, ids) == 1.0
     assert passed.update(np.array([1.0]), mass[1:2], ids[1:2]) == 1.0  # 1 and 3 have left
     assert passed.update(np.array([]), mass[:0], ids[:0]) == 11.0
+    assert passed.update(np.array([0.5]), mass[:1], ids[:1]) == 11.0  # 1 has fallen back
+    assert passed.update(np.array([-0.5]), mass[:1], ids[:1]) == 11.0
 
 
 def test_passed_mass_is_exactly_zero_while_nothing_passes():
