@@ -71,16 +71,22 @@ def test_flume_load_weighs_20_kg(dim):
     assert x[:, -1].min() == pytest.approx(scenario.dp / 2)
 
 
-def test_flume_board_joins_the_bed_and_is_horizontal():
-    scenario = load_scenario("flume")
+@pytest.mark.parametrize("setting", ["board_drop=0", "board_drop=0.25"])
+def test_flume_board_is_horizontal_and_joins_the_bed_or_lies_below(setting):
+    scenario = load_scenario("flume", [setting])
     particles, names = build_bodies(scenario)
     board = particles.position[particles.body == names.index("board")]
     bed = particles.position[particles.body == names.index("bed")]
-    near = bed[bed[:, 0] < 0.1]
-    gap = np.linalg.norm(board[:, None] - near, axis=-1).min()
-    assert 0.9 * scenario.dp < gap < 1.3 * scenario.dp
-    surface = board[-113:]
-    np.testing.assert_allclose(np.ptp(surface @ scenario.gravity), 0, atol=1e-12)
+    dp, drop = scenario.dp, scenario.constants["drop"]
+    assert drop == pytest.approx(float(setting.split("=")[1]), abs=dp / 2)
+    height = -(board @ scenario.gravity) / np.linalg.norm(scenario.gravity)
+    top = height > height.max() - 0.5 * dp
+    np.testing.assert_allclose(height[top], -drop - dp / 2)
+    length = scenario.constants["board_length"] + drop
+    assert top.sum() == pytest.approx(length / dp, abs=1)
+    if not drop:
+        gap = np.linalg.norm(board[:, None] - bed[bed[:, 0] < 0.1], axis=-1).min()
+        assert 0.9 * dp < gap < 1.3 * dp
     assert (particles.motion[particles.body == names.index("board")] == FIXED).all()
     # Nothing of the flume starts in an outflow.
     for outflow in scenario.outflow.values():
