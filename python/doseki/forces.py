@@ -57,9 +57,9 @@ def _flow_terms(
     among = fluid[near] & fluid[k]
     j, r = near[among], offset[among]
     rho, p, h = state["density"], state["pressure"], float(state["smoothing_length"][k])
-    kernel, sums = (_physics(scenario.dim, name) for name in KERNEL_FUNCTIONS[scenario.kernel])
-    inverse = np.full(len(j), 1 / scenario.support)
-    gradient = np.array(kernel([list(np.linalg.norm(r, axis=1)), list(inverse)])[1])
+    support = np.full(len(j), scenario.support)
+    gradient = _gradient(scenario.dim, scenario.kernel, np.linalg.norm(r, axis=1), support)
+    sums = _physics(scenario.dim, KERNEL_FUNCTIONS[scenario.kernel][1])
     moment = sums([[scenario.dp], [scenario.support]])[1][0]
     weight = -state["mass"][j] / rho[j] * (p[j] + p[k]) * gradient / (rho[k] * moment)
     terms = {"pressure": weight @ r, "gravity": np.array(scenario.gravity, float)}
@@ -154,12 +154,17 @@ class _Pairs:
 
 def _mean_gradient(dim: int, state: State, k: int, j: np.ndarray, r: np.ndarray) -> np.ndarray:
     """F = W'(r)/r, the mean over the smoothing lengths of k and j."""
-    kernel = _physics(dim, KERNEL_FUNCTIONS["wendland_c6"][0])
     h = state["smoothing_length"]
-    if len(j) == 0:
+    supports = (SUPPORT * np.full(len(j), h[k]), SUPPORT * h[j])
+    return 0.5 * sum(_gradient(dim, "wendland_c6", r, support) for support in supports)
+
+
+def _gradient(dim: int, kernel: str, r: np.ndarray, support: np.ndarray) -> np.ndarray:
+    """F = W'(r)/r (n,) at distances r (n,) for support radii (n,)."""
+    if len(r) == 0:
         return np.zeros(0)
-    both = [kernel([list(r), list(1 / (SUPPORT * of))])[1] for of in (np.full(len(j), h[k]), h[j])]
-    return 0.5 * (np.array(both[0]) + np.array(both[1]))
+    function = _physics(dim, KERNEL_FUNCTIONS[kernel][0])
+    return np.array(function([list(r), list(1 / support)])[1])
 
 
 def _physics(dim: int, name: str) -> Callable[[list[list[float]]], list[list[float]]]:

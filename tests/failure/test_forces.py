@@ -10,19 +10,24 @@ from doseki.forces import RATES, particle_terms
 from doseki.scenario import load_scenario
 
 
+def state_after(scenario, steps):
+    """Fields and rates of the particles."""
+    simulation, _ = build_simulation(scenario)
+    simulation.advance(limit=1.0, pause=1.0, max_steps=steps)
+    rates = simulation.rates()
+    return simulation.state() | {name: rates[name] for name in RATES}
+
+
 @pytest.mark.parametrize("name", ["film", "hang"])
 def test_terms_add_up_to_the_acceleration(name):
     scenario = load_scenario(name, ["skin=0"])
-    simulation, _ = build_simulation(scenario)
-    simulation.advance(limit=1.0, pause=1.0, max_steps=300)
-    state, rates = simulation.state(), simulation.rates()
-    state |= {name: rates[name] for name in RATES}
-    scale = np.linalg.norm(rates["acceleration"], axis=1).max()
+    state = state_after(scenario, 300)
+    scale = np.linalg.norm(state["acceleration"], axis=1).max()
     free = np.flatnonzero(state["motion"] == 0)
     for k in free[:: max(1, len(free) // 7)]:
         total = sum(particle_terms(scenario, state, k).acceleration.values())
         # The core's sums are of the state predicted within the step.
-        np.testing.assert_allclose(total, rates["acceleration"][k], atol=0.02 * scale)
+        np.testing.assert_allclose(total, state["acceleration"][k], atol=0.02 * scale)
 
 
 COLUMN = """\
@@ -54,10 +59,7 @@ max = [0.33, 0]
 def test_pressure_carries_water_inside_and_not_at_the_side(tmp_path):
     (tmp_path / "column.toml").write_text(COLUMN)
     scenario = load_scenario(str(tmp_path / "column.toml"))
-    simulation, _ = build_simulation(scenario)
-    simulation.advance(limit=1.0, pause=1.0, max_steps=2)
-    state, rates = simulation.state(), simulation.rates()
-    state |= {name: rates[name] for name in RATES}
+    state = state_after(scenario, 2)
 
     def terms(x, y):
         k = int(np.argmin(np.linalg.norm(state["position"] - [x, y], axis=1)))
@@ -70,3 +72,13 @@ def test_pressure_carries_water_inside_and_not_at_the_side(tmp_path):
     assert side["pressure"][0] < -100
     bottom = terms(0.155, 0.005)
     assert bottom["viscosity_and_walls"][1] > 100
+
+
+def test_a_drop_without_neighbours_falls(tmp_path):
+    alone = COLUMN.replace("max = [0.3, 0.3]", "max = [0.01, 0.01]").split("[body.floor]")[0]
+    (tmp_path / "drop.toml").write_text(alone)
+    scenario = load_scenario(str(tmp_path / "drop.toml"))
+    terms = particle_terms(scenario, state_after(scenario, 2), 0)
+    assert len(terms.neighbour) == 0
+    assert terms.acceleration["pressure"].tolist() == [0, 0]
+    np.testing.assert_allclose(sum(terms.acceleration.values()), [0, -9.81])

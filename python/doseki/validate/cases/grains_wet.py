@@ -14,7 +14,7 @@ FALL, LAG = "fall / (g t^2/2)", "difference between grains"
 SPEED, LIGHT = "terminal speed, steel", "terminal speed, stone"
 STREAM = "mean speed"
 LATE = 0.5  # share of the run after which the disc has its speed
-LIQUID, DIAMETER = 1000.0, 0.01  # kg/m3, m
+LIQUID, DIAMETER, WIDTH = 1000.0, 0.01, 0.04  # kg/m3, m, m between the walls
 STEEL, STONE = (8000.0, 2.6e-3), (2000.0, 1e-3)  # density of the disc, viscosity of the liquid
 
 
@@ -41,34 +41,37 @@ def printed(_across: float) -> Outcome:
 
 def settle(across: float) -> Outcome:
     """Discs midway between two walls: their speeds, late."""
-    values, curves = {}, []
+    values, found, exact = {}, [], []
     for name, (density, nu) in {SPEED: STEEL, LIGHT: STONE}.items():
-        times, speed, expected = _settled(across, density, nu)
-        late = times > LATE * times[-1]
-        values[name] = Value(float(np.mean(speed[late])), expected)
-        curves += [Curve(name, times, speed), Curve("Faxen", times, np.full(len(times), expected))]
-    return Outcome(values, curves[::2], curves[1::2])
+        times, speed = _settled(across, density, nu)
+        values[name] = Value(_late(times, speed), faxen_speed(density, nu, WIDTH))
+        found.append(Curve(name, times, speed))
+        exact.append(Curve("Faxen", times, np.full(len(times), values[name].expected)))
+    return Outcome(values, found, exact)
 
 
-def _settled(
-    across: float, density: float, nu: float, *overrides: str
-) -> tuple[np.ndarray, np.ndarray, float]:
-    """Times, the disc's speed at them, and that of Faxen's formula."""
-    disc = f"material.stone.rho0={density:g}", f"material.oil.nu={nu:g}"
-    run = Running("settling-disc", f"across={across:g}", *disc, *overrides)
+def too_viscous(across: float) -> Outcome:
+    """Steel in an oil thrice as viscous as the formula is told."""
+    density, nu = STEEL
+    speed = _late(*_settled(across, density, 3 * nu))
+    return Outcome({SPEED: Value(speed, faxen_speed(density, nu, WIDTH))})
+
+
+def _settled(across: float, density: float, nu: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and the disc's speed at them."""
+    disc = f"material.stone.rho0={density:g}", f"material.oil.nu={nu:g}", f"width={WIDTH:g}"
+    run = Running("settling-disc", f"across={across:g}", *disc)
     times = np.linspace(0, run.scenario.time_max, 61)[1:]
     speed = []
     for time in times:
         run.advance(time)
         speed.append(-float(run.grains()["velocity"][0, 1]))
-    return times, np.array(speed), faxen_speed(density, nu, run.constant("width"))
+    return times, np.array(speed)
 
 
-def too_viscous(across: float) -> Outcome:
-    """Steel in an oil thrice as viscous as the formula is told."""
-    times, speed, _ = _settled(across, STEEL[0], 3 * STEEL[1])
-    late = times > LATE * times[-1]
-    return Outcome({SPEED: Value(float(np.mean(speed[late])), faxen_speed(*STEEL, 4 * DIAMETER))})
+def _late(times: np.ndarray, speed: np.ndarray) -> float:
+    """Mean speed once it is steady."""
+    return float(np.mean(speed[times > LATE * times[-1]]))
 
 
 def faxen_speed(density: float, nu: float, width: float) -> float:
@@ -84,16 +87,13 @@ def stream(across: float, *overrides: str) -> Outcome:
     run = Running("disc-array", f"across={across:g}", *overrides)
     times = np.linspace(0, run.scenario.time_max, 41)[1:]
     period = 2 * DIAMETER
-    speed = []
-    for state in run.sampled(times):
-        oil = run.of_body(state, "liquid")
-        speed.append(float(oil["mass"] @ oil["velocity"][:, 0]) / (LIQUID * period**2))
-    late = times > LATE * times[-1]
+    oils = (run.of_body(state, "liquid") for state in run.sampled(times))
+    speed = np.array([oil["mass"] @ oil["velocity"][:, 0] for oil in oils]) / (LIQUID * period**2)
     pull, nu = run.constant("pull"), run.constant("viscosity_m2")
     expected = pull * period**2 / (array_drag(DIAMETER / period) * nu)
     return Outcome(
-        {STREAM: Value(float(np.mean(np.array(speed)[late])), expected)},
-        [Curve("", times, np.array(speed))],
+        {STREAM: Value(_late(times, speed), expected)},
+        [Curve("", times, speed)],
         [Curve("Sangani and Acrivos", times, np.full(len(times), expected))],
     )
 
