@@ -22,6 +22,7 @@ NB_MODULE(DOSEKI_MODULE, m) {
     bind_simulation<Rates<float, 3>>(m, "Simulation3Float");
     bind_resolved(m);
     bind_elastic(m);
-    nb::module_ physics = m.def_submodule("physics", "Point functions, each on scalars and on packs.");
+    nb::module_ physics =
+        m.def_submodule("physics", "Point functions, each on scalars and on packs.");
     bind_physics(physics);
 }

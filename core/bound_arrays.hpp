@@ -22,7 +22,8 @@ using Input = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
 template <class T>
 struct Output {
     explicit Output(std::vector<std::size_t> shape) : shape(std::move(shape)) {
-        data = new T[std::accumulate(this->shape.begin(), this->shape.end(), std::size_t{1}, std::multiplies<>())]();
+        data = new T[std::accumulate(this->shape.begin(), this->shape.end(), std::size_t{1},
+                                     std::multiplies<>())]();
     }
     Array<T> release() {
         nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });

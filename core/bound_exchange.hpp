@@ -1,6 +1,7 @@
 #pragma once
-// An Exchange whose calls are made by a Python object (parallel/transport.py). Arrays that it is given
-// are views of the core's own memory, valid during the call or, from start() on, until finish().
+// An Exchange whose calls are made by a Python object (parallel/transport.py). Arrays that it is
+// given are views of the core's own memory, valid during the call or, from start() on, until
+// finish().
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -17,7 +18,8 @@ class [[gnu::visibility("hidden")]] PythonExchange final : public Exchange {
 
 public:
     explicit PythonExchange(Object transport)
-        : Exchange(nanobind::cast<int>(transport.attr("rank")), nanobind::cast<int>(transport.attr("ranks"))),
+        : Exchange(nanobind::cast<int>(transport.attr("rank")),
+                   nanobind::cast<int>(transport.attr("ranks"))),
           transport_(std::move(transport)) {}
 
     void largest(std::span<double> values) override { call("largest", values); }
@@ -36,9 +38,11 @@ public:
     std::vector<Parcel> swap(const std::vector<Parcel>& parcels) override {
         const nanobind::gil_scoped_acquire locked;
         nanobind::dict sent;
-        for (const Parcel& parcel : parcels) sent[nanobind::int_(parcel.rank)] = view(std::span(parcel.content));
+        for (const Parcel& parcel : parcels)
+            sent[nanobind::int_(parcel.rank)] = view(std::span(parcel.content));
         std::vector<Parcel> came;
-        for (const auto& [rank, content] : nanobind::cast<nanobind::dict>(transport_.attr("swap")(sent)))
+        for (const auto& [rank, content] :
+             nanobind::cast<nanobind::dict>(transport_.attr("swap")(sent)))
             came.push_back({nanobind::cast<int>(rank), numbers<std::byte, std::uint8_t>(content)});
         return came;
     }
@@ -59,8 +63,9 @@ public:
         return numbers<int>(transport_.attr("owners")(view(coordinates)));
     }
 
-    void start(std::span<const int> peers, std::span<const std::byte> send, std::span<const std::size_t> send_ends,
-               std::span<std::byte> receive, std::span<const std::size_t> receive_ends) override {
+    void start(std::span<const int> peers, std::span<const std::byte> send,
+               std::span<const std::size_t> send_ends, std::span<std::byte> receive,
+               std::span<const std::size_t> receive_ends) override {
         call("start", peers, send, send_ends, receive, receive_ends);
     }
     void finish() override { call("finish"); }
@@ -69,18 +74,21 @@ private:
     /// As numpy sees it, without a copy; bytes are uint8.
     template <class T>
     static Object view(std::span<T> values) {
-        using Number = std::conditional_t<std::is_same_v<std::remove_const_t<T>, std::byte>,
-                                          std::conditional_t<std::is_const_v<T>, const std::uint8_t, std::uint8_t>, T>;
+        using Number = std::conditional_t<
+            std::is_same_v<std::remove_const_t<T>, std::byte>,
+            std::conditional_t<std::is_const_v<T>, const std::uint8_t, std::uint8_t>, T>;
         static std::remove_const_t<Number> nothing{};
         const std::size_t shape[] = {values.size()};
-        const void* const data = values.empty() ? &nothing : static_cast<const void*>(values.data());
+        const void* const data =
+            values.empty() ? &nothing : static_cast<const void*>(values.data());
         return nanobind::cast(View<Number>(const_cast<void*>(data), 1, shape, nanobind::none()),
                               nanobind::rv_policy::reference);
     }
 
     template <class T, class Number = T>
     static std::vector<T> numbers(const nanobind::handle& array) {
-        const auto values = nanobind::cast<nanobind::ndarray<const Number, nanobind::c_contig, nanobind::device::cpu>>(array);
+        const auto values = nanobind::cast<
+            nanobind::ndarray<const Number, nanobind::c_contig, nanobind::device::cpu>>(array);
         const auto* const first = reinterpret_cast<const T*>(values.data());
         return std::vector<T>(first, first + values.size());
     }

@@ -33,12 +33,15 @@ Vec<double, D> vector(const nb::handle& sequence) {
 inline Surface surface(const nb::dict& d) {
     const Surface usual;
     return {get(d, "restitution", usual.restitution), get(d, "friction", usual.friction),
-            get(d, "rolling_friction", usual.rolling_friction), get(d, "young_modulus", usual.young_modulus),
+            get(d, "rolling_friction", usual.rolling_friction),
+            get(d, "young_modulus", usual.young_modulus),
             get(d, "poisson_ratio", usual.poisson_ratio)};
 }
 
 inline Material material(const nb::dict& d) {
-    auto number = [&d](const char* key, double otherwise = 0.0) { return get<double>(d, key, otherwise); };
+    auto number = [&d](const char* key, double otherwise = 0.0) {
+        return get<double>(d, key, otherwise);
+    };
     Material m;
     m.name = get<std::string>(d, "name");
     m.law = get<std::string>(d, "law") == "solid" ? Law::solid : Law::fluid;
@@ -53,8 +56,8 @@ inline Material material(const nb::dict& d) {
     const double greatest = number("viscosity_max");
     m.herschel_bulkley = {number("yield_stress"), number("consistency"), number("flow_index", 1.0),
                           number("regularisation"), greatest};
-    m.mu_i = {number("mu_s"), number("mu_2"), number("inertial_number"), number("grain_diameter"),
-              number("grain_density"), greatest};
+    m.mu_i = {number("mu_s"),           number("mu_2"),          number("inertial_number"),
+              number("grain_diameter"), number("grain_density"), greatest};
     m.surface = surface(d);
     return m;
 }
@@ -77,8 +80,9 @@ inline FlowOptions flow_options(const nb::dict& d) {
     o.shifting = get<bool>(d, "shifting");
     o.pressure_law = get<std::string>(d, "eos") == "tait" ? PressureLaw::tait : PressureLaw::linear;
     const auto turbulence = get<std::string>(d, "turbulence");
-    o.turbulence = turbulence == "smagorinsky" ? Turbulence::smagorinsky
-                   : turbulence == "mixing_length" ? Turbulence::mixing_length : Turbulence::none;
+    o.turbulence = turbulence == "smagorinsky"     ? Turbulence::smagorinsky
+                   : turbulence == "mixing_length" ? Turbulence::mixing_length
+                                                   : Turbulence::none;
     o.smagorinsky = get<double>(d, "smagorinsky");
     for (const auto& wall : nb::cast<std::vector<nb::dict>>(d["walls"]))
         o.walls.push_back({get<bool>(wall, "stick"), get<double>(wall, "ks")});
@@ -100,8 +104,11 @@ Options<D> options(const nb::dict& d) {
     o.balsara = get<bool>(d, "balsara");
     o.sym_grad = get<bool>(d, "sym_grad");
     const auto tension = get<std::string>(d, "tension");
-    o.tension = tension == "free" ? Tension::free : tension == "clamp_all" ? Tension::clamp_all : Tension::clamp_fluid;
-    o.h_mode = get<std::string>(d, "h_mode") == "eq10" ? SmoothingLengthMode::eq10 : SmoothingLengthMode::constant;
+    o.tension = tension == "free"        ? Tension::free
+                : tension == "clamp_all" ? Tension::clamp_all
+                                         : Tension::clamp_fluid;
+    o.h_mode = get<std::string>(d, "h_mode") == "eq10" ? SmoothingLengthMode::eq10
+                                                       : SmoothingLengthMode::constant;
     if (d.contains("contact")) o.contact = contact_options(nb::cast<nb::dict>(d["contact"]));
     if (d.contains("flow")) o.flow = flow_options(nb::cast<nb::dict>(d["flow"]));
     return o;
@@ -126,8 +133,9 @@ public:
     Bound(const std::vector<nb::dict>& materials, const nb::dict& o)
         : sim_(make_materials(materials), options<D>(o), domain<D>(o)) {}
 
-    void add_particles(Input<double> position, Input<double> velocity, Input<double> mass, Input<double> density,
-                       Input<double> smoothing_length, Input<std::int32_t> material, Input<std::int32_t> body,
+    void add_particles(Input<double> position, Input<double> velocity, Input<double> mass,
+                       Input<double> density, Input<double> smoothing_length,
+                       Input<std::int32_t> material, Input<std::int32_t> body,
                        Input<std::int32_t> motion, Input<std::int64_t> id) {
         const std::size_t first = sim_.particles.size(), n = mass.size();
         if (position.size() != n * D || velocity.size() != n * D || id.size() != n)
@@ -143,7 +151,8 @@ public:
             particles.mass[p] = mass.data()[k];
             particles.density[p] = density.data()[k];
             particles.smoothing_length[p] = smoothing_length.data()[k];
-            particles.tag[p] = {id.data()[k], body.data()[k], static_cast<std::int16_t>(material.data()[k]),
+            particles.tag[p] = {id.data()[k], body.data()[k],
+                                static_cast<std::int16_t>(material.data()[k]),
                                 static_cast<Motion>(motion.data()[k])};
             sim_.sources.next_id = std::max(sim_.sources.next_id, id.data()[k] + 1);
         }
@@ -161,29 +170,37 @@ public:
         }
     }
 
-    /// Balls {radius}, or convex shapes {vertices, faces, samples}, which bodies name by their index.
+    /// Balls {radius}, or convex shapes {vertices, faces, samples}, which bodies name by their
+    /// index.
     void add_shapes(const std::vector<nb::dict>& dicts) {
         for (const nb::dict& d : dicts) {
             Shape<D> shape;
-            if (d.contains("radius")) shape.radius = get<double>(d, "radius");
-            else read_facets(d, shape);
+            if (d.contains("radius"))
+                shape.radius = get<double>(d, "radius");
+            else
+                read_facets(d, shape);
             sim_.bodies.shapes.push_back(std::move(shape));
         }
     }
 
     void add_rigid_bodies(const nb::dict& d) {
-        const auto shape = get<Input<std::int32_t>>(d, "shape"), material = get<Input<std::int32_t>>(d, "material"),
+        const auto shape = get<Input<std::int32_t>>(d, "shape"),
+                   material = get<Input<std::int32_t>>(d, "material"),
                    named = get<Input<std::int32_t>>(d, "body");
         const auto fixed = get<Input<bool>>(d, "fixed");
-        const auto centre = get<Input<double>>(d, "centre"), orientation = get<Input<double>>(d, "orientation"),
-                   velocity = get<Input<double>>(d, "velocity"), spin = get<Input<double>>(d, "spin"),
-                   mass = get<Input<double>>(d, "mass"), inertia = get<Input<double>>(d, "inertia");
+        const auto centre = get<Input<double>>(d, "centre"),
+                   orientation = get<Input<double>>(d, "orientation"),
+                   velocity = get<Input<double>>(d, "velocity"),
+                   spin = get<Input<double>>(d, "spin"), mass = get<Input<double>>(d, "mass"),
+                   inertia = get<Input<double>>(d, "inertia");
         const std::size_t n = shape.size();
-        if (centre.size() != n * D || velocity.size() != n * D || orientation.size() != 4 * n || spin.size() != 3 * n ||
-            inertia.size() != 9 * n || mass.size() != n || material.size() != n || named.size() != n || fixed.size() != n)
+        if (centre.size() != n * D || velocity.size() != n * D || orientation.size() != 4 * n ||
+            spin.size() != 3 * n || inertia.size() != 9 * n || mass.size() != n ||
+            material.size() != n || named.size() != n || fixed.size() != n)
             throw nb::value_error("arrays of bodies of unequal length");
         for (std::size_t k = 0; k < n; ++k) {
-            RigidBody<D> body{shape.data()[k], material.data()[k], named.data()[k], fixed.data()[k], mass.data()[k], {}};
+            RigidBody<D> body{shape.data()[k], material.data()[k], named.data()[k],
+                              fixed.data()[k], mass.data()[k],     {}};
             BodyState<D> state{};
             Vec3 turn;
             std::copy_n(inertia.data() + 9 * k, 9, body.inertia.element.begin());
@@ -196,34 +213,40 @@ public:
         }
     }
 
-    /// Index of its rigid body for each particle in the order in which they were added, or -1. Call after
-    /// set_walls.
+    /// Index of its rigid body for each particle in the order in which they were added, or -1. Call
+    /// after set_walls.
     void bind_points(Input<std::int32_t> body) {
         auto& particles = sim_.particles;
-        if (body.size() != particles.size()) throw nb::value_error("one body, or -1, for each particle");
+        if (body.size() != particles.size())
+            throw nb::value_error("one body, or -1, for each particle");
         for (std::size_t p = 0; p < particles.size(); ++p)
-            if (body.data()[p] >= 0) sim_.bodies.bind(particles, p, static_cast<std::size_t>(body.data()[p]));
+            if (body.data()[p] >= 0)
+                sim_.bodies.bind(particles, p, static_cast<std::size_t>(body.data()[p]));
     }
 
-    /// A deformable body of particles that have been added: {material, rho0, young_modulus, poisson_ratio, law,
-    /// spacing, damping} and, for each of its particles, its number in the order of adding, whether it is clamped
-    /// and whether it is on the surface. Call after set_walls.
+    /// A deformable body of particles that have been added: {material, rho0, young_modulus,
+    /// poisson_ratio, law, spacing, damping} and, for each of its particles, its number in the
+    /// order of adding, whether it is clamped and whether it is on the surface. Call after
+    /// set_walls.
     void add_elastic_body(const nb::dict& d) {
         const auto members = get<Input<std::int32_t>>(d, "particles");
-        const auto clamped = get<Input<std::uint8_t>>(d, "clamped"), surface = get<Input<std::uint8_t>>(d, "surface");
+        const auto clamped = get<Input<std::uint8_t>>(d, "clamped"),
+                   surface = get<Input<std::uint8_t>>(d, "surface");
         if (clamped.size() != members.size() || surface.size() != members.size())
             throw nb::value_error("arrays of an elastic body of unequal length");
         if (!sim_.particles.has_flow) throw nb::value_error("the scheme has no bodies");
-        sim_.bodies.deformable.add(sim_.particles, elastic_body(d), get<std::int32_t>(d, "material"), {members.data(), members.size()},
-                                   {clamped.data(), clamped.size()}, {surface.data(), surface.size()});
+        sim_.bodies.deformable.add(
+            sim_.particles, elastic_body(d), get<std::int32_t>(d, "material"),
+            {members.data(), members.size()}, {clamped.data(), clamped.size()},
+            {surface.data(), surface.size()});
     }
 
     /// The bodies, in the order in which they were added.
     nb::dict grains() const {
         const Bodies<D>& bodies = sim_.bodies;
         const std::size_t n = bodies.size();
-        Output<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}), flow_force({n, D}),
-            contact_force({n, D}), mass({n}), radius({n}), overlap({n});
+        Output<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}),
+            flow_force({n, D}), contact_force({n, D}), mass({n}), radius({n}), overlap({n});
         Output<std::int32_t> contacts({n}), named({n}), material({n});
         Output<bool> fixed({n}), removed({n});
         for (std::size_t k = 0; k < n; ++k) {
@@ -235,25 +258,31 @@ public:
             std::copy_n(turn.component.begin(), 3, spin.data + 3 * k);
             std::copy_n(state.flow_force.component.begin(), D, flow_force.data + D * k);
             std::copy_n(bodies.contact_force(k).component.begin(), D, contact_force.data + D * k);
-            const double q[] = {state.orientation.w, state.orientation.x, state.orientation.y, state.orientation.z};
+            const double q[] = {state.orientation.w, state.orientation.x, state.orientation.y,
+                                state.orientation.z};
             std::copy_n(q, 4, orientation.data + 4 * k);
-            mass.data[k] = body.mass, radius.data[k] = bodies.shapes[static_cast<std::size_t>(body.shape)].radius;
+            mass.data[k] = body.mass,
+            radius.data[k] = bodies.shapes[static_cast<std::size_t>(body.shape)].radius;
             named.data[k] = body.body, material.data[k] = body.material, fixed.data[k] = body.fixed;
             removed.data[k] = state.removed != 0.0;
         }
         bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
             for (const std::int32_t k : {a, b}) {
-                if (static_cast<std::size_t>(k) >= n) continue;    // a deformable one
+                if (static_cast<std::size_t>(k) >= n) continue;  // a deformable one
                 ++contacts.data[k];
                 overlap.data[k] = std::max(overlap.data[k], share);
             }
         });
         nb::dict d;
-        d["centre"] = centre.release(), d["velocity"] = velocity.release(), d["spin"] = spin.release();
+        d["centre"] = centre.release(), d["velocity"] = velocity.release(),
+        d["spin"] = spin.release();
         d["orientation"] = orientation.release(), d["flow_force"] = flow_force.release();
-        d["contact_force"] = contact_force.release(), d["mass"] = mass.release(), d["radius"] = radius.release();
-        d["contacts"] = contacts.release(), d["overlap"] = overlap.release(), d["body"] = named.release();
-        d["material"] = material.release(), d["fixed"] = fixed.release(), d["removed"] = removed.release();
+        d["contact_force"] = contact_force.release(), d["mass"] = mass.release(),
+        d["radius"] = radius.release();
+        d["contacts"] = contacts.release(), d["overlap"] = overlap.release(),
+        d["body"] = named.release();
+        d["material"] = material.release(), d["fixed"] = fixed.release(),
+        d["removed"] = removed.release();
         d["worst_overlap"] = bodies.contacts().worst_overlap();
         return d;
     }
@@ -267,12 +296,16 @@ public:
         }
         inflow.direction = vector<D>(d["direction"]);
         if (d.contains("times"))
-            inflow.speed = {get<Column>(d, "times"), get<Column>(d, "distances"), get<Column>(d, "speeds")};
+            inflow.speed = {get<Column>(d, "times"), get<Column>(d, "distances"),
+                            get<Column>(d, "speeds")};
         else
-            inflow.speed = SpeedTable::constant(get<double>(d, "start"), get<double>(d, "stop"), get<double>(d, "speed"));
-        if (inflow.speed.time.size() < 2 || inflow.speed.distance.size() != inflow.speed.time.size() ||
+            inflow.speed = SpeedTable::constant(get<double>(d, "start"), get<double>(d, "stop"),
+                                                get<double>(d, "speed"));
+        if (inflow.speed.time.size() < 2 ||
+            inflow.speed.distance.size() != inflow.speed.time.size() ||
             inflow.speed.speed.size() != inflow.speed.time.size())
-            throw nb::value_error("an inflow needs two rows or more of times, distances and speeds");
+            throw nb::value_error(
+                "an inflow needs two rows or more of times, distances and speeds");
         inflow.spacing = get<double>(d, "spacing");
         inflow.buffer_layers = get<int>(d, "buffer_layers");
         inflow.jitter = get<double>(d, "jitter");
@@ -308,11 +341,13 @@ public:
 
     bool has_bodies() const { return !sim_.bodies.empty(); }
 
-    /// What this rank has spent beside its steps, what it has sent, how many particles it holds [s].
+    /// What this rank has spent beside its steps, what it has sent, how many particles it holds
+    /// [s].
     nb::dict shares() const {
         const Halo<D>& halo = sim_.halo();
         nb::dict d;
-        for (std::size_t k = 0; k < share_names.size(); ++k) d[share_names[k]] = halo.ranks.clock.seconds()[k];
+        for (std::size_t k = 0; k < share_names.size(); ++k)
+            d[share_names[k]] = halo.ranks.clock.seconds()[k];
         d["total"] = halo.ranks.clock.total(), d["busy"] = halo.ranks.clock.busy();
         d["bytes_sent"] = halo.bytes_sent(), d["messages_sent"] = halo.messages_sent();
         d["particles"] = sim_.particles.size(), d["ghosts"] = halo.ghosts();
@@ -332,11 +367,13 @@ public:
 
     /// By id, how many other particles are within support.
     nb::dict neighbour_counts() const {
-        const std::vector<double> of_particle = PairCounter(sim_.rates(), sim_.neighbours()).counts();
+        const std::vector<double> of_particle =
+            PairCounter(sim_.rates(), sim_.neighbours()).counts();
         const auto order = id_order();
         Output<std::int64_t> id({order.size()}), count({order.size()});
         for (std::size_t k = 0; k < order.size(); ++k)
-            id.data[k] = sim_.particles.tag[order[k]].id, count.data[k] = static_cast<std::int64_t>(of_particle[order[k]]);
+            id.data[k] = sim_.particles.tag[order[k]].id,
+            count.data[k] = static_cast<std::int64_t>(of_particle[order[k]]);
         nb::dict d;
         d["id"] = id.release(), d["count"] = count.release();
         return d;
@@ -349,10 +386,12 @@ public:
         std::vector<std::size_t> found;
         for (std::size_t p = 0; p < particles.size(); ++p)
             if (box.contains(particles.position[p])) found.push_back(p);
-        std::sort(found.begin(), found.end(),
-                  [&](std::size_t p, std::size_t q) { return particles.tag[p].id < particles.tag[q].id; });
+        std::sort(found.begin(), found.end(), [&](std::size_t p, std::size_t q) {
+            return particles.tag[p].id < particles.tag[q].id;
+        });
         const std::size_t n = found.size();
-        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}), h({n});
+        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}),
+            h({n});
         Output<std::int32_t> material({n}), motion({n});
         Output<std::int64_t> id({n});
         for (std::size_t k = 0; k < n; ++k) {
@@ -369,8 +408,10 @@ public:
         }
         nb::dict d;
         d["position"] = position.release(), d["velocity"] = velocity.release();
-        d["mass"] = mass.release(), d["density"] = density.release(), d["pressure"] = pressure.release();
-        d["smoothing_length"] = h.release(), d["material"] = material.release(), d["motion"] = motion.release();
+        d["mass"] = mass.release(), d["density"] = density.release(),
+        d["pressure"] = pressure.release();
+        d["smoothing_length"] = h.release(), d["material"] = material.release(),
+        d["motion"] = motion.release();
         d["id"] = id.release();
         return d;
     }
@@ -379,8 +420,8 @@ public:
         const auto& particles = sim_.particles;
         const std::size_t n = particles.size();
         const auto order = id_order();
-        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}), h({n}), c({n}),
-            deviator({n, 3, 3}), stress({n, 3, 3});
+        Output<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}),
+            h({n}), c({n}), deviator({n, 3, 3}), stress({n, 3, 3});
         Output<std::int32_t> material({n}), body({n}), motion({n});
         Output<std::int64_t> id({n});
         for (std::size_t k = 0; k < n; ++k) {
@@ -398,14 +439,17 @@ public:
             motion.data[k] = static_cast<std::int32_t>(tag.motion), id.data[k] = tag.id;
             fill_tensor(deviator.data + 9 * k, 0.0, particles.stress(p));
             fill_tensor(stress.data + 9 * k, eos.pressure, sim_.rates().deviator(particles, p));
-            if (const auto& bodies = sim_.bodies.deformable; bodies.has(particles, p)) bodies.stress(particles, p, stress.data + 9 * k);
+            if (const auto& bodies = sim_.bodies.deformable; bodies.has(particles, p))
+                bodies.stress(particles, p, stress.data + 9 * k);
         }
         nb::dict d;
         d["position"] = position.release(), d["velocity"] = velocity.release();
-        d["mass"] = mass.release(), d["density"] = density.release(), d["pressure"] = pressure.release();
+        d["mass"] = mass.release(), d["density"] = density.release(),
+        d["pressure"] = pressure.release();
         d["sound_speed"] = c.release(), d["smoothing_length"] = h.release();
         d["deviatoric_stress"] = deviator.release(), d["stress"] = stress.release();
-        d["material"] = material.release(), d["body"] = body.release(), d["motion"] = motion.release();
+        d["material"] = material.release(), d["body"] = body.release(),
+        d["motion"] = motion.release();
         d["id"] = id.release();
         if (particles.has_flow) add_flow_state(d, order), add_grain_numbers(d, order);
         return d;
@@ -415,13 +459,15 @@ public:
         const auto& particles = sim_.particles;
         const std::size_t n = particles.size();
         const auto order = id_order();
-        Output<double> acceleration({n, D}), density_rate({n}), stress_rate({n, 3, 3}), balsara({n});
+        Output<double> acceleration({n, D}), density_rate({n}), stress_rate({n, 3, 3}),
+            balsara({n});
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t p = order[k];
             for (int a = 0; a < D; ++a) acceleration.data[k * D + a] = particles.acceleration[p][a];
             density_rate.data[k] = particles.density_rate[p];
             fill_tensor(stress_rate.data + 9 * k, 0.0, particles.stress_rate(p));
-            if constexpr (!Scheme::has_flow) balsara.data[k] = static_cast<double>(sim_.rates().stress_records()[p].balsara);
+            if constexpr (!Scheme::has_flow)
+                balsara.data[k] = static_cast<double>(sim_.rates().stress_records()[p].balsara);
         }
         nb::dict d;
         d["acceleration"] = acceleration.release(), d["density_rate"] = density_rate.release();
@@ -435,7 +481,8 @@ public:
         const Ledger& ledger = sim_.sources.ledger;
         nb::dict d;
         d["mass"] = sum.mass;
-        d["momentum"] = std::vector<double>(sum.momentum.component.begin(), sum.momentum.component.end());
+        d["momentum"] =
+            std::vector<double>(sum.momentum.component.begin(), sum.momentum.component.end());
         d["kinetic_energy"] = sum.kinetic_energy, d["bulk_energy"] = sum.bulk_energy;
         d["shear_energy"] = sum.shear_energy, d["av_dissipation"] = sim_.av_dissipation();
         d["mass_initial"] = ledger.initial, d["mass_asked"] = ledger.asked;
@@ -452,8 +499,8 @@ public:
         return archive.arrays;
     }
 
-    /// False where lists had to be made anew, because this module has clusters of another width (none: the
-    /// state is that of several ranks).
+    /// False where lists had to be made anew, because this module has clusters of another width
+    /// (none: the state is that of several ranks).
     bool restore(const nb::dict& arrays) {
         LoadingArchive archive(arrays);
         int width = 0;
@@ -476,7 +523,9 @@ public:
         sim_.renew_order();
     }
 
-    void start() { guarded([&] { sim_.start(); }); }
+    void start() {
+        guarded([&] { sim_.start(); });
+    }
     void advance(double limit, double pause, std::int64_t max_steps) {
         guarded([&] { sim_.advance(limit, pause, max_steps); });
     }
@@ -490,7 +539,9 @@ public:
     std::size_t size() const { return sim_.particles.size(); }
     double skin() const { return sim_.skin(); }
     double bytes_per_particle() const { return sim_.bytes_per_particle(); }
-    double entries_per_particle() const { return double(sim_.neighbours().entries()) / double(std::max<std::size_t>(1, size())); }
+    double entries_per_particle() const {
+        return double(sim_.neighbours().entries()) / double(std::max<std::size_t>(1, size()));
+    }
 
     void time_phases(bool on) { sim_.phases().restart(on); }
     nb::dict phase_seconds() {
@@ -499,10 +550,14 @@ public:
         for (std::size_t k = 0; k < phase_names.size(); ++k) d[phase_names[k]] = seconds[k];
         return d;
     }
-    double interacting_pairs() const { return PairCounter(sim_.rates(), sim_.neighbours()).interacting_pairs(); }
+    double interacting_pairs() const {
+        return PairCounter(sim_.rates(), sim_.neighbours()).interacting_pairs();
+    }
     double bare_pair_rate(double seconds) const {
-        if constexpr (Scheme::has_flow) throw nb::value_error("only the ueta2022 scheme has a bare rate");
-        else return PairProbe(sim_.rates(), sim_.neighbours()).bare_rate(seconds);
+        if constexpr (Scheme::has_flow)
+            throw nb::value_error("only the ueta2022 scheme has a bare rate");
+        else
+            return PairProbe(sim_.rates(), sim_.neighbours()).bare_rate(seconds);
     }
 
 private:
@@ -510,7 +565,8 @@ private:
 
     void add_grain_numbers(nb::dict& d, const std::vector<std::size_t>& order) const {
         Output<std::int32_t> grain({order.size()});
-        for (std::size_t k = 0; k < order.size(); ++k) grain.data[k] = sim_.bodies.body_of(sim_.particles, order[k]);
+        for (std::size_t k = 0; k < order.size(); ++k)
+            grain.data[k] = sim_.bodies.body_of(sim_.particles, order[k]);
         d["grain"] = grain.release();
     }
 
@@ -523,11 +579,14 @@ private:
             const std::size_t p = order[k];
             surface.data[k] = flow.surface[p];
             for (int a = 0; a < D; ++a) {
-                force.data[k * D + a] = flow.wall_force[p][a], normal.data[k * D + a] = flow.normal[p][a];
-                for (int b = 0; b < D; ++b) gradient.data[(k * D + a) * D + b] = flow.velocity_gradient[p](a, b);
+                force.data[k * D + a] = flow.wall_force[p][a],
+                                   normal.data[k * D + a] = flow.normal[p][a];
+                for (int b = 0; b < D; ++b)
+                    gradient.data[(k * D + a) * D + b] = flow.velocity_gradient[p](a, b);
             }
         }
-        d["force"] = force.release(), d["surface"] = surface.release(), d["normal"] = normal.release();
+        d["force"] = force.release(), d["surface"] = surface.release(),
+        d["normal"] = normal.release();
         d["velocity_gradient"] = gradient.release();
     }
 
@@ -544,7 +603,8 @@ private:
     }
 
     static void read_facets(const nb::dict& d, Shape<D>& shape) {
-        const auto vertices = get<Input<double>>(d, "vertices"), samples = get<Input<double>>(d, "samples");
+        const auto vertices = get<Input<double>>(d, "vertices"),
+                   samples = get<Input<double>>(d, "samples");
         const auto faces = get<Input<std::int32_t>>(d, "faces");
         auto row = [](const Input<double>& table, std::size_t k) {
             Vec<double, D> x;
@@ -553,11 +613,14 @@ private:
         };
         for (std::size_t f = 0; f < faces.size() / D; ++f) {
             typename Shape<D>::Facet facet;
-            for (int a = 0; a < D; ++a) facet[a] = row(vertices, static_cast<std::size_t>(faces.data()[f * D + a]));
+            for (int a = 0; a < D; ++a)
+                facet[a] = row(vertices, static_cast<std::size_t>(faces.data()[f * D + a]));
             shape.facets.push_back(facet);
         }
-        for (std::size_t k = 0; k < samples.size() / D; ++k) shape.samples.push_back(row(samples, k));
-        for (std::size_t k = 0; k < vertices.size() / D; ++k) shape.radius = std::max(shape.radius, norm(row(vertices, k)));
+        for (std::size_t k = 0; k < samples.size() / D; ++k)
+            shape.samples.push_back(row(samples, k));
+        for (std::size_t k = 0; k < vertices.size() / D; ++k)
+            shape.radius = std::max(shape.radius, norm(row(vertices, k)));
     }
 
     static std::vector<Material> make_materials(const std::vector<nb::dict>& dicts) {
@@ -570,7 +633,8 @@ private:
         const auto& tag = sim_.particles.tag;
         std::vector<std::size_t> order(tag.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return tag[p].id < tag[q].id; });
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t p, std::size_t q) { return tag[p].id < tag[q].id; });
         return order;
     }
 
@@ -591,23 +655,26 @@ void bind_simulation(nb::module_& m, const char* name) {
     using B = Bound<Scheme>;
     const auto unlocked = nb::call_guard<nb::gil_scoped_release>();
     nb::class_<B>(m, name)
-        .def(nb::init<const std::vector<nb::dict>&, const nb::dict&>(), nb::arg("materials"), nb::arg("options"))
-        .def("add_particles", &B::add_particles, nb::kw_only(), nb::arg("position"), nb::arg("velocity"),
-             nb::arg("mass"), nb::arg("density"), nb::arg("smoothing_length"), nb::arg("material"), nb::arg("body"),
-             nb::arg("motion"), nb::arg("id"))
+        .def(nb::init<const std::vector<nb::dict>&, const nb::dict&>(), nb::arg("materials"),
+             nb::arg("options"))
+        .def("add_particles", &B::add_particles, nb::kw_only(), nb::arg("position"),
+             nb::arg("velocity"), nb::arg("mass"), nb::arg("density"), nb::arg("smoothing_length"),
+             nb::arg("material"), nb::arg("body"), nb::arg("motion"), nb::arg("id"))
         .def("set_walls", &B::set_walls, nb::kw_only(), nb::arg("normal"), nb::arg("depth"))
         .def("add_shapes", &B::add_shapes, nb::arg("shapes"))
         .def("add_rigid_bodies", &B::add_rigid_bodies, nb::arg("bodies"))
         .def("bind_points", &B::bind_points, nb::arg("body"))
         .def("add_elastic_body", &B::add_elastic_body, nb::arg("body"))
-        .def("grains", &B::grains, "State of the rigid bodies, in the order in which they were added.")
+        .def("grains", &B::grains,
+             "State of the rigid bodies, in the order in which they were added.")
         .def("add_inflow", &B::add_inflow)
         .def("add_outflow", &B::add_outflow, nb::arg("low"), nb::arg("high"))
         .def("move_body", &B::move_body, "Give a fixed body a prescribed motion.")
         .def("sample", &B::sample, nb::arg("low"), nb::arg("high"),
              "Fields of the particles inside a box, in the order of their ids.")
         .def("start", &B::start, unlocked)
-        .def("advance", &B::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"), unlocked)
+        .def("advance", &B::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"),
+             unlocked)
         .def("checkpoint", &B::checkpoint, "The whole state as arrays in storage order.")
         .def("restore", &B::restore, nb::arg("arrays"),
              "Go on from what checkpoint() gave; false where that changes the order of sums.")
@@ -615,11 +682,14 @@ void bind_simulation(nb::module_& m, const char* name) {
              "restore() of a state that all ranks have read and that is to be divided among them.")
         .def("join", &B::join, nb::arg("transport"), "Become one of several ranks.")
         .def_prop_ro("has_bodies", &B::has_bodies, "Whether bodies move on their own.")
-        .def("shares", &B::shares, "Seconds by share, what was sent, particles and ghosts of this rank.")
-        .def("neighbour_counts", &B::neighbour_counts, "How many others are within support of each particle.")
+        .def("shares", &B::shares,
+             "Seconds by share, what was sent, particles and ghosts of this rank.")
+        .def("neighbour_counts", &B::neighbour_counts,
+             "How many others are within support of each particle.")
         .def_prop_ro("particle_arrays", &B::particle_arrays)
         .def_prop_ro("failure", &B::failure)
-        .def("time_phases", &B::time_phases, nb::arg("on"), "Start timing the phases of steps from zero, or stop.")
+        .def("time_phases", &B::time_phases, nb::arg("on"),
+             "Start timing the phases of steps from zero, or stop.")
         .def("phase_seconds", &B::phase_seconds)
         .def("interacting_pairs", &B::interacting_pairs, unlocked,
              "Ordered pairs of different particles within support; fixed-fixed ones not counted.")

@@ -1,7 +1,7 @@
 #pragma once
 // Archives: the state of a simulation as named arrays, in storage order, and back. Each class lists
-// its state once, in `serialise`, for both directions. With the neighbour lists among it, a restored
-// simulation goes on with the same sums in the same order, hence with the same bits.
+// its state once, in `serialise`, for both directions. With the neighbour lists among it, a
+// restored simulation goes on with the same sums in the same order, hence with the same bits.
 
 #include <cstring>
 #include <stdexcept>
@@ -63,7 +63,8 @@ struct TagColumns {
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("id", id), archive("body", body), archive("material", material), archive("motion", motion);
+        archive("id", id), archive("body", body), archive("material", material),
+            archive("motion", motion);
     }
 };
 
@@ -74,16 +75,22 @@ public:
     nanobind::dict arrays;
 
     template <class T>
-    void operator()(const char* name, const T& value) { add(name, &value, 1, 1); }
+    void operator()(const char* name, const T& value) {
+        add(name, &value, 1, 1);
+    }
 
     template <class T>
     void operator()(const char* name, const std::vector<T>& values) {
         using Element = Numbers<T>;
-        static_assert(sizeof(T) == Element::count * sizeof(typename Element::type), "padding is not state");
-        add(name, reinterpret_cast<const typename Element::type*>(values.data()), values.size(), Element::count);
+        static_assert(sizeof(T) == Element::count * sizeof(typename Element::type),
+                      "padding is not state");
+        add(name, reinterpret_cast<const typename Element::type*>(values.data()), values.size(),
+            Element::count);
     }
 
-    void operator()(const char* name, bool value) { (*this)(name, static_cast<std::uint8_t>(value)); }
+    void operator()(const char* name, bool value) {
+        (*this)(name, static_cast<std::uint8_t>(value));
+    }
 
     /// A part of which there may be several: its names begin with `prefix`.
     template <class Part>
@@ -110,7 +117,8 @@ private:
         std::copy(values, values + rows * columns, copy);
         nanobind::capsule owner(copy, [](void* p) noexcept { delete[] static_cast<T*>(p); });
         const std::size_t shape[] = {rows, columns};
-        arrays[(prefix_ + name).c_str()] = nanobind::ndarray<nanobind::numpy, T>(copy, columns == 1 ? 1 : 2, shape, owner);
+        arrays[(prefix_ + name).c_str()] =
+            nanobind::ndarray<nanobind::numpy, T>(copy, columns == 1 ? 1 : 2, shape, owner);
     }
 
     std::string prefix_;
@@ -136,11 +144,14 @@ public:
         using Array = nanobind::ndarray<const Number, nanobind::c_contig, nanobind::device::cpu>;
         Array array;
         const std::string key = prefix_ + name;
-        check(arrays_.contains(key.c_str()) && nanobind::try_cast(arrays_[key.c_str()], array), name);
+        check(arrays_.contains(key.c_str()) && nanobind::try_cast(arrays_[key.c_str()], array),
+              name);
         const std::size_t columns = array.ndim() == 2 ? array.shape(1) : 1;
         check(array.ndim() >= 1 && array.ndim() <= 2 && columns == Numbers<T>::count, name);
         values.resize(array.shape(0));
-        if (array.size() > 0) std::memcpy(static_cast<void*>(values.data()), array.data(), array.size() * sizeof(Number));
+        if (array.size() > 0)
+            std::memcpy(static_cast<void*>(values.data()), array.data(),
+                        array.size() * sizeof(Number));
     }
 
     void operator()(const char* name, bool& value) {
@@ -160,15 +171,19 @@ public:
         TagColumns columns;
         columns.serialise(*this);
         const std::size_t n = columns.id.size();
-        check(columns.body.size() == n && columns.material.size() == n && columns.motion.size() == n, name);
+        check(
+            columns.body.size() == n && columns.material.size() == n && columns.motion.size() == n,
+            name);
         tags.resize(n);
         for (std::size_t p = 0; p < n; ++p)
-            tags[p] = {columns.id[p], columns.body[p], columns.material[p], static_cast<Motion>(columns.motion[p])};
+            tags[p] = {columns.id[p], columns.body[p], columns.material[p],
+                       static_cast<Motion>(columns.motion[p])};
     }
 
 private:
     static void check(bool good, const char* name) {
-        if (!good) throw std::invalid_argument(std::string("not the state of this simulation: ") + name);
+        if (!good)
+            throw std::invalid_argument(std::string("not the state of this simulation: ") + name);
     }
 
     nanobind::dict arrays_;

@@ -40,7 +40,8 @@ void unpack(Particles<D>& particles, const Bytes& bytes) {
 }
 
 template <int D>
-std::vector<double> coordinates_of(const Particles<D>& particles, std::span<const std::uint32_t> chosen) {
+std::vector<double> coordinates_of(const Particles<D>& particles,
+                                   std::span<const std::uint32_t> chosen) {
     std::vector<double> coordinates;
     coordinates.reserve(chosen.size() * D);
     for (const std::uint32_t p : chosen)
@@ -78,27 +79,32 @@ void migrate(Particles<D>& particles, Exchange& exchange) {
     for (const Parcel& parcel : exchange.swap(parcels)) unpack(particles, parcel.content);
 }
 
-/// What a particle costs [s], from the time that pairs and everything else have taken and the lengths of
-/// the lists; equal shares before there are any. `one_pass`: moving and fixed particles have a pass of
-/// their own each, pass_2 and pass_1; otherwise all have pass_1 and moving ones pass_2 besides.
-inline std::vector<double> particle_costs(std::span<const ClusterList> clusters, std::size_t width, std::size_t moving,
-                                          std::size_t count, PhaseTimer& phases, int threads, bool one_pass) {
+/// What a particle costs [s], from the time that pairs and everything else have taken and the
+/// lengths of the lists; equal shares before there are any. `one_pass`: moving and fixed particles
+/// have a pass of their own each, pass_2 and pass_1; otherwise all have pass_1 and moving ones
+/// pass_2 besides.
+inline std::vector<double> particle_costs(std::span<const ClusterList> clusters, std::size_t width,
+                                          std::size_t moving, std::size_t count, PhaseTimer& phases,
+                                          int threads, bool one_pass) {
     std::vector<double> costs(count, 1.0);
     if (clusters.empty()) return costs;
     double words_moving = 1.0, words_fixed = 1.0;
     for (std::size_t c = 0; c < clusters.size(); ++c)
-        (c * width < moving ? words_moving : words_fixed) += static_cast<double>(clusters[c].words());
+        (c * width < moving ? words_moving : words_fixed) +=
+            static_cast<double>(clusters[c].words());
     const auto seconds = phases.seconds(threads);
     auto of = [&](Phase phase) { return seconds[static_cast<std::size_t>(phase)]; };
     const double first = of(Phase::pass_1) + of(Phase::stress), second = of(Phase::pass_2);
     const double fixed_word = first / (one_pass ? words_fixed : words_fixed + words_moving);
     const double moving_word = second / words_moving + (one_pass ? 0.0 : fixed_word);
-    const double bare = (of(Phase::sort) + of(Phase::list_build) + of(Phase::pack) + of(Phase::integrate)) /
-                        static_cast<double>(clusters.size() * width);
+    const double bare =
+        (of(Phase::sort) + of(Phase::list_build) + of(Phase::pack) + of(Phase::integrate)) /
+        static_cast<double>(clusters.size() * width);
     for (std::size_t p = 0; p < count; ++p) {
         const std::size_t c = std::min(p / width, clusters.size() - 1);
         const double word = c * width < moving ? moving_word : fixed_word;
-        costs[p] = bare + word * static_cast<double>(clusters[c].words()) / static_cast<double>(width);
+        costs[p] =
+            bare + word * static_cast<double>(clusters[c].words()) / static_cast<double>(width);
     }
     return costs;
 }

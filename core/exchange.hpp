@@ -20,7 +20,8 @@ struct Parcel {
 };
 
 /// How ranks reach each other, and who owns which part of space. The core packs and unpacks; what
-/// carries the bytes is outside it. Every call but those marked "local" is made by all ranks together.
+/// carries the bytes is outside it. Every call but those marked "local" is made by all ranks
+/// together.
 class Exchange {
 public:
     Exchange(int rank, int ranks) : rank(rank), ranks(ranks) {}
@@ -28,8 +29,8 @@ public:
 
     const int rank, ranks;
 
-    virtual void largest(std::span<double> values) = 0;    // of each, in place
-    virtual void sum(std::span<double> values) = 0;        // of each, in place
+    virtual void largest(std::span<double> values) = 0;  // of each, in place
+    virtual void sum(std::span<double> values) = 0;      // of each, in place
     /// The parts of all ranks, which may differ in length, in the order of ranks.
     virtual std::vector<double> gather(std::span<const double> part) = 0;
     /// The text of rank `root`.
@@ -37,7 +38,8 @@ public:
     /// Delivers parcels; returns those that came, in the order of ranks.
     virtual std::vector<Parcel> swap(const std::vector<Parcel>& parcels) = 0;
 
-    /// Whether space is to be cut anew; `busy`: seconds that this rank has worked since it last was.
+    /// Whether space is to be cut anew; `busy`: seconds that this rank has worked since it last
+    /// was.
     virtual bool wants_cuts(double busy) = 0;
     /// Cuts space into parts of equal weight.
     virtual void cut(std::span<const double> coordinates, std::span<const double> weights) = 0;
@@ -46,9 +48,11 @@ public:
     /// Local: the ranks to which points belong.
     virtual std::vector<int> owners(std::span<const double> coordinates) = 0;
 
-    /// Local: sends and awaits one message for each of `peers`; `ends` are where each ends, in bytes.
-    virtual void start(std::span<const int> peers, std::span<const std::byte> send, std::span<const std::size_t> send_ends,
-                       std::span<std::byte> receive, std::span<const std::size_t> receive_ends) = 0;
+    /// Local: sends and awaits one message for each of `peers`; `ends` are where each ends, in
+    /// bytes.
+    virtual void start(std::span<const int> peers, std::span<const std::byte> send,
+                       std::span<const std::size_t> send_ends, std::span<std::byte> receive,
+                       std::span<const std::size_t> receive_ends) = 0;
     /// Local: returns once all that was started has come.
     virtual void finish() = 0;
 };

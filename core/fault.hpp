@@ -14,9 +14,9 @@ inline bool is_absurd(double rho, double rho0) {
     return !(rho > least_compression * rho0 && rho < most_compression * rho0);
 }
 
-/// Whom to blame when numbers go wrong. NaN times zero is NaN, so one broken particle breaks the rates of
-/// its cluster and of all its neighbours: those are blamed last, a particle whose own state is broken
-/// first, and among equals the one noted first.
+/// Whom to blame when numbers go wrong. NaN times zero is NaN, so one broken particle breaks the
+/// rates of its cluster and of all its neighbours: those are blamed last, a particle whose own
+/// state is broken first, and among equals the one noted first.
 struct Fault {
     enum Rank : std::int8_t { none, rates, density, state };
     Rank rank = none;
@@ -44,13 +44,14 @@ bool has_finite_state(const Particles<D>& particles, std::size_t p) {
     return std::isfinite(sum);
 }
 
-/// What a pass over pairs found, and what the state itself says: looked at only once something is wrong.
+/// What a pass over pairs found, and what the state itself says: looked at only once something is
+/// wrong.
 template <int D, class Materials>
 Fault traced_to_its_source(Fault fault, const Particles<D>& particles, const Materials& materials) {
     if (fault.rank == Fault::none) return fault;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         if (!has_finite_state(particles, p)) fault.note(Fault::state, p);
-        if (particles.has_flow && particles.is_wall(p)) continue;    // whose density means nothing
+        if (particles.has_flow && particles.is_wall(p)) continue;  // whose density means nothing
         fault.note_density(particles.density[p], materials[particles.tag[p].material].rho0, p);
     }
     return fault;

@@ -20,25 +20,31 @@ struct HaloColumn {
 };
 
 template <class Record>
-HaloColumn halo_column(std::vector<Record>& records, HaloColumn::Of of = HaloColumn::all, std::size_t first = 0) {
+HaloColumn halo_column(std::vector<Record>& records, HaloColumn::Of of = HaloColumn::all,
+                       std::size_t first = 0) {
     static_assert(std::is_trivially_copyable_v<Record>);
-    return {reinterpret_cast<std::byte*>(records.data()), sizeof(Record), sizeof(Record), first, of};
+    return {reinterpret_cast<std::byte*>(records.data()), sizeof(Record), sizeof(Record), first,
+            of};
 }
 
 /// The same of one member of each record.
 template <class Record, class Member>
-HaloColumn halo_column(std::vector<Record>& records, Member Record::*member, HaloColumn::Of of, std::size_t first) {
+HaloColumn halo_column(std::vector<Record>& records, Member Record::* member, HaloColumn::Of of,
+                       std::size_t first) {
     static_assert(std::is_trivially_copyable_v<Member>);
-    std::byte* const data = records.empty() ? nullptr : reinterpret_cast<std::byte*>(&(records.data()->*member));
+    std::byte* const data =
+        records.empty() ? nullptr : reinterpret_cast<std::byte*>(&(records.data()->*member));
     return {data, sizeof(Record), sizeof(Member), first, of};
 }
 
 /// Ghosts: copies of particles of other ranks that are near enough to be listed as neighbours of
 /// particles here. Invariants, from one build of the lists to the next:
-///  - j of another rank is a ghost here if its distance from the bounds of this rank's particles is less
-///    than max(R_j, largest R here) + skin, through images across periodic axes too; so every pair that
-///    Neighbours lists on one rank is listed on the owner of i;
-///  - fixed ones are measured from the bounds of moving particles, since fixed-fixed pairs are not listed;
+///  - j of another rank is a ghost here if its distance from the bounds of this rank's particles is
+///  less
+///    than max(R_j, largest R here) + skin, through images across periodic axes too; so every pair
+///    that Neighbours lists on one rank is listed on the owner of i;
+///  - fixed ones are measured from the bounds of moving particles, since fixed-fixed pairs are not
+///  listed;
 ///  - ghosts have records, never state: nothing but the pair loop sees them;
 ///  - who sends which particles to whom, and in which order, does not change.
 template <int D>
@@ -75,8 +81,9 @@ public:
     std::size_t ghosts() const { return place_.size(); }
     std::size_t moving_ghosts() const { return moving_ghosts_; }
 
-    /// Sends the exported particles' records and awaits those of ghosts, which have their places in the
-    /// same columns. They may be read after finish(), and those that are sent may be changed at once.
+    /// Sends the exported particles' records and awaits those of ghosts, which have their places in
+    /// the same columns. They may be read after finish(), and those that are sent may be changed at
+    /// once.
     void start(std::initializer_list<HaloColumn> columns);
     void finish();
     bool is_in_flight() const { return !in_flight_.empty(); }
@@ -95,7 +102,8 @@ private:
             return box;
         }
         void add(const Vec<double, D>& x) {
-            for (int a = 0; a < D; ++a) low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
+            for (int a = 0; a < D; ++a)
+                low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
         }
     };
 
@@ -109,7 +117,7 @@ private:
     /// What is exchanged with one rank: moving particles first, then fixed ones.
     struct Peer {
         int rank;
-        std::vector<std::uint32_t> exported;        // particles here
+        std::vector<std::uint32_t> exported;  // particles here
         std::size_t exported_moving = 0;
         std::size_t first_arrival = 0, arrivals = 0, arrivals_moving = 0;
     };
@@ -120,21 +128,25 @@ private:
         std::uint64_t is_fixed;
     };
 
-    std::vector<Bounds> all_bounds(std::span<const Vec<double, D>> position, std::span<const double> support,
+    std::vector<Bounds> all_bounds(std::span<const Vec<double, D>> position,
+                                   std::span<const double> support,
                                    std::span<const std::uint8_t> is_fixed) const;
     double gap(const Box& one, const Box& other) const;
     Peer& peer_of(int rank);
 
     template <class F>
-    static void for_each_row(const HaloColumn& column, std::span<const std::uint32_t> rows, std::size_t moving, F&& f) {
-        const auto chosen = column.of == HaloColumn::all ? rows : column.of == HaloColumn::moving ? rows.first(moving) : rows.subspan(moving);
+    static void for_each_row(const HaloColumn& column, std::span<const std::uint32_t> rows,
+                             std::size_t moving, F&& f) {
+        const auto chosen = column.of == HaloColumn::all      ? rows
+                            : column.of == HaloColumn::moving ? rows.first(moving)
+                                                              : rows.subspan(moving);
         for (const std::uint32_t p : chosen) f(column.data + (p - column.first) * column.stride);
     }
 
     Domain<D> domain_;
-    std::vector<Peer> peers_;                // in the order of ranks
-    std::vector<std::uint8_t> exported_;     // of each particle, while lists are built
-    std::vector<std::uint32_t> place_;       // in the storage, of each arrival
+    std::vector<Peer> peers_;             // in the order of ranks
+    std::vector<std::uint8_t> exported_;  // of each particle, while lists are built
+    std::vector<std::uint32_t> place_;    // in the storage, of each arrival
     std::size_t moving_ghosts_ = 0;
     std::vector<int> peer_ranks_;
     std::vector<HaloColumn> in_flight_;
@@ -177,25 +189,32 @@ double Halo<D>::gap(const Box& one, const Box& other) const {
 
 template <int D>
 auto Halo<D>::peer_of(int rank) -> Peer& {
-    auto found = std::lower_bound(peers_.begin(), peers_.end(), rank, [](const Peer& peer, int r) { return peer.rank < r; });
-    if (found == peers_.end() || found->rank != rank) found = peers_.insert(found, Peer{.rank = rank, .exported = {}});
+    auto found = std::lower_bound(peers_.begin(), peers_.end(), rank,
+                                  [](const Peer& peer, int r) { return peer.rank < r; });
+    if (found == peers_.end() || found->rank != rank)
+        found = peers_.insert(found, Peer{.rank = rank, .exported = {}});
     return *found;
 }
 
 template <int D>
-void Halo<D>::find_exports(std::span<const Vec<double, D>> position, std::span<const double> support,
-                           std::span<const std::uint8_t> is_fixed, double skin) {
+void Halo<D>::find_exports(std::span<const Vec<double, D>> position,
+                           std::span<const double> support, std::span<const std::uint8_t> is_fixed,
+                           double skin) {
     peers_.clear();
     exported_.assign(position.size(), 0);
     const std::vector<Bounds> bounds = all_bounds(position, support, is_fixed);
     const Bounds& mine = bounds[static_cast<std::size_t>(ranks.rank())];
     for (int r = 0; r < ranks.count(); ++r) {
         const Bounds& theirs = bounds[static_cast<std::size_t>(r)];
-        if (r == ranks.rank() || !(gap(mine.all, theirs.all) < std::max(mine.support, theirs.support) + skin)) continue;
+        if (r == ranks.rank() ||
+            !(gap(mine.all, theirs.all) < std::max(mine.support, theirs.support) + skin))
+            continue;
         std::vector<std::uint32_t> exported;
         for (std::size_t p = 0; p < position.size(); ++p) {
             const Box& box = is_fixed[p] ? theirs.moving : theirs.all;
-            if (!(gap({position[p], position[p]}, box) < std::max(support[p], theirs.support) + skin)) continue;
+            if (!(gap({position[p], position[p]}, box) <
+                  std::max(support[p], theirs.support) + skin))
+                continue;
             exported.push_back(static_cast<std::uint32_t>(p));
             exported_[p] = 1;
         }
@@ -221,8 +240,9 @@ auto Halo<D>::announce(std::span<const Vec<double, D>> position, std::span<const
     if (alone()) return arrivals;
     std::vector<Parcel> parcels;
     for (Peer& peer : peers_) {
-        peer.exported_moving = static_cast<std::size_t>(std::count_if(
-            peer.exported.begin(), peer.exported.end(), [&](std::uint32_t p) { return !is_fixed[p]; }));
+        peer.exported_moving =
+            static_cast<std::size_t>(std::count_if(peer.exported.begin(), peer.exported.end(),
+                                                   [&](std::uint32_t p) { return !is_fixed[p]; }));
         Parcel parcel{peer.rank, Bytes(peer.exported.size() * sizeof(Announced))};
         auto* row = reinterpret_cast<Announced*>(parcel.content.data());
         for (const std::uint32_t p : peer.exported) *row++ = {position[p], support[p], is_fixed[p]};
@@ -248,7 +268,8 @@ auto Halo<D>::announce(std::span<const Vec<double, D>> position, std::span<const
 template <int D>
 void Halo<D>::place(std::span<const std::uint32_t> order, std::size_t first) {
     place_.resize(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) place_[order[k]] = static_cast<std::uint32_t>(first + k);
+    for (std::size_t k = 0; k < order.size(); ++k)
+        place_[order[k]] = static_cast<std::uint32_t>(first + k);
     moving_ghosts_ = 0;
     for (const Peer& peer : peers_) moving_ghosts_ += peer.arrivals_moving;
 }
@@ -267,7 +288,9 @@ void Halo<D>::start(std::initializer_list<HaloColumn> columns) {
                 send_.insert(send_.end(), record, record + column.size);
             });
             const std::size_t fixed = peer.arrivals - peer.arrivals_moving;
-            awaited += column.size * (column.of == HaloColumn::all ? peer.arrivals : column.of == HaloColumn::moving ? peer.arrivals_moving : fixed);
+            awaited += column.size * (column.of == HaloColumn::all      ? peer.arrivals
+                                      : column.of == HaloColumn::moving ? peer.arrivals_moving
+                                                                        : fixed);
         }
         send_ends_.push_back(send_.size()), receive_ends_.push_back(awaited);
         messages_sent_ += send_.size() > before;
@@ -297,11 +320,11 @@ void Halo<D>::finish() {
     in_flight_.clear();
 }
 
-/// Calls `sum(clusters, number of the first)` for those without ghosts in their lists, then, once the ghosts'
-/// records have come, for the others; for all at once where nothing is on its way.
+/// Calls `sum(clusters, number of the first)` for those without ghosts in their lists, then, once
+/// the ghosts' records have come, for the others; for all at once where nothing is on its way.
 template <int D, class Sum>
-void while_ghosts_come(Halo<D>& halo, const Neighbours<D>& neighbours, std::span<const ClusterList> clusters,
-                       std::size_t width, const Sum& sum) {
+void while_ghosts_come(Halo<D>& halo, const Neighbours<D>& neighbours,
+                       std::span<const ClusterList> clusters, std::size_t width, const Sum& sum) {
     if (!halo.is_in_flight()) return sum(clusters, 0);
     const std::size_t inner = std::min(neighbours.inner() / width, clusters.size());
     sum(clusters.first(inner), 0);
@@ -309,7 +332,8 @@ void while_ghosts_come(Halo<D>& halo, const Neighbours<D>& neighbours, std::span
     sum(clusters.subspan(inner), inner);
 }
 
-/// The shortest timestep and the worst fault of all ranks; the particle to blame is kept where it is.
+/// The shortest timestep and the worst fault of all ranks; the particle to blame is kept where it
+/// is.
 inline void agree(const Ranks& ranks, double& timestep, std::int64_t& limiting, Fault& fault) {
     if (ranks.alone()) return;
     const double own = timestep;
@@ -317,7 +341,8 @@ inline void agree(const Ranks& ranks, double& timestep, std::int64_t& limiting, 
     ranks.largest(worst);
     timestep = -worst[0];
     if (timestep < own) limiting = -1;
-    if (worst[1] > static_cast<double>(fault.rank)) fault = {static_cast<Fault::Rank>(worst[1]), -1};
+    if (worst[1] > static_cast<double>(fault.rank))
+        fault = {static_cast<Fault::Rank>(worst[1]), -1};
 }
 
 }  // namespace doseki

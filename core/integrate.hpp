@@ -11,10 +11,12 @@ void kick(Particles<D>& particles, double half_dt) {
 #pragma omp parallel for schedule(static) if (n > light_loop)
     for (std::size_t p = 0; p < n; ++p) {
         if (particles.is_bound(p)) continue;
-        for (int a = 0; a < D; ++a) particles.velocity[p][a] += half_dt * particles.acceleration[p][a];
+        for (int a = 0; a < D; ++a)
+            particles.velocity[p][a] += half_dt * particles.acceleration[p][a];
         particles.density[p] += half_dt * particles.density_rate[p];
         if (particles.has_strength)
-            add_scaled(particles.deviatoric_stress[p], half_dt, particles.deviatoric_stress_rate[p]);
+            add_scaled(particles.deviatoric_stress[p], half_dt,
+                       particles.deviatoric_stress_rate[p]);
     }
 }
 

@@ -6,28 +6,34 @@
 
 namespace doseki {
 
-/// The union list of one cluster of W consecutive particles: moving neighbours, then fixed ones. Each
-/// part is a sequence of runs of entries that share their upper 16 bits: those bits, the number of
-/// entries, then their lower 16 bits. Neighbours are stored close to each other, so a run is long and an
-/// entry costs little more than two bytes.
+/// The union list of one cluster of W consecutive particles: moving neighbours, then fixed ones.
+/// Each part is a sequence of runs of entries that share their upper 16 bits: those bits, the
+/// number of entries, then their lower 16 bits. Neighbours are stored close to each other, so a run
+/// is long and an entry costs little more than two bytes.
 class ClusterList {
 public:
     ClusterList() = default;
     ClusterList(const std::uint16_t* begin, std::size_t moving_words, std::size_t fixed_words)
-        : begin_(begin), moving_words_(static_cast<std::uint32_t>(moving_words)),
+        : begin_(begin),
+          moving_words_(static_cast<std::uint32_t>(moving_words)),
           fixed_words_(static_cast<std::uint32_t>(fixed_words)) {}
 
     bool empty() const { return words() == 0; }
     std::size_t words() const { return std::size_t{moving_words_} + fixed_words_; }
 
     template <class F>
-    [[gnu::always_inline]] void for_each_moving(F&& f) const { for_each(begin_, moving_words_, f); }
+    [[gnu::always_inline]] void for_each_moving(F&& f) const {
+        for_each(begin_, moving_words_, f);
+    }
     template <class F>
-    [[gnu::always_inline]] void for_each_fixed(F&& f) const { for_each(begin_ + moving_words_, fixed_words_, f); }
+    [[gnu::always_inline]] void for_each_fixed(F&& f) const {
+        for_each(begin_ + moving_words_, fixed_words_, f);
+    }
 
 private:
     template <class F>
-    [[gnu::always_inline]] static void for_each(const std::uint16_t* word, std::size_t words, F& f) {
+    [[gnu::always_inline]] static void for_each(const std::uint16_t* word, std::size_t words,
+                                                F& f) {
         for (const std::uint16_t* const end = word + words; word != end;) {
             const std::uint32_t upper = static_cast<std::uint32_t>(word[0]) << 16;
             const std::uint16_t* const run_end = word + 2 + word[1];
@@ -45,8 +51,8 @@ class ListStorage {
 public:
     void clear() { block_ = 0, used_ = 0, entries_ = 0; }
 
-    /// Packs the entries, the first `moving` of which are those of moving neighbours; within each part
-    /// they are grouped by their upper bits. The result is valid until clear().
+    /// Packs the entries, the first `moving` of which are those of moving neighbours; within each
+    /// part they are grouped by their upper bits. The result is valid until clear().
     ClusterList keep(std::span<const std::uint32_t> entries, std::size_t moving) {
         words_.clear();
         pack(entries.first(moving));
@@ -64,7 +70,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t smallest_block = 2048, largest_block = 131072;    // words
+    static constexpr std::size_t smallest_block = 2048, largest_block = 131072;  // words
     static constexpr std::size_t longest_run = 65535;
 
     void pack(std::span<const std::uint32_t> entries) {
@@ -74,17 +80,23 @@ private:
         if (!std::is_sorted(sorted_.begin(), sorted_.end(), by_upper))
             std::stable_sort(sorted_.begin(), sorted_.end(), by_upper);
         for (std::size_t first = 0, last; first < sorted_.size(); first = last) {
-            for (last = first; last < sorted_.size() && last - first < longest_run && upper(sorted_[last]) == upper(sorted_[first]);) ++last;
+            for (last = first; last < sorted_.size() && last - first < longest_run &&
+                               upper(sorted_[last]) == upper(sorted_[first]);)
+                ++last;
             words_.push_back(static_cast<std::uint16_t>(upper(sorted_[first])));
             words_.push_back(static_cast<std::uint16_t>(last - first));
-            for (std::size_t k = first; k < last; ++k) words_.push_back(static_cast<std::uint16_t>(sorted_[k]));
+            for (std::size_t k = first; k < last; ++k)
+                words_.push_back(static_cast<std::uint16_t>(sorted_[k]));
         }
     }
 
     const std::uint16_t* store() {
-        while (block_ < blocks_.size() && blocks_[block_].size() - used_ < words_.size()) ++block_, used_ = 0;
+        while (block_ < blocks_.size() && blocks_[block_].size() - used_ < words_.size())
+            ++block_, used_ = 0;
         if (block_ == blocks_.size())
-            blocks_.emplace_back(std::max(words_.size(), std::min(largest_block, smallest_block << std::min<std::size_t>(block_, 16))));
+            blocks_.emplace_back(std::max(
+                words_.size(),
+                std::min(largest_block, smallest_block << std::min<std::size_t>(block_, 16))));
         std::uint16_t* const start = blocks_[block_].data() + used_;
         std::copy(words_.begin(), words_.end(), start);
         used_ += words_.size();

@@ -34,10 +34,11 @@ struct ListEntry {
     static constexpr std::uint32_t max_index = index_mask;
 };
 
-/// Sorted cells, one wrapped grid for each class of particles (moving or fixed, and per factor two of
-/// the smoothing length). The sort is by class, then cell in Morton order, so that W consecutive
+/// Sorted cells, one wrapped grid for each class of particles (moving or fixed, and per factor two
+/// of the smoothing length). The sort is by class, then cell in Morton order, so that W consecutive
 /// particles sit together. Invariants:
-///  - every pair with |x_i - x_j| < max(R_i, R_j) + skin at the time of the build is listed for i, in
+///  - every pair with |x_i - x_j| < max(R_i, R_j) + skin at the time of the build is listed for i,
+///  in
 ///    the list of i's cluster; nothing is ever truncated;
 ///  - fixed-fixed pairs are not listed: neither moves, so every sum over them vanishes;
 ///  - the content of a list does not depend on the number of threads.
@@ -48,8 +49,8 @@ class Neighbours {
 public:
     explicit Neighbours(const Domain<D>& domain) : domain_(domain) { fill_image_shifts(); }
 
-    /// Order in which particles are to be stored: moving ones before fixed ones, and among each those that
-    /// are near other ranks last; none are where `is_near` is empty.
+    /// Order in which particles are to be stored: moving ones before fixed ones, and among each
+    /// those that are near other ranks last; none are where `is_near` is empty.
     std::vector<std::uint32_t> sort(std::span<const Vec<double, D>> position,
                                     std::span<const double> support,
                                     std::span<const std::uint8_t> is_fixed,
@@ -61,8 +62,8 @@ public:
                                            std::span<const double> support,
                                            std::span<const std::uint8_t> is_fixed);
 
-    /// Lists of all clusters of `width` particles, for positions already stored in sorted order, those
-    /// of ghosts at the end.
+    /// Lists of all clusters of `width` particles, for positions already stored in sorted order,
+    /// those of ghosts at the end.
     template <int width>
     void build(std::span<const Vec<double, D>> position, std::span<const double> support,
                double skin);
@@ -104,12 +105,12 @@ private:
     struct Grid {
         bool fixed = false;
         std::uint32_t first = 0, last = 0;
-        double support = 0.0;                 // largest R of the class
-        Vec<double, D> low{}, high{};         // of its particles
+        double support = 0.0;          // largest R of the class
+        Vec<double, D> low{}, high{};  // of its particles
         Vec<double, D> cell_size{};
         Vec<double, D> origin{};
-        std::array<std::int64_t, D> cells{};    // power of two, except in periodic directions
-        std::array<std::vector<std::uint32_t>, D> key_part;    // Morton key = OR over directions
+        std::array<std::int64_t, D> cells{};  // power of two, except in periodic directions
+        std::array<std::vector<std::uint32_t>, D> key_part;  // Morton key = OR over directions
         std::vector<std::uint32_t> cell_start;
     };
 
@@ -130,9 +131,11 @@ private:
         int first, last;
     };
 
-    /// Particles by class: moving before fixed, far from other ranks before near, then by smoothing length.
+    /// Particles by class: moving before fixed, far from other ranks before near, then by smoothing
+    /// length.
     using Classes = std::map<std::tuple<bool, bool, int>, std::vector<std::uint32_t>>;
-    std::vector<std::uint32_t> sort_classes(const Classes& classes, std::span<const Vec<double, D>> position,
+    std::vector<std::uint32_t> sort_classes(const Classes& classes,
+                                            std::span<const Vec<double, D>> position,
                                             std::span<const double> support, std::size_t first);
     bool is_beyond(const Grid& grid, const Bounds& bounds, double radius) const;
 
@@ -155,8 +158,9 @@ private:
     std::int64_t wrap(const Grid& grid, std::int64_t cell, int a) const;
     std::uint32_t key_of(const Grid& grid, const Vec<double, D>& x) const;
 
-    static void find_parts(std::span<const Vec<double, D>> position, std::span<const double> support,
-                           std::size_t first, std::size_t last, std::vector<Part>& parts);
+    static void find_parts(std::span<const Vec<double, D>> position,
+                           std::span<const double> support, std::size_t first, std::size_t last,
+                           std::vector<Part>& parts);
 
     template <int width>
     void search(const Grid& grid, const Part& part, std::uint32_t first, double skin,
@@ -168,11 +172,11 @@ private:
     std::vector<Vec<double, D>> image_shift_;
     std::vector<Grid> grids_;
     std::vector<ClusterList> clusters_;
-    std::vector<ListStorage> storage_;    // one per thread
+    std::vector<ListStorage> storage_;  // one per thread
     std::size_t moving_ = 0, inner_ = 0, size_ = 0;
 };
 
 }  // namespace doseki
 
-#include "neighbours_sort.hpp"
 #include "neighbours_search.hpp"
+#include "neighbours_sort.hpp"

@@ -12,7 +12,8 @@ namespace doseki {
 
 /// The cells within `radius` of the bounds, direction by direction.
 template <int D>
-void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double radius, Scratch& scratch) const {
+void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double radius,
+                               Scratch& scratch) const {
     std::uint32_t weight = 1;
     for (int a = 0; a < D; ++a, weight *= 3) {
         const std::int64_t low = cell_of(grid, bounds.low[a] - radius, a);
@@ -34,7 +35,8 @@ void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double ra
 template <int D>
 bool Neighbours<D>::is_beyond(const Grid& grid, const Bounds& bounds, double radius) const {
     for (int a = 0; a < D; ++a)
-        if (!domain_.periodic[a] && (grid.low[a] > bounds.high[a] + radius || grid.high[a] < bounds.low[a] - radius))
+        if (!domain_.periodic[a] &&
+            (grid.low[a] > bounds.high[a] + radius || grid.high[a] < bounds.low[a] - radius))
             return true;
     return false;
 }
@@ -42,14 +44,15 @@ bool Neighbours<D>::is_beyond(const Grid& grid, const Bounds& bounds, double rad
 template <int D>
 template <int width>
 void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t first, double skin,
-                           std::span<const Vec<double, D>> position, std::span<const double> support,
-                           Scratch& scratch) const {
+                           std::span<const Vec<double, D>> position,
+                           std::span<const double> support, Scratch& scratch) const {
     using Lanes = stdx::fixed_size_simd<double, width>;
     const auto last = static_cast<std::uint32_t>(size_ - 1);
     Vec<Lanes, D> x;
     for (int a = 0; a < D; ++a)
         x[a] = Lanes([&](auto l) { return position[std::min<std::uint32_t>(first + l, last)][a]; });
-    const auto reach = Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
+    const auto reach =
+        Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
 
     auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
         const Vec<double, D>& shift = image_shift_[image];
@@ -76,8 +79,10 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
     const auto& steps = scratch.steps;
     for (const CellStep& y : steps[1])
         for (const CellStep& x_step : steps[0]) {
-            const std::uint32_t key = x_step.key_part | y.key_part, image = x_step.image_part + y.image_part;
-            if constexpr (D == 2) visit(key, image);
+            const std::uint32_t key = x_step.key_part | y.key_part,
+                                image = x_step.image_part + y.image_part;
+            if constexpr (D == 2)
+                visit(key, image);
             else
                 for (const CellStep& z : steps[2]) visit(key | z.key_part, image + z.image_part);
         }
@@ -104,7 +109,8 @@ void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<co
                 for (const Part& part : scratch.parts)
                     for (const Grid& grid : grids_)
                         if (grid.fixed == fixed)
-                            search<width>(grid, part, static_cast<std::uint32_t>(first), skin, position, support, scratch);
+                            search<width>(grid, part, static_cast<std::uint32_t>(first), skin,
+                                          position, support, scratch);
             };
             scratch.list.clear();
             search_grids(false);
@@ -115,12 +121,13 @@ void Neighbours<D>::build(std::span<const Vec<double, D>> position, std::span<co
     }
 }
 
-/// Cuts a cluster into runs of particles that lie together. Spray is stored one after the other, too, and a
-/// search around all of such a cluster would visit whatever lies between.
+/// Cuts a cluster into runs of particles that lie together. Spray is stored one after the other,
+/// too, and a search around all of such a cluster would visit whatever lies between.
 template <int D>
-void Neighbours<D>::find_parts(std::span<const Vec<double, D>> position, std::span<const double> support,
-                               std::size_t first, std::size_t last, std::vector<Part>& parts) {
-    constexpr double widest = 2.5;    // of the support radius
+void Neighbours<D>::find_parts(std::span<const Vec<double, D>> position,
+                               std::span<const double> support, std::size_t first, std::size_t last,
+                               std::vector<Part>& parts) {
+    constexpr double widest = 2.5;  // of the support radius
     parts.clear();
     for (std::size_t p = first; p < last; ++p) {
         const int lane = static_cast<int>(p - first);
@@ -133,8 +140,10 @@ void Neighbours<D>::find_parts(std::span<const Vec<double, D>> position, std::sp
             joined.high[a] = std::max(joined.high[a], position[p][a]);
             together &= joined.high[a] - joined.low[a] < widest * joined.support;
         }
-        if (together) parts.back() = {joined, parts.back().first, lane + 1};
-        else parts.push_back({alone, lane, lane + 1});
+        if (together)
+            parts.back() = {joined, parts.back().first, lane + 1};
+        else
+            parts.push_back({alone, lane, lane + 1});
     }
 }
 

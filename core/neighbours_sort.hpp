@@ -30,7 +30,8 @@ void Neighbours<D>::fill_image_shifts() {
     for (int code = 0; code < images; ++code) {
         int digits = code;
         for (int a = 0; a < D; ++a, digits /= 3)
-            image_shift_[code][a] = (digits % 3 - 1) * (domain_.periodic[a] ? domain_.length(a) : 0.0);
+            image_shift_[code][a] =
+                (digits % 3 - 1) * (domain_.periodic[a] ? domain_.length(a) : 0.0);
     }
 }
 
@@ -45,19 +46,21 @@ std::int64_t Neighbours<D>::wrap(const Grid& grid, std::int64_t cell, int a) con
     return domain_.periodic[a] ? ((cell % n) + n) % n : cell & (n - 1);
 }
 
-/// Bits of a Morton key are those of all directions in turn, as long as a direction has some left; so
-/// the key is the OR of one part for each direction.
+/// Bits of a Morton key are those of all directions in turn, as long as a direction has some left;
+/// so the key is the OR of one part for each direction.
 template <int D>
 void Neighbours<D>::fill_key_parts(Grid& grid) {
     std::array<std::vector<int>, D> places;
     for (int bit = 0, place = 0; bit < 32; ++bit)
         for (int a = 0; a < D; ++a)
-            if ((std::uint64_t{1} << bit) < static_cast<std::uint64_t>(grid.cells[a])) places[a].push_back(place++);
+            if ((std::uint64_t{1} << bit) < static_cast<std::uint64_t>(grid.cells[a]))
+                places[a].push_back(place++);
     for (int a = 0; a < D; ++a) {
         grid.key_part[a].assign(static_cast<std::size_t>(grid.cells[a]), 0);
         for (std::size_t cell = 0; cell < grid.key_part[a].size(); ++cell)
             for (std::size_t bit = 0; bit < places[a].size(); ++bit)
-                grid.key_part[a][cell] |= static_cast<std::uint32_t>((cell >> bit) & 1) << places[a][bit];
+                grid.key_part[a][cell] |= static_cast<std::uint32_t>((cell >> bit) & 1)
+                                          << places[a][bit];
     }
 }
 
@@ -85,7 +88,8 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
     for (int a = 0; a < D; ++a) {
         const double size = 0.5 * grid.support;
         if (domain_.periodic[a]) {
-            cells[a] = std::max<std::int64_t>(1, static_cast<std::int64_t>(domain_.length(a) / size));
+            cells[a] =
+                std::max<std::int64_t>(1, static_cast<std::int64_t>(domain_.length(a) / size));
             grid.origin[a] = domain_.low[a];
             grid.cell_size[a] = domain_.length(a) / static_cast<double>(cells[a]);
         } else {
@@ -103,19 +107,22 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
 template <int D>
 std::int64_t Neighbours<D>::table_size(const std::array<std::int64_t, D>& cells) {
     std::int64_t product = 1;
-    for (const std::int64_t count : cells) product *= static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(count)));
+    for (const std::int64_t count : cells)
+        product *= static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(count)));
     return product;
 }
 
-/// A table no larger than the particles warrant. Folding a direction only adds candidates, and fewest where
-/// one half is nearly empty: a long flow that splashes is folded upwards, not onto itself.
+/// A table no larger than the particles warrant. Folding a direction only adds candidates, and
+/// fewest where one half is nearly empty: a long flow that splashes is folded upwards, not onto
+/// itself.
 template <int D>
 std::array<std::int64_t, D> Neighbours<D>::fold(const Grid& grid, std::array<std::int64_t, D> cells,
                                                 std::span<const Vec<double, D>> position,
                                                 std::span<const std::uint32_t> members) const {
-    const std::int64_t limit = std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
+    const std::int64_t limit =
+        std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
     if (table_size(cells) <= limit) return cells;
-    std::array<std::vector<double>, D> layers;    // particles with the same cell along a direction
+    std::array<std::vector<double>, D> layers;  // particles with the same cell along a direction
     for (int a = 0; a < D; ++a) {
         if (domain_.periodic[a]) continue;
         layers[a].assign(static_cast<std::size_t>(cells[a]), 0.0);
@@ -146,7 +153,8 @@ std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> p
         throw ResourceFailure("more than 2^27 particles on one rank");
     Classes classes;
     for (std::uint32_t p = 0; p < position.size(); ++p)
-        classes[{is_fixed[p] != 0, !is_near.empty() && is_near[p] != 0, std::ilogb(support[p])}].push_back(p);
+        classes[{is_fixed[p] != 0, !is_near.empty() && is_near[p] != 0, std::ilogb(support[p])}]
+            .push_back(p);
     grids_.clear();
     size_ = position.size(), moving_ = 0, inner_ = 0;
     for (const auto& [name, members] : classes) {
@@ -170,8 +178,10 @@ std::vector<std::uint32_t> Neighbours<D>::sort_ghosts(std::span<const Vec<double
 
 /// Adds a grid for each class; the first particle is to be stored at `first`.
 template <int D>
-std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes, std::span<const Vec<double, D>> position,
-                                                       std::span<const double> support, std::size_t first) {
+std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes,
+                                                       std::span<const Vec<double, D>> position,
+                                                       std::span<const double> support,
+                                                       std::size_t first) {
     std::vector<std::uint32_t> order;
     order.reserve(position.size());
     for (const auto& [name, members] : classes) {
@@ -192,7 +202,8 @@ std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes, s
             grid.cell_start[c] += grid.cell_start[c - 1];
         std::vector<std::uint32_t> next(grid.cell_start.begin(), grid.cell_start.end() - 1);
         order.resize(order.size() + members.size());
-        for (std::size_t k = 0; k < members.size(); ++k) order[next[keys[k]]++ - first] = members[k];
+        for (std::size_t k = 0; k < members.size(); ++k)
+            order[next[keys[k]]++ - first] = members[k];
         grids_.push_back(std::move(grid));
     }
     return order;
@@ -207,7 +218,8 @@ auto Neighbours<D>::flatten() const -> FlatLists {
         list.for_each_moving(add);
         flat.moving.push_back(static_cast<std::uint32_t>(flat.entries.size() - first));
         list.for_each_fixed(add);
-        flat.fixed.push_back(static_cast<std::uint32_t>(flat.entries.size() - first) - flat.moving.back());
+        flat.fixed.push_back(static_cast<std::uint32_t>(flat.entries.size() - first) -
+                             flat.moving.back());
     }
     return flat;
 }

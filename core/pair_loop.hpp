@@ -33,14 +33,17 @@ class LanePositions {
 public:
     LanePositions(const MotionRecord<real, D>* records, std::uint32_t first, std::uint32_t last) {
         for (int a = 0; a < D; ++a)
-            x_[a] = CoordinateLanes([&](auto l) { return records[std::min<std::uint32_t>(first + l, last)].x[a]; });
+            x_[a] = CoordinateLanes(
+                [&](auto l) { return records[std::min<std::uint32_t>(first + l, last)].x[a]; });
     }
 
     DOSEKI_FN Pair<Lanes, D> pair(const std::array<Coordinate<real>, D>& x_j, real unit) const {
         Pair<Lanes, D> pair;
         for (int a = 0; a < D; ++a) {
-            if constexpr (std::is_same_v<real, double>) pair.r_ij[a] = x_[a] - x_j[a];
-            else pair.r_ij[a] = stdx::static_simd_cast<Lanes>(x_[a] - x_j[a]) * unit;
+            if constexpr (std::is_same_v<real, double>)
+                pair.r_ij[a] = x_[a] - x_j[a];
+            else
+                pair.r_ij[a] = stdx::static_simd_cast<Lanes>(x_[a] - x_j[a]) * unit;
         }
         // A floor far below any spacing keeps the pair of a particle with itself harmless.
         pair.r = sqrt(max(dot(pair.r_ij, pair.r_ij), Lanes(std::numeric_limits<real>::min())));
@@ -73,12 +76,14 @@ struct PairLoop {
     const Term& term;
 };
 
-/// The sums of one cluster. Flattened: whatever gcc left as a call in here would be made for every pair.
+/// The sums of one cluster. Flattened: whatever gcc left as a call in here would be made for every
+/// pair.
 template <bool periodic, class real, int D, class Term>
-[[gnu::flatten, gnu::noinline]] auto sum_over_list(const PairLoop<real, D, Term>& loop, const ClusterList& list,
-                                                   std::uint32_t first) {
+[[gnu::flatten, gnu::noinline]] auto sum_over_list(const PairLoop<real, D, Term>& loop,
+                                                   const ClusterList& list, std::uint32_t first) {
     const Term& term = loop.term;
-    const LanePositions<real, D> x(loop.records.data(), first, static_cast<std::uint32_t>(loop.records.size() - 1));
+    const LanePositions<real, D> x(loop.records.data(), first,
+                                   static_cast<std::uint32_t>(loop.records.size() - 1));
     const auto i = term.load(first);
     typename Term::template Sums<Pack<real>> sums{};
     auto pair_with = [&](std::uint32_t entry) {
@@ -97,21 +102,24 @@ template <bool periodic, class real, int D, class Term>
     return sums;
 }
 
-/// `skip_empty`: particles without any neighbour are not finished either. `first_cluster`: number of
-/// the first of `clusters`.
+/// `skip_empty`: particles without any neighbour are not finished either. `first_cluster`: number
+/// of the first of `clusters`.
 template <bool periodic, class real, int D, class Term>
 void for_each_pair(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters,
                    std::span<const MotionRecord<real, D>> records,
-                   const CoordinateFrame<real, D>& frame, bool skip_empty, const Term& term, std::size_t first_cluster = 0) {
+                   const CoordinateFrame<real, D>& frame, bool skip_empty, const Term& term,
+                   std::size_t first_cluster = 0) {
     constexpr std::uint32_t width = lanes<real>;
-    const PairLoop<real, D, Term> loop{records, image_shifts(neighbours, frame), static_cast<real>(frame.unit), term};
+    const PairLoop<real, D, Term> loop{records, image_shifts(neighbours, frame),
+                                       static_cast<real>(frame.unit), term};
 
 #pragma omp parallel for schedule(dynamic, 16) if (clusters.size() > pair_loop)
     for (std::size_t c = 0; c < clusters.size(); ++c) {
         if (skip_empty && clusters[c].empty()) continue;
         const auto first = static_cast<std::uint32_t>(first_cluster + c) * width;
         const auto count = std::min<std::size_t>(width, neighbours.size() - first);
-        term.finish(first, static_cast<int>(count), sum_over_list<periodic>(loop, clusters[c], first));
+        term.finish(first, static_cast<int>(count),
+                    sum_over_list<periodic>(loop, clusters[c], first));
     }
 }
 

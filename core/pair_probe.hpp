@@ -35,11 +35,13 @@ struct CountTerm {
         return select(q < T(1) && q > number<T>(1e-9), T(1), T(0));
     }
     template <class T>
-    DOSEKI_FN void add(Sums<T>& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+    DOSEKI_FN void add(Sums<T>& count, const Pair<T, D>& pair, const Point<T>& i,
+                       const Point<T>& j) const {
         count.moving += is_near(pair, i, j);
     }
     template <class T>
-    DOSEKI_FN void add_fixed(Sums<T>& count, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+    DOSEKI_FN void add_fixed(Sums<T>& count, const Pair<T, D>& pair, const Point<T>& i,
+                             const Point<T>& j) const {
         count.fixed += is_near(pair, i, j);
     }
     template <class T>
@@ -47,7 +49,8 @@ struct CountTerm {
     template <class T>
     void finish(std::uint32_t first, int count, const Sums<T>& sums) const {
         for (int l = 0; l < count; ++l)
-            finish_particle(first + l, static_cast<double>(sums.moving[l]), static_cast<double>(sums.fixed[l]));
+            finish_particle(first + l, static_cast<double>(sums.moving[l]),
+                            static_cast<double>(sums.fixed[l]));
     }
 };
 
@@ -55,7 +58,8 @@ struct CountTerm {
 template <class Rates, class Lists>
 class PairCounter {
 public:
-    PairCounter(const Rates& rates, const Lists& neighbours) : rates_(rates), neighbours_(neighbours) {}
+    PairCounter(const Rates& rates, const Lists& neighbours)
+        : rates_(rates), neighbours_(neighbours) {}
 
     /// Pairs (i, j), each way counted, that are within support of each other.
     double interacting_pairs() const { return count(neighbours_.clusters(), rates_.motion_); }
@@ -77,15 +81,19 @@ public:
         auto finish = [&](std::size_t p, double moving, double fixed) {
             of_particle[p] = moving + (p < neighbours_.moving() ? fixed : 0.0);
         };
-        for_each(clusters, motion, CountTerm<typename Rates::Real, Rates::dim, decltype(finish)>{motion, finish});
+        for_each(clusters, motion,
+                 CountTerm<typename Rates::Real, Rates::dim, decltype(finish)>{motion, finish});
         return of_particle;
     }
 
     template <class Motion, class Term>
-    void for_each(std::span<const ClusterList> clusters, const Motion& motion, const Term& term) const {
+    void for_each(std::span<const ClusterList> clusters, const Motion& motion,
+                  const Term& term) const {
         const std::span<const MotionRecord<typename Rates::Real, Rates::dim>> records(motion);
-        if (rates_.periodic_) for_each_pair<true>(neighbours_, clusters, records, rates_.frame_, false, term);
-        else for_each_pair<false>(neighbours_, clusters, records, rates_.frame_, false, term);
+        if (rates_.periodic_)
+            for_each_pair<true>(neighbours_, clusters, records, rates_.frame_, false, term);
+        else
+            for_each_pair<false>(neighbours_, clusters, records, rates_.frame_, false, term);
     }
 
 private:
@@ -130,14 +138,17 @@ private:
 
     HotSet hot_set() const {
         const std::size_t whole = neighbours_.moving() / width;
-        if (whole < hot_clusters) throw ResourceFailure("too few particles to measure the pair loop on");
+        if (whole < hot_clusters)
+            throw ResourceFailure("too few particles to measure the pair loop on");
         const std::size_t first = (whole - hot_clusters) / 2;
         const auto chosen = neighbours_.clusters().subspan(first, hot_clusters);
         HotSet hot;
         std::unordered_map<std::uint32_t, std::uint32_t> place;
         auto place_of = [&](std::uint32_t p) {
-            const auto [found, is_new] = place.try_emplace(p, static_cast<std::uint32_t>(place.size()));
-            if (is_new) hot.motion.push_back(rates_.motion_[p]), hot.stress.push_back(rates_.stress_[p]);
+            const auto [found, is_new] =
+                place.try_emplace(p, static_cast<std::uint32_t>(place.size()));
+            if (is_new)
+                hot.motion.push_back(rates_.motion_[p]), hot.stress.push_back(rates_.stress_[p]);
             return found->second;
         };
         for (std::size_t p = first * width; p < (first + hot_clusters) * width; ++p)
@@ -145,7 +156,8 @@ private:
         for (const ClusterList& list : chosen) {
             std::vector<std::uint32_t> entries;
             auto add = [&](std::uint32_t entry) {
-                entries.push_back(place_of(entry & ListEntry::index_mask) | (entry & ~ListEntry::index_mask));
+                entries.push_back(place_of(entry & ListEntry::index_mask) |
+                                  (entry & ~ListEntry::index_mask));
             };
             list.for_each_moving(add);
             const std::size_t moving = entries.size();
@@ -159,13 +171,21 @@ private:
         const std::span<const MotionRecord<real, D>> motion(hot.motion);
         const std::span<const StressRecord<real, D>> stress(hot.stress);
         volatile double sink = 0.0;
-        auto keep_gradient = [&](std::size_t, const Mat<double, D>& gradient) { sink = gradient.element[0]; };
-        auto keep_acceleration = [&](std::size_t, const auto& sums) { sink = sums.acceleration[0] + sums.max_v_sig; };
+        auto keep_gradient = [&](std::size_t, const Mat<double, D>& gradient) {
+            sink = gradient.element[0];
+        };
+        auto keep_acceleration = [&](std::size_t, const auto& sums) {
+            sink = sums.acceleration[0] + sums.max_v_sig;
+        };
         counter_.for_each(hot.clusters, motion,
-                 VelocityGradientTerm<GradientOf::own_h, real, D, decltype(keep_gradient)>{motion, keep_gradient});
+                          VelocityGradientTerm<GradientOf::own_h, real, D, decltype(keep_gradient)>{
+                              motion, keep_gradient});
         counter_.for_each(hot.clusters, motion,
-                 MomentumTerm<GradientOf::own_h, real, D, decltype(keep_acceleration)>{
-                     motion, stress, {static_cast<real>(rates_.options_.alpha), true}, keep_acceleration});
+                          MomentumTerm<GradientOf::own_h, real, D, decltype(keep_acceleration)>{
+                              motion,
+                              stress,
+                              {static_cast<real>(rates_.options_.alpha), true},
+                              keep_acceleration});
     }
 
     const Rates<real, D>& rates_;

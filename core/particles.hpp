@@ -9,8 +9,8 @@
 namespace doseki {
 
 /// How a particle's position changes. Fixed particles give interactions but never move (the paper's
-/// slope); driven ones move with a prescribed velocity (the inflow buffer); bound ones are points of a
-/// body that moves as a whole.
+/// slope); driven ones move with a prescribed velocity (the inflow buffer); bound ones are points
+/// of a body that moves as a whole.
 enum class Motion : std::uint8_t { free, fixed, driven, bound };
 
 /// What a particle is, in one machine word and a half.
@@ -25,47 +25,50 @@ struct Tag {
 /// double: the precision of a run is that of its pair sums.
 template <int D>
 struct Particles {
-    std::vector<Vec<double, D>> position;        // [m]
-    std::vector<Vec<double, D>> velocity;        // [m/s]
-    std::vector<Vec<double, D>> acceleration;    // [m/s^2]
-    std::vector<double> density;                 // [kg/m^3]
-    std::vector<double> density_rate;            // [kg/m^3/s]
-    std::vector<Deviator<double, D>> deviatoric_stress;         // [Pa]
-    std::vector<Deviator<double, D>> deviatoric_stress_rate;    // [Pa/s]
-    bool has_strength = true;    // without, the two arrays above stay empty
+    std::vector<Vec<double, D>> position;                     // [m]
+    std::vector<Vec<double, D>> velocity;                     // [m/s]
+    std::vector<Vec<double, D>> acceleration;                 // [m/s^2]
+    std::vector<double> density;                              // [kg/m^3]
+    std::vector<double> density_rate;                         // [kg/m^3/s]
+    std::vector<Deviator<double, D>> deviatoric_stress;       // [Pa]
+    std::vector<Deviator<double, D>> deviatoric_stress_rate;  // [Pa/s]
+    bool has_strength = true;  // without, the two arrays above stay empty
     /// Of the resolved scheme.
     struct Flow {
-        std::vector<Vec<double, D>> pressure_gradient;    // of the last step [Pa/m]
-        std::vector<Mat<double, D>> velocity_gradient;    // of the last step [1/s]
-        std::vector<Vec<double, D>> shift;                // velocity relative to the fluid [m/s]
-        std::vector<double> surface;                      // of the last step, see SurfaceMeasure
-        std::vector<double> mixing_length;                // [m]
-        std::vector<double> mean_pressure;                // over a time, where friction depends on it [Pa]
+        std::vector<Vec<double, D>> pressure_gradient;  // of the last step [Pa/m]
+        std::vector<Mat<double, D>> velocity_gradient;  // of the last step [1/s]
+        std::vector<Vec<double, D>> shift;              // velocity relative to the fluid [m/s]
+        std::vector<double> surface;                    // of the last step, see SurfaceMeasure
+        std::vector<double> mixing_length;              // [m]
+        std::vector<double> mean_pressure;  // over a time, where friction depends on it [Pa]
         // Of wall particles:
-        std::vector<Vec<double, D>> normal;        // into the fluid
-        std::vector<double> wall_depth;            // below the surface of the wall [m]
-        std::vector<Vec<double, D>> wall_force;    // of the fluid on it [N], 2-D: [N/m]
-        std::vector<double> wall_pressure;         // of the fluid at its place [Pa]
-        std::vector<std::int32_t> point;           // of bound ones: index among the points of bodies
+        std::vector<Vec<double, D>> normal;      // into the fluid
+        std::vector<double> wall_depth;          // below the surface of the wall [m]
+        std::vector<Vec<double, D>> wall_force;  // of the fluid on it [N], 2-D: [N/m]
+        std::vector<double> wall_pressure;       // of the fluid at its place [Pa]
+        std::vector<std::int32_t> point;         // of bound ones: index among the points of bodies
     } flow;
-    bool has_flow = false;    // without, the arrays of `flow` stay empty
-    std::vector<double> mass;                // [kg], 2-D: [kg/m]
-    std::vector<double> smoothing_length;    // [m]
+    bool has_flow = false;                 // without, the arrays of `flow` stay empty
+    std::vector<double> mass;              // [kg], 2-D: [kg/m]
+    std::vector<double> smoothing_length;  // [m]
     std::vector<Tag> tag;
 
     std::size_t size() const { return tag.size(); }
 
-    /// Calls f(name, array) for every field; the one list from which sorting, growth and checkpoints
-    /// derive.
+    /// Calls f(name, array) for every field; the one list from which sorting, growth and
+    /// checkpoints derive.
     template <class F>
     void serialise(F&& f) {
         f("position", position), f("velocity", velocity), f("acceleration", acceleration);
         f("density", density), f("density_rate", density_rate);
         if (has_strength)
-            f("deviatoric_stress", deviatoric_stress), f("deviatoric_stress_rate", deviatoric_stress_rate);
+            f("deviatoric_stress", deviatoric_stress),
+                f("deviatoric_stress_rate", deviatoric_stress_rate);
         if (has_flow) {
-            f("pressure_gradient", flow.pressure_gradient), f("velocity_gradient", flow.velocity_gradient);
-            f("shift", flow.shift), f("surface", flow.surface), f("mixing_length", flow.mixing_length);
+            f("pressure_gradient", flow.pressure_gradient),
+                f("velocity_gradient", flow.velocity_gradient);
+            f("shift", flow.shift), f("surface", flow.surface),
+                f("mixing_length", flow.mixing_length);
             f("mean_pressure", flow.mean_pressure);
             f("normal", flow.normal), f("wall_depth", flow.wall_depth);
             f("wall_force", flow.wall_force), f("wall_pressure", flow.wall_pressure);

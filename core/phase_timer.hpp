@@ -6,12 +6,12 @@
 
 namespace doseki {
 
-/// What a step consists of. The stress of particles is worked out inside pass 1, cluster by cluster,
-/// and subtracted from it.
+/// What a step consists of. The stress of particles is worked out inside pass 1, cluster by
+/// cluster, and subtracted from it.
 enum class Phase { sort, list_build, pack, pass_1, stress, pass_2, integrate };
 
-inline constexpr std::array<const char*, 7> phase_names{"sort",   "list_build", "pack",     "pass_1",
-                                                        "stress", "pass_2",     "integrate"};
+inline constexpr std::array<const char*, 7> phase_names{
+    "sort", "list_build", "pack", "pass_1", "stress", "pass_2", "integrate"};
 
 /// Wall time by phase. Off until asked for; on, it reads the clock twice a phase and at one cluster
 /// in `sampling`.
@@ -51,7 +51,8 @@ public:
     void sample_stress(const Work& work) {
         const auto start = Clock::now();
         work();
-        const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
+        const auto ns =
+            std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
 #pragma omp atomic
         sampled_ns_ += ns;
     }
@@ -86,8 +87,10 @@ struct TimedFinish : Term {
 
     template <class Sums>
     void finish(std::uint32_t first, int count, const Sums& sums) const {
-        if (timer.samples(first / width)) timer.sample_stress([&] { Term::finish(first, count, sums); });
-        else Term::finish(first, count, sums);
+        if (timer.samples(first / width))
+            timer.sample_stress([&] { Term::finish(first, count, sums); });
+        else
+            Term::finish(first, count, sums);
     }
 };
 

@@ -25,7 +25,8 @@ void for_each_number(std::vector<Record>& records, F&& f) {
 
 template <class real, class Record>
 void poison(std::vector<Record>& records) {
-    for_each_number<real>(records, [](real& number) { number = std::numeric_limits<real>::quiet_NaN(); });
+    for_each_number<real>(records,
+                          [](real& number) { number = std::numeric_limits<real>::quiet_NaN(); });
 }
 
 /// Index of the first record that still holds a NaN, or -1.
@@ -33,7 +34,8 @@ template <class real, class Record>
 std::int64_t survivor(std::vector<Record>& records) {
     std::int64_t first = -1, k = 0;
     for_each_number<real>(records, [&](real& number) {
-        if (first < 0 && std::isnan(number)) first = k / static_cast<std::int64_t>(sizeof(Record) / sizeof(real));
+        if (first < 0 && std::isnan(number))
+            first = k / static_cast<std::int64_t>(sizeof(Record) / sizeof(real));
         ++k;
     });
     return first;

@@ -4,8 +4,8 @@
 
 namespace doseki {
 
-/// What a rank spends beside its own steps: cutting space, moving particles to their owners, packing and
-/// unpacking what neighbours need, and waiting for other ranks.
+/// What a rank spends beside its own steps: cutting space, moving particles to their owners,
+/// packing and unpacking what neighbours need, and waiting for other ranks.
 enum class Share { balance, migrate, halo, wait };
 
 inline constexpr std::array<const char*, 4> share_names{"balance", "migrate", "halo", "wait"};

@@ -13,11 +13,11 @@
 #include "options.hpp"
 #include "particles.hpp"
 #include "phase_timer.hpp"
-#include "poison.hpp"
 #include "physics/equation_of_state.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
 #include "physics/yield.hpp"
+#include "poison.hpp"
 #include "terms.hpp"
 
 namespace doseki {
@@ -73,12 +73,13 @@ public:
         }
     }
 
-    /// Fills the rates of `particles`, whose density, stress and velocity are half a step behind: the
-    /// values predicted with the old rates over `half_dt` are what enters the sums. Two passes over
-    /// pairs with the stress of each particle between them. Sets timestep() and av_power().
-    /// `new_lists`: neighbours were built since the last call. Where they were not, a particle of the
-    /// bed that nothing comes near has the rates it had: none.
-    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt, bool new_lists) {
+    /// Fills the rates of `particles`, whose density, stress and velocity are half a step behind:
+    /// the values predicted with the old rates over `half_dt` are what enters the sums. Two passes
+    /// over pairs with the stress of each particle between them. Sets timestep() and av_power().
+    /// `new_lists`: neighbours were built since the last call. Where they were not, a particle of
+    /// the bed that nothing comes near has the rates it had: none.
+    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo,
+                 double half_dt, bool new_lists) {
         const bool poisoned = is_poisoned_run();
         skip_empty_ = !new_lists && !poisoned;
         if (poisoned) poison<real>(motion_);
@@ -107,10 +108,11 @@ public:
         if (!yields_ || !particles.has_strength) return;
 #pragma omp parallel for schedule(static) if (particles.size() > light_loop)
         for (std::size_t p = 0; p < particles.size(); ++p) {
-            const YieldSurface<double>& surface = surfaces_[static_cast<std::size_t>(particles.tag[p].material)];
+            const YieldSurface<double>& surface =
+                surfaces_[static_cast<std::size_t>(particles.tag[p].material)];
             if (particles.is_free(p) && std::isfinite(surface.k))
-                particles.deviatoric_stress[p] =
-                    return_map(particles.deviatoric_stress[p], thermodynamics(particles, p).pressure, surface);
+                particles.deviatoric_stress[p] = return_map(
+                    particles.deviatoric_stress[p], thermodynamics(particles, p).pressure, surface);
         }
     }
     double timestep() const { return timestep_; }
@@ -128,7 +130,9 @@ public:
     Deviator<double, D> deviator(const Particles<D>& particles, std::size_t p) const {
         Deviator<double, D> tau = particles.stress(p);
         const Tag& tag = particles.tag[p];
-        if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free || stress_.size() <= p) return tau;
+        if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free ||
+            stress_.size() <= p)
+            return tau;
         const StressRecord<real, D>& record = stress_[p];
         const double rho = static_cast<double>(record.rho);
         const auto eos = thermodynamics(tag, rho);
@@ -136,17 +140,20 @@ public:
             for (int b = a; b < D; ++b)
                 if (a < 2 || b < 2)
                     tau.element[Deviator<double, D>::index(a, b)] =
-                        rho * rho * static_cast<double>(record.stress[Sym<real, D>::index(a, b)]) + (a == b ? eos.pressure : 0.0);
+                        rho * rho * static_cast<double>(record.stress[Sym<real, D>::index(a, b)]) +
+                        (a == b ? eos.pressure : 0.0);
         return tau;
     }
     /// Stress records are kept from step to step where nothing is near (see compute).
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("stress_record", stress_), archive("next_timestep", timestep_), archive("av_power", av_power_);
+        archive("stress_record", stress_), archive("next_timestep", timestep_),
+            archive("av_power", av_power_);
     }
 
     std::size_t bytes() const {
-        return motion_.capacity() * sizeof(MotionRecord<real, D>) + stress_.capacity() * sizeof(StressRecord<real, D>) +
+        return motion_.capacity() * sizeof(MotionRecord<real, D>) +
+               stress_.capacity() * sizeof(StressRecord<real, D>) +
                summary_.capacity() * sizeof(ClusterSummary);
     }
 
@@ -173,19 +180,26 @@ private:
     void agree_on_h(const Particles<D>& particles, const Ranks& ranks);
     double smoothing_length(const Particles<D>& particles, std::size_t p, double rho) const;
     void update_particle(Particles<D>& particles, std::size_t p, Mat<double, D> L, double half_dt);
-    void sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt);
+    void sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours,
+                               Halo<D>& halo, double half_dt);
     void sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo);
     void reduce_summaries();
     void find_survivor(Particles<D>& particles);
 
     template <class Term>
-    void sum_over_pairs(Phase phase, const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, Halo<D>& halo, const Term& term) {
+    void sum_over_pairs(Phase phase, const Neighbours<D>& neighbours,
+                        std::span<const ClusterList> clusters, Halo<D>& halo, const Term& term) {
         const std::span<const MotionRecord<real, D>> records(motion_);
-        while_ghosts_come(halo, neighbours, clusters, lanes<real>, [&](std::span<const ClusterList> part, std::size_t first) {
-            const auto timing = phases_.measure(phase);
-            if (periodic_) for_each_pair<true>(neighbours, part, records, frame_, skip_empty_, term, first);
-            else for_each_pair<false>(neighbours, part, records, frame_, skip_empty_, term, first);
-        });
+        while_ghosts_come(halo, neighbours, clusters, lanes<real>,
+                          [&](std::span<const ClusterList> part, std::size_t first) {
+                              const auto timing = phases_.measure(phase);
+                              if (periodic_)
+                                  for_each_pair<true>(neighbours, part, records, frame_,
+                                                      skip_empty_, term, first);
+                              else
+                                  for_each_pair<false>(neighbours, part, records, frame_,
+                                                       skip_empty_, term, first);
+                          });
     }
 
     template <class Term>
@@ -194,8 +208,8 @@ private:
     }
 
     std::vector<Material> materials_;
-    std::vector<YieldSurface<double>> surfaces_;    // by material
-    bool yields_ = false;                           // any of them
+    std::vector<YieldSurface<double>> surfaces_;  // by material
+    bool yields_ = false;                         // any of them
     Options<D> options_;
     bool periodic_;
     bool equal_h_ = true;
@@ -213,10 +227,12 @@ private:
 
 /// Eq. (10), held within a quarter of its value at rest (a solid in tension would grow h for ever).
 template <class real, int D>
-double Rates<real, D>::smoothing_length(const Particles<D>& particles, std::size_t p, double rho) const {
+double Rates<real, D>::smoothing_length(const Particles<D>& particles, std::size_t p,
+                                        double rho) const {
     if (options_.h_mode == SmoothingLengthMode::constant) return particles.smoothing_length[p];
     const double mass = particles.mass[p];
-    const double rest = options_.eta * std::pow(mass / materials_[particles.tag[p].material].rho0, 1.0 / D);
+    const double rest =
+        options_.eta * std::pow(mass / materials_[particles.tag[p].material].rho0, 1.0 / D);
     return std::clamp(options_.eta * std::pow(mass / rho, 1.0 / D), 0.8 * rest, 1.25 * rest);
 }
 
@@ -226,10 +242,11 @@ void Rates<real, D>::pack_motion(Particles<D>& particles, const Halo<D>& halo, d
     const std::size_t n = particles.size();
     motion_.resize(n + halo.ghosts());
     if constexpr (std::is_same_v<real, float>) {
-        std::array<double, 2 * D> far;    // -low, high
+        std::array<double, 2 * D> far;  // -low, high
         far.fill(-std::numeric_limits<double>::max());
         for (const auto& x : particles.position)
-            for (int a = 0; a < D; ++a) far[a] = max(far[a], -x[a]), far[D + a] = max(far[D + a], x[a]);
+            for (int a = 0; a < D; ++a)
+                far[a] = max(far[a], -x[a]), far[D + a] = max(far[D + a], x[a]);
         halo.ranks.largest(far);
         Vec<double, D> low, high;
         for (int a = 0; a < D; ++a) low[a] = -far[a], high[a] = far[D + a];
@@ -242,7 +259,8 @@ void Rates<real, D>::pack_motion(Particles<D>& particles, const Halo<D>& halo, d
         MotionRecord<real, D>& record = motion_[p];
         for (int a = 0; a < D; ++a) {
             record.x[a] = frame_.coordinate(particles.position[p][a], a);
-            record.v[a] = static_cast<real>(particles.velocity[p][a] + half_dt * particles.acceleration[p][a]);
+            record.v[a] = static_cast<real>(particles.velocity[p][a] +
+                                            half_dt * particles.acceleration[p][a]);
         }
         const double rho = particles.density[p] + half_dt * particles.density_rate[p];
         const double h = smoothing_length(particles, p, rho);
@@ -257,7 +275,8 @@ void Rates<real, D>::pack_motion(Particles<D>& particles, const Halo<D>& halo, d
 /// Whether h is the same on all ranks, which it is for as long as no particle comes.
 template <class real, int D>
 void Rates<real, D>::agree_on_h(const Particles<D>& particles, const Ranks& ranks) {
-    std::array<double, 2> far{-std::numeric_limits<double>::max(), -std::numeric_limits<double>::max()};
+    std::array<double, 2> far{-std::numeric_limits<double>::max(),
+                              -std::numeric_limits<double>::max()};
     for (const double h : particles.smoothing_length) far = {max(far[0], h), max(far[1], -h)};
     ranks.largest(far);
     equal_h_ = options_.h_mode == SmoothingLengthMode::constant && far[0] == -far[1];
@@ -265,7 +284,8 @@ void Rates<real, D>::agree_on_h(const Particles<D>& particles, const Ranks& rank
 
 /// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
 template <class real, int D>
-void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat<double, D> L, double half_dt) {
+void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat<double, D> L,
+                                     double half_dt) {
     const Tag& tag = particles.tag[p];
     const Material& material = materials_[tag.material];
     const double rho = particles.density[p] + half_dt * particles.density_rate[p];
@@ -289,7 +309,8 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
 
     const auto scaled = stress_over_rho_squared(eos.pressure, stress, rho);
     StressRecord<real, D>& record = stress_[p];
-    for (int k = 0; k < Sym<real, D>::size; ++k) record.stress[k] = static_cast<real>(scaled.element[k]);
+    for (int k = 0; k < Sym<real, D>::size; ++k)
+        record.stress[k] = static_cast<real>(scaled.element[k]);
     record.rho = static_cast<real>(rho);
     record.c = static_cast<real>(eos.sound_speed);
     record.balsara = static_cast<real>(
@@ -297,22 +318,26 @@ void Rates<real, D>::update_particle(Particles<D>& particles, std::size_t p, Mat
 }
 
 template <class real, int D>
-void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt) {
+void Rates<real, D>::sum_velocity_gradient(Particles<D>& particles, const Neighbours<D>& neighbours,
+                                           Halo<D>& halo, double half_dt) {
     auto update = [&](std::size_t p, const Mat<double, D>& gradient) {
         update_particle(particles, p, gradient, half_dt);
     };
     const std::span<const MotionRecord<real, D>> motion(motion_);
     using Update = decltype(update);
     if (options_.sym_grad && !equal_h_)
-        sum_over_pairs(Phase::pass_1, neighbours, neighbours.clusters(), halo,
-                       timed(VelocityGradientTerm<GradientOf::mean_h, real, D, Update>{motion, update}));
+        sum_over_pairs(
+            Phase::pass_1, neighbours, neighbours.clusters(), halo,
+            timed(VelocityGradientTerm<GradientOf::mean_h, real, D, Update>{motion, update}));
     else
-        sum_over_pairs(Phase::pass_1, neighbours, neighbours.clusters(), halo,
-                       timed(VelocityGradientTerm<GradientOf::own_h, real, D, Update>{motion, update}));
+        sum_over_pairs(
+            Phase::pass_1, neighbours, neighbours.clusters(), halo,
+            timed(VelocityGradientTerm<GradientOf::own_h, real, D, Update>{motion, update}));
 }
 
 template <class real, int D>
-void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo) {
+void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& neighbours,
+                                  Halo<D>& halo) {
     constexpr std::size_t width = lanes<real>;
     const auto clusters = neighbours.clusters().first((neighbours.moving() + width - 1) / width);
     std::fill(particles.acceleration.begin() + static_cast<std::ptrdiff_t>(neighbours.moving()),
@@ -330,19 +355,23 @@ void Rates<real, D>::sum_momentum(Particles<D>& particles, const Neighbours<D>& 
         summary.av_power += particles.mass[p] * sums.av_power;
         const double dt = doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
                                            options_.cflnumber, options_.cfl_force);
-        if (dt < summary.timestep) summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
+        if (dt < summary.timestep)
+            summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
         summary.fault.note_rates(dot(a, a) + particles.density_rate[p], p);
     };
     const std::span<const MotionRecord<real, D>> motion(motion_);
     const std::span<const StressRecord<real, D>> stress(stress_);
-    const MomentumOptions<real> constants{static_cast<real>(options_.alpha), options_.fixed_limits_dt};
+    const MomentumOptions<real> constants{static_cast<real>(options_.alpha),
+                                          options_.fixed_limits_dt};
     using Finish = decltype(finish);
     if (equal_h_)
-        sum_over_pairs(Phase::pass_2, neighbours, clusters, halo,
-                       MomentumTerm<GradientOf::own_h, real, D, Finish>{motion, stress, constants, finish});
+        sum_over_pairs(
+            Phase::pass_2, neighbours, clusters, halo,
+            MomentumTerm<GradientOf::own_h, real, D, Finish>{motion, stress, constants, finish});
     else
-        sum_over_pairs(Phase::pass_2, neighbours, clusters, halo,
-                       MomentumTerm<GradientOf::mean_h, real, D, Finish>{motion, stress, constants, finish});
+        sum_over_pairs(
+            Phase::pass_2, neighbours, clusters, halo,
+            MomentumTerm<GradientOf::mean_h, real, D, Finish>{motion, stress, constants, finish});
 }
 
 template <class real, int D>
@@ -351,17 +380,20 @@ void Rates<real, D>::reduce_summaries() {
     av_power_ = 0.0;
     fault_ = {}, limiting_ = -1;
     for (const ClusterSummary& summary : summary_) {
-        if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
+        if (summary.timestep < timestep_)
+            timestep_ = summary.timestep, limiting_ = summary.limiting;
         av_power_ += summary.av_power;
         fault_.merge(summary.fault);
     }
 }
 
-/// In float, coordinates are whole numbers, which may look like NaN: only double motion is looked at.
+/// In float, coordinates are whole numbers, which may look like NaN: only double motion is looked
+/// at.
 template <class real, int D>
 void Rates<real, D>::find_survivor(Particles<D>& particles) {
     const std::int64_t motion = std::is_same_v<real, double> ? survivor<real>(motion_) : -1;
-    for (const std::int64_t p : {motion, survivor<real>(stress_), survivor<double>(particles.acceleration)})
+    for (const std::int64_t p :
+         {motion, survivor<real>(stress_), survivor<double>(particles.acceleration)})
         if (p >= 0) fault_.note(Fault::rates, static_cast<std::size_t>(p));
 }
 

@@ -17,7 +17,7 @@ using Coordinate = std::conditional_t<std::is_same_v<real, double>, double, std:
 template <class real, int D>
 struct CoordinateFrame {
     Vec<double, D> origin{};
-    double unit = 1.0;    // metres per unit of a coordinate
+    double unit = 1.0;  // metres per unit of a coordinate
 
     static CoordinateFrame covering(const Vec<double, D>& low, const Vec<double, D>& high) {
         CoordinateFrame frame;
@@ -32,8 +32,10 @@ struct CoordinateFrame {
     }
 
     Coordinate<real> coordinate(double x, int a) const {
-        if constexpr (std::is_same_v<real, double>) return x;
-        else return static_cast<std::int32_t>((x - origin[a]) / unit);
+        if constexpr (std::is_same_v<real, double>)
+            return x;
+        else
+            return static_cast<std::int32_t>((x - origin[a]) / unit);
     }
 };
 
@@ -49,7 +51,7 @@ struct MotionRecord {
 /// What pass 2 needs besides.
 template <class real, int D>
 struct StressRecord {
-    std::array<real, Sym<real, D>::size> stress;    // sigma / rho^2
+    std::array<real, Sym<real, D>::size> stress;  // sigma / rho^2
     real rho;
     real c;
     real balsara;

@@ -17,7 +17,8 @@
 
 namespace doseki {
 
-/// A run: state, right-hand side (the scheme) and clock. Owned by Python, which says until when to go on.
+/// A run: state, right-hand side (the scheme) and clock. Owned by Python, which says until when to
+/// go on.
 template <class Scheme>
 class Simulation {
 public:
@@ -25,8 +26,13 @@ public:
     static constexpr int width = lanes<typename Scheme::Real>;
 
     Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
-        : bodies(domain, options.gravity, options.contact, surfaces_of(materials), memory_of(materials, options)), options_(options), domain_(domain),
-          neighbours_(domain), halo_(domain), rates_(std::move(materials), options, domain.any_periodic()) {
+        : bodies(domain, options.gravity, options.contact, surfaces_of(materials),
+                 memory_of(materials, options)),
+          options_(options),
+          domain_(domain),
+          neighbours_(domain),
+          halo_(domain),
+          rates_(std::move(materials), options, domain.any_periodic()) {
         particles.has_strength = false;
         particles.has_flow = Scheme::has_flow;
         for (const Material& material : rates_.materials()) {
@@ -56,7 +62,7 @@ public:
 
     /// Sorts, builds lists and takes the first rates. Call once, after the particles are in.
     void start() {
-        if (halo_.ranks.rank() > 0) particles.resize(0);    // was filled for the sake of bodies
+        if (halo_.ranks.rank() > 0) particles.resize(0);  // was filled for the sake of bodies
         for (std::size_t p = 0; p < particles.size(); ++p)
             if (particles.is_counted(p)) sources.ledger.initial += particles.mass[p];
         walls.set_velocities(particles, time_);
@@ -79,7 +85,8 @@ public:
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("rebuilds", rebuilds_), archive("updates", updates_);
         archive("av_dissipation", av_dissipation_);
-        archive("moved", moved_), archive("skin_width", skin_width_), archive("skin", skin_), archive("rebuild_step", rebuild_step_), archive("least_timestep", least_timestep_);
+        archive("moved", moved_), archive("skin_width", skin_width_), archive("skin", skin_),
+            archive("rebuild_step", rebuild_step_), archive("least_timestep", least_timestep_);
         particles.serialise(archive);
         sources.serialise(archive);
         bodies.serialise(archive);
@@ -117,7 +124,7 @@ public:
 
     Totals<D> totals() const {
         Totals<D> sum = doseki::totals(particles, rates_);
-        if (halo_.ranks.rank() > 0) return sum;    // every rank has all bodies
+        if (halo_.ranks.rank() > 0) return sum;  // every rank has all bodies
         sum.kinetic_energy += bodies.kinetic_energy();
         sum.shear_energy += bodies.deformable.elastic.strain_energy();
         return sum;
@@ -164,8 +171,8 @@ private:
     std::string described(std::int64_t p) const;
     [[noreturn]] void report_failure(const char* kind, std::int64_t p) const;
 
-    /// Beyond these nothing is believed: speeds over the largest sound speed, timesteps over the one
-    /// that matter at rest allows.
+    /// Beyond these nothing is believed: speeds over the largest sound speed, timesteps over the
+    /// one that matter at rest allows.
     static constexpr double largest_mach = 10.0, smallest_timestep = 1e-4;
 
     Options<D> options_;
@@ -181,9 +188,9 @@ private:
     double sound_speed_ = 0.0;     // of the stiffest material at rest [m/s]
     double least_timestep_ = 0.0;  // [s]
     std::int64_t steps_ = 0, rebuilds_ = 0, updates_ = 0;
-    std::int64_t rebuild_step_ = 0;    // when the lists were built
-    bool new_lists_ = false;           // since the last rates
-    double cut_busy_ = 0.0;            // of the clock, when it was last asked whether to cut [s]
+    std::int64_t rebuild_step_ = 0;  // when the lists were built
+    bool new_lists_ = false;         // since the last rates
+    double cut_busy_ = 0.0;          // of the clock, when it was last asked whether to cut [s]
 };
 
 template <class Scheme>
@@ -194,7 +201,8 @@ void Simulation<Scheme>::step(double limit) {
     kick(0.5 * dt);
     const double own_moved = drift(dt), moved = halo_.ranks.largest(own_moved);
     time_ = dt < end - time_ ? time_ + dt : end;
-    if (moved > largest_mach * sound_speed_ * dt) report_failure("speed", own_moved < moved ? -1 : fastest_particle());
+    if (moved > largest_mach * sound_speed_ * dt)
+        report_failure("speed", own_moved < moved ? -1 : fastest_particle());
     walls.set_velocities(particles, time_);
     bodies.set_velocities(particles, 0.5 * dt);
     sources.settle(particles, time_);
@@ -221,14 +229,16 @@ double Simulation<Scheme>::drift(double dt) {
     const auto timing = phases().measure(Phase::integrate);
     sources.drive(particles, time_, dt);
     bodies.advance(walls, time_, dt);
-    return max(max(doseki::drift(particles, dt), walls.move(particles, time_, dt)), bodies.place(particles));
+    return max(max(doseki::drift(particles, dt), walls.move(particles, time_, dt)),
+               bodies.place(particles));
 }
 
 /// The next time that a step must meet exactly.
 template <class Scheme>
 double Simulation<Scheme>::next_event() const {
     const double source = sources.next_event();
-    return min(walls.next_event(time_), source > time_ ? source : std::numeric_limits<double>::infinity());
+    return min(walls.next_event(time_),
+               source > time_ ? source : std::numeric_limits<double>::infinity());
 }
 
 /// From what the lists that end now have lasted.
@@ -256,7 +266,8 @@ void Simulation<Scheme>::rebuild_neighbours() {
     sources.drain(particles, bodies);
     cut_space();
     drop_removed();
-    if (halo_.ranks.sum(static_cast<double>(particles.size())) == 0.0) throw PhysicsFailure("no particle is left in the domain", "empty", -1);
+    if (halo_.ranks.sum(static_cast<double>(particles.size())) == 0.0)
+        throw PhysicsFailure("no particle is left in the domain", "empty", -1);
     if (!halo_.alone()) {
         const auto timing = halo_.ranks.clock.measure(Share::migrate);
         migrate(particles, halo_.ranks.exchange());
@@ -279,8 +290,9 @@ void Simulation<Scheme>::cut_space() {
     if (!exchange.wants_cuts(busy)) return;
     std::vector<std::uint32_t> everyone(particles.size());
     std::iota(everyone.begin(), everyone.end(), 0u);
-    const auto costs = particle_costs(neighbours_.clusters(), width, neighbours_.moving(), particles.size(), phases(),
-                                      omp_get_max_threads(), Scheme::has_flow);
+    const auto costs =
+        particle_costs(neighbours_.clusters(), width, neighbours_.moving(), particles.size(),
+                       phases(), omp_get_max_threads(), Scheme::has_flow);
     exchange.cut(coordinates_of(particles, everyone), costs);
     phases().restart(true);
 }
@@ -289,11 +301,13 @@ template <class Scheme>
 void Simulation<Scheme>::build_lists() {
     std::vector<std::uint8_t> fixed = fixed_ones();
     const auto support = support_radii();
-    const double own_support = support.empty() ? std::numeric_limits<double>::max() : *std::min_element(support.begin(), support.end());
+    const double own_support = support.empty() ? std::numeric_limits<double>::max()
+                                               : *std::min_element(support.begin(), support.end());
     const double least_support = halo_.ranks.least(own_support);
     skin_ = cheapest_skin(least_support);
     skin_width_ = skin_ * least_support;
-    least_timestep_ = smallest_timestep * options_.cflnumber * least_support / (rates_.kernel_support() * sound_speed_);
+    least_timestep_ = smallest_timestep * options_.cflnumber * least_support /
+                      (rates_.kernel_support() * sound_speed_);
     if (!halo_.alone()) {
         const auto timing = halo_.ranks.clock.measure(Share::halo);
         halo_.find_exports(particles.position, support, fixed, skin_width_);
@@ -322,7 +336,8 @@ void Simulation<Scheme>::build_lists_with_ghosts() {
         const auto ghosts = halo_.announce(position, support, fixed_ones());
         order = neighbours_.sort_ghosts(ghosts.position, ghosts.support, ghosts.is_fixed);
         halo_.place(order, position.size());
-        for (const std::uint32_t k : order) position.push_back(ghosts.position[k]), support.push_back(ghosts.support[k]);
+        for (const std::uint32_t k : order)
+            position.push_back(ghosts.position[k]), support.push_back(ghosts.support[k]);
     }
     const auto timing = phases().measure(Phase::list_build);
     neighbours_.template build<width>(position, support, skin_width_);
@@ -364,7 +379,8 @@ void Simulation<Scheme>::wrap_positions() {
     for (int a = 0; a < D; ++a) {
         if (!domain_.periodic[a]) continue;
         const double length = domain_.length(a);
-        for (auto& x : particles.position) x[a] -= length * std::floor((x[a] - domain_.low[a]) / length);
+        for (auto& x : particles.position)
+            x[a] -= length * std::floor((x[a] - domain_.low[a]) / length);
     }
 }
 
@@ -375,7 +391,8 @@ void Simulation<Scheme>::update_rates(double half_dt) {
     bodies.gather(particles, halo_.ranks);
     if (const Fault& fault = rates_.fault(); fault.rank != Fault::none)
         report_failure(fault.rank == Fault::density ? "density" : "not_finite", fault.particle);
-    if (rates_.timestep() < least_timestep_ && halo_.ranks.largest(static_cast<double>(rates_.limiting_particle())) >= 0.0)
+    if (rates_.timestep() < least_timestep_ &&
+        halo_.ranks.largest(static_cast<double>(rates_.limiting_particle())) >= 0.0)
         report_failure("timestep", rates_.limiting_particle());
 }
 
@@ -387,17 +404,20 @@ void Simulation<Scheme>::check_positions() const {
         for (int a = 0; a < D; ++a) {
             const double x = particles.position[p][a], length = domain_.length(a);
             const bool bounded = !domain_.periodic[a] && length > 0.0;
-            const bool strayed = bounded && (x < domain_.low[a] - length || x > domain_.high[a] + length);
+            const bool strayed =
+                bounded && (x < domain_.low[a] - length || x > domain_.high[a] + length);
             if (!(std::abs(x) < 1e9) || strayed) outside = static_cast<std::int64_t>(p);
         }
-    if (halo_.ranks.largest(static_cast<double>(outside)) >= 0.0) report_failure("outside", outside);
+    if (halo_.ranks.largest(static_cast<double>(outside)) >= 0.0)
+        report_failure("outside", outside);
 }
 
 template <class Scheme>
 std::int64_t Simulation<Scheme>::fastest_particle() const {
     std::size_t fastest = 0;
     for (std::size_t p = 0; p < particles.size(); ++p)
-        if (dot(particles.velocity[p], particles.velocity[p]) > dot(particles.velocity[fastest], particles.velocity[fastest]))
+        if (dot(particles.velocity[p], particles.velocity[p]) >
+            dot(particles.velocity[fastest], particles.velocity[fastest]))
             fastest = p;
     return particles.size() > 0 ? static_cast<std::int64_t>(fastest) : -1;
 }
@@ -416,9 +436,10 @@ std::string Simulation<Scheme>::described(std::int64_t p) const {
     std::string where;
     for (int a = 0; a < D; ++a) where += (a ? ", " : "") + text(particles.position[k][a]);
     const double speed = sqrt(dot(particles.velocity[k], particles.velocity[k]));
-    return std::to_string(tag.id) + " at t = " + text(time_) + " s, step " + std::to_string(steps_ + 1) + ": particle " +
-           std::to_string(tag.id) + " (" + material.name + ") at (" + where + ") m has speed " + text(speed) +
-           " m/s, density " + text(particles.density[k]) + " kg/m^3 (at rest " + text(material.rho0) + ")";
+    return std::to_string(tag.id) + " at t = " + text(time_) + " s, step " +
+           std::to_string(steps_ + 1) + ": particle " + std::to_string(tag.id) + " (" +
+           material.name + ") at (" + where + ") m has speed " + text(speed) + " m/s, density " +
+           text(particles.density[k]) + " kg/m^3 (at rest " + text(material.rho0) + ")";
 }
 
 /// Throws the same on all ranks; `p` is -1 on those that have not the particle to blame.
@@ -433,7 +454,8 @@ template <class Scheme>
 double Simulation<Scheme>::bytes_per_particle() const {
     std::size_t bytes = neighbours_.bytes() + rates_.bytes();
     auto& fields = const_cast<Particles<D>&>(particles);
-    fields.for_each_field([&bytes](const auto& field) { bytes += field.capacity() * sizeof(field[0]); });
+    fields.for_each_field(
+        [&bytes](const auto& field) { bytes += field.capacity() * sizeof(field[0]); });
     return static_cast<double>(bytes) / static_cast<double>(max<std::size_t>(1, particles.size()));
 }
 

@@ -9,8 +9,8 @@ namespace doseki {
 /// With a skin s a step costs 1 + growth s for its pairs, and lists last s / (2 g) steps when the
 /// fastest particle goes g support radii a step; in the same unit a sort and build costs `build`.
 /// So the sum 1 + growth s + 2 g build / s is least at s = sqrt(2 g build / growth). It is flat
-/// there, so measured constants (docs/performance.md) serve better than a clock would: a skin that followed
-/// the wall time would give every run a rounding of its own.
+/// there, so measured constants (docs/performance.md) serve better than a clock would: a skin that
+/// followed the wall time would give every run a rounding of its own.
 template <int D>
 struct CheapestSkin {
     static constexpr double build = D == 2 ? 0.7 : 1.0;

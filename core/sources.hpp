@@ -10,28 +10,30 @@
 
 namespace doseki {
 
-/// A number in (-1, 1) that depends on its arguments alone, so that a run can be repeated and resumed
-/// (the finaliser of SplitMix64, Steele et al. 2014).
+/// A number in (-1, 1) that depends on its arguments alone, so that a run can be repeated and
+/// resumed (the finaliser of SplitMix64, Steele et al. 2014).
 inline double symmetric_noise(std::int64_t id, int axis) {
-    auto z = static_cast<std::uint64_t>(id) * 4 + static_cast<std::uint64_t>(axis) + 0x9e3779b97f4a7c15u;
+    auto z =
+        static_cast<std::uint64_t>(id) * 4 + static_cast<std::uint64_t>(axis) + 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     z ^= z >> 31;
     return static_cast<double>(static_cast<std::int64_t>(z)) * 0x1p-63;
 }
 
-/// An inflow section: layers of particles, dp apart, pushed through it at a prescribed speed. Behind the
-/// section a buffer of driven layers carries the flow's pressure upstream; a layer that has crossed the
-/// section is set free and a new one joins at the back. The rate is therefore exact to one layer.
+/// An inflow section: layers of particles, dp apart, pushed through it at a prescribed speed.
+/// Behind the section a buffer of driven layers carries the flow's pressure upstream; a layer that
+/// has crossed the section is set free and a new one joins at the back. The rate is therefore exact
+/// to one layer.
 template <int D>
 struct Inflow {
-    std::vector<Vec<double, D>> layer;    // positions of one layer in the plane of the section
-    Vec<double, D> direction{};           // unit vector of the flow
-    SpeedTable speed;                     // from the start of the inflow to its end
-    double spacing = 0.0;                 // between layers [m]
+    std::vector<Vec<double, D>> layer;  // positions of one layer in the plane of the section
+    Vec<double, D> direction{};         // unit vector of the flow
+    SpeedTable speed;                   // from the start of the inflow to its end
+    double spacing = 0.0;               // between layers [m]
     int buffer_layers = 4;
-    double jitter = 0.0;                  // random displacement of a particle, in spacings (< 1/2)
-    double mass = 0.0, density = 0.0, smoothing_length = 0.0;    // of one particle
+    double jitter = 0.0;  // random displacement of a particle, in spacings (< 1/2)
+    double mass = 0.0, density = 0.0, smoothing_length = 0.0;  // of one particle
     std::int16_t material = 0;
     std::int32_t body = 0;
 
@@ -51,7 +53,8 @@ struct Inflow {
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("inflow_released", released), archive("inflow_open", open), archive("inflow_closed", closed);
+        archive("inflow_released", released), archive("inflow_open", open),
+            archive("inflow_closed", closed);
     }
 
     /// Distance of layer k beyond the section at time t (< 0: still in the buffer).
@@ -72,7 +75,7 @@ struct Outflow {
 };
 
 struct Ledger {
-    double initial = 0.0, asked = 0.0, entered = 0.0, left = 0.0;    // [kg], 2-D: [kg/m]
+    double initial = 0.0, asked = 0.0, entered = 0.0, left = 0.0;  // [kg], 2-D: [kg/m]
 };
 
 /// Everything that adds or removes particles, with its account.
@@ -81,9 +84,9 @@ class Sources {
 public:
     std::vector<Inflow<D>> inflows;
     std::vector<Outflow<D>> outflows;
-    Ledger ledger;    // of the particles of this rank
+    Ledger ledger;  // of the particles of this rank
     std::int64_t next_id = 0;
-    bool adds = true;    // on one rank only; from there particles go to their owners
+    bool adds = true;  // on one rank only; from there particles go to their owners
 
     double next_event() const {
         double next = std::numeric_limits<double>::infinity();
@@ -95,11 +98,12 @@ public:
     /// neighbours must be sorted anew. Particles to remove are left in `removed`.
     bool feed(Particles<D>& particles, double t);
 
-    /// Gives driven particles the mean speed from t to t + dt, so that a drift takes them exactly as far
-    /// as the table of their inflow says; nothing to do for one of constant speed.
+    /// Gives driven particles the mean speed from t to t + dt, so that a drift takes them exactly
+    /// as far as the table of their inflow says; nothing to do for one of constant speed.
     void drive(Particles<D>& particles, double t, double dt) const {
         set_speeds(particles, [t, dt](const SpeedTable& table) {
-            return dt > 0.0 ? (table.distance_at(t + dt) - table.distance_at(t)) / dt : table.speed_at(t);
+            return dt > 0.0 ? (table.distance_at(t + dt) - table.distance_at(t)) / dt
+                            : table.speed_at(t);
         });
     }
 
@@ -108,7 +112,8 @@ public:
         set_speeds(particles, [t](const SpeedTable& table) { return table.speed_at(t); });
     }
 
-    /// Free particles, and bodies whose centre is, inside an outflow, to be dropped at the next sort.
+    /// Free particles, and bodies whose centre is, inside an outflow, to be dropped at the next
+    /// sort.
     void drain(const Particles<D>& particles, Bodies<D>& bodies);
 
     std::vector<std::uint8_t> removed;
@@ -119,7 +124,8 @@ public:
         archive("mass_initial", ledger.initial), archive("mass_asked", ledger.asked);
         archive("mass_entered", ledger.entered), archive("mass_left", ledger.left);
         archive("next_id", next_id);
-        for (std::size_t k = 0; k < inflows.size(); ++k) archive.nested(std::to_string(k) + "_", inflows[k]);
+        for (std::size_t k = 0; k < inflows.size(); ++k)
+            archive.nested(std::to_string(k) + "_", inflows[k]);
     }
 
 private:
@@ -137,13 +143,15 @@ void Sources<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) const {
         const Vec<double, D> velocity = speed_of(inflow.speed) * inflow.direction;
         for (std::size_t p = 0; p < particles.size(); ++p) {
             const Tag& tag = particles.tag[p];
-            if (tag.motion == Motion::driven && tag.body == inflow.body) particles.velocity[p] = velocity;
+            if (tag.motion == Motion::driven && tag.body == inflow.body)
+                particles.velocity[p] = velocity;
         }
     }
 }
 
 template <int D>
-void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t) {
+void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k,
+                           double t) {
     if (!adds) {
         next_id += static_cast<std::int64_t>(inflow.layer.size());
         return;
@@ -154,12 +162,14 @@ void Sources<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std
         const std::size_t p = first + row;
         particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
         for (int a = 0; a < D; ++a)
-            particles.position[p][a] += inflow.jitter * inflow.spacing * symmetric_noise(next_id, a);
+            particles.position[p][a] +=
+                inflow.jitter * inflow.spacing * symmetric_noise(next_id, a);
         particles.velocity[p] = inflow.speed.speed_at(t) * inflow.direction;
         particles.acceleration[p] = {};
         particles.density[p] = inflow.density;
         particles.density_rate[p] = 0.0;
-        if (particles.has_strength) particles.deviatoric_stress[p] = particles.deviatoric_stress_rate[p] = {};
+        if (particles.has_strength)
+            particles.deviatoric_stress[p] = particles.deviatoric_stress_rate[p] = {};
         if (particles.has_flow) particles.flow.surface[p] = 1.0;
         particles.mass[p] = inflow.mass;
         particles.smoothing_length[p] = inflow.smoothing_length;
@@ -191,14 +201,16 @@ bool Sources<D>::feed(Particles<D>& particles, double t) {
         changed = true;
         if (!inflow.open) {
             inflow.open = true;
-            for (std::int64_t k = 0; k < inflow.buffer_layers; ++k) add_layer(particles, inflow, k, t);
+            for (std::int64_t k = 0; k < inflow.buffer_layers; ++k)
+                add_layer(particles, inflow, k, t);
         }
         release(particles, inflow, min(t, inflow.speed.stop()));
         if (t >= inflow.speed.stop()) {
             inflow.closed = true;
             removed.resize(particles.size(), 0);
             for (std::size_t p = 0; p < particles.size(); ++p)
-                if (particles.tag[p].motion == Motion::driven && particles.tag[p].body == inflow.body)
+                if (particles.tag[p].motion == Motion::driven &&
+                    particles.tag[p].body == inflow.body)
                     removed[p] = 1;
         }
     }
@@ -210,7 +222,8 @@ bool Sources<D>::feed(Particles<D>& particles, double t) {
 template <int D>
 void Sources<D>::drain(const Particles<D>& particles, Bodies<D>& bodies) {
     removed.resize(particles.size(), 0);
-    for (const Outflow<D>& outflow : outflows) ledger.left += bodies.drain(particles, outflow, removed);
+    for (const Outflow<D>& outflow : outflows)
+        ledger.left += bodies.drain(particles, outflow, removed);
     for (std::size_t p = 0; p < particles.size(); ++p)
         for (const Outflow<D>& outflow : outflows)
             if (!removed[p] && particles.is_free(p) && outflow.contains(particles.position[p])) {

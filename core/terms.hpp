@@ -13,7 +13,8 @@ MotionPoint<Pack<real>, D> load_motion(std::span<const MotionRecord<real, D>> re
                                        std::uint32_t first) {
     const auto last = static_cast<std::uint32_t>(records.size() - 1);
     auto lane = [&](auto&& get) {
-        return Pack<real>([&](auto l) { return get(records[std::min<std::uint32_t>(first + l, last)]); });
+        return Pack<real>(
+            [&](auto l) { return get(records[std::min<std::uint32_t>(first + l, last)]); });
     };
     MotionPoint<Pack<real>, D> point;
     for (int a = 0; a < D; ++a) point.v[a] = lane([a](const auto& record) { return record.v[a]; });
@@ -45,7 +46,7 @@ struct VelocityGradientTerm {
 
     template <class T>
     DOSEKI_FN void add(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i,
-             const Point<T>& j) const {
+                       const Point<T>& j) const {
         Sum::add(gradient, pair, i, j);
     }
 
@@ -53,7 +54,8 @@ struct VelocityGradientTerm {
     void moving_done(Mat<T, D>&) const {}
 
     template <class T>
-    DOSEKI_FN void add_fixed(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+    DOSEKI_FN void add_fixed(Mat<T, D>& gradient, const Pair<T, D>& pair, const Point<T>& i,
+                             const Point<T>& j) const {
         Sum::add(gradient, pair, i, j);
     }
 
@@ -61,7 +63,8 @@ struct VelocityGradientTerm {
     void finish(std::uint32_t first, int count, const Mat<T, D>& gradient) const {
         for (int l = 0; l < count; ++l) {
             Mat<double, D> lane;
-            for (int k = 0; k < D * D; ++k) lane.element[k] = static_cast<double>(gradient.element[k][l]);
+            for (int k = 0; k < D * D; ++k)
+                lane.element[k] = static_cast<double>(gradient.element[k][l]);
             finish_particle(first + l, lane);
         }
     }
@@ -84,7 +87,8 @@ struct MomentumTerm {
     auto load(std::uint32_t first) const {
         const auto last = static_cast<std::uint32_t>(stress.size() - 1);
         auto lane = [&](auto&& get) {
-            return Pack<real>([&](auto l) { return get(stress[std::min<std::uint32_t>(first + l, last)]); });
+            return Pack<real>(
+                [&](auto l) { return get(stress[std::min<std::uint32_t>(first + l, last)]); });
         };
         Point<Pack<real>> point;
         point.motion = load_motion<real, D>(motion, first);
@@ -96,27 +100,34 @@ struct MomentumTerm {
         return point;
     }
 
-    DOSEKI_FN auto load_one(std::uint32_t j) const { return stress_point<Pack<real>>(motion[j], stress[j]); }
+    DOSEKI_FN auto load_one(std::uint32_t j) const {
+        return stress_point<Pack<real>>(motion[j], stress[j]);
+    }
     DOSEKI_FN auto load_fixed(std::uint32_t j) const { return load_one(j); }
 
     template <class T>
-    DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+    DOSEKI_FN void add(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i,
+                       const Point<T>& j) const {
         Sum::add(sums, options, pair, i, j);
     }
 
     template <class T>
-    DOSEKI_FN void add_fixed(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i, const Point<T>& j) const {
+    DOSEKI_FN void add_fixed(Sums<T>& sums, const Pair<T, D>& pair, const Point<T>& i,
+                             const Point<T>& j) const {
         Sum::add_fixed(sums, options, pair, i, j);
     }
 
     template <class T>
-    void moving_done(Sums<T>& sums) const { Sum::moving_done(sums); }
+    void moving_done(Sums<T>& sums) const {
+        Sum::moving_done(sums);
+    }
 
     template <class T>
     void finish(std::uint32_t first, int count, const Sums<T>& sums) const {
         for (int l = 0; l < count; ++l) {
             Sums<double> lane;
-            for (int a = 0; a < D; ++a) lane.acceleration[a] = static_cast<double>(sums.acceleration[a][l]);
+            for (int a = 0; a < D; ++a)
+                lane.acceleration[a] = static_cast<double>(sums.acceleration[a][l]);
             lane.av_power = static_cast<double>(sums.av_power[l]);
             lane.max_v_sig = static_cast<double>(sums.max_v_sig[l]);
             finish_particle(first + l, lane);

@@ -100,7 +100,8 @@ public:
             for (int a = 0; a < D; ++a) particles.position[p][a] += step[a];
             farthest = std::max(farthest, dot(step, step));
             if (particles.has_flow)
-                particles.flow.normal[p] = particles.flow.normal[p] + motion->turning(particles.flow.normal[p], dt);
+                particles.flow.normal[p] =
+                    particles.flow.normal[p] + motion->turning(particles.flow.normal[p], dt);
         }
         return std::sqrt(farthest);
     }
@@ -132,7 +133,9 @@ public:
     /// Null for a body that stands still.
     const WallMotion<D>* motion_of(std::int32_t named) const {
         const auto body = static_cast<std::size_t>(named);
-        return body < of_body_.size() && of_body_[body] >= 0 ? &motions_[static_cast<std::size_t>(of_body_[body])] : nullptr;
+        return body < of_body_.size() && of_body_[body] >= 0
+                   ? &motions_[static_cast<std::size_t>(of_body_[body])]
+                   : nullptr;
     }
 
 private:

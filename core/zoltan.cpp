@@ -1,5 +1,5 @@
-// Recursive coordinate bisection of points by Zoltan, for python/doseki/parallel/zoltan.py. A module of
-// its own: it is bound to the MPI that Zoltan was built on, which the core is not.
+// Recursive coordinate bisection of points by Zoltan, for python/doseki/parallel/zoltan.py. A
+// module of its own: it is bound to the MPI that Zoltan was built on, which the core is not.
 
 #include <stdexcept>
 #include <string>
@@ -28,7 +28,8 @@ nb::ndarray<nb::numpy, T> array(const std::vector<T>& values, std::vector<std::s
 }
 
 void check(int code, const char* what) {
-    if (code != ZOLTAN_OK && code != ZOLTAN_WARN) throw std::runtime_error(std::string("Zoltan: ") + what);
+    if (code != ZOLTAN_OK && code != ZOLTAN_WARN)
+        throw std::runtime_error(std::string("Zoltan: ") + what);
 }
 
 /// Cuts space so that each rank of a communicator has the same weight of points.
@@ -38,9 +39,14 @@ public:
         float version = 0;
         check(Zoltan_Initialize(0, nullptr, &version), "cannot be initialised");
         zoltan_ = Zoltan_Create(MPI_Comm_f2c(fortran_comm));
-        for (const auto& [name, value] : {std::pair{"DEBUG_LEVEL", "0"}, {"LB_METHOD", "RCB"}, {"KEEP_CUTS", "1"},
-                                          {"NUM_GID_ENTRIES", "1"}, {"NUM_LID_ENTRIES", "1"}, {"OBJ_WEIGHT_DIM", "1"},
-                                          {"RETURN_LISTS", "NONE"}, {"RCB_RECTILINEAR_BLOCKS", "1"}})
+        for (const auto& [name, value] : {std::pair{"DEBUG_LEVEL", "0"},
+                                          {"LB_METHOD", "RCB"},
+                                          {"KEEP_CUTS", "1"},
+                                          {"NUM_GID_ENTRIES", "1"},
+                                          {"NUM_LID_ENTRIES", "1"},
+                                          {"OBJ_WEIGHT_DIM", "1"},
+                                          {"RETURN_LISTS", "NONE"},
+                                          {"RCB_RECTILINEAR_BLOCKS", "1"}})
             check(Zoltan_Set_Param(zoltan_, name, value), name);
         Zoltan_Set_Num_Obj_Fn(zoltan_, count, this);
         Zoltan_Set_Obj_List_Fn(zoltan_, list, this);
@@ -56,12 +62,15 @@ public:
     }
 
     void cut(Input<double> points, Input<double> weights) {
-        points_ = points.data(), weights_ = weights.data(), size_ = static_cast<int>(weights.size());
+        points_ = points.data(), weights_ = weights.data(),
+        size_ = static_cast<int>(weights.size());
         int changes = 0, global = 0, local = 0, in = 0, out = 0;
         int *in_ranks = nullptr, *in_parts = nullptr, *out_ranks = nullptr, *out_parts = nullptr;
-        ZOLTAN_ID_PTR in_global = nullptr, in_local = nullptr, out_global = nullptr, out_local = nullptr;
-        check(Zoltan_LB_Partition(zoltan_, &changes, &global, &local, &in, &in_global, &in_local, &in_ranks, &in_parts,
-                                  &out, &out_global, &out_local, &out_ranks, &out_parts),
+        ZOLTAN_ID_PTR in_global = nullptr, in_local = nullptr, out_global = nullptr,
+                      out_local = nullptr;
+        check(Zoltan_LB_Partition(zoltan_, &changes, &global, &local, &in, &in_global, &in_local,
+                                  &in_ranks, &in_parts, &out, &out_global, &out_local, &out_ranks,
+                                  &out_parts),
               "cannot cut");
         points_ = weights_ = nullptr, size_ = 0;
     }
@@ -80,17 +89,21 @@ public:
     nb::ndarray<nb::numpy, double> region(int rank) const {
         int dim = 0;
         double low[3], high[3];
-        check(Zoltan_RCB_Box(zoltan_, rank, &dim, &low[0], &low[1], &low[2], &high[0], &high[1], &high[2]), "has no box");
+        check(Zoltan_RCB_Box(zoltan_, rank, &dim, &low[0], &low[1], &low[2], &high[0], &high[1],
+                             &high[2]),
+              "has no box");
         std::vector<double> corners(low, low + dim_);
         corners.insert(corners.end(), high, high + dim_);
         return array(corners, {2, static_cast<std::size_t>(dim_)});
     }
 
-    nb::ndarray<nb::numpy, int> ranks_touching(std::vector<double> low, std::vector<double> high, int ranks) const {
+    nb::ndarray<nb::numpy, int> ranks_touching(std::vector<double> low, std::vector<double> high,
+                                               int ranks) const {
         low.resize(3), high.resize(3);
         std::vector<int> found(static_cast<std::size_t>(ranks)), parts(found.size());
         int n = 0, m = 0;
-        check(Zoltan_LB_Box_PP_Assign(zoltan_, low[0], low[1], low[2], high[0], high[1], high[2], found.data(), &n, parts.data(), &m),
+        check(Zoltan_LB_Box_PP_Assign(zoltan_, low[0], low[1], low[2], high[0], high[1], high[2],
+                                      found.data(), &n, parts.data(), &m),
               "cannot assign a box");
         found.resize(static_cast<std::size_t>(n));
         return array(found, {found.size()});
@@ -103,7 +116,8 @@ private:
         *error = ZOLTAN_OK;
         return of(data).size_;
     }
-    static void list(void* data, int, int, ZOLTAN_ID_PTR global, ZOLTAN_ID_PTR local, int, float* weights, int* error) {
+    static void list(void* data, int, int, ZOLTAN_ID_PTR global, ZOLTAN_ID_PTR local, int,
+                     float* weights, int* error) {
         const Bisection& self = of(data);
         for (int p = 0; p < self.size_; ++p) {
             global[p] = local[p] = static_cast<ZOLTAN_ID_TYPE>(p);
@@ -115,11 +129,13 @@ private:
         *error = ZOLTAN_OK;
         return of(data).dim_;
     }
-    static void coordinates(void* data, int, int, int n, ZOLTAN_ID_PTR, ZOLTAN_ID_PTR local, int dim, double* out, int* error) {
+    static void coordinates(void* data, int, int, int n, ZOLTAN_ID_PTR, ZOLTAN_ID_PTR local,
+                            int dim, double* out, int* error) {
         const Bisection& self = of(data);
         for (int k = 0; k < n; ++k)
             for (int a = 0; a < dim; ++a)
-                out[k * dim + a] = self.points_[local[k] * static_cast<ZOLTAN_ID_TYPE>(dim) + static_cast<ZOLTAN_ID_TYPE>(a)];
+                out[k * dim + a] = self.points_[local[k] * static_cast<ZOLTAN_ID_TYPE>(dim) +
+                                                static_cast<ZOLTAN_ID_TYPE>(a)];
         *error = ZOLTAN_OK;
     }
 
@@ -132,12 +148,14 @@ private:
 
 NB_MODULE(_zoltan, m) {
     // Of the headers: a call might reach another MPI that the process has loaded.
-    m.attr("mpi_version") = "Open MPI v" + std::to_string(OMPI_MAJOR_VERSION) + "." + std::to_string(OMPI_MINOR_VERSION) + "." +
+    m.attr("mpi_version") = "Open MPI v" + std::to_string(OMPI_MAJOR_VERSION) + "." +
+                            std::to_string(OMPI_MINOR_VERSION) + "." +
                             std::to_string(OMPI_RELEASE_VERSION);
     nb::class_<Bisection>(m, "Bisection")
         .def(nb::init<int, int>(), nb::arg("fortran_comm"), nb::arg("dim"))
         .def("cut", &Bisection::cut, nb::arg("points"), nb::arg("weights"))
         .def("owners", &Bisection::owners, nb::arg("points"))
         .def("region", &Bisection::region, nb::arg("rank"))
-        .def("ranks_touching", &Bisection::ranks_touching, nb::arg("low"), nb::arg("high"), nb::arg("ranks"));
+        .def("ranks_touching", &Bisection::ranks_touching, nb::arg("low"), nb::arg("high"),
+             nb::arg("ranks"));
 }

@@ -9,7 +9,7 @@ namespace doseki {
 struct PhysicsFailure : std::runtime_error {
     PhysicsFailure(const std::string& what, const std::string& kind, std::int64_t particle)
         : std::runtime_error(what), kind(kind), particle(particle) {}
-    std::string kind;    // "density", "speed", "timestep", "outside", "not_finite", "empty"
+    std::string kind;  // "density", "speed", "timestep", "outside", "not_finite", "empty"
     std::int64_t particle;
 };
 

@@ -40,8 +40,10 @@ using std::sqrt;
 /// A literal in the precision of T (a Pack takes no implicit narrowing).
 template <class T>
 DOSEKI_FN T number(double literal) {
-    if constexpr (requires { typename T::value_type; }) return T(static_cast<typename T::value_type>(literal));
-    else return static_cast<T>(literal);
+    if constexpr (requires { typename T::value_type; })
+        return T(static_cast<typename T::value_type>(literal));
+    else
+        return static_cast<T>(literal);
 }
 
 /// `mask ? yes : no`, lane by lane; the scalar overload makes one source serve both.
@@ -51,7 +53,7 @@ DOSEKI_FN float select(bool mask, float yes, float no) { return mask ? yes : no;
 #if !defined(__CUDACC__)
 template <class real, class Abi>
 DOSEKI_FN stdx::simd<real, Abi> select(const stdx::simd_mask<real, Abi>& mask,
-                                    const stdx::simd<real, Abi>& yes, stdx::simd<real, Abi> no) {
+                                       const stdx::simd<real, Abi>& yes, stdx::simd<real, Abi> no) {
     stdx::where(mask, no) = yes;
     return no;
 }

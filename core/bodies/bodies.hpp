@@ -13,10 +13,10 @@ namespace doseki {
 /// A rigid body, as given at the start.
 template <int D>
 struct RigidBody {
-    std::int32_t shape = 0, material = 0, body = 0;    // body: the named one that it belongs to
-    bool fixed = false;                                // moves only as its wall does
-    double mass = 0.0;                                 // [kg], 2-D: [kg/m]
-    Mat<double, 3> inertia{};                          // about the centre, in its own frame; 2-D: zz alone
+    std::int32_t shape = 0, material = 0, body = 0;  // body: the named one that it belongs to
+    bool fixed = false;                              // moves only as its wall does
+    double mass = 0.0;                               // [kg], 2-D: [kg/m]
+    Mat<double, 3> inertia{};  // about the centre, in its own frame; 2-D: zz alone
 };
 
 /// What changes of a rigid body; numbers only, so that it can be archived as they are.
@@ -25,11 +25,11 @@ struct BodyState {
     Vec<double, D> centre, velocity;
     Quaternion orientation;
     Vec3 angular_momentum;
-    Vec<double, D> acceleration;    // mean of late
+    Vec<double, D> acceleration;  // mean of late
     Vec3 spin_rate;
-    Vec<double, D> flow_force;      // of the fluid
+    Vec<double, D> flow_force;  // of the fluid
     Vec3 flow_torque;
-    double removed;                 // 1: gone
+    double removed;  // 1: gone
 };
 
 /// A point of the surface or inside of a rigid body, in its frame; numbers only, as BodyState.
@@ -45,7 +45,7 @@ struct BodyPoint {
 template <int D>
 struct BodyColumns {
     std::vector<double> radius, mass;
-    std::vector<Vec<double, D>> corners, samples;    // of all shapes in turn
+    std::vector<Vec<double, D>> corners, samples;  // of all shapes in turn
     std::vector<std::int32_t> facet_count, sample_count, shape, material, body;
     std::vector<std::uint8_t> fixed;
     std::vector<Mat<double, 3>> inertia;
@@ -54,22 +54,26 @@ struct BodyColumns {
     BodyColumns(const std::vector<Shape<D>>& shapes, const std::vector<RigidBody<D>>& bodies) {
         for (const Shape<D>& each : shapes) {
             radius.push_back(each.radius);
-            for (const auto& facet : each.facets) corners.insert(corners.end(), facet.begin(), facet.end());
+            for (const auto& facet : each.facets)
+                corners.insert(corners.end(), facet.begin(), facet.end());
             samples.insert(samples.end(), each.samples.begin(), each.samples.end());
             facet_count.push_back(static_cast<std::int32_t>(each.facets.size()));
             sample_count.push_back(static_cast<std::int32_t>(each.samples.size()));
         }
         for (const RigidBody<D>& each : bodies) {
-            shape.push_back(each.shape), material.push_back(each.material), body.push_back(each.body);
+            shape.push_back(each.shape), material.push_back(each.material),
+                body.push_back(each.body);
             fixed.push_back(each.fixed), mass.push_back(each.mass), inertia.push_back(each.inertia);
         }
     }
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("shape_radius", radius), archive("shape_corners", corners), archive("shape_samples", samples);
+        archive("shape_radius", radius), archive("shape_corners", corners),
+            archive("shape_samples", samples);
         archive("shape_facets", facet_count), archive("shape_sample_count", sample_count);
-        archive("body_shape", shape), archive("body_material", material), archive("body_named", body);
+        archive("body_shape", shape), archive("body_material", material),
+            archive("body_named", body);
         archive("body_fixed", fixed), archive("body_mass", mass), archive("body_inertia", inertia);
     }
 
@@ -89,19 +93,20 @@ struct BodyColumns {
     }
 
     RigidBody<D> rigid(std::size_t k) const {
-        return {shape.at(k), material.at(k), body.at(k), fixed.at(k) != 0, mass.at(k), inertia.at(k)};
+        return {shape.at(k),      material.at(k), body.at(k),
+                fixed.at(k) != 0, mass.at(k),     inertia.at(k)};
     }
 };
 
-/// Bodies that move on their own: rigid and deformable ones, and the contacts among them and with walls. They are
-/// kicked by the fluid together with it; gravity and contacts, which are stiffer, act in steps of their own
-/// within the drift.
+/// Bodies that move on their own: rigid and deformable ones, and the contacts among them and with
+/// walls. They are kicked by the fluid together with it; gravity and contacts, which are stiffer,
+/// act in steps of their own within the drift.
 template <int D>
 class Bodies {
 public:
     /// `memory`: time over which accelerations are averaged, as the fluid sees them [s].
-    Bodies(const Domain<D>& domain, const Vec<double, D>& gravity, const ContactOptions& options, std::vector<Surface> surfaces,
-           double memory)
+    Bodies(const Domain<D>& domain, const Vec<double, D>& gravity, const ContactOptions& options,
+           std::vector<Surface> surfaces, double memory)
         : gravity_(gravity), memory_(memory), contacts_(domain, options, std::move(surfaces)) {}
 
     std::vector<Shape<D>> shapes;
@@ -124,12 +129,16 @@ public:
     void bind(Particles<D>& particles, std::size_t p, std::size_t k) {
         const Mat<double, 3> R = states_[k].orientation.matrix();
         particles.flow.point[p] = static_cast<std::int32_t>(points_.size());
-        points_.push_back({static_cast<double>(k), rotated_back(R, contacts_.nearest_image(particles.position[p] - states_[k].centre)),
-                           rotated_back(R, particles.flow.normal[p])});
+        points_.push_back(
+            {static_cast<double>(k),
+             rotated_back(R, contacts_.nearest_image(particles.position[p] - states_[k].centre)),
+             rotated_back(R, particles.flow.normal[p])});
     }
     /// Index of the rigid body of a particle; -1: none.
     std::int32_t body_of(const Particles<D>& particles, std::size_t p) const {
-        return is_rigid_point(particles, p) ? points_[static_cast<std::size_t>(particles.flow.point[p])].index() : -1;
+        return is_rigid_point(particles, p)
+                   ? points_[static_cast<std::size_t>(particles.flow.point[p])].index()
+                   : -1;
     }
 
     /// Call once after everything is in.
@@ -141,10 +150,13 @@ public:
     }
 
     /// Largest step that motion without a fluid may have.
-    double timestep() const { return any_moves() ? longest_leap * std::min(contacts_.timestep(), elastic_step_) : std::numeric_limits<double>::infinity(); }
+    double timestep() const {
+        return any_moves() ? longest_leap * std::min(contacts_.timestep(), elastic_step_)
+                           : std::numeric_limits<double>::infinity();
+    }
 
-    /// Takes over what the fluid does to the points of bodies. All ranks have all bodies: each point is a
-    /// particle of one of them, so that the sums are those of one rank, to the bit.
+    /// Takes over what the fluid does to the points of bodies. All ranks have all bodies: each
+    /// point is a particle of one of them, so that the sums are those of one rank, to the bit.
     void gather(const Particles<D>& particles, const Ranks& ranks);
     void kick(double half_dt);
     /// From t to t + dt, through as many contact steps as it takes.
@@ -185,7 +197,9 @@ private:
 
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
     void restore(const BodyColumns<D>& columns);
-    const Shape<D>& shape_of(std::size_t k) const { return shapes[static_cast<std::size_t>(bodies_[k].shape)]; }
+    const Shape<D>& shape_of(std::size_t k) const {
+        return shapes[static_cast<std::size_t>(bodies_[k].shape)];
+    }
     std::vector<Mat<double, 3>> rotations() const {
         std::vector<Mat<double, 3>> R;
         for (const BodyState<D>& state : states_) R.push_back(state.orientation.matrix());
@@ -200,20 +214,26 @@ private:
     }
     bool at_work(std::size_t k) const { return !bodies_[k].fixed && states_[k].removed == 0.0; }
     static bool is_rigid_point(const Particles<D>& particles, std::size_t p) {
-        return particles.has_flow && particles.is_bound(p) && !DeformableBodies<D>::is_mark(particles.flow.point[p]);
+        return particles.has_flow && particles.is_bound(p) &&
+               !DeformableBodies<D>::is_mark(particles.flow.point[p]);
     }
     void set_margin() {
-        if (!deformable.empty()) margin_ = margin_ > 0.0 ? std::min(margin_, deformable.margin()) : deformable.margin();
+        if (!deformable.empty())
+            margin_ = margin_ > 0.0 ? std::min(margin_, deformable.margin()) : deformable.margin();
     }
     void set_elastic_step() {
-        elastic_step_ = deformable.empty() ? std::numeric_limits<double>::infinity() : deformable.elastic.timestep();
+        elastic_step_ = deformable.empty() ? std::numeric_limits<double>::infinity()
+                                           : deformable.elastic.timestep();
     }
     /// Also short against the margin of the pairs.
     double longest_part() const {
         double fastest = deformable.fastest();
         for (std::size_t k = 0; k < size(); ++k)
-            if (at_work(k)) fastest = std::max(fastest, norm(states_[k].velocity) + shape_of(k).radius * norm(spin(k)));
-        return std::min({contacts_.timestep(), elastic_step_, 0.25 * margin_ / std::max(fastest, 1e-300)});
+            if (at_work(k))
+                fastest = std::max(fastest,
+                                   norm(states_[k].velocity) + shape_of(k).radius * norm(spin(k)));
+        return std::min(
+            {contacts_.timestep(), elastic_step_, 0.25 * margin_ / std::max(fastest, 1e-300)});
     }
     void drift(double dt);
     void move_walls(const Walls<D>& walls, double t, double dt);
@@ -229,13 +249,14 @@ private:
     std::vector<BodyPoint<D>> points_;
     std::vector<Vec<double, D>> contact_force_;
     std::vector<Vec3> contact_torque_;
-    // Views of the bodies for the contacts: contactors in the order of bodies, with the sample of each.
+    // Views of the bodies for the contacts: contactors in the order of bodies, with the sample of
+    // each.
     Contactors<D> contactors_;
     std::vector<Vec<double, D>> sample_;
     std::vector<Solid<D>> solids_;
     std::size_t moving_ = 0;
     double moved_ = 0.0, margin_ = 0.0;
-    double elastic_step_ = std::numeric_limits<double>::infinity();    // of deformable bodies [s]
+    double elastic_step_ = std::numeric_limits<double>::infinity();  // of deformable bodies [s]
 };
 
 template <int D>
@@ -260,10 +281,12 @@ void Bodies<D>::add(const RigidBody<D>& body, const BodyState<D>& state, const V
             sample_.push_back(x);
         }
         Solid<D> solid;
-        solid.body = k, solid.material = body.material, solid.fixed = body.fixed, solid.mass = body.mass, solid.size = diameter;
+        solid.body = k, solid.material = body.material, solid.fixed = body.fixed,
+        solid.mass = body.mass, solid.size = diameter;
         solids_.push_back(solid);
     }
-    if (!body.fixed) margin_ = margin_ > 0.0 ? std::min(margin_, 0.3 * shape.radius) : 0.3 * shape.radius;
+    if (!body.fixed)
+        margin_ = margin_ > 0.0 ? std::min(margin_, 0.3 * shape.radius) : 0.3 * shape.radius;
 }
 
 /// Makes the bodies of an archive, in whose state they are already.
@@ -283,7 +306,8 @@ Vec3 Bodies<D>::spin_of(std::size_t k, const Vec3& L) const {
     if (bodies_[k].fixed) return L;
     const Mat<double, 3>& I = bodies_[k].inertia;
     Vec3 spin{};
-    if constexpr (D == 2) spin[2] = L[2] / I(2, 2);
+    if constexpr (D == 2)
+        spin[2] = L[2] / I(2, 2);
     else {
         const Mat<double, 3> R = states_[k].orientation.matrix();
         const Vec3 l = rotated_back(R, L);
@@ -292,7 +316,9 @@ Vec3 Bodies<D>::spin_of(std::size_t k, const Vec3& L) const {
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) row[a][b] = I(a, b);
         const double determinant = dot(row[0], cross(row[1], row[2]));
-        const Vec3 w = (1.0 / determinant) * (l[0] * cross(row[1], row[2]) + l[1] * cross(row[2], row[0]) + l[2] * cross(row[0], row[1]));
+        const Vec3 w =
+            (1.0 / determinant) * (l[0] * cross(row[1], row[2]) + l[1] * cross(row[2], row[0]) +
+                                   l[2] * cross(row[0], row[1]));
         spin = rotated(R, w);
     }
     return spin;
@@ -303,7 +329,8 @@ void Bodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
     if (!any_moves()) return;
     std::vector<Vec<double, D>> force(points_.size());
     for (std::size_t p = 0; p < particles.size(); ++p)
-        if (is_rigid_point(particles, p)) force[static_cast<std::size_t>(particles.flow.point[p])] = particles.flow.wall_force[p];
+        if (is_rigid_point(particles, p))
+            force[static_cast<std::size_t>(particles.flow.point[p])] = particles.flow.wall_force[p];
     ranks.sum(numbers_of(force));
     deformable.gather(particles, ranks);
     for (BodyState<D>& state : states_) state.flow_force = {}, state.flow_torque = {};
@@ -311,7 +338,9 @@ void Bodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
     for (std::size_t q = 0; q < points_.size(); ++q) {
         const auto k = static_cast<std::size_t>(points_[q].index());
         states_[k].flow_force = states_[k].flow_force + force[q];
-        states_[k].flow_torque = states_[k].flow_torque + cross(in_space(rotated(R[k], points_[q].offset)), in_space(force[q]));
+        states_[k].flow_torque =
+            states_[k].flow_torque +
+            cross(in_space(rotated(R[k], points_[q].offset)), in_space(force[q]));
     }
 }
 
@@ -320,8 +349,10 @@ void Bodies<D>::kick(double half_dt) {
     if (!deformable.empty()) deformable.kick(half_dt);
     for (std::size_t k = 0; k < size(); ++k) {
         if (!at_work(k)) continue;
-        states_[k].velocity = states_[k].velocity + (half_dt / bodies_[k].mass) * states_[k].flow_force;
-        states_[k].angular_momentum = states_[k].angular_momentum + half_dt * states_[k].flow_torque;
+        states_[k].velocity =
+            states_[k].velocity + (half_dt / bodies_[k].mass) * states_[k].flow_force;
+        states_[k].angular_momentum =
+            states_[k].angular_momentum + half_dt * states_[k].flow_torque;
     }
 }
 
@@ -346,7 +377,8 @@ void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
         for (std::size_t k = 0; k < size(); ++k) {
             if (!at_work(k)) continue;
             BodyState<D>& state = states_[k];
-            state.velocity = state.velocity + part * (gravity_ + (1.0 / bodies_[k].mass) * contact_force_[k]);
+            state.velocity =
+                state.velocity + part * (gravity_ + (1.0 / bodies_[k].mass) * contact_force_[k]);
             state.angular_momentum = state.angular_momentum + part * contact_torque_[k];
         }
         drift(0.5 * part);
@@ -356,10 +388,12 @@ void Bodies<D>::advance(const Walls<D>& walls, double t, double dt) {
     for (std::size_t k = 0; k < size(); ++k) {
         if (!at_work(k)) continue;
         BodyState<D>& state = states_[k];
-        const Vec<double, D> mean = (1.0 / dt) * (state.velocity - before[k]) + (1.0 / bodies_[k].mass) * state.flow_force;
+        const Vec<double, D> mean =
+            (1.0 / dt) * (state.velocity - before[k]) + (1.0 / bodies_[k].mass) * state.flow_force;
         const double share = std::min(1.0, dt / memory_);
         state.acceleration = state.acceleration + share * (mean - state.acceleration);
-        state.spin_rate = state.spin_rate + share * ((1.0 / dt) * (spin(k) - spin_before[k]) - state.spin_rate);
+        state.spin_rate =
+            state.spin_rate + share * ((1.0 / dt) * (spin(k) - spin_before[k]) - state.spin_rate);
     }
 }
 
@@ -388,13 +422,15 @@ void Bodies<D>::move_walls(const Walls<D>& walls, double t, double dt) {
         if (!motion) continue;
         BodyState<D>& state = states_[k];
         state.velocity = motion->velocity_at(state.centre, t);
-        state.angular_momentum = motion->spin_at(t);    // whose inertia is infinite: kept as a spin
-        const Vec<double, D> step = motion->moves(t) ? motion->moved(state.centre, t, dt) - state.centre : Vec<double, D>{};
+        state.angular_momentum = motion->spin_at(t);  // whose inertia is infinite: kept as a spin
+        const Vec<double, D> step =
+            motion->moves(t) ? motion->moved(state.centre, t, dt) - state.centre : Vec<double, D>{};
         state.centre = state.centre + step;
         const Vec3 turn = dt * motion->spin_at(t);
         state.orientation = state.orientation.turned(turn);
         farthest = std::max(farthest, norm(step) + shape_of(k).radius * norm(turn));
-        if (motion->removed_at > 0.0 && motion->removed_at <= t && state.removed == 0.0) state.removed = 1.0, moved_ = margin_;
+        if (motion->removed_at > 0.0 && motion->removed_at <= t && state.removed == 0.0)
+            state.removed = 1.0, moved_ = margin_;
     }
     moved_ += farthest;
 }
@@ -413,10 +449,12 @@ void Bodies<D>::pose() {
         const bool gone = state.removed != 0.0;
         if (!ball) {
             Solid<D>& solid = solids_[s++];
-            solid.shape = &shape, solid.centre = centre, solid.velocity = state.velocity, solid.rotation = R, solid.spin = w;
+            solid.shape = &shape, solid.centre = centre, solid.velocity = state.velocity,
+            solid.rotation = R, solid.spin = w;
             solid.force = {}, solid.torque = {}, solid.gone = gone;
         }
-        for (; c < contactors_.size_of_all() && contactors_.body[c] == static_cast<std::int32_t>(k); ++c) {
+        for (; c < contactors_.size_of_all() && contactors_.body[c] == static_cast<std::int32_t>(k);
+             ++c) {
             const Vec<double, D> lever = ball ? Vec<double, D>{} : rotated(R, sample_[c]);
             contactors_.position[c] = centre + lever;
             contactors_.velocity[c] = state.velocity + turning_velocity(w, lever);
@@ -439,10 +477,11 @@ void Bodies<D>::collect_forces() {
     std::fill(contact_torque_.begin(), contact_torque_.end(), Vec3{});
     for (std::size_t c = 0; c < contactors_.size_of_all(); ++c) {
         const auto k = static_cast<std::size_t>(contactors_.body[c]);
-        if (k >= size()) break;    // deformable ones come last
+        if (k >= size()) break;  // deformable ones come last
         const Vec3 lever = in_space(contactors_.position[c] - states_[k].centre);
         contact_force_[k] = contact_force_[k] + contactors_.force[c];
-        contact_torque_[k] = contact_torque_[k] + contactors_.torque[c] + cross(lever, in_space(contactors_.force[c]));
+        contact_torque_[k] = contact_torque_[k] + contactors_.torque[c] +
+                             cross(lever, in_space(contactors_.force[c]));
     }
     for (const Solid<D>& solid : solids_) {
         const auto k = static_cast<std::size_t>(solid.body);
@@ -457,7 +496,8 @@ double Bodies<D>::place(Particles<D>& particles) const {
     if (!any_moves()) return 0.0;
     const auto R = rotations();
     const auto w = spins(0.0);
-    const double bent = deformable.place(particles, [this](const Vec<double, D>& r) { return contacts_.nearest_image(r); });
+    const double bent = deformable.place(
+        particles, [this](const Vec<double, D>& r) { return contacts_.nearest_image(r); });
     double farthest = bent * bent;
     const std::size_t n = particles.size();
 #pragma omp parallel for schedule(static) reduction(max : farthest) if (n > light_loop)
@@ -467,7 +507,8 @@ double Bodies<D>::place(Particles<D>& particles) const {
         const auto k = static_cast<std::size_t>(point.index());
         const BodyState<D>& state = states_[k];
         const Vec<double, D> lever = rotated(R[k], point.offset);
-        const Vec<double, D> step = contacts_.nearest_image(state.centre + lever - particles.position[p]);
+        const Vec<double, D> step =
+            contacts_.nearest_image(state.centre + lever - particles.position[p]);
         farthest = std::max(farthest, dot(step, step));
         particles.position[p] = particles.position[p] + step;
         particles.flow.normal[p] = rotated(R[k], point.normal);
@@ -489,22 +530,26 @@ void Bodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
         if (!is_rigid_point(particles, p)) continue;
         const BodyPoint<D>& point = points_[static_cast<std::size_t>(particles.flow.point[p])];
         const auto k = static_cast<std::size_t>(point.index());
-        particles.velocity[p] = states_[k].velocity + (ahead / bodies_[k].mass) * states_[k].flow_force +
+        particles.velocity[p] = states_[k].velocity +
+                                (ahead / bodies_[k].mass) * states_[k].flow_force +
                                 turning_velocity(w[k], rotated(R[k], point.offset));
     }
 }
 
 template <int D>
 template <class Box>
-double Bodies<D>::drain(const Particles<D>& particles, const Box& box, std::vector<std::uint8_t>& removed) {
+double Bodies<D>::drain(const Particles<D>& particles, const Box& box,
+                        std::vector<std::uint8_t>& removed) {
     if (!any_moves()) return 0.0;
     std::vector<std::uint8_t> leaves(size(), 0);
     double mass = 0.0;
     for (std::size_t k = 0; k < size(); ++k)
-        if (at_work(k) && box.contains(states_[k].centre)) leaves[k] = 1, states_[k].removed = 1.0, moved_ = margin_;
+        if (at_work(k) && box.contains(states_[k].centre))
+            leaves[k] = 1, states_[k].removed = 1.0, moved_ = margin_;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::int32_t k = body_of(particles, p);
-        if (k >= 0 && leaves[static_cast<std::size_t>(k)]) removed[p] = 1, mass += particles.mass[p];
+        if (k >= 0 && leaves[static_cast<std::size_t>(k)])
+            removed[p] = 1, mass += particles.mass[p];
     }
     return mass;
 }
@@ -514,7 +559,8 @@ double Bodies<D>::kinetic_energy() const {
     double energy = deformable.elastic.kinetic_energy();
     for (std::size_t k = 0; k < size(); ++k)
         if (at_work(k))
-            energy += 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) + 0.5 * dot(spin(k), states_[k].angular_momentum);
+            energy += 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) +
+                      0.5 * dot(spin(k), states_[k].angular_momentum);
     return energy;
 }
 

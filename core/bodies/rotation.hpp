@@ -23,7 +23,8 @@ Vec<double, D> in_run(const Vec3& u) {
 
 inline Vec3 cross(const Vec3& u, const Vec3& v) {
     Vec3 w;
-    w[0] = u[1] * v[2] - u[2] * v[1], w[1] = u[2] * v[0] - u[0] * v[2], w[2] = u[0] * v[1] - u[1] * v[0];
+    w[0] = u[1] * v[2] - u[2] * v[1], w[1] = u[2] * v[0] - u[0] * v[2],
+    w[2] = u[0] * v[1] - u[1] * v[0];
     return w;
 }
 
@@ -57,9 +58,12 @@ struct Quaternion {
 
     Mat<double, 3> matrix() const {
         Mat<double, 3> R;
-        R(0, 0) = 1 - 2 * (y * y + z * z), R(0, 1) = 2 * (x * y - w * z), R(0, 2) = 2 * (x * z + w * y);
-        R(1, 0) = 2 * (x * y + w * z), R(1, 1) = 1 - 2 * (x * x + z * z), R(1, 2) = 2 * (y * z - w * x);
-        R(2, 0) = 2 * (x * z - w * y), R(2, 1) = 2 * (y * z + w * x), R(2, 2) = 1 - 2 * (x * x + y * y);
+        R(0, 0) = 1 - 2 * (y * y + z * z), R(0, 1) = 2 * (x * y - w * z),
+             R(0, 2) = 2 * (x * z + w * y);
+        R(1, 0) = 2 * (x * y + w * z), R(1, 1) = 1 - 2 * (x * x + z * z),
+             R(1, 2) = 2 * (y * z - w * x);
+        R(2, 0) = 2 * (x * z - w * y), R(2, 1) = 2 * (y * z + w * x),
+             R(2, 2) = 1 - 2 * (x * x + y * y);
         return R;
     }
 };

@@ -11,19 +11,20 @@ namespace doseki {
 /// Where a point stands to a surface.
 template <int D>
 struct SurfacePoint {
-    double distance;          // of the point, negative inside [m]
-    Vec<double, D> normal;    // out of the shape
+    double distance;        // of the point, negative inside [m]
+    Vec<double, D> normal;  // out of the shape
 };
 
-/// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D a
-/// disc), or a convex polygon or polyhedron given by its facets.
+/// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D
+/// a disc), or a convex polygon or polyhedron given by its facets.
 template <int D>
 struct Shape {
-    using Facet = std::array<Vec<double, D>, D>;    // corners of a segment or triangle, outside to the right
+    using Facet =
+        std::array<Vec<double, D>, D>;  // corners of a segment or triangle, outside to the right
 
-    double radius = 0.0;    // of the ball, or of the ball around everything [m]
+    double radius = 0.0;  // of the ball, or of the ball around everything [m]
     std::vector<Facet> facets;
-    std::vector<Vec<double, D>> samples;    // points of the surface that may touch another shape
+    std::vector<Vec<double, D>> samples;  // points of the surface that may touch another shape
 
     bool is_ball() const { return facets.empty(); }
 
@@ -44,7 +45,8 @@ struct Shape {
         Vec<double, D> nearest;
         for (const Facet& facet : facets) {
             const Vec<double, D> y = nearest_point(facet, x);
-            if (const double square = dot(x - y, x - y); square < least) least = square, nearest = y;
+            if (const double square = dot(x - y, x - y); square < least)
+                least = square, nearest = y;
         }
         const double d = std::sqrt(least);
         return d > 0.0 ? SurfacePoint<D>{d, (1.0 / d) * (x - nearest)} : inside;
@@ -53,8 +55,10 @@ struct Shape {
     static Vec<double, D> normal_of(const Facet& facet) {
         const Vec<double, D> u = facet[1] - facet[0];
         Vec<double, D> n;
-        if constexpr (D == 2) n[0] = u[1], n[1] = -u[0];
-        else n = cross(u, facet[2] - facet[0]);
+        if constexpr (D == 2)
+            n[0] = u[1], n[1] = -u[0];
+        else
+            n = cross(u, facet[2] - facet[0]);
         return (1.0 / norm(n)) * n;
     }
 
@@ -65,13 +69,15 @@ private:
         return v;
     }
 
-    static Vec<double, D> on_segment(const Vec<double, D>& a, const Vec<double, D>& b, const Vec<double, D>& x) {
+    static Vec<double, D> on_segment(const Vec<double, D>& a, const Vec<double, D>& b,
+                                     const Vec<double, D>& x) {
         const Vec<double, D> u = b - a;
         return a + std::clamp(dot(x - a, u) / dot(u, u), 0.0, 1.0) * u;
     }
 
     static Vec<double, D> nearest_point(const Facet& facet, const Vec<double, D>& x) {
-        if constexpr (D == 2) return on_segment(facet[0], facet[1], x);
+        if constexpr (D == 2)
+            return on_segment(facet[0], facet[1], x);
         else {
             const Vec3 n = normal_of(facet), foot = x - dot(x - facet[0], n) * n;
             bool within = true;

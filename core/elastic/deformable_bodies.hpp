@@ -9,8 +9,8 @@
 
 namespace doseki {
 
-/// Elastic bodies among water and other bodies: each of their points is a bound particle, which water
-/// meets as a wall, and points of their surfaces touch other bodies.
+/// Elastic bodies among water and other bodies: each of their points is a bound particle, which
+/// water meets as a wall, and points of their surfaces touch other bodies.
 template <int D>
 class DeformableBodies {
 public:
@@ -23,9 +23,11 @@ public:
 
     bool empty() const { return elastic.size() == 0; }
 
-    /// Makes the particles `members`, where they are now, with the velocities and normals that they have, one body.
-    void add(Particles<D>& particles, const ElasticBody& body, std::int32_t material, std::span<const std::int32_t> members,
-             std::span<const std::uint8_t> clamped, std::span<const std::uint8_t> surface) {
+    /// Makes the particles `members`, where they are now, with the velocities and normals that they
+    /// have, one body.
+    void add(Particles<D>& particles, const ElasticBody& body, std::int32_t material,
+             std::span<const std::int32_t> members, std::span<const std::uint8_t> clamped,
+             std::span<const std::uint8_t> surface) {
         std::vector<Vec<double, D>> position, velocity;
         for (std::size_t k = 0; k < members.size(); ++k) {
             const auto p = static_cast<std::size_t>(members[k]);
@@ -39,12 +41,14 @@ public:
     }
 
     /// `first_body`: number of the first of them among all bodies that touch.
-    void start(Particles<D>& particles, const Vec<double, D>& gravity, Contactors<D>& contactors, std::int32_t first_body);
+    void start(Particles<D>& particles, const Vec<double, D>& gravity, Contactors<D>& contactors,
+               std::int32_t first_body);
 
     bool has(const Particles<D>& particles, std::size_t p) const {
         return particles.has_flow && particles.is_bound(p) && is_mark(particles.flow.point[p]);
     }
-    /// Cauchy stress of a particle, all nine components; in 2-D that along z keeps the strain plane.
+    /// Cauchy stress of a particle, all nine components; in 2-D that along z keeps the strain
+    /// plane.
     void stress(const Particles<D>& particles, std::size_t p, double* out) const {
         const std::size_t k = point_of(particles.flow.point[p]);
         const Mat<double, D>& F = elastic.deformation(k);
@@ -58,7 +62,9 @@ public:
     /// See Bodies.
     void gather(const Particles<D>& particles, const Ranks& ranks) {
         if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
-        for_each_point(particles, [&](std::size_t p, std::size_t k) { flow_force_[k] = particles.flow.wall_force[p]; });
+        for_each_point(particles, [&](std::size_t p, std::size_t k) {
+            flow_force_[k] = particles.flow.wall_force[p];
+        });
         ranks.sum(numbers_of(flow_force_));
     }
     void kick(double half_dt) { elastic.kick(half_dt, flow_force_); }
@@ -80,17 +86,22 @@ public:
     /// How far points may go before contacts are looked for again [m].
     double margin() const {
         double least = std::numeric_limits<double>::infinity();
-        for (std::size_t p = 0; p < elastic.size(); ++p) least = std::min(least, 0.5 * elastic.body_of(p).spacing);
+        for (std::size_t p = 0; p < elastic.size(); ++p)
+            least = std::min(least, 0.5 * elastic.body_of(p).spacing);
         return least;
     }
 
     template <class Archive>
     void serialise(Archive& archive) {
         elastic.serialise(archive);
-        archive("deformable_normal", normal_), archive("deformable_surface", surface_), archive("deformable_material", material_);
-        archive("deformable_flow_force", flow_force_), archive("deformable_acceleration", acceleration_);
+        archive("deformable_normal", normal_), archive("deformable_surface", surface_),
+            archive("deformable_material", material_);
+        archive("deformable_flow_force", flow_force_),
+            archive("deformable_acceleration", acceleration_);
     }
-    void restore(Contactors<D>& contactors, std::int32_t first_body) { add_contactors(contactors, first_body); }
+    void restore(Contactors<D>& contactors, std::int32_t first_body) {
+        add_contactors(contactors, first_body);
+    }
 
 private:
     /// Calls f(particle, point) for the particles of deformable bodies.
@@ -105,17 +116,17 @@ private:
 
     void add_contactors(Contactors<D>& contactors, std::int32_t first_body);
 
-    std::vector<Vec<double, D>> normal_;    // at rest
+    std::vector<Vec<double, D>> normal_;  // at rest
     std::vector<std::uint8_t> surface_;
-    std::vector<std::int32_t> material_;    // by body
+    std::vector<std::int32_t> material_;  // by body
     std::vector<Vec<double, D>> flow_force_, acceleration_, before_;
-    std::vector<std::size_t> touching_;    // points of the surface
+    std::vector<std::size_t> touching_;  // points of the surface
     std::size_t first_contactor_ = 0;
 };
 
 template <int D>
-void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& gravity, Contactors<D>& contactors,
-                                std::int32_t first_body) {
+void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& gravity,
+                                Contactors<D>& contactors, std::int32_t first_body) {
     if (empty()) return;
     elastic.gravity = gravity;
     elastic.start();
@@ -127,7 +138,8 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
     normal_ = sorted(normal_), surface_ = sorted(surface_);
     flow_force_.assign(elastic.size(), {}), acceleration_.assign(elastic.size(), {});
     for (std::size_t p = 0; p < particles.size(); ++p)
-        if (is_mark(particles.flow.point[p])) particles.flow.point[p] = mark(elastic.slot(point_of(particles.flow.point[p])));
+        if (is_mark(particles.flow.point[p]))
+            particles.flow.point[p] = mark(elastic.slot(point_of(particles.flow.point[p])));
     add_contactors(contactors, first_body);
 }
 
@@ -138,7 +150,8 @@ void DeformableBodies<D>::add_contactors(Contactors<D>& contactors, std::int32_t
     for (std::size_t k = 0; k < elastic.size(); ++k) {
         if (!surface_[k]) continue;
         const double radius = 0.5 * elastic.body_of(k).spacing;
-        contactors.add(first_body + elastic.body(k), material_[static_cast<std::size_t>(elastic.body(k))], radius,
+        contactors.add(first_body + elastic.body(k),
+                       material_[static_cast<std::size_t>(elastic.body(k))], radius,
                        elastic.mass(k), 2.0 * radius, elastic.clamped(k), true);
         touching_.push_back(k);
     }
@@ -149,7 +162,8 @@ void DeformableBodies<D>::end_step(double dt, double memory) {
     const double share = std::min(1.0, dt / memory);
     for (std::size_t k = 0; k < elastic.size(); ++k) {
         if (elastic.clamped(k)) continue;
-        const Vec<double, D> mean = (1.0 / dt) * (elastic.v[k] - before_[k]) + (1.0 / elastic.mass(k)) * flow_force_[k];
+        const Vec<double, D> mean =
+            (1.0 / dt) * (elastic.v[k] - before_[k]) + (1.0 / elastic.mass(k)) * flow_force_[k];
         acceleration_[k] = acceleration_[k] + share * (mean - acceleration_[k]);
     }
 }
@@ -158,14 +172,16 @@ template <int D>
 void DeformableBodies<D>::pose(Contactors<D>& contactors) const {
     for (std::size_t t = 0; t < touching_.size(); ++t) {
         const std::size_t c = first_contactor_ + t;
-        contactors.position[c] = elastic.x[touching_[t]], contactors.velocity[c] = elastic.v[touching_[t]];
+        contactors.position[c] = elastic.x[touching_[t]],
+        contactors.velocity[c] = elastic.v[touching_[t]];
         contactors.force[c] = {}, contactors.torque[c] = {};
     }
 }
 
 template <int D>
 void DeformableBodies<D>::collect(const Contactors<D>& contactors) {
-    for (std::size_t t = 0; t < touching_.size(); ++t) elastic.load[touching_[t]] = contactors.force[first_contactor_ + t];
+    for (std::size_t t = 0; t < touching_.size(); ++t)
+        elastic.load[touching_[t]] = contactors.force[first_contactor_ + t];
 }
 
 /// Normals turn as surfaces do, with F^-T.
@@ -188,7 +204,9 @@ double DeformableBodies<D>::place(Particles<D>& particles, NearestImage&& neares
 template <int D>
 void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
     for_each_point(particles, [&](std::size_t p, std::size_t k) {
-        particles.velocity[p] = elastic.clamped(k) ? Vec<double, D>{} : elastic.v[k] + (ahead / elastic.mass(k)) * flow_force_[k];
+        particles.velocity[p] = elastic.clamped(k)
+                                    ? Vec<double, D>{}
+                                    : elastic.v[k] + (ahead / elastic.mass(k)) * flow_force_[k];
     });
 }
 

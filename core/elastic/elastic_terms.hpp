@@ -1,6 +1,6 @@
 #pragma once
-// The two sums of elastic solids as terms of the pair loop, which runs over pairs at rest: the records'
-// coordinates are the reference positions X.
+// The two sums of elastic solids as terms of the pair loop, which runs over pairs at rest: the
+// records' coordinates are the reference positions X.
 
 #include <span>
 
@@ -14,10 +14,10 @@ namespace doseki {
 /// What the sums need of a point beside its place at rest.
 template <int D>
 struct ElasticRecord {
-    std::array<double, D> x;        // where it is now
-    double volume;                  // at rest [m^D]
-    double kappa, kappa_rate;       // stiffness [Pa] and damping [Pa s] of the springs
-    std::array<double, D * D> Q;    // see less_springs
+    std::array<double, D> x;      // where it is now
+    double volume;                // at rest [m^D]
+    double kappa, kappa_rate;     // stiffness [Pa] and damping [Pa s] of the springs
+    std::array<double, D * D> Q;  // see less_springs
 };
 
 template <class T, int D>
@@ -29,8 +29,8 @@ struct ElasticPoint {
 
 /// `get(k -> value of record k)` makes a T of a member: of one record, or lane by lane.
 template <class T, int D, class Get>
-DOSEKI_FN ElasticPoint<T, D> elastic_point(const MotionRecord<double, D>* motion, const ElasticRecord<D>* solid,
-                                           const Get& get) {
+DOSEKI_FN ElasticPoint<T, D> elastic_point(const MotionRecord<double, D>* motion,
+                                           const ElasticRecord<D>* solid, const Get& get) {
     ElasticPoint<T, D> point;
     for (int a = 0; a < D; ++a) {
         point.x[a] = get([=](std::uint32_t p) { return solid[p].x[a]; });
@@ -40,7 +40,8 @@ DOSEKI_FN ElasticPoint<T, D> elastic_point(const MotionRecord<double, D>* motion
     point.inverse_support = get([=](std::uint32_t p) { return motion[p].inverse_support; });
     point.kappa = get([=](std::uint32_t p) { return solid[p].kappa; });
     point.kappa_rate = get([=](std::uint32_t p) { return solid[p].kappa_rate; });
-    for (int k = 0; k < D * D; ++k) point.Q.element[k] = get([=](std::uint32_t p) { return solid[p].Q[k]; });
+    for (int k = 0; k < D * D; ++k)
+        point.Q.element[k] = get([=](std::uint32_t p) { return solid[p].Q[k]; });
     return point;
 }
 
@@ -50,13 +51,15 @@ struct ElasticRecords {
     std::span<const ElasticRecord<D>> solid;
 
     DOSEKI_FN ElasticPoint<Pack<double>, D> one(std::uint32_t j) const {
-        return elastic_point<Pack<double>>(motion.data(), solid.data(), [j](auto member) { return Pack<double>(member(j)); });
+        return elastic_point<Pack<double>>(motion.data(), solid.data(),
+                                           [j](auto member) { return Pack<double>(member(j)); });
     }
     /// W in a row; lanes beyond the last repeat it.
     ElasticPoint<Pack<double>, D> lanes_from(std::uint32_t first) const {
         const auto last = static_cast<std::uint32_t>(solid.size() - 1);
         return elastic_point<Pack<double>>(motion.data(), solid.data(), [=](auto member) {
-            return Pack<double>([&](auto l) { return member(std::min<std::uint32_t>(first + l, last)); });
+            return Pack<double>(
+                [&](auto l) { return member(std::min<std::uint32_t>(first + l, last)); });
         });
     }
 };
@@ -81,10 +84,11 @@ struct ElasticTerm {
 
 template <class T, int D>
 struct DeformationSums {
-    Mat<T, D> place{}, velocity{};    // sum V_j (x_j - x_i) (x) grad0 W, the same of v
+    Mat<T, D> place{}, velocity{};  // sum V_j (x_j - x_i) (x) grad0 W, the same of v
 };
 
-/// Eq. (80) before correction: the deformation gradient and its rate; `finish(p, sums)` once for each point.
+/// Eq. (80) before correction: the deformation gradient and its rate; `finish(p, sums)` once for
+/// each point.
 template <int D, class Finish>
 struct DeformationTerm : ElasticTerm<D> {
     template <class T>
@@ -93,8 +97,8 @@ struct DeformationTerm : ElasticTerm<D> {
 
     const Finish& finish_point;
 
-    DOSEKI_FN void add(Sums<Lanes>& sums, const Pair<Lanes, D>& pair, const ElasticPoint<Lanes, D>& i,
-                       const ElasticPoint<Lanes, D>& j) const {
+    DOSEKI_FN void add(Sums<Lanes>& sums, const Pair<Lanes, D>& pair,
+                       const ElasticPoint<Lanes, D>& i, const ElasticPoint<Lanes, D>& j) const {
         const Lanes F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         add_velocity_gradient(sums.place, j.volume, i.x - j.x, F, pair.r_ij);
         add_velocity_gradient(sums.velocity, j.volume, i.v - j.v, F, pair.r_ij);
@@ -121,10 +125,11 @@ struct InternalForceTerm : ElasticTerm<D> {
 
     const Finish& finish_point;
 
-    DOSEKI_FN void add(Vec<Lanes, D>& force, const Pair<Lanes, D>& pair, const ElasticPoint<Lanes, D>& i,
-                       const ElasticPoint<Lanes, D>& j) const {
+    DOSEKI_FN void add(Vec<Lanes, D>& force, const Pair<Lanes, D>& pair,
+                       const ElasticPoint<Lanes, D>& i, const ElasticPoint<Lanes, D>& j) const {
         const Lanes F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
-        const Vec<Lanes, D> elastic = elastic_pair_force(i.Q, j.Q, i.kappa + j.kappa, pair.r_ij, i.x - j.x);
+        const Vec<Lanes, D> elastic =
+            elastic_pair_force(i.Q, j.Q, i.kappa + j.kappa, pair.r_ij, i.x - j.x);
         force = force + (j.volume * F) * (elastic + (i.kappa_rate + j.kappa_rate) * (i.v - j.v));
     }
 

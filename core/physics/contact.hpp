@@ -1,5 +1,6 @@
 #pragma once
-// Forces where two bodies touch, eqs. (42) to (50). Numbers are those of the pair: m*, R*, E* of eq. (43).
+// Forces where two bodies touch, eqs. (42) to (50). Numbers are those of the pair: m*, R*, E* of
+// eq. (43).
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,9 @@ namespace doseki {
 /// force would pull (eq. 46; Schwager & Poeschel, Granular Matter 9 (2007)).
 inline double restitution_of(double zeta) {
     if (zeta < 1.0 - 1e-9) {
-        const double w = std::sqrt(1.0 - zeta * zeta);    // over that of the spring alone
-        return std::exp(-zeta / w * (std::numbers::pi - std::atan2(2.0 * zeta * w, w * w - zeta * zeta)));
+        const double w = std::sqrt(1.0 - zeta * zeta);  // over that of the spring alone
+        return std::exp(-zeta / w *
+                        (std::numbers::pi - std::atan2(2.0 * zeta * w, w * w - zeta * zeta)));
     }
     if (zeta <= 1.0 + 1e-9) return std::exp(-2.0);
     const double w = std::sqrt(zeta * zeta - 1.0);
@@ -48,8 +50,8 @@ inline double contact_damping(bool hertz, double zeta, double stiffness, double 
 /// A spring that slides at a limit: friction (eq. 49), and the resistance to rolling (eq. 50).
 /// `stretch` is carried from step to step; it is cut to what the limit can hold.
 template <int D>
-Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& speed, double dt, double stiffness,
-                              double damping, double limit) {
+Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& speed, double dt,
+                              double stiffness, double damping, double limit) {
     stretch = stretch + dt * speed;
     Vec<double, D> force = -stiffness * stretch - damping * speed;
     const double size = std::sqrt(dot(force, force));
@@ -62,18 +64,18 @@ Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& spe
     return force;
 }
 
-/// Restitution of a Hertz spring with that dashpot, which depends on neither speed nor stiffness; from
-/// the motion itself, x'' = -F(x, x') with x'(0) = 1.
+/// Restitution of a Hertz spring with that dashpot, which depends on neither speed nor stiffness;
+/// from the motion itself, x'' = -F(x, x') with x'(0) = 1.
 inline double restitution_of_hertz(double zeta) {
-    constexpr double E = 0.75, dt = 1e-3;    // F = x^(3/2)
+    constexpr double E = 0.75, dt = 1e-3;  // F = x^(3/2)
     auto pull = [zeta](double x, double v) {
         const NormalSpring spring = hertz_spring(E, 1.0, x);
         return -(spring.force + contact_damping(true, zeta, spring.stiffness, 1.0) * v);
     };
-    double x = 0.5 * dt, v = 1.0;    // drift, kick, drift
+    double x = 0.5 * dt, v = 1.0;  // drift, kick, drift
     for (int n = 0; n < 20000 && x > 0.0; ++n) {
         const double half = v + 0.5 * dt * pull(x, v), a = pull(x, half);
-        if (a > 0.0) break;    // it would pull
+        if (a > 0.0) break;  // it would pull
         v += dt * a, x += dt * v;
     }
     return std::max(0.0, -v);
@@ -84,12 +86,15 @@ inline double damping_ratio(double restitution, bool hertz = false) {
     double low = 0.0, high = hertz ? 3.0 : 1e3;
     for (int k = 0; k < (hertz ? 40 : 200); ++k) {
         const double middle = 0.5 * (low + high);
-        ((hertz ? restitution_of_hertz(middle) : restitution_of(middle)) > restitution ? low : high) = middle;
+        ((hertz ? restitution_of_hertz(middle) : restitution_of(middle)) > restitution ? low
+                                                                                       : high) =
+            middle;
     }
     return low;
 }
 
-/// Overlap that a pair reaches at a speed of approach, and the time that it touches, without damping.
+/// Overlap that a pair reaches at a speed of approach, and the time that it touches, without
+/// damping.
 struct Encounter {
     double overlap, time;
 };

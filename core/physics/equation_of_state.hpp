@@ -15,8 +15,8 @@ DOSEKI_FN T cbrt_near_one(const T& e) {
     return y;
 }
 
-/// Density ratio (5/7)^(3/2) at which Eq. (8) has its minimum. What is stretched further is a void: it
-/// resists no more, and its density stays there until it is compressed again.
+/// Density ratio (5/7)^(3/2) at which Eq. (8) has its minimum. What is stretched further is a void:
+/// it resists no more, and its density stays there until it is compressed again.
 inline constexpr double void_ratio = 0.60368;
 
 /// Birch-Murnaghan equation of state and what follows from it.
@@ -24,9 +24,9 @@ inline constexpr double void_ratio = 0.60368;
 /// Eq. (17): c^2 = dp/drho = c0^2/2 (7 e^(4/3) - 5 e^(2/3)).
 template <class T>
 struct BirchMurnaghan {
-    T pressure;       // [Pa]
-    T sound_speed;    // [m/s]
-    T bulk_energy;    // 9/8 c0^2 (e^(2/3) - 1)^2 [J/kg]
+    T pressure;     // [Pa]
+    T sound_speed;  // [m/s]
+    T bulk_energy;  // 9/8 c0^2 (e^(2/3) - 1)^2 [J/kg]
 
     DOSEKI_FN static BirchMurnaghan at(const T& rho, const T& rho0, const T& c0) {
         const T e = rho / rho0;

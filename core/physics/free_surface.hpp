@@ -5,21 +5,21 @@
 
 namespace doseki {
 
-/// Where the free surface is, and how dense the fluid is regardless of it. C = sum_j m_j/rho0_j W, over
-/// its value on a lattice, is 1 in a fluid that fills the kernel, whatever the law of pressure makes of
-/// it; the measure x = R |grad C|/C is 0 inside and 1.5 for particles of a flat surface, and does not
-/// change when the fluid is diluted. C over what it should be at x is therefore the filling of the
-/// fluid, near a surface as well as inside.
+/// Where the free surface is, and how dense the fluid is regardless of it. C = sum_j m_j/rho0_j W,
+/// over its value on a lattice, is 1 in a fluid that fills the kernel, whatever the law of pressure
+/// makes of it; the measure x = R |grad C|/C is 0 inside and 1.5 for particles of a flat surface,
+/// and does not change when the fluid is diluted. C over what it should be at x is therefore the
+/// filling of the fluid, near a surface as well as inside.
 struct SurfaceMeasure {
-    static constexpr double surface = 0.9;    // above: on the surface
-    static constexpr double edge = 2.2;       // above: a corner or less, where x tells nothing
-    static constexpr double alone = 3.0;      // measure of spray
-    static constexpr double least_concentration = 0.6;    // below: spray
+    static constexpr double surface = 0.9;  // above: on the surface
+    static constexpr double edge = 2.2;     // above: a corner or less, where x tells nothing
+    static constexpr double alone = 3.0;    // measure of spray
+    static constexpr double least_concentration = 0.6;  // below: spray
 
     double x, filling;
 
-    /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.6 dp. The constants give 1 for the
-    /// first two rows of a lattice under a flat surface, in 2-D and (to 0.6 %) in 3-D.
+    /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.6 dp. The constants give 1 for
+    /// the first two rows of a lattice under a flat surface, in 2-D and (to 0.6 %) in 3-D.
     static SurfaceMeasure of(double concentration, double scaled_gradient, bool wide) {
         if (concentration < least_concentration) return {alone, 1.0};
         const double x = std::min(scaled_gradient / concentration, alone);
@@ -28,7 +28,8 @@ struct SurfaceMeasure {
     }
 };
 
-/// sum V W and -sum V F x^2 on a square (2-D) or cubic lattice of spacing dp, both 1 for an integral.
+/// sum V W and -sum V F x^2 on a square (2-D) or cubic lattice of spacing dp, both 1 for an
+/// integral.
 struct LatticeSums {
     double concentration = 0.0, moment = 0.0;
 };
@@ -59,7 +60,8 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
         inverse(0, 0) = m(1, 1) / det, inverse(1, 1) = m(0, 0) / det;
         inverse(0, 1) = inverse(1, 0) = -m(0, 1) / det;
     } else {
-        const double xx = m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2), xy = m(0, 2) * m(1, 2) - m(0, 1) * m(2, 2),
+        const double xx = m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2),
+                     xy = m(0, 2) * m(1, 2) - m(0, 1) * m(2, 2),
                      xz = m(0, 1) * m(1, 2) - m(0, 2) * m(1, 1);
         const double det = m(0, 0) * xx + m(0, 1) * xy + m(0, 2) * xz;
         if (!(det > least_determinant)) return inverse;
@@ -73,11 +75,12 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
     return inverse;
 }
 
-/// Velocity at which particles are shifted towards where they are scarce (Lind et al., J. Comput. Phys.
-/// 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 5 h |L|: what disorder the flow makes in the
-/// time 1/|L| is undone in about that time, however fast the frame moves.
+/// Velocity at which particles are shifted towards where they are scarce (Lind et al., J. Comput.
+/// Phys. 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 5 h |L|: what disorder the flow
+/// makes in the time 1/|L| is undone in about that time, however fast the frame moves.
 template <int D>
-Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate, double h) {
+Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate,
+                                 double h) {
     constexpr double strength = 40.0, most = 5.0;
     const double length = std::sqrt(dot(gradient_of_concentration, gradient_of_concentration));
     if (!(length > 0.0)) return {};

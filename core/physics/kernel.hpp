@@ -31,8 +31,7 @@ struct WendlandC6 {
         const T q = r * inverse_support;
         const T t = max(T(0), T(1) - q);
         const T t2 = t * t, t4 = t2 * t2;
-        return gradient_scale(inverse_support) * (t4 * t2 * t) *
-               (T(1) + q * (T(7) + T(16) * q));
+        return gradient_scale(inverse_support) * (t4 * t2 * t) * (T(1) + q * (T(7) + T(16) * q));
     }
 
     /// -22 C_D / R^(D+2): what does not depend on r.
@@ -50,7 +49,8 @@ struct WendlandC6 {
 template <int D>
 struct WendlandC2 {
     static constexpr double support = 2.0;
-    static constexpr double normalisation = D == 2 ? 7.0 / std::numbers::pi : 21.0 / (2.0 * std::numbers::pi);
+    static constexpr double normalisation =
+        D == 2 ? 7.0 / std::numbers::pi : 21.0 / (2.0 * std::numbers::pi);
 
     /// W(r) [1/m^D] for inverse_support = 1/R.
     template <class T>

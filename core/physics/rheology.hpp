@@ -11,11 +11,11 @@ namespace doseki {
 /// (J. Rheol. 31, 1987).
 template <class T>
 struct HerschelBulkley {
-    T yield_stress;      // [Pa]
-    T consistency;       // [Pa s^n]
-    T flow_index;        // n
-    T regularisation;    // [s]
-    T greatest;          // [Pa s]
+    T yield_stress;    // [Pa]
+    T consistency;     // [Pa s^n]
+    T flow_index;      // n
+    T regularisation;  // [s]
+    T greatest;        // [Pa s]
 
     DOSEKI_FN T viscosity(const T& rate) const {
         using std::exp, std::pow;
@@ -27,14 +27,14 @@ struct HerschelBulkley {
     }
 };
 
-/// Eq. (65): dense granular flow, friction that grows with the inertial number I = |D| d/sqrt(p/rho_s)
-/// (Jop, Forterre & Pouliquen, Nature 441, 2006). No pressure, no friction.
+/// Eq. (65): dense granular flow, friction that grows with the inertial number I = |D|
+/// d/sqrt(p/rho_s) (Jop, Forterre & Pouliquen, Nature 441, 2006). No pressure, no friction.
 template <class T>
 struct MuI {
     T mu_s, mu_2, I_0;
-    T grain_diameter;    // [m]
-    T grain_density;     // [kg/m^3]
-    T greatest;          // [Pa s]
+    T grain_diameter;  // [m]
+    T grain_density;   // [kg/m^3]
+    T greatest;        // [Pa s]
 
     DOSEKI_FN T viscosity(const T& rate, const T& pressure) const {
         const T p = max(pressure, T(0)), slow = number<T>(1e-9);

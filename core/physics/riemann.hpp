@@ -4,21 +4,22 @@
 namespace doseki {
 
 /// Low-dissipation acoustic Riemann solver (Zhang, Hu & Adams, J. Comput. Phys. 335, 2017):
-/// p* = (p_i + p_j)/2 + beta rho c dU/2 with dU = (v_i - v_j).n the speed of approach, less what the
-/// velocity gradient makes of it. Their beta = min(3 max(dU, 0)/c, 1) leaves noise at a free surface
-/// undamped; here it is at least `least_beta`. This is what it adds to the mean pressure [Pa].
+/// p* = (p_i + p_j)/2 + beta rho c dU/2 with dU = (v_i - v_j).n the speed of approach, less what
+/// the velocity gradient makes of it. Their beta = min(3 max(dU, 0)/c, 1) leaves noise at a free
+/// surface undamped; here it is at least `least_beta`. This is what it adds to the mean pressure
+/// [Pa].
 template <class T>
 DOSEKI_FN T approach_pressure(const T& dU, const T& rho, const T& c) {
     constexpr double least_beta = 0.05;
     return number<T>(0.5) * rho * min(max(T(3) * dU, number<T>(least_beta) * c), c) * dU;
 }
 
-/// The part of the solver's velocity U* that comes from pressures, twice over: (p_i - p_j)/(rho c). It
-/// spreads density. The mean pressure gradient is taken out first, as in delta-SPH (Antuono et al.,
-/// Comput. Phys. Commun. 181, 2010), so that water at rest stays at rest.
+/// The part of the solver's velocity U* that comes from pressures, twice over: (p_i - p_j)/(rho c).
+/// It spreads density. The mean pressure gradient is taken out first, as in delta-SPH (Antuono et
+/// al., Comput. Phys. Commun. 181, 2010), so that water at rest stays at rest.
 template <class T, int D>
-DOSEKI_FN T pressure_jump(const T& p_i, const T& p_j, const Vec<T, D>& gradient_i, const Vec<T, D>& gradient_j,
-                          const Vec<T, D>& r_ij) {
+DOSEKI_FN T pressure_jump(const T& p_i, const T& p_j, const Vec<T, D>& gradient_i,
+                          const Vec<T, D>& gradient_j, const Vec<T, D>& r_ij) {
     return p_i - p_j - number<T>(0.5) * dot(gradient_i + gradient_j, r_ij);
 }
 

@@ -16,7 +16,8 @@ DOSEKI_FN Deviator<T, D> elastic_stress_rate(const Mat<T, D>& L, const Deviator<
             T sum = shear_modulus * (L(a, b) + L(b, a));
             if (a == b) sum -= T(2) * shear_modulus * third;
             for (int k = 0; k < D; ++k) {
-                const T w_ak = number<T>(0.5) * (L(a, k) - L(k, a)), w_kb = number<T>(0.5) * (L(k, b) - L(b, k));
+                const T w_ak = number<T>(0.5) * (L(a, k) - L(k, a)),
+                        w_kb = number<T>(0.5) * (L(k, b) - L(b, k));
                 sum += w_ak * S(min(k, b), max(k, b)) - S(min(a, k), max(a, k)) * w_kb;
             }
             rate.element[Deviator<T, D>::index(a, b)] = sum;

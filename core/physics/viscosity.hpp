@@ -5,9 +5,9 @@
 
 namespace doseki {
 
-/// How a pair shares momentum: factors of v_ij and of (v_ij.n) n. Morris, Fox & Zhu (J. Comput. Phys.
-/// 136, 1997) has (1, 0); Monaghan's form (Rep. Prog. Phys. 68, 2005), which keeps angular momentum,
-/// has (0, D + 2).
+/// How a pair shares momentum: factors of v_ij and of (v_ij.n) n. Morris, Fox & Zhu (J. Comput.
+/// Phys. 136, 1997) has (1, 0); Monaghan's form (Rep. Prog. Phys. 68, 2005), which keeps angular
+/// momentum, has (0, D + 2).
 template <class T>
 struct ViscousForm {
     T along_jump, along_pair;
@@ -15,14 +15,14 @@ struct ViscousForm {
 
 /// What mu F multiplies: `v_dot_r` = v_ij.r_ij.
 template <class T, int D>
-DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D>& v_ij, const T& v_dot_r, const T& r,
-                                      const Vec<T, D>& r_ij) {
+DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D>& v_ij,
+                                      const T& v_dot_r, const T& r, const Vec<T, D>& r_ij) {
     const T along = form.along_pair * v_dot_r / (r * r);
     return form.along_jump * v_ij + along * r_ij;
 }
 
-/// Mean viscosity of a pair. Beside a plug that varies by orders of magnitude, and the harmonic mean is the
-/// one whose stress is continuous (Cleary & Monaghan, J. Comput. Phys. 148, 1999).
+/// Mean viscosity of a pair. Beside a plug that varies by orders of magnitude, and the harmonic
+/// mean is the one whose stress is continuous (Cleary & Monaghan, J. Comput. Phys. 148, 1999).
 template <class T>
 DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
     const T sum = mu_i + mu_j;

@@ -5,26 +5,27 @@
 
 namespace doseki {
 
-/// Pressure of a wall particle over that of one fluid particle i near it [Pa]: hydrostatic along the
-/// wall normal, rho_i g_n (r_iw.n), and the fluid's own pressure gradient along the wall. With all of
-/// gravity in place of the two a slope would lose a part of its pull, and with none of it along the wall
-/// water would sink at the sides of a tank. `g_normal` = max(0, (g - a_w).(-n)).
+/// Pressure of a wall particle over that of one fluid particle i near it [Pa]: hydrostatic along
+/// the wall normal, rho_i g_n (r_iw.n), and the fluid's own pressure gradient along the wall. With
+/// all of gravity in place of the two a slope would lose a part of its pull, and with none of it
+/// along the wall water would sink at the sides of a tank. `g_normal` = max(0, (g - a_w).(-n)).
 template <class T, int D>
 DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, const T& g_normal,
                                  const Vec<T, D>& normal, const T& r_dot_n, const Vec<T, D>& r_iw) {
     return (rho_i * g_normal + dot(gradient_i, normal)) * r_dot_n - dot(gradient_i, r_iw);
 }
 
-/// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is (Morris
-/// et al. 1997): 1 + d_w/d_i for distances d_w below and d_i above the surface, the latter no less than
-/// `least`.
+/// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is
+/// (Morris et al. 1997): 1 + d_w/d_i for distances d_w below and d_i above the surface, the latter
+/// no less than `least`.
 template <class T>
 DOSEKI_FN T no_slip_factor(const T& d_w, const T& d_i, const T& least) {
     return T(1) + d_w / max(d_i, least);
 }
 
-/// Stress that a rough bed takes from water of velocity |u| at height z: tau = rho (u kappa/ln(1 + z/z0))^2
-/// with z0 = ks/30 (Nikuradse's logarithmic law, regular at the bed). Returns tau/|u|^2 [kg/m^3].
+/// Stress that a rough bed takes from water of velocity |u| at height z: tau = rho (u kappa/ln(1 +
+/// z/z0))^2 with z0 = ks/30 (Nikuradse's logarithmic law, regular at the bed). Returns tau/|u|^2
+/// [kg/m^3].
 inline double bed_friction(double rho, double z, double ks) {
     constexpr double von_karman = 0.40;
     const double root = von_karman / std::log1p(30.0 * std::max(z, ks / 30.0) / ks);

@@ -11,14 +11,16 @@
 
 namespace doseki {
 
-/// Height over the bed and depth of the flow at each fluid particle, along the last axis, as a mixing
-/// length needs them. The plan is cut into columns: the bed is the highest wall particle of a column
-/// below its fluid, the depth is that of the volume in it, so that spray counts for what it is.
+/// Height over the bed and depth of the flow at each fluid particle, along the last axis, as a
+/// mixing length needs them. The plan is cut into columns: the bed is the highest wall particle of
+/// a column below its fluid, the depth is that of the volume in it, so that spray counts for what
+/// it is.
 template <int D>
 class FlowDepth {
 public:
     /// `width` of a column along each axis of the plan [m].
-    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Vec<double, D - 1>& width, const Ranks& ranks)
+    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Vec<double, D - 1>& width,
+              const Ranks& ranks)
         : width_(width) {
         for (std::size_t p = 0; p < fluid; ++p) {
             Column& column = columns_[key(particles.position[p])];
@@ -31,7 +33,9 @@ public:
         });
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
-            if (found == columns_.end() || particles.is_bound(p) || particles.flow.normal[p][D - 1] < 0.5) continue;
+            if (found == columns_.end() || particles.is_bound(p) ||
+                particles.flow.normal[p][D - 1] < 0.5)
+                continue;
             Column& column = found->second;
             const double top = particles.position[p][D - 1] + particles.flow.wall_depth[p];
             if (top < column.height / column.count) column.bed = std::max(column.bed, top);
@@ -54,11 +58,13 @@ public:
 
 private:
     struct Column {
-        double volume = 0.0, height = 0.0, count = 0.0, bed = -std::numeric_limits<double>::infinity();
+        double volume = 0.0, height = 0.0, count = 0.0,
+               bed = -std::numeric_limits<double>::infinity();
     };
     using Key = std::array<std::int64_t, D - 1>;
 
-    /// Puts together what each rank knows of a column, in the order of ranks; `add` adds a part to what there is.
+    /// Puts together what each rank knows of a column, in the order of ranks; `add` adds a part to
+    /// what there is.
     template <class Add>
     void merge(const Ranks& ranks, Add&& add) {
         if (ranks.alone()) return;
@@ -72,7 +78,8 @@ private:
         columns_.clear();
         for (std::size_t row = 0; row < all.size(); row += numbers) {
             Key key;
-            for (std::size_t a = 0; a < D - 1; ++a) key[a] = static_cast<std::int64_t>(all[row + a]);
+            for (std::size_t a = 0; a < D - 1; ++a)
+                key[a] = static_cast<std::int64_t>(all[row + a]);
             const double* value = &all[row + D - 1];
             add(columns_[key], Column{value[0], value[1], value[2], value[3]});
         }
@@ -80,7 +87,8 @@ private:
 
     Key key(const Vec<double, D>& x) const {
         Key key;
-        for (int a = 0; a < D - 1; ++a) key[a] = static_cast<std::int64_t>(std::floor(x[a] / width_[a]));
+        for (int a = 0; a < D - 1; ++a)
+            key[a] = static_cast<std::int64_t>(std::floor(x[a] / width_[a]));
         return key;
     }
 

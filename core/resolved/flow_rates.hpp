@@ -20,9 +20,10 @@
 
 namespace doseki {
 
-/// The right-hand side of the resolved scheme: fluid among walls, in one pass over the pairs of fluid
-/// particles and one over those of walls. Gradients, and the measure of the free surface, are those of
-/// the step before where a pair needs them; a timestep is short against what they describe.
+/// The right-hand side of the resolved scheme: fluid among walls, in one pass over the pairs of
+/// fluid particles and one over those of walls. Gradients, and the measure of the free surface, are
+/// those of the step before where a pair needs them; a timestep is short against what they
+/// describe.
 template <int D>
 class FlowRates {
 public:
@@ -38,25 +39,32 @@ public:
         constants_.dp = options.flow.dp;
         for (int k = 1; k <= D; ++k) spacing_power_[k] = spacing_power_[k - 1] * options.flow.dp;
         const double support = kernel_support() * options.eta * options.flow.dp;
-        const auto lattice = options.flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(options.flow.dp, support)
-                                                      : lattice_sums<WendlandC2<D>, D>(options.flow.dp, support);
+        const auto lattice = options.flow.wide_kernel
+                                 ? lattice_sums<WendlandC6<D>, D>(options.flow.dp, support)
+                                 : lattice_sums<WendlandC2<D>, D>(options.flow.dp, support);
         lattice_concentration_ = lattice.concentration;
         constants_.gradient_scale = 1.0 / lattice.moment;
-        constants_.form = options.flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0} : ViscousForm<double>{1.0, 0.0};
+        constants_.form = options.flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}
+                                                       : ViscousForm<double>{1.0, 0.0};
     }
 
     static constexpr bool has_flow = true;
-    double kernel_support() const { return options_.flow.wide_kernel ? WendlandC6<D>::support : WendlandC2<D>::support; }
+    double kernel_support() const {
+        return options_.flow.wide_kernel ? WendlandC6<D>::support : WendlandC2<D>::support;
+    }
 
     /// See Rates::compute.
-    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, double half_dt, bool new_lists) {
+    void compute(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo,
+                 double half_dt, bool new_lists) {
         fluid_count_ = neighbours.moving();
         const bool poisoned = is_poisoned_run();
         if (new_lists && options_.flow.turbulence == Turbulence::mixing_length)
             set_mixing_lengths(particles, column_width(neighbours), halo.ranks);
         pack(particles, halo, half_dt, poisoned);
-        if (options_.flow.wide_kernel) sum_all<WendlandC6<D>>(particles, neighbours, halo);
-        else sum_all<WendlandC2<D>>(particles, neighbours, halo);
+        if (options_.flow.wide_kernel)
+            sum_all<WendlandC6<D>>(particles, neighbours, halo);
+        else
+            sum_all<WendlandC2<D>>(particles, neighbours, halo);
         reduce_summaries(halo.ranks);
         const std::int64_t left = poisoned ? survivor<double>(particles.acceleration) : -1;
         if (left >= 0) fault_.note(Fault::rates, static_cast<std::size_t>(left));
@@ -78,18 +86,23 @@ public:
         if (particles.is_wall(p)) return {particles.flow.wall_pressure[p], constants_.c, 0.0};
         const double rho = particles.density[p], e = rho / material.rho0;
         const bool linear = options_.flow.pressure_law == PressureLaw::linear;
-        const double energy = linear ? std::log(e) + 1.0 / e - 1.0 : (std::pow(e, 6.0) / 6.0 + 1.0 / e - 7.0 / 6.0) / 7.0;
-        return {pressure(material, rho, particles.flow.surface[p]), material.c0, material.c0 * material.c0 * energy};
+        const double energy = linear ? std::log(e) + 1.0 / e - 1.0
+                                     : (std::pow(e, 6.0) / 6.0 + 1.0 / e - 7.0 / 6.0) / 7.0;
+        return {pressure(material, rho, particles.flow.surface[p]), material.c0,
+                material.c0 * material.c0 * energy};
     }
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("next_timestep", timestep_), archive("av_power", power_), archive("liveliness", liveliness_), archive("strain", strain_);
+        archive("next_timestep", timestep_), archive("av_power", power_),
+            archive("liveliness", liveliness_), archive("strain", strain_);
     }
 
     std::size_t bytes() const {
-        return motion_.capacity() * sizeof(MotionRecord<double, D>) + fluid_.capacity() * sizeof(FluidRecord<D>) +
-               wall_.capacity() * sizeof(WallRecord<D>) + summary_.capacity() * sizeof(ClusterSummary);
+        return motion_.capacity() * sizeof(MotionRecord<double, D>) +
+               fluid_.capacity() * sizeof(FluidRecord<D>) +
+               wall_.capacity() * sizeof(WallRecord<D>) +
+               summary_.capacity() * sizeof(ClusterSummary);
     }
 
 private:
@@ -124,40 +137,46 @@ private:
         return width;
     }
 
-    void set_mixing_lengths(Particles<D>& particles, const Vec<double, D - 1>& width, const Ranks& ranks) {
+    void set_mixing_lengths(Particles<D>& particles, const Vec<double, D - 1>& width,
+                            const Ranks& ranks) {
         const double least = options_.flow.smagorinsky * options_.flow.dp;
         const FlowDepth<D> depth(particles, fluid_count_, width, ranks);
         for (std::size_t p = 0; p < fluid_count_; ++p)
             particles.flow.mixing_length[p] = depth.mixing_length(particles.position[p], least);
     }
 
-    /// Time, in h/c, in which the density that follows from motion is drawn to that of the arrangement of
-    /// particles: what continuity sums up over many steps forgets how far apart they are.
+    /// Time, in h/c, in which the density that follows from motion is drawn to that of the
+    /// arrangement of particles: what continuity sums up over many steps forgets how far apart they
+    /// are.
     static constexpr double relaxation = 100.0, relaxation_at_rest = 1000.0;
     /// Of rho0. What tears apart leaves a void, not water under tension.
     static constexpr double least_density = 0.98;
-    /// Over the sound speed: half of the fastest flow. A gap that bodies close would shift particles out of
-    /// the world.
+    /// Over the sound speed: half of the fastest flow. A gap that bodies close would shift
+    /// particles out of the world.
     static constexpr double largest_shift = 0.05;
     /// Root mean square of |L| h/c below which a fluid counts as at rest.
     static constexpr double at_rest = 5e-4;
 
     /// Of the liquid itself [Pa s].
-    static double molecular_viscosity(const Material& material, const Mat<double, D>& L, double rho, double mean_pressure) {
-        if (material.rheology == Rheology::herschel_bulkley) return material.herschel_bulkley.viscosity(strain_rate(L));
-        if (material.rheology == Rheology::mu_i) return material.mu_i.viscosity(strain_rate(L), mean_pressure);
+    static double molecular_viscosity(const Material& material, const Mat<double, D>& L, double rho,
+                                      double mean_pressure) {
+        if (material.rheology == Rheology::herschel_bulkley)
+            return material.herschel_bulkley.viscosity(strain_rate(L));
+        if (material.rheology == Rheology::mu_i)
+            return material.mu_i.viscosity(strain_rate(L), mean_pressure);
         return rho * material.nu;
     }
 
     double eddy_viscosity(const Particles<D>& particles, std::size_t p) const {
         if (options_.flow.turbulence == Turbulence::none) return 0.0;
         const bool mixing = options_.flow.turbulence == Turbulence::mixing_length;
-        const double l = mixing ? particles.flow.mixing_length[p] : options_.flow.smagorinsky * options_.flow.dp;
+        const double l =
+            mixing ? particles.flow.mixing_length[p] : options_.flow.smagorinsky * options_.flow.dp;
         return l * l * strain_rate(particles.flow.velocity_gradient[p]);
     }
 
-    /// Sound that runs to and fro is no load on a contact between grains: friction takes the mean over
-    /// the relaxation time of the density. What never had a pressure takes the first it gets.
+    /// Sound that runs to and fro is no load on a contact between grains: friction takes the mean
+    /// over the relaxation time of the density. What never had a pressure takes the first it gets.
     void update_mean_pressure(Particles<D>& particles, std::size_t p, double dt) {
         double& mean = particles.flow.mean_pressure[p];
         const double share = dt * constants_.c / (relaxation * particles.smoothing_length[p]);
@@ -171,23 +190,30 @@ private:
     template <class Kernel>
     void sum_all(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo);
     template <class Kernel>
-    void sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records);
+    void sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours,
+                   const FlowRecords<D>& records);
     template <class Kernel>
-    void sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, const FlowRecords<D>& records);
+    void sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo,
+                   const FlowRecords<D>& records);
 
     void finish_wall(Particles<D>& particles, std::size_t p, const WallSums<double, D>& sums);
-    void finish_fluid(Particles<D>& particles, std::size_t p, const FluidSums<double, D>& sums, bool shifted);
+    void finish_fluid(Particles<D>& particles, std::size_t p, const FluidSums<double, D>& sums,
+                      bool shifted);
     void limit_timestep(const Particles<D>& particles, std::size_t p);
     void reduce_summaries(const Ranks& ranks);
     bool has_rough_walls() const {
-        return std::any_of(options_.flow.walls.begin(), options_.flow.walls.end(), [](const WallCondition& wall) { return wall.ks > 0.0; });
+        return std::any_of(options_.flow.walls.begin(), options_.flow.walls.end(),
+                           [](const WallCondition& wall) { return wall.ks > 0.0; });
     }
 
     template <class Term>
-    void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters, std::size_t first, const Term& term) {
+    void sum_over_pairs(const Neighbours<D>& neighbours, std::span<const ClusterList> clusters,
+                        std::size_t first, const Term& term) {
         const std::span<const MotionRecord<double, D>> records(motion_);
-        if (periodic_) for_each_pair<true>(neighbours, clusters, records, frame_, false, term, first);
-        else for_each_pair<false>(neighbours, clusters, records, frame_, false, term, first);
+        if (periodic_)
+            for_each_pair<true>(neighbours, clusters, records, frame_, false, term, first);
+        else
+            for_each_pair<false>(neighbours, clusters, records, frame_, false, term, first);
     }
 
     std::vector<Material> materials_;
@@ -195,7 +221,7 @@ private:
     bool periodic_;
     FlowConstants constants_{};
     double lattice_concentration_ = 1.0;
-    std::array<double, D + 1> spacing_power_{1.0};    // dp^k
+    std::array<double, D + 1> spacing_power_{1.0};  // dp^k
     CoordinateFrame<double, D> frame_;
     std::vector<MotionRecord<double, D>> motion_;
     std::vector<FluidRecord<D>> fluid_;
@@ -204,8 +230,8 @@ private:
     PhaseTimer phases_;
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;
-    double strain_ = 0.0;        // root mean square of |L| [1/s]
-    double liveliness_ = 0.0;    // 0: fluid at rest, whose momentum pairs conserve; 1: flow
+    double strain_ = 0.0;      // root mean square of |L| [1/s]
+    double liveliness_ = 0.0;  // 0: fluid at rest, whose momentum pairs conserve; 1: flow
     Fault fault_;
     std::int64_t limiting_ = -1;
 };
@@ -220,7 +246,8 @@ void FlowRates<D>::pack_fluid(Particles<D>& particles, std::size_t p, double hal
     record.surface = particles.flow.surface[p];
     record.p = pressure(material, rho, record.surface);
     update_mean_pressure(particles, p, 2.0 * half_dt);
-    record.mu = molecular_viscosity(material, particles.flow.velocity_gradient[p], rho, particles.flow.mean_pressure[p]) +
+    record.mu = molecular_viscosity(material, particles.flow.velocity_gradient[p], rho,
+                                    particles.flow.mean_pressure[p]) +
                 rho * eddy_viscosity(particles, p);
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) {
@@ -236,14 +263,17 @@ void FlowRates<D>::pack_wall(const Particles<D>& particles, std::size_t p) {
     const Vec<double, D>& normal = particles.flow.normal[p];
     record.normal = normal.component;
     record.traction = {};
-    record.volume = particles.is_bound(p) ? particles.mass[p] / particles.density[p] : spacing_power_[D];
+    record.volume =
+        particles.is_bound(p) ? particles.mass[p] / particles.density[p] : spacing_power_[D];
     record.depth = particles.flow.wall_depth[p];
     record.g_normal = std::max(0.0, dot(particles.acceleration[p] - options_.gravity, normal));
-    record.stick = options_.flow.walls.at(static_cast<std::size_t>(particles.tag[p].body)).stick ? 1.0 : 0.0;
+    record.stick =
+        options_.flow.walls.at(static_cast<std::size_t>(particles.tag[p].body)).stick ? 1.0 : 0.0;
 }
 
 template <int D>
-void FlowRates<D>::pack(Particles<D>& particles, const Halo<D>& halo, double half_dt, bool poisoned) {
+void FlowRates<D>::pack(Particles<D>& particles, const Halo<D>& halo, double half_dt,
+                        bool poisoned) {
     const auto timing = phases_.measure(Phase::pack);
     const std::size_t n = particles.size(), ghosts = halo.ghosts(), moving = halo.moving_ghosts();
     motion_.resize(n + ghosts), wall_.resize(n - fluid_count_ + ghosts);
@@ -256,30 +286,43 @@ void FlowRates<D>::pack(Particles<D>& particles, const Halo<D>& halo, double hal
         const bool wall = p >= fluid_count_;
         record.x = particles.position[p].component;
         for (int a = 0; a < D; ++a)
-            record.v[a] = particles.velocity[p][a] + (wall ? 0.0 : half_dt * particles.acceleration[p][a]);
+            record.v[a] =
+                particles.velocity[p][a] + (wall ? 0.0 : half_dt * particles.acceleration[p][a]);
         record.mass = particles.mass[p];
         record.inverse_support = 1.0 / (kernel_support() * particles.smoothing_length[p]);
-        if (wall) pack_wall(particles, p);
-        else pack_fluid(particles, p, half_dt);
+        if (wall)
+            pack_wall(particles, p);
+        else
+            pack_fluid(particles, p, half_dt);
     }
 }
 
-/// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their beds, come.
+/// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their
+/// beds, come.
 template <int D>
 template <class Kernel>
-void FlowRates<D>::sum_all(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo) {
+void FlowRates<D>::sum_all(Particles<D>& particles, const Neighbours<D>& neighbours,
+                           Halo<D>& halo) {
     const bool rough = has_rough_walls();
     const std::size_t first_ghost_wall = fluid_count_;
-    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving), halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
-    const auto count = static_cast<std::uint32_t>(particles.size()), fluid_count = static_cast<std::uint32_t>(fluid_count_);
-    const double inverse_support = 1.0 / (kernel_support() * (count > 0 ? particles.smoothing_length[0] : 1.0));
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
+                halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
+    const auto count = static_cast<std::uint32_t>(particles.size()),
+               fluid_count = static_cast<std::uint32_t>(fluid_count_);
+    const double inverse_support =
+        1.0 / (kernel_support() * (count > 0 ? particles.smoothing_length[0] : 1.0));
     const FlowRecords<D> records{motion_, fluid_, wall_, fluid_count, count, inverse_support};
-    const bool has_fluid = fluid_count + halo.moving_ghosts() > 0, has_walls = count > fluid_count && has_fluid;
-    if (!has_fluid) std::fill(particles.flow.wall_force.begin(), particles.flow.wall_force.end(), Vec<double, D>{});
+    const bool has_fluid = fluid_count + halo.moving_ghosts() > 0,
+               has_walls = count > fluid_count && has_fluid;
+    if (!has_fluid)
+        std::fill(particles.flow.wall_force.begin(), particles.flow.wall_force.end(),
+                  Vec<double, D>{});
     if (rough || halo.alone()) {
         halo.finish();
         if (has_walls) sum_walls<Kernel>(particles, neighbours, records);
-        if (rough) halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed, first_ghost_wall)});
+        if (rough)
+            halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed,
+                                    first_ghost_wall)});
         sum_fluid<Kernel>(particles, neighbours, halo, records);
     } else {
         sum_fluid<Kernel>(particles, neighbours, halo, records);
@@ -289,43 +332,51 @@ void FlowRates<D>::sum_all(Particles<D>& particles, const Neighbours<D>& neighbo
 
 template <int D>
 template <class Kernel>
-void FlowRates<D>::sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours, const FlowRecords<D>& records) {
+void FlowRates<D>::sum_walls(Particles<D>& particles, const Neighbours<D>& neighbours,
+                             const FlowRecords<D>& records) {
     const auto timing = phases_.measure(Phase::pass_1);
     const std::size_t first = fluid_count_ / lanes<double>;
-    auto finish = [&](std::size_t p, const WallSums<double, D>& sums) { finish_wall(particles, p, sums); };
+    auto finish = [&](std::size_t p, const WallSums<double, D>& sums) {
+        finish_wall(particles, p, sums);
+    };
     sum_over_pairs(neighbours, neighbours.clusters().subspan(first), first,
                    WallTerm<Kernel, D, decltype(finish)>{records, constants_, finish});
 }
 
 template <int D>
 template <class Kernel>
-void FlowRates<D>::sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours, Halo<D>& halo, const FlowRecords<D>& records) {
+void FlowRates<D>::sum_fluid(Particles<D>& particles, const Neighbours<D>& neighbours,
+                             Halo<D>& halo, const FlowRecords<D>& records) {
     constexpr std::size_t width = lanes<double>;
     auto finish = [&](std::size_t p, const FluidSums<double, D>& sums) {
         finish_fluid(particles, p, sums, options_.flow.shifting);
     };
     const FluidTerm<Kernel, D, decltype(finish)> term{records, constants_, finish};
     const auto clusters = neighbours.clusters().first((fluid_count_ + width - 1) / width);
-    while_ghosts_come(halo, neighbours, clusters, width, [&](std::span<const ClusterList> part, std::size_t first) {
-        const auto timing = phases_.measure(Phase::pass_2);
-        sum_over_pairs(neighbours, part, first, term);
-    });
+    while_ghosts_come(halo, neighbours, clusters, width,
+                      [&](std::span<const ClusterList> part, std::size_t first) {
+                          const auto timing = phases_.measure(Phase::pass_2);
+                          sum_over_pairs(neighbours, part, first, term);
+                      });
 }
 
 /// Force, pressure and, on a rough bed, the friction of one wall particle.
 template <int D>
-void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p, const WallSums<double, D>& sums) {
-    constexpr double least_filled = 0.05;    // of the kernel, by fluid
+void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p,
+                               const WallSums<double, D>& sums) {
+    constexpr double least_filled = 0.05;  // of the kernel, by fluid
     WallRecord<D>& record = wall_[p - fluid_count_];
     Vec<double, D> force = sums.force;
     particles.flow.wall_pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
-    const WallCondition& wall = options_.flow.walls[static_cast<std::size_t>(particles.tag[p].body)];
+    const WallCondition& wall =
+        options_.flow.walls[static_cast<std::size_t>(particles.tag[p].body)];
     const double dp = options_.flow.dp;
     if (wall.ks > 0.0 && record.depth < dp && sums.weight > least_filled) {
         const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - particles.velocity[p];
         const Vec<double, D> along = tangential(u, particles.flow.normal[p]);
         const double rho = sums.density / sums.weight;
-        const double friction = bed_friction(rho, sums.height / sums.weight, wall.ks) * spacing_power_[D - 1];
+        const double friction =
+            bed_friction(rho, sums.height / sums.weight, wall.ks) * spacing_power_[D - 1];
         const Vec<double, D> drag = friction * std::sqrt(dot(along, along)) * along;
         record.traction = ((-1.0 / sums.weight) * drag).component;
         force = force + drag;
@@ -335,7 +386,8 @@ void FlowRates<D>::finish_wall(Particles<D>& particles, std::size_t p, const Wal
 
 /// Rates and gradients of one fluid particle from its sums.
 template <int D>
-void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const FluidSums<double, D>& sums, bool shifted) {
+void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p,
+                                const FluidSums<double, D>& sums, bool shifted) {
     const Mat<double, D> B = inverse_moment(sums.moment);
     auto corrected = [&B](const Vec<double, D>& raw) {
         Vec<double, D> v;
@@ -354,11 +406,13 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     }
     const double slope = std::sqrt(dot(sums.concentration_gradient, sums.concentration_gradient));
     const double h = particles.smoothing_length[p];
-    const auto measure = SurfaceMeasure::of((sums.concentration + sums.wall_share) / lattice_concentration_, kernel_support() * h * slope,
-                                            options_.flow.wide_kernel);
+    const auto measure =
+        SurfaceMeasure::of((sums.concentration + sums.wall_share) / lattice_concentration_,
+                           kernel_support() * h * slope, options_.flow.wide_kernel);
     flow.surface[p] = measure.x;
     flow.shift[p] = {};
-    summary_[p / lanes<double>].fault.note_density(fluid_[p].rho, materials_[particles.tag[p].material].rho0, p);
+    summary_[p / lanes<double>].fault.note_density(fluid_[p].rho,
+                                                   materials_[particles.tag[p].material].rho0, p);
     if (!particles.is_free(p)) {
         particles.acceleration[p] = {}, particles.density_rate[p] = 0.0;
         return;
@@ -371,16 +425,18 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
     double norm = 0.0;
     for (double element : L.element) norm += element * element;
     summary_[p / lanes<double>].strain += norm;
-    // Away from walls and surface the mean pressure does nothing, and gradients need not be those of
-    // pairs; what disorder makes of either is noise.
+    // Away from walls and surface the mean pressure does nothing, and gradients need not be those
+    // of pairs; what disorder makes of either is noise.
     if (sums.wall_share == 0.0 && sums.largest_surface < SurfaceMeasure::surface) {
         const Vec<double, D> noise = sums.pressure_gradient - flow.pressure_gradient[p];
         a = a + (liveliness_ / rho) * (2.0 * record.p * sums.concentration_gradient + noise);
         rate += liveliness_ * rho * (trace(sums.velocity_gradient) - trace(L));
     }
     if (shifted && measure.x < SurfaceMeasure::surface) {
-        Vec<double, D> shift = shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), strain_), h);
-        if (sums.largest_surface > SurfaceMeasure::surface) shift = tangential(shift, sums.surface_gradient);
+        Vec<double, D> shift =
+            shifting_velocity(sums.concentration_gradient, std::max(std::sqrt(norm), strain_), h);
+        if (sums.largest_surface > SurfaceMeasure::surface)
+            shift = tangential(shift, sums.surface_gradient);
         const double fastest = largest_shift * constants_.c, speed = std::sqrt(dot(shift, shift));
         if (speed > fastest) shift = (fastest / speed) * shift;
         flow.shift[p] = shift;
@@ -388,7 +444,8 @@ void FlowRates<D>::finish_fluid(Particles<D>& particles, std::size_t p, const Fl
             for (int l = 0; l < D; ++l) a[k] += L(k, l) * shift[l];
         rate += dot(flow.pressure_gradient[p], shift) / (constants_.c * constants_.c);
     }
-    const double memory = (relaxation + (1.0 - liveliness_) * (relaxation_at_rest - relaxation)) * h / constants_.c;
+    const double memory =
+        (relaxation + (1.0 - liveliness_) * (relaxation_at_rest - relaxation)) * h / constants_.c;
     rate += (measure.filling * rho0 - rho) / memory;
     if (rho < least_density * rho0) rate = std::max(0.0, rate);
     particles.acceleration[p] = a;
@@ -403,11 +460,13 @@ void FlowRates<D>::limit_timestep(const Particles<D>& particles, std::size_t p) 
     const double h = particles.smoothing_length[p];
     const Vec<double, D>&a = particles.acceleration[p], &v = particles.velocity[p];
     const double acoustic = options_.cflnumber * h / (constants_.c + std::sqrt(dot(v, v)));
-    const double forced = options_.cfl_force * std::sqrt(h / std::max(std::sqrt(dot(a, a)), 1e-300));
+    const double forced =
+        options_.cfl_force * std::sqrt(h / std::max(std::sqrt(dot(a, a)), 1e-300));
     const double viscous = 0.125 * h * h * fluid_[p].rho / std::max(fluid_[p].mu, 1e-300);
     const double dt = std::min({acoustic, forced, viscous});
     ClusterSummary& summary = summary_[p / lanes<double>];
-    if (dt < summary.timestep) summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
+    if (dt < summary.timestep)
+        summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
     summary.fault.note_rates(dot(a, a) + particles.density_rate[p], p);
 }
 
@@ -417,9 +476,10 @@ void FlowRates<D>::reduce_summaries(const Ranks& ranks) {
     timestep_ = options_.cflnumber * options_.eta * options_.flow.dp / constants_.c;
     power_ = 0.0;
     fault_ = {}, limiting_ = -1;
-    std::array<double, 2> total{0.0, static_cast<double>(fluid_count_)};    // of |L|^2, of particles
+    std::array<double, 2> total{0.0, static_cast<double>(fluid_count_)};  // of |L|^2, of particles
     for (const ClusterSummary& summary : summary_) {
-        if (summary.timestep < timestep_) timestep_ = summary.timestep, limiting_ = summary.limiting;
+        if (summary.timestep < timestep_)
+            timestep_ = summary.timestep, limiting_ = summary.limiting;
         power_ += summary.power;
         total[0] += summary.strain;
         fault_.merge(summary.fault);

@@ -10,50 +10,50 @@
 namespace doseki {
 
 struct FlowConstants {
-    double c;    // sound speed of the fluid [m/s]
+    double c;  // sound speed of the fluid [m/s]
     double dp;
-    double gradient_scale;    // of kernel gradients, so that their moment on a lattice is 1
+    double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
     ViscousForm<double> form;
-    bool harmonic = false;    // see pair_viscosity
+    bool harmonic = false;  // see pair_viscosity
 };
 
 /// Sums over the neighbours of a fluid particle i; gradients are those of the plain kernel.
 template <class T, int D>
 struct FluidSums {
-    Vec<T, D> force;                // over V_i/2
-    Vec<T, D> traction;             // of rough walls, over V_i
-    T density_rate{};               // over rho_i
-    T power{};                      // that pairs dissipate, over V_i
+    Vec<T, D> force;     // over V_i/2
+    Vec<T, D> traction;  // of rough walls, over V_i
+    T density_rate{};    // over rho_i
+    T power{};           // that pairs dissipate, over V_i
     Vec<T, D> pressure_gradient, concentration_gradient, surface_gradient;
     Mat<T, D> velocity_gradient;
     Sym<T, D> moment;
-    T concentration{};              // sum of rest volumes times W
-    T wall_share{};                 // of walls in it
-    T largest_surface{};            // among the neighbours and i
+    T concentration{};    // sum of rest volumes times W
+    T wall_share{};       // of walls in it
+    T largest_surface{};  // among the neighbours and i
 };
 
 /// Sums over the fluid around a wall particle, with weights V W but for the force.
 template <class T, int D>
 struct WallSums {
-    Vec<T, D> force;                // of the fluid, over the wall particle's volume
+    Vec<T, D> force;  // of the fluid, over the wall particle's volume
     T weight{}, height{}, pressure{}, density{};
     Vec<T, D> velocity;
 };
 
-/// Pressure and viscous stress between a fluid particle i and a wall particle w, the wall standing for
-/// fluid of mirrored velocity.
+/// Pressure and viscous stress between a fluid particle i and a wall particle w, the wall standing
+/// for fluid of mirrored velocity.
 template <class T, int D>
 struct WallContact {
-    Vec<T, D> force;    // 2 (p* r_iw - mu jump) -F V_w: force on i over V_i
-    T excess;           // of the pressure at w over p_i
-    T approach;         // (v_i - v_w).(-n)
+    Vec<T, D> force;  // 2 (p* r_iw - mu jump) -F V_w: force on i over V_i
+    T excess;         // of the pressure at w over p_i
+    T approach;       // (v_i - v_w).(-n)
     T r_dot_n;
-    Vec<T, D> jump;     // v_i - velocity extrapolated to w
+    Vec<T, D> jump;  // v_i - velocity extrapolated to w
     T power;
 };
 
-/// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle in
-/// front of its face; beyond an edge, the line between the two and no gravity.
+/// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle
+/// in front of its face; beyond an edge, the line between the two and no gravity.
 template <class T, int D>
 DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
     WallPoint<T, D> seen = w;
@@ -64,8 +64,9 @@ DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw
 }
 
 template <class T, int D>
-DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw, const T& r, const T& F,
-                                         const FluidPoint<T, D>& i, const WallPoint<T, D>& wall) {
+DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw,
+                                         const T& r, const T& F, const FluidPoint<T, D>& i,
+                                         const WallPoint<T, D>& wall) {
     WallContact<T, D> contact;
     const WallPoint<T, D> w = facing(wall, r_iw, r);
     const Vec<T, D> v_iw = i.v - w.v;
@@ -73,14 +74,16 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.approach = -dot(v_iw, w.normal);
     const T c = T(constants.c), least = number<T>(0.25 * constants.dp);
     const T extra = approach_pressure(T(2) * contact.approach, i.rho, c);
-    contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal, contact.r_dot_n, r_iw);
+    contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
+                                          contact.r_dot_n, r_iw);
     const T p = i.p + number<T>(0.5) * contact.excess + extra;
     const T stick = w.stick * no_slip_factor(w.depth, contact.r_dot_n - w.depth, least);
     const Vec<T, D> sliding = v_iw + contact.approach * w.normal;
     contact.jump = stick * sliding - (T(2) * contact.approach) * w.normal;
     const T scale = T(-2) * w.volume * F, mu_stick = i.mu * stick;
     contact.force = scale * (p * r_iw - mu_stick * sliding);
-    contact.power = scale * (mu_stick * dot(sliding, v_iw) + extra * contact.approach * contact.r_dot_n);
+    contact.power =
+        scale * (mu_stick * dot(sliding, v_iw) + extra * contact.approach * contact.r_dot_n);
     return contact;
 }
 
@@ -91,8 +94,8 @@ struct FluidSum {
 
     /// What every neighbour, fluid or wall, adds to the gradients.
     template <class T>
-    DOSEKI_FN static void add_gradients(Sums<T>& sums, const Vec<T, D>& r_ij, const T& VF, const T& p_ij,
-                                        const Vec<T, D>& v_ij) {
+    DOSEKI_FN static void add_gradients(Sums<T>& sums, const Vec<T, D>& r_ij, const T& VF,
+                                        const T& p_ij, const Vec<T, D>& v_ij) {
         for (int a = 0; a < D; ++a) {
             const T gradient = VF * r_ij[a];
             sums.concentration_gradient[a] += gradient;
@@ -103,10 +106,12 @@ struct FluidSum {
     }
 
     template <class T>
-    DOSEKI_FN static void add(Sums<T>& sums, const FlowConstants& constants, const T& inverse_support,
-                              const Pair<T, D>& pair, const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
+    DOSEKI_FN static void add(Sums<T>& sums, const FlowConstants& constants,
+                              const T& inverse_support, const Pair<T, D>& pair,
+                              const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
         const T half = number<T>(0.5), c = T(constants.c);
-        const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support), VF = j.volume * F;
+        const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+                VF = j.volume * F;
         const Vec<T, D> v_ij = i.v - j.v;
         const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
         const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
@@ -127,9 +132,11 @@ struct FluidSum {
     }
 
     template <class T>
-    DOSEKI_FN static void add_wall(Sums<T>& sums, const FlowConstants& constants, const T& inverse_support,
-                                   const Pair<T, D>& pair, const FluidPoint<T, D>& i, const WallPoint<T, D>& w) {
-        const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support), VF = w.volume * F;
+    DOSEKI_FN static void add_wall(Sums<T>& sums, const FlowConstants& constants,
+                                   const T& inverse_support, const Pair<T, D>& pair,
+                                   const FluidPoint<T, D>& i, const WallPoint<T, D>& w) {
+        const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+                VF = w.volume * F;
         const T W = Kernel::value(pair.r, inverse_support);
         const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
         const T half = number<T>(0.5);
@@ -151,9 +158,11 @@ struct WallSum {
 
     /// `pair` points from the fluid particle j to the wall particle w.
     template <class T>
-    DOSEKI_FN static void add(Sums<T>& sums, const FlowConstants& constants, const T& inverse_support,
-                              const Pair<T, D>& pair, const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
-        const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support), W = Kernel::value(pair.r, inverse_support);
+    DOSEKI_FN static void add(Sums<T>& sums, const FlowConstants& constants,
+                              const T& inverse_support, const Pair<T, D>& pair,
+                              const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
+        const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+                W = Kernel::value(pair.r, inverse_support);
         const Vec<T, D> r_jw = T(-1) * pair.r_ij;
         const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);
         const T share = j.volume * W;
