@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from doseki.bench_report import markdown_table
-from doseki.core import build_simulation, load_core
+from doseki.bench.report import markdown_table
 from doseki.errors import DosekiError
-from doseki.scenario import load_scenario
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation, load_core
 
 SHORT_FLUME = [
     "flume_length=1.5",

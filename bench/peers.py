@@ -22,9 +22,9 @@ from typing import Any
 
 import numpy as np
 
-from doseki.bench_report import machine, markdown_table
-from doseki.core import build_simulation, load_core
-from doseki.scenario import load_scenario
+from doseki.bench.report import machine, markdown_table
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation, load_core
 
 HERE = Path(__file__).resolve().parent
 ENVIRONMENT = HERE.parent / ".tools" / "peers" / "pysph"  # ignored by git

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from doseki.core import load_core
+from doseki.solver.build import load_core
 
 # Measured and published data are not part of the project; they lie beside its folder.
 REFERENCE_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"

@@ -1,16 +1,34 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
 
 namespace doseki {
 
-/// Physics went wrong: the run must stop. Names the particle and the quantity.
+/// What went wrong with a run.
+enum class FailureKind { density, speed, timestep, outside, not_finite, empty };
+
+/// Its name, as Python has it.
+inline const char* name_of(FailureKind kind) {
+    constexpr std::array names{"density", "speed", "timestep", "outside", "not_finite", "empty"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+/// The particle to blame, as it was; id -1: none.
+struct FailureSite {
+    std::int64_t id = -1;
+    int material = -1;
+    std::array<double, 3> position{};   // [m]
+    double speed = 0.0, density = 0.0;  // [m/s], [kg/m^3]
+};
+
+/// Physics went wrong: the run must stop.
 struct PhysicsFailure : std::runtime_error {
-    PhysicsFailure(const std::string& what, const std::string& kind, std::int64_t particle)
-        : std::runtime_error(what), kind(kind), particle(particle) {}
-    std::string kind;  // "density", "speed", "timestep", "outside", "not_finite", "empty"
-    std::int64_t particle;
+    PhysicsFailure(const std::string& what, FailureKind kind, const FailureSite& site = {})
+        : std::runtime_error(what), kind(kind), site(site) {}
+    FailureKind kind;
+    FailureSite site;
 };
 
 /// A limit of this build was met (more particles than an index can hold).

@@ -108,4 +108,16 @@ DOSEKI_FN T determinant(const Mat<T, D>& m) {
     return determinant(m, cofactors(m));
 }
 
+/// Inverse; zero where the determinant is not above `min_determinant`.
+template <int D>
+Mat<double, D> inverse(const Mat<double, D>& m, double min_determinant) {
+    const Mat<double, D> c = cofactors(m);
+    const double det = determinant(m, c);
+    Mat<double, D> result{};
+    if (!(det > min_determinant)) return result;
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) result(a, b) = c(b, a) / det;
+    return result;
+}
+
 }  // namespace doseki

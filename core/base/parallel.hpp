@@ -1,10 +1,68 @@
 #pragma once
+// Threads of the processor: the only place that knows OpenMP. Particle storage, schemes, bodies and
+// boundaries say what is to be done for each particle; how it is divided is decided here.
+
+#include <omp.h>
+
+#include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <utility>
+#include <vector>
 
 namespace doseki {
 
 /// Below these sizes a loop ends sooner on one thread than it takes to call the others.
 inline constexpr std::size_t light_loop = 2048;  // particles, a few operations each
 inline constexpr std::size_t pair_loop = 32;     // clusters
+
+inline void set_threads(int count) { omp_set_num_threads(count); }
+/// How many threads a loop may use.
+inline int thread_count() { return omp_get_max_threads(); }
+
+/// Calls f(p) for p = 0 ... count - 1; calls must not depend on one another.
+template <class F>
+void for_each_particle(std::size_t count, F&& f) {
+#pragma omp parallel for schedule(static) if (count > light_loop)
+    for (std::size_t p = 0; p < count; ++p) f(p);
+}
+
+/// Combines f(0), f(1) ... f(count - 1), beginning with the neutral `start`: block by block, then
+/// the blocks in their order, so that sums do not depend on the number of threads.
+template <class Value, class Combine, class F>
+Value reduce(std::size_t count, Value start, Combine&& combine, F&& f) {
+    struct Block {  // threads may write to neighbours, which the bits of a vector<bool> forbid
+        Value value;
+    };
+    std::vector<Block> blocks((count + light_loop - 1) / light_loop, Block{start});
+#pragma omp parallel for schedule(static) if (blocks.size() > 1)
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        Value result = start;
+        const std::size_t end = std::min(count, (b + 1) * light_loop);
+        for (std::size_t p = b * light_loop; p < end; ++p) result = combine(result, f(p));
+        blocks[b].value = result;
+    }
+    Value result = start;
+    for (const Block& block : blocks) result = combine(result, block.value);
+    return result;
+}
+
+/// Combines to the larger one; other ways are std::plus and std::logical_and.
+inline constexpr auto maximum = [](const auto& a, const auto& b) { return std::max(a, b); };
+
+/// Calls f(thread, k) for k = 0 ... count - 1, each much work of unequal size, handed out in
+/// chunks. `thread` is below thread_count(): f may keep something for each.
+template <class F>
+void for_each_task(std::size_t count, std::size_t chunk, F&& f) {
+#pragma omp parallel for schedule(dynamic, chunk) if (count > pair_loop)
+    for (std::size_t k = 0; k < count; ++k) f(static_cast<std::size_t>(omp_get_thread_num()), k);
+}
+
+/// Adds to a number that other threads add to at the same time.
+template <class T>
+void add_from_any_thread(T& total, T part) {
+#pragma omp atomic
+    total += part;
+}
 
 }  // namespace doseki

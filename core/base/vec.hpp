@@ -12,6 +12,11 @@ struct Vec {
     std::array<T, D> component{};
     DOSEKI_FN T& operator[](int a) { return component[a]; }
     DOSEKI_FN const T& operator[](int a) const { return component[a]; }
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        for (int k = 0; k < D; ++k) f(self.component[k]...);
+    }
 };
 
 template <class T, int D>
@@ -48,6 +53,11 @@ struct Mat {
     std::array<T, D * D> element{};
     DOSEKI_FN T& operator()(int a, int b) { return element[a * D + b]; }
     DOSEKI_FN const T& operator()(int a, int b) const { return element[a * D + b]; }
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        for (int k = 0; k < D * D; ++k) f(self.element[k]...);
+    }
 };
 
 template <class T, int D>
@@ -65,6 +75,11 @@ struct Sym {
     DOSEKI_FN static constexpr int index(int a, int b) { return a == b ? a : D + a + b - 1; }
     DOSEKI_FN T& operator()(int a, int b) { return element[index(a, b)]; }
     DOSEKI_FN const T& operator()(int a, int b) const { return element[index(a, b)]; }
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        for (int k = 0; k < size; ++k) f(self.element[k]...);
+    }
 };
 
 template <class T, int D>
@@ -95,6 +110,11 @@ struct Deviator {
     DOSEKI_FN T zz() const { return -(element[0] + element[1]); }
     DOSEKI_FN T operator()(int a, int b) const {
         return a == 2 && b == 2 ? zz() : element[index(a, b)];
+    }
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        for (int k = 0; k < size; ++k) f(self.element[k]...);
     }
 };
 

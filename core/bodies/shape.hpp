@@ -8,7 +8,7 @@
 
 namespace doseki {
 
-/// Where a point stands to a surface.
+/// Signed distance and normal of a surface, as seen from a point.
 template <int D>
 struct SurfacePoint {
     double distance;        // of the point, negative inside [m]
@@ -41,14 +41,14 @@ struct Shape {
             if (d > inside.distance) inside = {d, n};
         }
         if (inside.distance <= 0.0) return inside;
-        double least = std::numeric_limits<double>::infinity();
+        double nearest_square = std::numeric_limits<double>::infinity();
         Vec<double, D> nearest;
         for (const Facet& facet : facets) {
             const Vec<double, D> y = nearest_point(facet, x);
-            if (const double square = dot(x - y, x - y); square < least)
-                least = square, nearest = y;
+            if (const double square = dot(x - y, x - y); square < nearest_square)
+                nearest_square = square, nearest = y;
         }
-        const double d = std::sqrt(least);
+        const double d = std::sqrt(nearest_square);
         return d > 0.0 ? SurfacePoint<D>{d, (1.0 / d) * (x - nearest)} : inside;
     }
 

@@ -10,6 +10,30 @@
 
 namespace doseki {
 
+/// What a material brings into a contact; of a pair, the means of restitution and of the frictions
+/// count.
+struct ContactProperties {
+    double restitution;
+    double friction, rolling_friction;    // coefficients
+    double young_modulus, poisson_ratio;  // [Pa]
+
+    template <class F>
+    void members(F&& f) {
+        f("restitution", restitution);
+        f("friction", friction), f("rolling_friction", rolling_friction);
+        f("young_modulus", young_modulus), f("poisson_ratio", poisson_ratio);
+    }
+    /// (1 - nu^2)/E; none of what has no modulus.
+    double compliance() const {
+        return young_modulus > 0.0 ? (1.0 - poisson_ratio * poisson_ratio) / young_modulus : 0.0;
+    }
+};
+
+/// E* of two materials that touch.
+inline double contact_modulus(const ContactProperties& a, const ContactProperties& b) {
+    return 1.0 / (a.compliance() + b.compliance());
+}
+
 /// Restitution of the linear spring and dashpot of damping ratio zeta, when it parts as soon as the
 /// force would pull (eq. 46; Schwager & Poeschel, Granular Matter 9 (2007)).
 inline double restitution_of(double zeta) {
@@ -93,19 +117,18 @@ inline double damping_ratio(double restitution, bool hertz = false) {
     return low;
 }
 
-/// Overlap that a pair reaches at a speed of approach, and the time that it touches, without
-/// damping.
-struct Encounter {
+/// Largest overlap and duration of a collision without damping, for a speed of approach.
+struct CollisionEstimate {
     double overlap, time;
 };
 
-inline Encounter linear_encounter(double k, double mass, double speed) {
+inline CollisionEstimate linear_collision(double k, double mass, double speed) {
     const double root = std::sqrt(mass / k);
     return {speed * root, std::numbers::pi * root};
 }
 
 /// Eq. (48).
-inline Encounter hertz_encounter(double E, double R, double mass, double speed) {
+inline CollisionEstimate hertz_collision(double E, double R, double mass, double speed) {
     const double overlap = std::pow(15.0 / 16.0 * mass * speed * speed / (E * std::sqrt(R)), 0.4);
     return {overlap, 2.9432751 * overlap / speed};
 }

@@ -1,44 +1,35 @@
 #pragma once
-#include "base/pack.hpp"
+// How pressure, sound speed and energy of a material follow from its density.
+
+#include "base/named.hpp"
+#include "physics/equation_of_state/birch_murnaghan.hpp"
+#include "physics/equation_of_state/linear.hpp"
+#include "physics/equation_of_state/tait.hpp"
 
 namespace doseki {
 
-/// Cube root for the density ratios of a condensed body, 0.1 < e < 10 (exact to rounding there):
-/// Halley's iteration from the tangent at one, written without branches so that packs can run it.
+/// Contract of an equation of state. Whoever needs the pressure alone takes it out of at(): once
+/// inlined, the rest is not worked out.
+template <class Law, class T>
+concept EquationOfStateLaw = Named<Law> && requires(const Law& law, const T& rho) {
+    { law.at(rho) } -> std::same_as<ThermodynamicState<T>>;
+};
+
+template <class T, EquationOfStateLaw<T>... Laws>
+using OneOfEquations = std::variant<Laws...>;
+
+/// All equations of state; to add one, write its file and name it here.
 template <class T>
-DOSEKI_FN T cbrt_near_one(const T& e) {
-    T y = (T(2) + e) * number<T>(1.0 / 3.0);
-    for (int iteration = 0; iteration < 4; ++iteration) {
-        const T cube = y * y * y;
-        y = y * (cube + e + e) / (cube + cube + e);
-    }
-    return y;
+using EquationOfState = OneOfEquations<T, Linear<T>, Tait<T>, BirchMurnaghan<T>>;
+
+template <class T>
+DOSEKI_FN ThermodynamicState<T> thermodynamic_state(const EquationOfState<T>& eos, const T& rho) {
+    return with_value(eos, [&](const auto& law) { return law.at(rho); });
 }
 
-/// Density ratio (5/7)^(3/2) at which Eq. (8) has its minimum. What is stretched further is a void:
-/// it resists no more, and its density stays there until it is compressed again.
-inline constexpr double void_ratio = 0.60368;
-
-/// Birch-Murnaghan equation of state and what follows from it.
-/// Eq. (8):  p = 3/2 rho0 c0^2 (e^(7/3) - e^(5/3)),  e = rho/rho0.
-/// Eq. (17): c^2 = dp/drho = c0^2/2 (7 e^(4/3) - 5 e^(2/3)).
 template <class T>
-struct BirchMurnaghan {
-    T pressure;     // [Pa]
-    T sound_speed;  // [m/s]
-    T bulk_energy;  // 9/8 c0^2 (e^(2/3) - 1)^2 [J/kg]
-
-    DOSEKI_FN static BirchMurnaghan at(const T& rho, const T& rho0, const T& c0) {
-        const T e = rho / rho0;
-        const T root = cbrt_near_one(e);
-        const T e23 = root * root, e43 = e23 * e23;
-        const T c0_squared = c0 * c0;
-        const T c_squared = number<T>(0.5) * c0_squared * (T(7) * e43 - T(5) * e23);
-        // Below e = (5/7)^(3/2) the material has no sound speed: Eq. (17) must not be rooted there.
-        const T floor = number<T>(0.01) * c0_squared;
-        return {number<T>(1.5) * rho0 * c0_squared * e * (e43 - e23), sqrt(max(c_squared, floor)),
-                number<T>(1.125) * c0_squared * (e23 - T(1)) * (e23 - T(1))};
-    }
-};
+DOSEKI_FN T pressure(const EquationOfState<T>& eos, const T& rho) {
+    return with_value(eos, [&](const auto& law) { return law.at(rho).pressure; });
+}
 
 }  // namespace doseki

@@ -1,27 +1,27 @@
 #pragma once
 #include <cmath>
 
-#include "base/vec.hpp"
+#include "base/matrix.hpp"
 
 namespace doseki {
 
 /// Where the free surface is, and how dense the fluid is regardless of it. C = sum_j m_j/rho0_j W,
 /// over its value on a lattice, is 1 in a fluid that fills the kernel, whatever the law of pressure
-/// makes of it; the measure x = R |grad C|/C is 0 inside and 1.5 for particles of a flat surface,
+/// makes of it; the indicator x = R |grad C|/C is 0 inside and 1.5 for particles of a flat surface,
 /// and does not change when the fluid is diluted. C over what it should be at x is therefore the
-/// filling of the fluid, near a surface as well as inside.
-struct SurfaceMeasure {
+/// normalised density of the fluid, near a surface as well as inside.
+struct FreeSurfaceIndicator {
     static constexpr double surface = 0.9;  // above: on the surface
     static constexpr double edge = 2.2;     // above: a corner or less, where x tells nothing
-    static constexpr double alone = 3.0;    // measure of spray
-    static constexpr double least_concentration = 0.6;  // below: spray
+    static constexpr double alone = 3.0;    // indicator of spray
+    static constexpr double min_concentration = 0.6;  // below: spray
 
-    double x, filling;
+    double x, normalised_density;
 
     /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.6 dp. The constants give 1 for
     /// the first two rows of a lattice under a flat surface, in 2-D and (to 0.6 %) in 3-D.
-    static SurfaceMeasure of(double concentration, double scaled_gradient, bool wide) {
-        if (concentration < least_concentration) return {alone, 1.0};
+    static FreeSurfaceIndicator of(double concentration, double scaled_gradient, bool wide) {
+        if (concentration < min_concentration) return {alone, 1.0};
         const double x = std::min(scaled_gradient / concentration, alone);
         const double a = wide ? 0.045 : 0.053, b = wide ? 0.047 : 0.086;
         return {x, x < edge ? concentration * (1.0 + x * (a + x * b)) : 1.0};
@@ -52,27 +52,8 @@ LatticeSums lattice_sums(double dp, double support) {
 /// Inverse of a symmetric moment matrix; zero where particles do not span the space.
 template <int D>
 Mat<double, D> inverse_moment(const Sym<double, D>& m) {
-    constexpr double least_determinant = 0.05;
-    Mat<double, D> inverse{};
-    if constexpr (D == 2) {
-        const double det = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1);
-        if (!(det > least_determinant)) return inverse;
-        inverse(0, 0) = m(1, 1) / det, inverse(1, 1) = m(0, 0) / det;
-        inverse(0, 1) = inverse(1, 0) = -m(0, 1) / det;
-    } else {
-        const double xx = m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2),
-                     xy = m(0, 2) * m(1, 2) - m(0, 1) * m(2, 2),
-                     xz = m(0, 1) * m(1, 2) - m(0, 2) * m(1, 1);
-        const double det = m(0, 0) * xx + m(0, 1) * xy + m(0, 2) * xz;
-        if (!(det > least_determinant)) return inverse;
-        inverse(0, 0) = xx / det;
-        inverse(0, 1) = inverse(1, 0) = xy / det;
-        inverse(0, 2) = inverse(2, 0) = xz / det;
-        inverse(1, 1) = (m(0, 0) * m(2, 2) - m(0, 2) * m(0, 2)) / det;
-        inverse(1, 2) = inverse(2, 1) = (m(0, 1) * m(0, 2) - m(0, 0) * m(1, 2)) / det;
-        inverse(2, 2) = (m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1)) / det;
-    }
-    return inverse;
+    constexpr double min_determinant = 0.05;
+    return inverse(full(m), min_determinant);
 }
 
 /// Velocity at which particles are shifted towards where they are scarce (Lind et al., J. Comput.
@@ -81,10 +62,10 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
 template <int D>
 Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate,
                                  double h) {
-    constexpr double strength = 40.0, most = 5.0;
+    constexpr double strength = 40.0, max_speed = 5.0;
     const double length = std::sqrt(dot(gradient_of_concentration, gradient_of_concentration));
     if (!(length > 0.0)) return {};
-    const double speed = std::min(strength * h * length, most) * h * rate;
+    const double speed = std::min(strength * h * length, max_speed) * h * rate;
     return (-speed / length) * gradient_of_concentration;
 }
 

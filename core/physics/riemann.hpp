@@ -6,12 +6,12 @@ namespace doseki {
 /// Low-dissipation acoustic Riemann solver (Zhang, Hu & Adams, J. Comput. Phys. 335, 2017):
 /// p* = (p_i + p_j)/2 + beta rho c dU/2 with dU = (v_i - v_j).n the speed of approach, less what
 /// the velocity gradient makes of it. Their beta = min(3 max(dU, 0)/c, 1) leaves noise at a free
-/// surface undamped; here it is at least `least_beta`. This is what it adds to the mean pressure
+/// surface undamped; here it is at least `min_beta`. This is what it adds to the mean pressure
 /// [Pa].
 template <class T>
 DOSEKI_FN T approach_pressure(const T& dU, const T& rho, const T& c) {
-    constexpr double least_beta = 0.05;
-    return number<T>(0.5) * rho * min(max(T(3) * dU, number<T>(least_beta) * c), c) * dU;
+    constexpr double min_beta = 0.05;
+    return number<T>(0.5) * rho * min(max(T(3) * dU, number<T>(min_beta) * c), c) * dU;
 }
 
 /// The part of the solver's velocity U* that comes from pressures, twice over: (p_i - p_j)/(rho c).

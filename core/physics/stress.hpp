@@ -25,17 +25,17 @@ DOSEKI_FN Deviator<T, D> elastic_stress_rate(const Mat<T, D>& L, const Deviator<
     return rate;
 }
 
-/// Eq. (7): tau = 2 rho nu (D - tr D/3 E).
+/// Eq. (7): tau = 2 mu (D - tr D/3 E).
 template <class T, int D>
-DOSEKI_FN Deviator<T, D> newtonian_stress(const Mat<T, D>& L, const T& rho, const T& nu) {
-    const T third = trace(L) * number<T>(1.0 / 3.0), rho_nu = rho * nu;
+DOSEKI_FN Deviator<T, D> viscous_stress(const Mat<T, D>& L, const T& mu) {
+    const T third = trace(L) * number<T>(1.0 / 3.0);
     Deviator<T, D> tau;
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) {
             if (a == 2 && b == 2) continue;
             T rate = L(a, b) + L(b, a);
             if (a == b) rate -= T(2) * third;
-            tau.element[Deviator<T, D>::index(a, b)] = rho_nu * rate;
+            tau.element[Deviator<T, D>::index(a, b)] = mu * rate;
         }
     return tau;
 }

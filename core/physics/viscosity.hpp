@@ -30,24 +30,24 @@ DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
 }
 
 /// |D| = sqrt(2 D:D) of the strain rate, the symmetric part of L [1/s].
-template <int D>
-double strain_rate(const Mat<double, D>& L) {
-    double sum = 0.0;
+template <class T, int D>
+DOSEKI_FN T strain_rate(const Mat<T, D>& L) {
+    T sum = T(0);
     for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) {
-            const double d = 0.5 * (L(a, b) + L(b, a));
-            sum += 2.0 * d * d;
+            const T d = number<T>(0.5) * (L(a, b) + L(b, a));
+            sum += T(2) * d * d;
         }
-    return std::sqrt(sum);
+    return sqrt(sum);
 }
 
 /// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress
 /// rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile. At least
-/// `least`; z: height over the bed, d: depth.
-inline double mixing_length(double z, double d, double least) {
+/// `min_length`; z: height over the bed, d: depth.
+inline double mixing_length(double z, double d, double min_length) {
     constexpr double von_karman = 0.40;
     const double inside = d > 0.0 ? std::clamp(z / d, 0.0, 1.0) : 0.0;
-    return std::max(least, von_karman * inside * d * std::sqrt(1.0 - inside));
+    return std::max(min_length, von_karman * inside * d * std::sqrt(1.0 - inside));
 }
 
 }  // namespace doseki

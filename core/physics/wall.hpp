@@ -5,10 +5,10 @@
 
 namespace doseki {
 
-/// Pressure of a wall particle over that of one fluid particle i near it [Pa]: hydrostatic along
-/// the wall normal, rho_i g_n (r_iw.n), and the fluid's own pressure gradient along the wall. With
-/// all of gravity in place of the two a slope would lose a part of its pull, and with none of it
-/// along the wall water would sink at the sides of a tank. `g_normal` = max(0, (g - a_w).(-n)).
+/// Pressure of a wall particle minus that of one fluid particle i near it [Pa]: hydrostatic along
+/// the wall normal, rho_i g_n (r_iw.n), and the fluid's own pressure gradient along the wall. Using
+/// all of gravity instead would cancel part of the pull along a slope; using none of it along the
+/// wall would let water sink at the sides of a tank. `g_normal` = max(0, (g - a_w).(-n)).
 template <class T, int D>
 DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, const T& g_normal,
                                  const Vec<T, D>& normal, const T& r_dot_n, const Vec<T, D>& r_iw) {
@@ -17,10 +17,10 @@ DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, co
 
 /// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is
 /// (Morris et al. 1997): 1 + d_w/d_i for distances d_w below and d_i above the surface, the latter
-/// no less than `least`.
+/// no less than `min_distance`.
 template <class T>
-DOSEKI_FN T no_slip_factor(const T& d_w, const T& d_i, const T& least) {
-    return T(1) + d_w / max(d_i, least);
+DOSEKI_FN T no_slip_factor(const T& d_w, const T& d_i, const T& min_distance) {
+    return T(1) + d_w / max(d_i, min_distance);
 }
 
 /// Stress that a rough bed takes from water of velocity |u| at height z: tau = rho (u kappa/ln(1 +

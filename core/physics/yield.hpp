@@ -35,11 +35,11 @@ YieldSurface<double> drucker_prager(double cohesion, double friction_angle) {
     }
 }
 
-/// Eq. (62): the least pressure a surface admits, that of its apex.
+/// Eq. (62): the smallest pressure that a surface admits, at its apex.
 template <class T>
 DOSEKI_FN T tension_cut(const YieldSurface<T>& surface, const T& p) {
-    const T least = -surface.k / (T(3) * surface.alpha);
-    return select(surface.alpha > T(0), max(p, least), p);
+    const T apex = -surface.k / (T(3) * surface.alpha);
+    return select(surface.alpha > T(0), max(p, apex), p);
 }
 
 /// Eq. (63): S brought back to the surface along the deviatoric plane; volume does not change

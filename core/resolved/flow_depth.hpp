@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
-#include "exchange.hpp"
-#include "particles.hpp"
+#include "model/particles.hpp"
 #include "physics/viscosity.hpp"
+#include "ranks/exchange.hpp"
 
 namespace doseki {
 
@@ -34,10 +34,10 @@ public:
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
             if (found == columns_.end() || particles.is_bound(p) ||
-                particles.flow.normal[p][D - 1] < 0.5)
+                particles.wall.normal[p][D - 1] < 0.5)
                 continue;
             Column& column = found->second;
-            const double top = particles.position[p][D - 1] + particles.flow.wall_depth[p];
+            const double top = particles.position[p][D - 1] + particles.wall.depth[p];
             if (top < column.height / column.count) column.bed = std::max(column.bed, top);
         }
         merge(ranks, [](Column& column, const Column& part) {
@@ -46,14 +46,14 @@ public:
         });
     }
 
-    /// Mixing length at a fluid particle; `least` where there is no bed.
-    double mixing_length(const Vec<double, D>& x, double least) const {
+    /// Mixing length at a fluid particle; `min_length` where there is no bed.
+    double mixing_length(const Vec<double, D>& x, double min_length) const {
         const auto found = columns_.find(key(x));
-        if (found == columns_.end() || !std::isfinite(found->second.bed)) return least;
+        if (found == columns_.end() || !std::isfinite(found->second.bed)) return min_length;
         double area = 1.0;
         for (int a = 0; a < D - 1; ++a) area *= width_[a];
         const double depth = found->second.volume / area;
-        return doseki::mixing_length(x[D - 1] - found->second.bed, depth, least);
+        return doseki::mixing_length(x[D - 1] - found->second.bed, depth, min_length);
     }
 
 private:

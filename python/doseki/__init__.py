@@ -7,9 +7,9 @@ __version__ = "0.1.0"
 
 # Imported on first use: reading a scenario or a record must not wait for the compiled core.
 _LAZY = {
-    "load": "loading",
-    "load_scenario": "scenario",
-    "run_scenario": "run",
+    "load": "record.reader",
+    "load_scenario": "scenario.load",
+    "run_scenario": "run.runner",
     "UserError": "errors",
     "PhysicsError": "errors",
     "ResourceError": "errors",

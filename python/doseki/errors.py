@@ -26,9 +26,17 @@ class UserError(DosekiError):
 
 
 class PhysicsError(DosekiError):
-    """The computed state went wrong (a non-finite value, a lost particle)."""
+    """The computed state went wrong (a non-finite value, a lost particle).
+
+    `kind` is the core's word for it, explained in assess.failure; `particle` is the id of the one
+    to blame, -1 where it is none.
+    """
 
     exit_code = 3
+
+    def __init__(self, message: str, kind: str = "", particle: int = -1) -> None:
+        super().__init__(message)
+        self.kind, self.particle = kind, particle
 
 
 class ResourceError(DosekiError):

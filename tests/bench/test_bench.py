@@ -7,10 +7,11 @@ import json
 import numpy as np
 import pytest
 
-from doseki import bench, bench_report
-from doseki.bench_case import DP, ETA, Case, block, make_simulation
-from doseki.cli import main
-from doseki.core_modules import available_instruction_sets
+from doseki.bench import command as bench
+from doseki.bench import report as bench_report
+from doseki.bench.case import DP, ETA, Case, block, make_simulation
+from doseki.cli.main import main
+from doseki.compiled import available_instruction_sets
 from doseki.errors import ResourceError
 
 KEYS = {

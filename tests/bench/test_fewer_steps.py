@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.core import build_simulation, load_core
-from doseki.scenario import load_scenario
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation, load_core
 
 BODIES = ["particles_per_grain=793", "distance=0.0105", "time_max=1e-3"]
 

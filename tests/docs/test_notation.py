@@ -6,10 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from doseki.fields import FIELDS
-from doseki.materials import BUILT_IN, MATERIAL_PARAMETERS
-from doseki.schema import ScenarioTable
-from doseki.schemes import RESOLVED_DEFAULTS, RESOLVED_ETA
+from doseki.record.fields import FIELDS
+from doseki.scenario.materials import (
+    BUILT_IN,
+    EQUATIONS_OF_STATE,
+    HYPERELASTIC_LAWS,
+    MATERIAL_PARAMETERS,
+    RHEOLOGIES,
+)
+from doseki.scenario.schemes import RESOLVED_DEFAULTS, RESOLVED_ETA
+from doseki.scenario.tables.root import ScenarioTable
 
 NOTATION = Path(__file__).resolve().parents[2] / "docs" / "notation.md"
 
@@ -31,6 +37,15 @@ def test_every_field_has_its_row(rows, field):
 @pytest.mark.parametrize("parameter", MATERIAL_PARAMETERS, ids=lambda parameter: parameter.name)
 def test_every_material_parameter_has_its_row(rows, parameter):
     assert [parameter.doc, parameter.unit, f"`{parameter.name}`"] in [row[1:] for row in rows]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [*RHEOLOGIES.values(), *EQUATIONS_OF_STATE.values(), *HYPERELASTIC_LAWS.values()],
+    ids=lambda law: law.name,
+)
+def test_every_law_has_its_row(rows, law):
+    assert [f"`{law.name}`", law.doc, ", ".join(law.schemes)] in rows
 
 
 @pytest.mark.parametrize("material", BUILT_IN.values(), ids=lambda material: material.name)

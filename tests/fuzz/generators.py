@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 from hypothesis import strategies as st
 
-from doseki.toml_writer import to_toml
+from doseki.util.toml_writer import to_toml
 
 BASE: dict[str, Any] = {
     "schema": 1,

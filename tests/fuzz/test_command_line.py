@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from doseki.cli import main
+from doseki.cli.main import main
 
 GOOD = """\
 schema = 1
@@ -125,7 +125,7 @@ def test_a_mistake_of_ours_is_one_line_too(here, capsys, monkeypatch):
     def fail(*_arguments):
         raise ZeroDivisionError("at\nhome")
 
-    monkeypatch.setattr("doseki.scenario.load_scenario", fail)
+    monkeypatch.setattr("doseki.scenario.load.load_scenario", fail)
     assert run("run", "good.toml") == 1
     said = capsys.readouterr().err.splitlines()
     assert said == [

@@ -10,15 +10,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 import doseki
 from doseki.errors import UserError
-from doseki.particle_file import read_particles
+from doseki.scenario.particle_files.reader import read_particles
 
+from .examples import FREE, examples
 from .generators import csv_files, hdf5_file
-
-EXAMPLES = 4000
 
 
 def read(path):
@@ -43,8 +42,7 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("particles")
 
 
-@pytest.mark.minutes
-@settings(max_examples=EXAMPLES)
+@examples(100, 4000)
 @given(data=csv_files())
 def test_any_csv(folder, data):
     (folder / "p.csv").write_bytes(data)
@@ -56,7 +54,7 @@ DAMAGE_HDF5 = """
 import random, sys
 from pathlib import Path
 from doseki.errors import UserError
-from doseki.particle_file import read_particles
+from doseki.scenario.particle_files.reader import read_particles
 
 whole, path = Path(sys.argv[1]).read_bytes(), Path(sys.argv[2])
 generator = random.Random(1)
@@ -95,10 +93,10 @@ def damage_many(folder: Path, compressed: bool, count: int) -> list[int]:
     return [int(word) for word in done.stdout.split()]
 
 
-@pytest.mark.minutes
 @pytest.mark.parametrize("compressed", [False, True])
 def test_damaged_hdf5(tmp_path, compressed):
-    assert sum(damage_many(tmp_path, compressed, 1000)) == 1000
+    count = 1000 if FREE else 50
+    assert sum(damage_many(tmp_path, compressed, count)) == count
 
 
 def test_a_decompression_bomb_is_refused_by_its_claim(tmp_path):

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
-from doseki import bodies
-from doseki.bodies import build_bodies
 from doseki.errors import DosekiError, ResourceError, UserError
-from doseki.inflows import build_inflows
-from doseki.scenario import load_scenario
+from doseki.scenario.load import load_scenario
+from doseki.scene import build as bodies
+from doseki.scene.build import build_bodies
+from doseki.scene.inflow_sections import build_inflows
 
+from .examples import examples
 from .generators import scenario_texts, tables
-
-EXAMPLES = 6000
 
 
 def read(path, overrides=()):
@@ -47,8 +46,7 @@ def few_particles(monkeypatch):
     monkeypatch.setattr(bodies, "MAX_PARTICLES", 20_000)
 
 
-@pytest.mark.minutes
-@settings(max_examples=EXAMPLES)
+@examples(80, 6000)
 @given(text=scenario_texts())
 def test_any_text(folder, text):
     (folder / "scenario.toml").write_bytes(text)
@@ -56,12 +54,11 @@ def test_any_text(folder, text):
     assert [file.name for file in folder.iterdir()] == ["scenario.toml"]
 
 
-@pytest.mark.minutes
-@settings(max_examples=500)
+@examples(20, 500)
 @given(table=tables())
 def test_what_is_read_has_particles_in_order(folder, table):
     """And its effective form reads back to the same particles."""
-    from doseki.toml_writer import to_toml
+    from doseki.util.toml_writer import to_toml
 
     try:
         text = to_toml(table).encode()

@@ -19,7 +19,7 @@ from doseki.errors import UserError
 from doseki.parallel.launch import mpiexec
 
 WORKERS = Path(__file__).parent / "workers"
-SECONDS = 240  # for ranks that share two cores with other tests; each takes a few
+SECONDS = 600  # after which ranks hang; they take a few
 
 
 def _launcher() -> str:
@@ -106,7 +106,7 @@ def command(launcher: str) -> Callable[..., subprocess.CompletedProcess[str]]:
     def run(
         ranks: int, *arguments: str, script: str | None = None
     ) -> subprocess.CompletedProcess[str]:
-        program = [str(WORKERS / script)] if script else ["-m", "doseki.cli"]
+        program = [str(WORKERS / script)] if script else ["-m", "doseki.cli.main"]
         start = [launcher, "-n", str(ranks)] if ranks > 1 else []
         return subprocess.run(
             [*start, sys.executable, *program, *map(str, arguments)],

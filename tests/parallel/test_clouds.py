@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 # Sums of some hundred terms in another order; a float has 6e-8.
-ROUNDING = {"Double": 1e-12, "Float": 1e-5}
+ROUNDING = {"double": 1e-12, "float": 1e-5}
 
 
 def assert_same(found, ranks):
@@ -26,7 +26,7 @@ def test_clouds_on_ranks_are_those_of_one(work, ranks):
     assert_same(work("clouds_on_ranks", ranks, "multisection"), ranks)
 
 
-@pytest.mark.minutes
+@pytest.mark.ranks
 def test_clouds_on_four_ranks(work):
     assert_same(work("clouds_on_ranks", 4, "multisection"), 4)
 

@@ -100,7 +100,7 @@ def test_the_history_tells_how_the_work_is_spread(command, alone, tmp_path):
     assert sum(shares) > 0
 
 
-@pytest.mark.minutes
+@pytest.mark.ranks
 @pytest.mark.parametrize("ranks", [3, 4])
 @pytest.mark.parametrize("name", CASES)
 def test_a_run_on_more_ranks_is_that_on_one(command, alone, tmp_path, name, ranks):
@@ -109,7 +109,7 @@ def test_a_run_on_more_ranks_is_that_on_one(command, alone, tmp_path, name, rank
 
 
 @pytest.mark.parametrize(
-    ("before", "after"), [pytest.param(2, 3, marks=pytest.mark.minutes), (2, 1), (1, 2)]
+    ("before", "after"), [pytest.param(2, 3, marks=pytest.mark.ranks), (2, 1), (1, 2)]
 )
 def test_a_checkpoint_goes_on_with_any_number_of_ranks(command, alone, tmp_path, before, after):
     folder = tmp_path / "run"

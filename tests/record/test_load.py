@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
-from doseki.loading import load
+from doseki.record.reader import load
 
 NAMES = {"material": ("water", "basalt", "aluminium"), "body": ("sea", "grain", "bed")}
 

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from doseki.errors import ResourceError, UserError
-from doseki.fields import FIELDS
-from doseki.folder import RunFolder
-from doseki.loading import load
-from doseki.record import Recorder
-from doseki.storage import write_whole
+from doseki.record.fields import FIELDS
+from doseki.record.folder import RunFolder
+from doseki.record.reader import load
+from doseki.record.writer import Recorder
+from doseki.util.files import write_whole
 
 
 def start(directory: Path, **options: bool) -> Recorder:
@@ -153,8 +153,8 @@ FILL_THE_DISK = """
 import resource, sys
 import numpy as np
 from doseki.errors import ResourceError
-from doseki.fields import FIELDS
-from doseki.record import Recorder
+from doseki.record.fields import FIELDS
+from doseki.record.writer import Recorder
 
 recorder = Recorder(sys.argv[1], "schema = 1\\n", ["water"], ["sea"], 2)
 random = np.random.default_rng(0)

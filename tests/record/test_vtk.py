@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.export import export_vtu
-from doseki.fields import FIELDS
-from doseki.loading import load
+from doseki.record.export import export_vtu
+from doseki.record.fields import FIELDS
+from doseki.record.reader import load
 
 pytest.importorskip("vtkmodules.vtkIOHDF")
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from doseki.core import build_simulation, empty_simulation, load_core
-from doseki.scenario import load_scenario
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation, empty_simulation, load_core
 
 # Water among walls of each kind, with an inflow, an outflow and a gate that turns.
 RESOLVED = """\

@@ -1,6 +1,6 @@
 // The few functions of GCC's OpenMP runtime that the core calls, on plain threads. The thread
-// sanitiser cannot see inside libgomp and takes its barriers for races; it sees everything here, so a
-// race that it reports is one of the core.
+// sanitiser cannot see inside libgomp and takes its barriers for races; it sees everything here, so
+// a race that it reports is one of the core.
 
 #include <atomic>
 #include <mutex>
@@ -61,21 +61,25 @@ void GOMP_parallel(Work work, void* data, unsigned threads, unsigned) {
     run(shared, work, data);
 }
 
-void GOMP_parallel_loop_nonmonotonic_dynamic(Work work, void* data, unsigned threads, long first, long last,
-                                             long increment, long chunk, unsigned) {
+void GOMP_parallel_loop_nonmonotonic_dynamic(Work work, void* data, unsigned threads, long first,
+                                             long last, long increment, long chunk, unsigned) {
     Team shared;
     shared.size = size_of(threads);
     shared.next = first, shared.end = last, shared.increment = increment, shared.chunk = chunk;
     run(shared, work, data);
 }
 
-bool GOMP_loop_nonmonotonic_dynamic_next(long* first, long* last) { return next_chunk(first, last); }
+bool GOMP_loop_nonmonotonic_dynamic_next(long* first, long* last) {
+    return next_chunk(first, last);
+}
 
 // A loop inside a region that is already parallel; the core has at most one in a region.
-bool GOMP_loop_nonmonotonic_dynamic_start(long first, long last, long increment, long chunk, long* from, long* to) {
+bool GOMP_loop_nonmonotonic_dynamic_start(long first, long last, long increment, long chunk,
+                                          long* from, long* to) {
     {
         const std::lock_guard hold(team->lock);
-        if (!team->loop_started) team->next = first, team->end = last, team->increment = increment, team->chunk = chunk;
+        if (!team->loop_started)
+            team->next = first, team->end = last, team->increment = increment, team->chunk = chunk;
         team->loop_started = true;
     }
     return next_chunk(from, to);
@@ -86,9 +90,11 @@ using Size = unsigned long long;
 bool GOMP_loop_ull_nonmonotonic_dynamic_next(Size* first, Size* last) {
     return next_chunk(reinterpret_cast<long*>(first), reinterpret_cast<long*>(last));
 }
-bool GOMP_loop_ull_nonmonotonic_dynamic_start(bool, Size first, Size last, Size increment, Size chunk, Size* from, Size* to) {
-    return GOMP_loop_nonmonotonic_dynamic_start(static_cast<long>(first), static_cast<long>(last), static_cast<long>(increment),
-                                                static_cast<long>(chunk), reinterpret_cast<long*>(from), reinterpret_cast<long*>(to));
+bool GOMP_loop_ull_nonmonotonic_dynamic_start(bool, Size first, Size last, Size increment,
+                                              Size chunk, Size* from, Size* to) {
+    return GOMP_loop_nonmonotonic_dynamic_start(
+        static_cast<long>(first), static_cast<long>(last), static_cast<long>(increment),
+        static_cast<long>(chunk), reinterpret_cast<long*>(from), reinterpret_cast<long*>(to));
 }
 
 void GOMP_loop_end_nowait() {}

@@ -55,8 +55,9 @@ def build(folder: Path, flags: str) -> Path:
         assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     site = folder / "site/doseki"
     site.mkdir(parents=True)
-    for file in [*PACKAGE.glob("*.py"), *(folder / "build").glob("_core_scalar*.so")]:
-        (site / file.name).symlink_to(file)
+    sources = [entry for entry in PACKAGE.iterdir() if entry.is_dir() or entry.suffix == ".py"]
+    for entry in [*sources, *(folder / "build").glob("_core_scalar*.so")]:
+        (site / entry.name).symlink_to(entry)
     (site / "scenarios").symlink_to(ROOT / "scenarios")
     return site.parent
 
@@ -82,7 +83,7 @@ def exercise(
     )
 
 
-@pytest.mark.minutes
+@pytest.mark.sanitize
 def test_addresses_and_undefined_behaviour(tmp_path):
     preload = f"{library('libasan.so')} {library('libubsan.so')}"
     site = build(tmp_path, ADDRESS)
@@ -92,7 +93,7 @@ def test_addresses_and_undefined_behaviour(tmp_path):
     assert done.stdout.count("\n") == 6
 
 
-@pytest.mark.full
+@pytest.mark.sanitize
 def test_threads_do_not_race(tmp_path):
     site = build(tmp_path, THREAD)
     shim = tmp_path / "libgomp_threads.so"
@@ -120,8 +121,8 @@ def test_threads_do_not_race(tmp_path):
 
 POISONED = """
 import hashlib, sys
-from doseki.core import build_simulation, load_core
-from doseki.scenario import load_scenario
+from doseki.solver.build import build_simulation, load_core
+from doseki.scenario.load import load_scenario
 load_core().set_threads(1)
 digest = hashlib.blake2b()
 for name in sys.argv[1].split(","):

@@ -8,6 +8,14 @@ from doseki.validate.judging import FAIL, validate_case
 from doseki.validate.report import remarks
 from doseki.validate.running import CASES
 
+# Cases that the default tier runs.
+CANARIES = (
+    "artificial-viscosity", "bingham", "channel-plane", "dam-front", "elastic-plate",
+    "elliptical-drop-disturbed", "grains-drag", "grains-incline", "hydrostatic",
+    "hydrostatic-plate", "nusselt-film", "poiseuille", "shear-decay", "sound-wave",
+    "taylor-green-100-lattice",
+)  # fmt: skip
+
 
 def test_names_and_words():
     for name, case in all_cases().items():
@@ -19,11 +27,23 @@ def test_names_and_words():
 
 
 def test_scenarios_are_part_of_the_package():
-    assert (CASES / "tank.toml").is_file()
+    assert (CASES / "free_surfaces/tank.toml").is_file()
 
 
-@pytest.mark.minutes
-@pytest.mark.parametrize("name", all_cases())
+def test_every_family_has_one_canary():
+    """A family: the cases of one module."""
+    families = [case.run.__module__ for case in all_cases().values()]
+    canaries = [all_cases()[name].run.__module__ for name in CANARIES]
+    assert sorted(canaries) == sorted(set(families))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[] if name in CANARIES else pytest.mark.validate)
+        for name in all_cases()
+    ],
+)
 def test_coarse(name):
     result = validate_case(all_cases()[name], "coarse", lambda _: None)
     assert not [row for row in result.rows if row.verdict == FAIL], remarks([result])

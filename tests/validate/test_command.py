@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from doseki.cli import main
+from doseki.cli.main import main
 from doseki.validate import catalogue, report
 from doseki.validate.case import Outcome, Value
 from doseki.validate.judging import Row, validate_case

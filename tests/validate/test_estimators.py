@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from doseki.validate import estimators
-from doseki.validate.cases import grains_dry, grains_wet
-from doseki.validate.cases.drops import ellipse
-from doseki.validate.cases.films import KEULEGAN, nusselt_speed
-from doseki.validate.cases.poiseuille import exact_speed
+from doseki.validate.cases.free_surfaces.drops import ellipse
+from doseki.validate.cases.grains import dry, wet
+from doseki.validate.cases.streams.films import KEULEGAN, nusselt_speed
+from doseki.validate.cases.streams.poiseuille import exact_speed
 
 
 def state(position, velocity=0.0, **fields):
@@ -99,11 +99,11 @@ def test_slope_of_a_heap_with_a_plateau():
 
 
 def test_closed_forms_of_grains():
-    assert grains_dry.published(2.0) == pytest.approx((2.4, 3.6))
-    assert grains_dry.published(5.0) == pytest.approx((1.9 * 5 ** (2 / 3), 2.3 * 5 ** (2 / 3)))
+    assert dry.published(2.0) == pytest.approx((2.4, 3.6))
+    assert dry.published(5.0) == pytest.approx((1.9 * 5 ** (2 / 3), 2.3 * 5 ** (2 / 3)))
     series = np.log(4) - 0.9157 + 1.7244 / 16 - 1.7302 / 256
     net = np.pi / 4 * 1e-4 * 1000 * 9.81
-    stone = grains_wet.faxen_speed(*grains_wet.STONE, 0.04)
+    stone = wet.faxen_speed(*wet.STONE, 0.04)
     assert stone == pytest.approx(net * series / (4 * np.pi))
     for share, drag in {0.05: 15.56, 0.1: 24.83, 0.2: 51.53}.items():  # tabulated by the authors
-        assert grains_wet.array_drag(np.sqrt(4 / np.pi * share)) == pytest.approx(drag, rel=0.02)
+        assert wet.array_drag(np.sqrt(4 / np.pi * share)) == pytest.approx(drag, rel=0.02)

@@ -4,15 +4,7 @@ import math
 
 from doseki.errors import PhysicsError
 from doseki.validate.case import Control, Criterion, Outcome, Value, within
-from doseki.validate.judging import (
-    FAIL,
-    PASS,
-    REPORTED,
-    SHORT,
-    SKIPPED,
-    failed,
-    validate_case,
-)
+from doseki.validate.judging import FAIL, PASS, REPORTED, SHORT, SKIPPED, failed, validate_case
 
 
 def judge(case, tier="full"):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from doseki.core import load_core
+from doseki.solver.build import load_core
 
 from ..cases import Case
 
@@ -86,7 +86,7 @@ def test_one_particle_grains(name, reference_data, report):
     assert 1e3 * found.closest == pytest.approx(row["min_centre_gap_mm"], rel=1e-3)
 
 
-@pytest.mark.minutes
+@pytest.mark.validate
 @pytest.mark.parametrize(
     ("name", "overrides"),
     [("p793", []), ("p793_noS", ["strength=false"])],
@@ -106,7 +106,7 @@ def test_lattice_grains(name, overrides, reference_data, report):
     assert abs(found.energy_drift) < 2e-3
 
 
-@pytest.mark.minutes
+@pytest.mark.validate
 def test_lattice_grains_at_full_sound_speed(reference_data, report):
     """With xi = 1 contact lasts a tenth of a millisecond; before and after is free flight."""
     row = reference_data("collision/reference_collision.json")["p793_xi1"]["0.005"]
@@ -142,7 +142,7 @@ def test_closest_approach_follows_from_energy(report):
     for _ in range(60):
         r = 0.5 * (near + far)
         rho = rho0 + m * physics.two.kernel([[r], [1 / (2.5 * h)]])[0][0]
-        u = physics.equation_of_state([[rho], [rho0], [c0]])[2][0]
+        u = physics.birch_murnaghan([[rho], [rho0], [c0]])[2][0]
         near, far = (near, r) if 2 * u < 0.25 * SPEED**2 else (r, far)
     found = collide("alpha=0", "strength=false").closest
     report("closest approach", 1e3 * found, 1e3 * r, "mm")

@@ -21,7 +21,7 @@ def speed(first, last, *overrides):
     return np.mean(speeds)
 
 
-@pytest.mark.minutes
+@pytest.mark.validate
 @pytest.mark.parametrize(
     ("depth", "low", "high"), [(0.02, 0.18, 0.30), (0.04, 0.80, 1.05)], ids=["20mm", "40mm"]
 )
@@ -35,7 +35,7 @@ def test_speed_of_the_film(depth, low, high, report):
     assert low < found < high
 
 
-@pytest.mark.minutes
+@pytest.mark.validate
 def test_speed_without_the_switch(report):
     """Unswitched artificial viscosity makes the film nearly stand."""
     found = speed(1, 1.5, "depth=0.02", "balsara=false")

@@ -34,7 +34,7 @@ def test_grains_without_strength_hang_by_their_tension(report):
     assert 0 < fallen < 1e-3
 
 
-@pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.minutes)])
+@pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.validate)])
 def test_grains_without_strength_and_tension_fall_freely(dim, report):
     fallen = drop(f"dim={dim}", "strength=false", "tension=clamp_all")
     report("drop", fallen, FREE_FALL, "m")

@@ -41,7 +41,7 @@ def viscosity(case, times, amplitudes):
     ("dim", "time", "overrides"),
     [
         (2, 0.06, []),
-        pytest.param(3, 0.025, ["particles=24"], marks=pytest.mark.minutes),
+        pytest.param(3, 0.025, ["particles=24"], marks=pytest.mark.validate),
     ],
     ids=["2d", "3d"],
 )

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 
 class Balance:
@@ -12,7 +15,7 @@ class Balance:
     that exceeds what the last cut took; then it is time for another.
     """
 
-    def __init__(self, comm: Any) -> None:
+    def __init__(self, comm: MPI.Intracomm) -> None:
         self._comm = comm
         self.cuts = 0
         self._lost = 0.0  # s

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 SAMPLES = 10_000  # points that a rank tells of, at most
 ALL_SAMPLES = 2_000_000  # points from which space is cut, about
@@ -38,7 +41,7 @@ class Multisection:
 
     name = "multisection"
 
-    def __init__(self, comm: Any, dim: int) -> None:
+    def __init__(self, comm: MPI.Intracomm, dim: int) -> None:
         self._comm = comm
         self.counts = (comm.size,) + (1,) * (dim - 1)  # parts along each axis
         self.cuts = [np.zeros((int(np.prod(self.counts[:a])), n - 1)) for a, n in _numbered(self)]

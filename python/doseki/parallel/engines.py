@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..nearest import suggestion
+from ..util.spelling import suggestion
 from .decomposition import Decomposition, Multisection
 from .zoltan import ZoltanBisection, why_not
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 CHOICE = "DOSEKI_DECOMPOSITION"  # environment variable
 NAMES = ("auto", "zoltan", "multisection")
 
 
-def chosen_engine(comm: Any, dim: int) -> Decomposition:
+def chosen_engine(comm: MPI.Intracomm, dim: int) -> Decomposition:
     """Zoltan's bisection where it is built and fits the MPI in use, else multisection.
 
     DOSEKI_DECOMPOSITION names one of them; raises UserError where it cannot be had.

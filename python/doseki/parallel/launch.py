@@ -9,9 +9,12 @@ import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..ranks import OneRank
+
+if TYPE_CHECKING:  # the solver comes with it, which --help must not wait for
+    from ..driver.ranks import OneRank
 
 # What launchers tell each process: of MPICH, Intel MPI and MVAPICH; of Open MPI; of srun.
 SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS")
@@ -34,6 +37,8 @@ def join_ranks() -> OneRank:
 
     Raises UserError where mpi4py is missing, or belongs to another MPI than the launcher.
     """
+    from ..driver.ranks import OneRank
+
     size = launched_size()
     if size == 1:
         return OneRank()
@@ -81,5 +86,5 @@ def spawn(ranks: int, arguments: Sequence[str]) -> int:
     """Carry out a command of doseki on `ranks` ranks of this machine; its exit code."""
     if find_spec("mpi4py") is None:
         raise UserError(MISSING)
-    command = [mpiexec(), "-n", str(ranks), sys.executable, "-m", "doseki.cli"]
+    command = [mpiexec(), "-n", str(ranks), sys.executable, "-m", "doseki.cli.main"]
     return subprocess.run([*command, *without_ranks(arguments)], check=False).returncode

@@ -12,15 +12,17 @@ from typing import Any, NoReturn, TypeVar
 
 from mpi4py import MPI
 
-from ..core import empty_simulation, filled_simulation
-from ..ranks import OneRank
-from ..scenario import Scenario
+from ..driver.ranks import OneRank
+from ..scenario.model import Scenario
+from ..solver.build import empty_simulation, filled_simulation
+from ..solver.protocol import Columns, Rates, Simulation, SimulationView
+from ..util.finding import Finding
 from .rank_failure import RankFailure
-from .simulation import RankedSimulation, State
+from .simulation import RankedSimulation
 from .watchdog import Watchdog
 
 T = TypeVar("T")
-PATIENCE = 5.0  # s that a rank which fails waits for the others to fail as well
+PATIENCE = 30.0  # s that a rank which fails waits for the others, which may be slow, to fail too
 
 
 @dataclass
@@ -48,14 +50,14 @@ class Told:
 class ManyRanks(OneRank):
     """See OneRank.  All ranks go through a run together, in the same order of calls."""
 
-    def __init__(self, comm: Any, watchdog: Watchdog | None = None) -> None:
+    def __init__(self, comm: MPI.Intracomm, watchdog: Watchdog | None = None) -> None:
         self._comm = comm
         # One of its own: ranks that fail call it while others are in the middle of something else.
         self._last_words = comm.Dup()
         self.rank, self.count = comm.rank, comm.size
         self._watchdog = watchdog
         self._directory: Path | None = None
-        self._simulation: RankedSimulation | None = None
+        self._simulation: Simulation | None = None
         processes = comm.gather((MPI.Get_processor_name(), os.getpid()))
         if watchdog and processes:
             host = MPI.Get_processor_name()
@@ -80,46 +82,51 @@ class ManyRanks(OneRank):
         """See OneRank."""
         return RankedRecorder(self, Path(directory), make)
 
-    def filled_simulation(self, scenario: Scenario) -> tuple[RankedSimulation, list[str]]:
+    def filled_simulation(
+        self, scenario: Scenario
+    ) -> tuple[RankedSimulation, list[str], list[Finding]]:
         """A simulation that rank 0 has filled; when it starts, particles go to their owners.
 
         Bodies that move are on every rank, so that those ranks are filled as well.
         """
         told = Told.of(lambda: filled_simulation(scenario)) if self.is_root else Told()
-        core, names = told.value or (None, None)
-        said = (names, core.has_bodies) if core is not None else None
-        names, everywhere = self._comm.bcast(Told(said, told.error)).result()
-        if not self.is_root:
-            if everywhere:
-                core, _ = filled_simulation(scenario)
-            else:
-                core = empty_simulation(scenario, names)
-        return RankedSimulation(core, self._comm, scenario.dim), names
+        said = None
+        if told.value:
+            core, names, warnings = told.value
+            said = names, warnings, core.has_bodies
+        names, warnings, everywhere = self._comm.bcast(Told(said, told.error)).result()
+        if self.is_root:
+            core = told.result().simulation
+        elif everywhere:
+            core = filled_simulation(scenario).simulation
+        else:
+            core = empty_simulation(scenario, names)
+        return RankedSimulation(core, self._comm, scenario.dim), names, warnings
 
     def restored_simulation(
-        self, scenario: Scenario, body_names: list[str], state: dict[str, Any]
+        self, scenario: Scenario, body_names: list[str], state: Columns
     ) -> tuple[RankedSimulation, bool]:
         """See OneRank."""
         core = empty_simulation(scenario, body_names)
         simulation = RankedSimulation(core, self._comm, scenario.dim)
-        simulation.restore_shared(state)
+        core.restore_shared(state)
         return simulation, False
 
-    def whole_checkpoint(self, simulation: RankedSimulation, state: State) -> State | None:
+    def whole_checkpoint(self, simulation: Simulation, state: Columns) -> Columns:
         """See OneRank."""
-        return simulation.whole_checkpoint(state)
+        return _ranked(simulation).whole_checkpoint(state)
 
-    def show(self, simulation: RankedSimulation, look: Callable[[Any], None]) -> None:
+    def show(self, simulation: Simulation, look: Callable[[SimulationView], None]) -> None:
         """See OneRank."""
         seen = Glimpse(simulation)
         if self.is_root:
             look(seen)
 
-    def balance(self, simulation: RankedSimulation) -> dict[str, float]:
+    def balance(self, simulation: Simulation) -> dict[str, float]:
         """See OneRank."""
-        return simulation.balance()
+        return _ranked(simulation).balance()
 
-    def working_in(self, directory: Path, simulation: RankedSimulation) -> None:
+    def working_in(self, directory: Path, simulation: Simulation) -> None:
         """See OneRank."""
         self._directory, self._simulation = directory, simulation
         if self._watchdog:
@@ -150,8 +157,8 @@ class ManyRanks(OneRank):
 
     def _report(self, text: str) -> None:
         if self._directory is not None and self._simulation is not None:
-            core = self._simulation.core
-            RankFailure(self.rank, text, core.time, core.steps).write(self._directory)
+            simulation = self._simulation
+            RankFailure(self.rank, text, simulation.time, simulation.steps).write(self._directory)
 
     def _all_fail(self) -> bool:
         barrier = self._last_words.Ibarrier()
@@ -163,10 +170,16 @@ class ManyRanks(OneRank):
         return True
 
 
+def _ranked(simulation: Simulation) -> RankedSimulation:
+    """The simulations of a run on many ranks are its own."""
+    assert isinstance(simulation, RankedSimulation)
+    return simulation
+
+
 class Glimpse:
     """A simulation as rank 0 sees it at one moment, without the other ranks' help."""
 
-    def __init__(self, simulation: RankedSimulation) -> None:
+    def __init__(self, simulation: Simulation) -> None:
         self._state, self._rates, self._count = (
             simulation.state(),
             simulation.rates(),
@@ -177,11 +190,11 @@ class Glimpse:
     def __len__(self) -> int:
         return self._count
 
-    def state(self) -> State:
+    def state(self) -> Columns:
         """See RankedSimulation."""
         return self._state
 
-    def rates(self) -> State:
+    def rates(self) -> Rates:
         """See RankedSimulation."""
         return self._rates
 
@@ -198,7 +211,7 @@ class RankedRecorder:
     def _on_root(self, work: Callable[[], Any]) -> None:
         self._ranks.on_root(lambda: work() and None)
 
-    def snapshot(self, state: State, **moment: Any) -> None:
+    def snapshot(self, state: Columns, **moment: Any) -> None:
         """See Recorder."""
         self._on_root(lambda: self._recorder.snapshot(state, **moment))
 

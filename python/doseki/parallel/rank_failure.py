@@ -7,7 +7,7 @@ import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from ..folder import RunFolder
+from ..record.folder import RunFolder
 
 KIND = "rank"
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
 
 import numpy as np
 from mpi4py import MPI
 
+from ..solver.protocol import Columns, CoreSimulation, ForceTerms, Grains, Rates, Totals
 from .balance import Balance
 from .engines import chosen_engine
 from .transport import Transport
@@ -19,29 +20,94 @@ SUMMED = (
 SHARES = ("balance", "migrate", "halo", "wait")
 SHORT = 1e-3  # s of work; too short to tell how it is shared
 
-State = dict[str, np.ndarray]
-
 
 class RankedSimulation:
     """The same methods as a simulation of the core; all ranks call each of them together.
 
     What reads particles (`state`, `rates`) gives all of them to rank 0 and none to the others;
-    `sample`, `totals` and numbers are the same everywhere.  What is not listed here is the core's
-    own and the same on every rank.
+    `sample`, `totals` and numbers are the same everywhere.
     """
 
-    def __init__(self, core: Any, comm: Any, dim: int) -> None:
+    def __init__(self, core: CoreSimulation, comm: MPI.Intracomm, dim: int) -> None:
         """`core`: a simulation without particles, but on rank 0, where they are shared out."""
         self.core, self.comm = core, comm
         self._seen = dict.fromkeys((*SHARES, "total", "busy"), 0.0)
         self._balance = {"imbalance": 1.0} | {f"share_{name}": 0.0 for name in SHARES}
         core.join(Transport(comm, dim, chosen_engine(comm, dim), Balance(comm)))
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.core, name)
-
     def __len__(self) -> int:
         return self._sum(len(self.core))
+
+    @property
+    def time(self) -> float:
+        """See Simulation."""
+        return self.core.time
+
+    @property
+    def timestep(self) -> float:
+        """See Simulation."""
+        return self.core.timestep
+
+    @property
+    def steps(self) -> int:
+        """See Simulation."""
+        return self.core.steps
+
+    @property
+    def rebuilds(self) -> int:
+        """See Simulation."""
+        return self.core.rebuilds
+
+    @property
+    def skin(self) -> float:
+        """See Simulation."""
+        return self.core.skin
+
+    @property
+    def has_bodies(self) -> bool:
+        """See Simulation."""
+        return self.core.has_bodies
+
+    @property
+    def failure(self) -> tuple[str, int]:
+        """See Simulation."""
+        return self.core.failure
+
+    def start(self) -> None:
+        """See Simulation."""
+        self.core.start()
+
+    def advance(self, limit: float, pause: float, max_steps: int) -> None:
+        """See Simulation."""
+        self.core.advance(limit, pause, max_steps)
+
+    def grains(self) -> Grains:
+        """See Simulation; every rank has all bodies."""
+        return self.core.grains()
+
+    def checkpoint(self) -> Columns:
+        """The part of this rank; see whole_checkpoint."""
+        return self.core.checkpoint()
+
+    def restore(self, arrays: Mapping[str, np.ndarray]) -> bool:
+        """Go on from what checkpoint() gave this rank."""
+        return self.core.restore(arrays)
+
+    def time_phases(self, on: bool) -> None:
+        """See Simulation; the phases of this rank."""
+        self.core.time_phases(on)
+
+    def phase_seconds(self) -> dict[str, float]:
+        """See Simulation; the phases of this rank."""
+        return self.core.phase_seconds()
+
+    def bare_pair_rate(self, seconds: float) -> float:
+        """See Simulation; that of this rank."""
+        return self.core.bare_pair_rate(seconds)
+
+    def interacting_pairs(self) -> float:
+        """Pairs of all ranks; see Simulation."""
+        return self.comm.allreduce(self.core.interacting_pairs())
 
     @property
     def updates(self) -> int:
@@ -58,11 +124,11 @@ class RankedSimulation:
         """Mean over the particles."""
         return self._mean(self.core.entries_per_particle)
 
-    def state(self) -> State:
+    def state(self) -> Columns:
         """Fields of all particles in the order of their ids."""
         return by_id(gathered(self.comm, self.core.state()))
 
-    def rates(self) -> State:
+    def rates(self) -> Rates:
         """Rates of all particles in the order of their ids."""
         local = self.core.rates()
         arrays = {key: value for key, value in local.items() if isinstance(value, np.ndarray)}
@@ -70,20 +136,25 @@ class RankedSimulation:
         found = by_id(gathered(self.comm, arrays))
         del found["id"]
         power = self.comm.allreduce(local["av_power"])
-        return found | {"timestep": local["timestep"], "av_power": power}
+        return cast(Rates, found | {"timestep": local["timestep"], "av_power": power})
 
-    def neighbour_counts(self) -> State:
+    def force_terms(self, particle: int) -> ForceTerms:
+        """See Simulation; the same on every rank."""
+        parts: list[ForceTerms] = self.comm.allgather(self.core.force_terms(particle))
+        return next((part for part in parts if part["acceleration"]), parts[0])
+
+    def neighbour_counts(self) -> Columns:
         """Neighbours within support, in the order of ids."""
         return by_id(gathered(self.comm, self.core.neighbour_counts()))
 
-    def sample(self, low: list[float], high: list[float]) -> State:
+    def sample(self, low: Sequence[float], high: Sequence[float]) -> Columns:
         """What gauges read of the particles in a box, in the order of their ids, on every rank."""
         parts = self.comm.allgather(self.core.sample(low, high))
         return by_id({key: np.concatenate([part[key] for part in parts]) for key in parts[0]})
 
-    def totals(self) -> dict[str, Any]:
+    def totals(self) -> Totals:
         """Totals over all particles."""
-        local = self.core.totals()
+        local = cast(dict[str, Any], self.core.totals())
         shared = local.pop("mass_asked")  # each rank knows the whole of it
         names = list(local)
         flat = np.concatenate([np.atleast_1d(np.asarray(local[name], float)) for name in names])
@@ -93,7 +164,7 @@ class RankedSimulation:
             size = np.size(local[name])
             values, flat = flat[:size], flat[size:]
             found[name] = values.tolist() if np.ndim(local[name]) else float(values[0])
-        return found | {"count": [int(n) for n in found["count"]]}
+        return cast(Totals, found | {"count": [int(n) for n in found["count"]]})
 
     def balance(self) -> dict[str, float]:
         """Work of the busiest rank over the mean, and the mean share of the wall time that went
@@ -111,7 +182,7 @@ class RankedSimulation:
                 self._balance[f"share_{name}"] = float(seconds / total)
         return self._balance
 
-    def whole_checkpoint(self, state: State) -> State | None:
+    def whole_checkpoint(self, state: Columns) -> Columns:
         """On rank 0, what `checkpoint` gave on each rank put together: the state that any number
         of ranks can go on from.  Lists are left out.
         """
@@ -124,7 +195,7 @@ class RankedSimulation:
             if name in found:
                 found[name] = found[name][:0]
         found["lanes"] = np.zeros_like(state["lanes"])
-        return found if self.comm.rank == 0 else None
+        return found if self.comm.rank == 0 else {}
 
     def _sum(self, number: int) -> int:
         return self.comm.allreduce(number)
@@ -135,18 +206,18 @@ class RankedSimulation:
         return float(total / max(everyone, 1.0))
 
 
-def by_id(arrays: State) -> State:
+def by_id(arrays: Columns) -> Columns:
     """The same rows in the order of `id`."""
     order = np.argsort(arrays["id"], kind="stable")
     return {key: values[order] for key, values in arrays.items()}
 
 
-def gathered(comm: Any, arrays: Mapping[str, np.ndarray]) -> State:
+def gathered(comm: MPI.Intracomm, arrays: Mapping[str, np.ndarray]) -> Columns:
     """On rank 0 the rows of all ranks, in the order of ranks; none on the others."""
     return {key: _gather_rows(comm, values) for key, values in arrays.items()}
 
 
-def _gather_rows(comm: Any, values: np.ndarray) -> np.ndarray:
+def _gather_rows(comm: MPI.Intracomm, values: np.ndarray) -> np.ndarray:
     values = np.ascontiguousarray(values)
     row = values.itemsize * int(np.prod(values.shape[1:]))
     counts = comm.gather(len(values))

@@ -22,7 +22,9 @@ HALO, PARCELS = 1, 2  # tags; parcels use two in turn
 class Transport:
     """One rank's way to the others."""
 
-    def __init__(self, comm: Any, dim: int, decomposition: Decomposition, balance: Balance) -> None:
+    def __init__(
+        self, comm: MPI.Intracomm, dim: int, decomposition: Decomposition, balance: Balance
+    ) -> None:
         self.rank, self.ranks, self.dim = comm.rank, comm.size, dim
         self.decomposition, self.balance = decomposition, balance
         self._comm = comm
@@ -45,10 +47,6 @@ class Transport:
         everything = np.empty(counts.sum())
         self._wait([self._comm.Iallgatherv(part, (everything, counts))])
         return everything
-
-    def tell(self, text: str, root: int) -> str:
-        """The text of rank `root`."""
-        return self._comm.bcast(text, root=root)
 
     def swap(self, parcels: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
         """Delivers bytes to the ranks that `parcels` names; gives what came, by rank.
@@ -123,7 +121,7 @@ class Transport:
         MPI.Request.Waitall(requests)
 
 
-def is_crowded(comm: Any) -> bool:
+def is_crowded(comm: MPI.Intracomm) -> bool:
     """Whether more ranks than cores are on this machine."""
     neighbours = comm.Split_type(MPI.COMM_TYPE_SHARED)
     crowded = neighbours.size > len(os.sched_getaffinity(0))

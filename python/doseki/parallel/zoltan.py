@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 
 def why_not() -> str:
@@ -28,7 +31,7 @@ class ZoltanBisection:
 
     name = "zoltan"
 
-    def __init__(self, comm: Any, dim: int) -> None:
+    def __init__(self, comm: MPI.Intracomm, dim: int) -> None:
         self._rank, self._ranks = comm.rank, comm.size
         self._zoltan = import_module("doseki._zoltan").Bisection(comm.py2f(), dim)
 

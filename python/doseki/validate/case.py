@@ -37,7 +37,8 @@ class Band:
 
     def holds(self, value: Value) -> bool:
         """Whether a value lies inside; what is not a number never does."""
-        return self.low <= getattr(value, self.of) <= self.high
+        number = value.number if self.of == "number" else value.error
+        return self.low <= number <= self.high
 
     def __str__(self) -> str:
         if self.of == "error":
@@ -93,6 +94,11 @@ class Curve:
     x: np.ndarray
     y: np.ndarray
     points: bool = False  # markers (measured or exact) instead of a line
+
+
+def dots(label: str, x: np.ndarray, y: np.ndarray) -> Curve:
+    """A curve that is drawn as markers."""
+    return Curve(label, x, y, points=True)
 
 
 @dataclass(frozen=True)

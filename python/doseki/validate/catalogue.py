@@ -1,4 +1,4 @@
-"""The cases there are: whatever the modules in cases/ call CASES."""
+"""The cases there are: whatever the modules in the folders of cases/ call CASES."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pkgutil
 from collections.abc import Sequence
 
 from ..errors import UserError
-from ..nearest import suggestion
+from ..util.spelling import suggestion
 from . import cases
 from .case import Case
 
@@ -15,8 +15,9 @@ from .case import Case
 def all_cases() -> dict[str, Case]:
     """Every case by name, in the order of names."""
     modules = [
-        importlib.import_module(f"{cases.__name__}.{module.name}")
-        for module in pkgutil.iter_modules(cases.__path__)
+        importlib.import_module(module.name)
+        for module in pkgutil.walk_packages(cases.__path__, f"{cases.__name__}.")
+        if not module.ispkg
     ]
     found = [case for module in modules for case in module.CASES]
     if len({case.name for case in found}) != len(found):

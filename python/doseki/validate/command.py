@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ..core import load_core
-from ..storage import clear_errors
+from ..solver.build import load_core
+from ..util.files import clear_errors
 from .case import Case
 from .judging import Result, validate_case
 from .picture import draw_result

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..errors import DosekiError
@@ -32,7 +32,7 @@ class Row:
 
     def table(self) -> dict[str, Any]:
         """The row as JSON holds it."""
-        numbers = {"value": None, "expected": None, "error": None}
+        numbers: dict[str, float | None] = {"value": None, "expected": None, "error": None}
         if self.value is not None:
             numbers["value"], numbers["expected"] = self.value.number, self.value.expected
             numbers["error"] = self.value.error
@@ -97,14 +97,15 @@ def _row(
     case: Case, criterion: Criterion, resolution: float, value: Value, order: float | None
 ) -> Row:
     band = criterion.band(case.resolutions.index(resolution))
-    least = criterion.order if order is not None else None
-    verdict = REPORTED if band is None and least is None else PASS
-    if (band is not None and not band.holds(value)) or (least is not None and order < least):
+    asked = [] if band is None else [(str(band), band.holds(value))]
+    if order is not None and criterion.order is not None:
+        asked.append((f"order at least {criterion.order}", not order < criterion.order))
+    verdict = PASS if asked else REPORTED
+    if not all(holds for _, holds in asked):
         verdict = SHORT if criterion.short else FAIL
-    texts = [str(band)] * (band is not None) + [f"order at least {least}"] * (least is not None)
     return Row(
         case.name, criterion.quantity, resolution, verdict, value, criterion.unit,
-        ", ".join(texts), order, criterion.short if verdict == SHORT else "",
+        ", ".join(text for text, _ in asked), order, criterion.short if verdict == SHORT else "",
     )  # fmt: skip
 
 
@@ -112,15 +113,16 @@ def controlled(case: Case, control: Control) -> Row:
     """The wrong model, at the coarsest resolution: it must leave the band, with a number."""
     resolution, criterion = case.resolutions[0], case.criterion(control.quantity)
     band = next(band for band in criterion.bands if band is not None)
-    row = {"unit": criterion.unit, "band": f"not {band}", "note": f"control: {control.what}"}
+    row = Row(
+        case.name, control.quantity, resolution, FAIL, unit=criterion.unit, band=f"not {band}",
+        note=f"control: {control.what}",
+    )  # fmt: skip
     try:
         value = control.run(resolution).values[control.quantity]
     except DosekiError as error:
-        row["note"] += f": {error}"
-        return Row(case.name, control.quantity, resolution, FAIL, **row)
+        return replace(row, note=f"{row.note}: {error}")
     caught = math.isfinite(value.number) and not band.holds(value)
-    verdict = PASS if caught else FAIL
-    return Row(case.name, control.quantity, resolution, verdict, value, **row)
+    return replace(row, verdict=PASS if caught else FAIL, value=value)
 
 
 def failed(results: Sequence[Result]) -> bool:

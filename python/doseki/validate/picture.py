@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from ..layout import chart_grid
+from ..figures.layout import chart_grid
 from .judging import Result
 
 PANEL = (5.0, 3.6)  # inches

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..record import jsonable
-from ..storage import write_whole_text
+from ..record.writer import jsonable
+from ..util.files import write_whole_text
 from .judging import FAIL, SHORT, SKIPPED, Result, Row, failed
 
 HEADINGS = (

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ..core import build_simulation, load_core
 from ..errors import PhysicsError
-from ..particles import FREE
-from ..scenario import load_scenario
+from ..record.particles import FREE
+from ..scenario.load import load_scenario
+from ..solver.build import build_simulation, load_core
+from ..solver.protocol import Totals
 
 FOREVER = 10**9  # steps
 CASES = Path(__file__).resolve().parent / "cases"
@@ -23,9 +23,9 @@ class Running:
     """A scenario with overrides, to be advanced and looked at."""
 
     def __init__(self, name: str, *overrides: str) -> None:
-        """`name` is that of a scenario in cases/, else of a shipped one."""
-        own = CASES / f"{name}.toml"
-        self.scenario = load_scenario(str(own) if own.is_file() else name, overrides)
+        """`name` is that of a scenario in a folder of cases/, else of a shipped one."""
+        own = next(CASES.glob(f"*/{name}.toml"), None)
+        self.scenario = load_scenario(str(own or name), overrides)
         self.simulation, self.body_names = build_simulation(self.scenario)
 
     @property
@@ -53,7 +53,7 @@ class Running:
         try:
             self.simulation.advance(limit=time, pause=time, max_steps=max_steps)
         except load_core().PhysicsFailure as failure:
-            raise PhysicsError(str(failure)) from None
+            raise PhysicsError(str(failure), *self.simulation.failure) from None
         return self.state()
 
     def sampled(self, times: Iterable[float]) -> Iterator[State]:
@@ -61,7 +61,7 @@ class Running:
         for time in times:
             yield self.advance(time)
 
-    def totals(self) -> dict[str, Any]:
+    def totals(self) -> Totals:
         """Mass, momentum and energies of the free particles."""
         return self.simulation.totals()
 

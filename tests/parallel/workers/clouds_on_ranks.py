@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "oracle"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "core"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "core" / "oracle"))
 from clouds import MATERIALS, random_cloud
+from simulations import core_table
 
-from doseki.core_modules import load_core
+from doseki.compiled import load_core
 from doseki.parallel.simulation import RankedSimulation
 
 COMM = MPI.COMM_WORLD
@@ -35,8 +37,8 @@ def simulation(cloud: Any, precision: str, periodic: bool, ranked: bool, h_mode:
         "gravity": [0.0] * dim, "periodic": [periodic] * dim,
         "domain_min": [0.0] * dim, "domain_max": [float(periodic)] * dim,
     }  # fmt: skip
-    materials = [{"name": str(k)} | vars(material) for k, material in enumerate(MATERIALS)]
-    core = getattr(load_core(), f"Simulation{dim}{precision}")(materials, options)
+    materials = [core_table(str(k), **vars(material)) for k, material in enumerate(MATERIALS)]
+    core = load_core().Simulation("ueta2022", dim, precision, materials, options)
     if COMM.rank == 0:
         core.add_particles(
             **{name: np.ascontiguousarray(values) for name, values in vars(cloud).items()}
@@ -87,8 +89,8 @@ def compare(dim: int, precision: str, periodic: bool, h_ratio: float, h_mode: st
 if __name__ == "__main__":
     os.environ["DOSEKI_DECOMPOSITION"] = sys.argv[1]
     load_core().set_threads(1)
-    every = product((2, 3), ("Double", "Float"), (False, True), (1.0, 3.0), ("constant",))
+    every = product((2, 3), ("double", "float"), (False, True), (1.0, 3.0), ("constant",))
     found = [compare(*case) for case in every]
-    found += [compare(dim, "Double", False, 1.0, "eq10") for dim in (2, 3)]
+    found += [compare(dim, "double", False, 1.0, "eq10") for dim in (2, 3)]
     if COMM.rank == 0:
         print(json.dumps(found))

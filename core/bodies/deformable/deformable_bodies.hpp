@@ -1,0 +1,212 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bodies/contact_points.hpp"
+#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/nearest_image.hpp"
+#include "model/particles.hpp"
+#include "ranks/exchange.hpp"
+
+namespace doseki {
+
+/// Deformable bodies among water and other bodies: each of their points is a bound particle, which
+/// the fluid meets as a wall, and points of their surfaces are contact points.
+template <int D>
+class DeformableBodies {
+public:
+    bool empty() const { return solids_.size() == 0; }
+
+    /// Makes the particles `members`, where they are now, with the velocities and normals that they
+    /// have, one body.
+    void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
+             std::span<const std::int32_t> members, std::span<const std::uint8_t> clamped,
+             std::span<const std::uint8_t> surface) {
+        std::vector<Vec<double, D>> position, velocity;
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            const auto p = static_cast<std::size_t>(members[k]);
+            particles.set_point(p, BodyKind::deformable, solids_.size() + k);
+            position.push_back(particles.position[p]), velocity.push_back(particles.velocity[p]);
+            normal_.push_back(particles.wall.normal[p]);
+            surface_.push_back(surface[k]);
+        }
+        solids_.add(body, position, velocity, clamped);
+        material_.push_back(material);
+    }
+
+    /// Call once, after all bodies are in.
+    void start(Particles<D>& particles, const Vec<double, D>& gravity);
+    /// Adds points of surfaces to those that may touch; `first_body` is the number of the first of
+    /// these bodies among all bodies that do.
+    void add_to(ContactPoints<D>& points, std::int32_t first_body);
+
+    bool has(const Particles<D>& particles, std::size_t p) const {
+        return particles.is_point_of(p, BodyKind::deformable);
+    }
+    /// Cauchy stress of a particle, all nine components; in 2-D that along z keeps the strain
+    /// plane.
+    void stress(const Particles<D>& particles, std::size_t p, double* out) const {
+        const std::size_t k = particles.point(p);
+        const Mat<double, D>& F = solids_.deformation(k);
+        const Sym<double, D> sigma = cauchy_stress(solids_.stress(k), F);
+        std::fill_n(out, 9, 0.0);
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) out[3 * a + b] = sigma(std::min(a, b), std::max(a, b));
+        if constexpr (D == 2) out[8] = solids_.body_of(k).stress_across(F);
+    }
+
+    /// See Bodies.
+    void gather(const Particles<D>& particles, const Ranks& ranks) {
+        if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
+        for_each_point(particles, [&](std::size_t p, std::size_t k) {
+            flow_force_[k] = particles.wall.force[p];
+        });
+        ranks.sum(numbers_of(flow_force_));
+    }
+    void kick(double half_dt) { solids_.kick(half_dt, flow_force_); }
+    void begin_step() { before_ = solids_.v; }
+    /// Accelerations as the fluid sees them, averaged over `memory`.
+    void end_step(double dt, double memory);
+    /// Shows the contacts where the points are, and takes their forces.
+    void show(ContactPoints<D>& points) const;
+    void collect(const ContactPoints<D>& points);
+    double place(Particles<D>& particles, const Domain<D>& domain) const;
+    void set_velocities(Particles<D>& particles, double ahead) const;
+
+    double drift(double dt) { return solids_.drift(dt); }
+    void push(double dt, const Vec<double, D>& gravity) { solids_.push(dt, gravity); }
+    /// The longest stable step, infinite without bodies [s].
+    double timestep() const {
+        return empty() ? std::numeric_limits<double>::infinity() : solids_.timestep();
+    }
+    double kinetic_energy() const { return solids_.kinetic_energy(); }
+    double strain_energy() const { return solids_.strain_energy(); }
+    double max_speed() const {
+        double square = 0.0;
+        for (const auto& v : solids_.v) square = std::max(square, dot(v, v));
+        return std::sqrt(square);
+    }
+    /// How far points may go before contacts are looked for again [m].
+    double margin() const {
+        double smallest = std::numeric_limits<double>::infinity();
+        for (std::size_t p = 0; p < solids_.size(); ++p)
+            smallest = std::min(smallest, 0.5 * solids_.body_of(p).spacing);
+        return smallest;
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive, const Vec<double, D>& gravity) {
+        solids_.serialise(archive, gravity);
+        archive("deformable_normal", normal_), archive("deformable_surface", surface_),
+            archive("deformable_material", material_);
+        archive("deformable_flow_force", flow_force_),
+            archive("deformable_acceleration", acceleration_);
+    }
+
+private:
+    /// Calls f(particle, point) for the particles of deformable bodies.
+    template <class P, class F>
+    void for_each_point(P& particles, F&& f) const {
+        if (empty()) return;
+        for_each_particle(particles.size(), [&](std::size_t p) {
+            if (has(particles, p)) f(p, particles.point(p));
+        });
+    }
+
+    TotalLagrangian<D> solids_;
+    std::vector<Vec<double, D>> normal_;  // at rest
+    std::vector<std::uint8_t> surface_;
+    std::vector<std::int32_t> material_;  // by body
+    std::vector<Vec<double, D>> flow_force_, acceleration_, before_;
+    std::vector<std::size_t> touching_;  // points of the surface
+    std::size_t first_contact_point_ = 0;
+};
+
+template <int D>
+void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& gravity) {
+    if (empty()) return;
+    solids_.start(gravity);
+    auto sorted = [this](const auto& by_number) {
+        auto result = by_number;
+        for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
+        return result;
+    };
+    normal_ = sorted(normal_), surface_ = sorted(surface_);
+    flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (has(particles, p))
+            particles.set_point(p, BodyKind::deformable, solids_.slot(particles.point(p)));
+}
+
+template <int D>
+void DeformableBodies<D>::add_to(ContactPoints<D>& points, std::int32_t first_body) {
+    first_contact_point_ = points.size();
+    touching_.clear();
+    for (std::size_t k = 0; k < solids_.size(); ++k) {
+        if (!surface_[k]) continue;
+        const double radius = 0.5 * solids_.body_of(k).spacing;
+        const std::int32_t body = solids_.body(k);
+        points.add(first_body + body,
+                   {material_[static_cast<std::size_t>(body)], radius, solids_.mass(k),
+                    2.0 * radius, solids_.clamped(k), true, false});
+        touching_.push_back(k);
+    }
+}
+
+template <int D>
+void DeformableBodies<D>::end_step(double dt, double memory) {
+    const double share = std::min(1.0, dt / memory);
+    for (std::size_t k = 0; k < solids_.size(); ++k) {
+        if (solids_.clamped(k)) continue;
+        const Vec<double, D> mean =
+            (1.0 / dt) * (solids_.v[k] - before_[k]) + (1.0 / solids_.mass(k)) * flow_force_[k];
+        acceleration_[k] = acceleration_[k] + share * (mean - acceleration_[k]);
+    }
+}
+
+template <int D>
+void DeformableBodies<D>::show(ContactPoints<D>& points) const {
+    for (std::size_t t = 0; t < touching_.size(); ++t) {
+        const std::size_t c = first_contact_point_ + t;
+        points.position[c] = solids_.x[touching_[t]], points.velocity[c] = solids_.v[touching_[t]];
+        points.force[c] = {}, points.torque[c] = {};
+    }
+}
+
+template <int D>
+void DeformableBodies<D>::collect(const ContactPoints<D>& points) {
+    for (std::size_t t = 0; t < touching_.size(); ++t)
+        solids_.load[touching_[t]] = points.force[first_contact_point_ + t];
+}
+
+/// Normals turn as surfaces do, with F^-T.
+template <int D>
+double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) const {
+    std::vector<double> gone(particles.size(), 0.0);
+    for_each_point(particles, [&](std::size_t p, std::size_t k) {
+        const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
+        gone[p] = dot(step, step);
+        particles.position[p] = particles.position[p] + step;
+        const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
+        const double length = std::sqrt(dot(n, n));
+        particles.wall.normal[p] = length > 0.0 ? (1.0 / length) * n : n;
+        particles.acceleration[p] = acceleration_[k];
+    });
+    return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));
+}
+
+template <int D>
+void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
+    for_each_point(particles, [&](std::size_t p, std::size_t k) {
+        particles.velocity[p] = solids_.clamped(k)
+                                    ? Vec<double, D>{}
+                                    : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
+    });
+}
+
+// Compiled once: bodies_2.cpp, bodies_3.cpp.
+extern template class DeformableBodies<2>;
+extern template class DeformableBodies<3>;
+
+}  // namespace doseki

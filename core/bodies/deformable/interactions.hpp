@@ -1,0 +1,104 @@
+#pragma once
+// The two sums of elastic solids as terms of the pair loop, which runs over pairs at rest: the
+// records' coordinates are the reference positions X.
+
+#include <span>
+
+#include "pairs/records.hpp"
+#include "pairs/rows.hpp"
+#include "physics/hourglass.hpp"
+#include "physics/kernel.hpp"
+#include "physics/velocity_gradient.hpp"
+
+namespace doseki {
+
+/// What the sums need of a point beside its place at rest: W of them, or one in memory.
+template <class T, int D>
+struct ElasticFields {
+    Vec<T, D> x;          // where it is now
+    T volume;             // at rest [m^D]
+    T kappa, kappa_rate;  // stiffness [Pa] and damping [Pa s] of the springs
+    Mat<T, D> Q;          // see less_springs
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.x...), f(self.volume...), f(self.kappa...), f(self.kappa_rate...), f(self.Q...);
+    }
+};
+
+template <int D>
+using ElasticRecord = ElasticFields<double, D>;
+
+template <class T, int D>
+struct ElasticPoint : MotionPoint<T, D>, ElasticFields<T, D> {};
+
+/// Common to both terms: no point of a solid is fixed to the pair loop, clamped ones included.
+template <int D>
+struct ElasticTerm {
+    using Real = double;
+    static constexpr int dim = D;
+
+    std::span<const MotionRecord<double, D>> motion;
+    std::span<const ElasticRecord<D>> solid;
+
+    template <class Rows>
+    DOSEKI_FN auto load(Rows rows) const {
+        using T = typename Rows::Number;
+        return ElasticPoint<T, D>{take<MotionPoint<T, D>>(motion, rows),
+                                  take<ElasticFields<T, D>>(solid, rows)};
+    }
+    template <class T>
+    DOSEKI_FN auto load_moving(OneRow<T> j) const {
+        return load(j);
+    }
+    template <class T>
+    DOSEKI_FN auto load_fixed(OneRow<T> j) const {
+        return load(j);
+    }
+    template <class Sums, class T>
+    DOSEKI_FN void add_fixed(Sums&, const Pair<T, D>&, const ElasticPoint<T, D>&,
+                             const ElasticPoint<T, D>&) const {}
+};
+
+template <class T, int D>
+struct DeformationAccumulators {
+    Mat<T, D> place{}, velocity{};  // sum V_j (x_j - x_i) (x) grad0 W, the same of v
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.place...), f(self.velocity...);
+    }
+};
+
+/// Eq. (80) before correction: the deformation gradient and its rate.
+template <int D>
+struct DeformationTerm : ElasticTerm<D> {
+    template <class T>
+    using Accumulators = DeformationAccumulators<T, D>;
+
+    template <class T>
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
+                       const ElasticPoint<T, D>& j) const {
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
+        add_velocity_gradient(sums.place, j.volume, i.x - j.x, F, pair.r_ij);
+        add_velocity_gradient(sums.velocity, j.volume, i.v - j.v, F, pair.r_ij);
+    }
+};
+
+/// Eq. (83): force per volume at rest.
+template <int D>
+struct InternalForceTerm : ElasticTerm<D> {
+    template <class T>
+    using Accumulators = Vec<T, D>;
+
+    template <class T>
+    DOSEKI_FN void add(Vec<T, D>& force, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
+                       const ElasticPoint<T, D>& j) const {
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
+        const Vec<T, D> elastic =
+            elastic_pair_force(i.Q, j.Q, i.kappa + j.kappa, pair.r_ij, i.x - j.x);
+        force = force + (j.volume * F) * (elastic + (i.kappa_rate + j.kappa_rate) * (i.v - j.v));
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,313 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "bodies/contact_points.hpp"
+#include "bodies/rigid_body.hpp"
+#include "boundaries/moving_walls.hpp"
+
+namespace doseki {
+
+/// The motion of rigid bodies: their state, its steps under the forces of contacts and fluid, and
+/// the points at which contacts find them.
+template <int D>
+class RigidBodies {
+public:
+    std::vector<Shape<D>> shapes;
+
+    bool any_moves() const { return moving_ > 0; }
+    std::size_t size() const { return bodies_.size(); }
+    const RigidBody<D>& body(std::size_t k) const { return bodies_[k]; }
+    const RigidBodyState<D>& state(std::size_t k) const { return states_[k]; }
+    RigidBodyState<D>& state(std::size_t k) { return states_[k]; }
+    const Shape<D>& shape(std::size_t k) const {
+        return shapes[static_cast<std::size_t>(bodies_[k].shape)];
+    }
+    bool is_free(std::size_t k) const { return !bodies_[k].fixed && !states_[k].is_removed(); }
+    /// Of the last contact step.
+    const Vec<double, D>& contact_force(std::size_t k) const { return contact_force_[k]; }
+    Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
+    /// All spins when the fluid will have acted for `ahead` more.
+    std::vector<Vec3> spins(double ahead) const {
+        std::vector<Vec3> w;
+        for (std::size_t k = 0; k < size(); ++k)
+            w.push_back(spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque));
+        return w;
+    }
+    std::vector<Mat<double, 3>> rotations() const {
+        std::vector<Mat<double, 3>> R;
+        for (const RigidBodyState<D>& state : states_) R.push_back(state.orientation.matrix());
+        return R;
+    }
+
+    void add(const RigidBody<D>& body, const RigidBodyState<D>& state, const Vec3& spin);
+
+    /// Adds the bodies to those that may touch; the first that are added.
+    void add_to(ContactBodies<D>& contact) const;
+    /// Shows the contacts where the bodies are.
+    void show(ContactBodies<D>& contact) const;
+    /// Takes the forces of the contacts.
+    void collect(const ContactBodies<D>& contact);
+
+    /// Half a step of the forces of the fluid.
+    void kick(double half_dt);
+    void begin_step();
+    /// Positions and orientations; returns the largest distance that a point of a surface goes.
+    double drift(double dt);
+    /// Velocities, by gravity and contacts.
+    void push(const Vec<double, D>& gravity, double dt);
+    /// Averages accelerations over the time `memory`.
+    void end_step(double dt, double memory);
+
+    /// What fixed bodies did in a step.
+    struct WallStep {
+        double distance = 0.0;  // the largest
+        bool any_removed = false;
+    };
+    WallStep follow_walls(const MovingWalls<D>& walls, double t, double dt);
+
+    /// Removes the free bodies whose centre is in the box, and tells which.
+    template <class Box>
+    std::vector<std::uint8_t> remove_inside(const Box& box) {
+        std::vector<std::uint8_t> leaves(size(), 0);
+        for (std::size_t k = 0; k < size(); ++k)
+            if (is_free(k) && box.contains(states_[k].centre))
+                leaves[k] = 1, states_[k].removed = 1;
+        return leaves;
+    }
+
+    double max_speed() const {
+        double speed = 0.0;
+        for (std::size_t k = 0; k < size(); ++k)
+            if (is_free(k))
+                speed =
+                    std::max(speed, norm(states_[k].velocity) + shape(k).radius * norm(spin(k)));
+        return speed;
+    }
+    /// How far bodies may go before contacts are looked for again [m]; infinite where none moves.
+    double margin() const {
+        double smallest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < size(); ++k)
+            if (!bodies_[k].fixed) smallest = std::min(smallest, 0.3 * shape(k).radius);
+        return smallest;
+    }
+    double kinetic_energy() const {
+        double energy = 0.0;
+        for (std::size_t k = 0; k < size(); ++k)
+            if (is_free(k))
+                energy += 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) +
+                          0.5 * dot(spin(k), states_[k].angular_momentum);
+        return energy;
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive) {
+        RigidBodyColumns<D> columns;
+        if constexpr (!Archive::loading) columns = RigidBodyColumns<D>(shapes, bodies_);
+        columns.serialise(archive);
+        archive("bodies", states_);
+        if constexpr (Archive::loading) restore(columns);
+    }
+
+private:
+    Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
+    void restore(const RigidBodyColumns<D>& columns);
+
+    std::vector<RigidBody<D>> bodies_;
+    std::vector<RigidBodyState<D>> states_;
+    std::vector<Vec<double, D>> contact_force_;
+    std::vector<Vec3> contact_torque_;
+    std::vector<Vec<double, D>> velocity_before_;  // at the start of a step
+    std::vector<Vec3> spin_before_;
+    std::size_t moving_ = 0;
+};
+
+template <int D>
+void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& state,
+                         const Vec3& spin) {
+    bodies_.push_back(body), states_.push_back(state);
+    contact_force_.push_back({}), contact_torque_.push_back({});
+    const Mat<double, 3> R = state.orientation.matrix();
+    states_.back().angular_momentum = rotated(R, body.inertia * rotated_back(R, spin));
+    moving_ += !body.fixed;
+}
+
+/// Makes the bodies of an archive, in whose state they are already.
+template <int D>
+void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
+    const std::vector<RigidBodyState<D>> states = std::move(states_);
+    shapes = columns.shapes();
+    bodies_.clear(), states_.clear(), contact_force_.clear(), contact_torque_.clear(), moving_ = 0;
+    for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});
+    states_ = states;
+}
+
+/// omega = R I^-1 R^T L (eq. 51).
+template <int D>
+Vec3 RigidBodies<D>::spin_of(std::size_t k, const Vec3& L) const {
+    if (bodies_[k].fixed) return L;
+    const Mat<double, 3>& I = bodies_[k].inertia;
+    Vec3 spin{};
+    if constexpr (D == 2)
+        spin[2] = L[2] / I(2, 2);
+    else {
+        const Mat<double, 3> R = states_[k].orientation.matrix();
+        spin = rotated(R, inverse(I, 0.0) * rotated_back(R, L));
+    }
+    return spin;
+}
+
+template <int D>
+void RigidBodies<D>::add_to(ContactBodies<D>& contact) const {
+    for (std::size_t k = 0; k < size(); ++k) {
+        const RigidBody<D>& body = bodies_[k];
+        const auto number = static_cast<std::int32_t>(k);
+        const double diameter = 2.0 * shape(k).radius;
+        ContactSide side{body.material, shape(k).radius, body.mass, diameter,
+                         body.fixed,    false,           false};
+        if (shape(k).is_ball()) {
+            contact.points.add(number, side);
+            continue;
+        }
+        side.radius = 0.0;
+        for (std::size_t s = 0; s < shape(k).samples.size(); ++s) contact.points.add(number, side);
+        ConvexBody<D> convex;
+        convex.body = number, convex.material = body.material, convex.fixed = body.fixed;
+        convex.mass = body.mass, convex.diameter = diameter;
+        contact.convex.push_back(convex);
+    }
+}
+
+template <int D>
+void RigidBodies<D>::show(ContactBodies<D>& contact) const {
+    ContactPoints<D>& points = contact.points;
+    std::size_t c = 0, s = 0;
+    for (std::size_t k = 0; k < size(); ++k) {
+        const RigidBodyState<D>& state = states_[k];
+        const bool ball = shape(k).is_ball();
+        const Vec3 w = spin(k);
+        const Mat<double, 3> R = ball ? Mat<double, 3>{} : state.orientation.matrix();
+        if (!ball) {
+            ConvexBody<D>& convex = contact.convex[s++];
+            convex.shape = &shape(k), convex.centre = state.centre,
+            convex.velocity = state.velocity;
+            convex.rotation = R, convex.spin = w, convex.removed = state.is_removed();
+            convex.force = {}, convex.torque = {};
+        }
+        const std::size_t count = ball ? 1 : shape(k).samples.size();
+        for (std::size_t point = 0; point < count; ++point, ++c) {
+            const Vec<double, D> lever =
+                ball ? Vec<double, D>{} : rotated(R, shape(k).samples[point]);
+            points.position[c] = state.centre + lever;
+            points.velocity[c] = state.velocity + turning_velocity(w, lever);
+            points.spin[c] = w, points.removed[c] = state.is_removed();
+            points.force[c] = {}, points.torque[c] = {};
+        }
+    }
+}
+
+template <int D>
+void RigidBodies<D>::collect(const ContactBodies<D>& contact) {
+    const ContactPoints<D>& points = contact.points;
+    std::fill(contact_force_.begin(), contact_force_.end(), Vec<double, D>{});
+    std::fill(contact_torque_.begin(), contact_torque_.end(), Vec3{});
+    for (std::size_t c = 0; c < points.size(); ++c) {
+        const auto k = static_cast<std::size_t>(points.body[c]);
+        if (k >= size()) break;  // deformable ones come last
+        const Vec3 lever = in_space(points.position[c] - states_[k].centre);
+        contact_force_[k] = contact_force_[k] + points.force[c];
+        contact_torque_[k] =
+            contact_torque_[k] + points.torque[c] + cross(lever, in_space(points.force[c]));
+    }
+    for (const ConvexBody<D>& convex : contact.convex) {
+        const auto k = static_cast<std::size_t>(convex.body);
+        contact_force_[k] = contact_force_[k] + convex.force;
+        contact_torque_[k] = contact_torque_[k] + convex.torque;
+    }
+}
+
+template <int D>
+void RigidBodies<D>::kick(double half_dt) {
+    for (std::size_t k = 0; k < size(); ++k) {
+        if (!is_free(k)) continue;
+        RigidBodyState<D>& state = states_[k];
+        state.velocity = state.velocity + (half_dt / bodies_[k].mass) * state.flow_force;
+        state.angular_momentum = state.angular_momentum + half_dt * state.flow_torque;
+    }
+}
+
+template <int D>
+void RigidBodies<D>::begin_step() {
+    spin_before_ = spins(0.0);
+    velocity_before_.resize(size());
+    for (std::size_t k = 0; k < size(); ++k) velocity_before_[k] = states_[k].velocity;
+}
+
+template <int D>
+double RigidBodies<D>::drift(double dt) {
+    double farthest = 0.0;
+    for (std::size_t k = 0; k < size(); ++k) {
+        if (!is_free(k)) continue;
+        RigidBodyState<D>& state = states_[k];
+        const Vec3 turn = dt * spin(k);
+        state.centre = state.centre + dt * state.velocity;
+        state.orientation = state.orientation.turned(turn);
+        const double reach = shape(k).is_ball() ? 0.0 : shape(k).radius;
+        farthest = std::max(farthest, dt * norm(state.velocity) + reach * norm(turn));
+    }
+    return farthest;
+}
+
+template <int D>
+void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
+    for (std::size_t k = 0; k < size(); ++k) {
+        if (!is_free(k)) continue;
+        RigidBodyState<D>& state = states_[k];
+        state.velocity =
+            state.velocity + dt * (gravity + (1.0 / bodies_[k].mass) * contact_force_[k]);
+        state.angular_momentum = state.angular_momentum + dt * contact_torque_[k];
+    }
+}
+
+template <int D>
+void RigidBodies<D>::end_step(double dt, double memory) {
+    for (std::size_t k = 0; k < size(); ++k) {
+        if (!is_free(k)) continue;
+        RigidBodyState<D>& state = states_[k];
+        const Vec<double, D> mean = (1.0 / dt) * (state.velocity - velocity_before_[k]) +
+                                    (1.0 / bodies_[k].mass) * state.flow_force;
+        const double share = std::min(1.0, dt / memory);
+        state.acceleration = state.acceleration + share * (mean - state.acceleration);
+        state.spin_rate =
+            state.spin_rate + share * ((1.0 / dt) * (spin(k) - spin_before_[k]) - state.spin_rate);
+    }
+}
+
+template <int D>
+auto RigidBodies<D>::follow_walls(const MovingWalls<D>& walls, double t, double dt) -> WallStep {
+    WallStep step;
+    for (std::size_t k = 0; k < size(); ++k) {
+        if (!bodies_[k].fixed) continue;
+        const WallMotion<D>* motion = walls.motion_of(bodies_[k].group);
+        if (!motion) continue;
+        RigidBodyState<D>& state = states_[k];
+        state.velocity = motion->velocity_at(state.centre, t);
+        state.angular_momentum = motion->spin_at(t);
+        const Vec<double, D> move =
+            motion->moves(t) ? motion->moved(state.centre, t, dt) - state.centre : Vec<double, D>{};
+        state.centre = state.centre + move;
+        const Vec3 turn = dt * motion->spin_at(t);
+        state.orientation = state.orientation.turned(turn);
+        step.distance = std::max(step.distance, norm(move) + shape(k).radius * norm(turn));
+        if (motion->removed_at > 0.0 && motion->removed_at <= t && !state.is_removed())
+            state.removed = 1.0, step.any_removed = true;
+    }
+    return step;
+}
+
+// Compiled once: bodies_2.cpp, bodies_3.cpp.
+extern template class RigidBodies<2>;
+extern template class RigidBodies<3>;
+
+}  // namespace doseki

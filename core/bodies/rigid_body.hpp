@@ -1,0 +1,100 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "bodies/shape.hpp"
+
+namespace doseki {
+
+/// A rigid body, as given at the start.
+template <int D>
+struct RigidBody {
+    std::int32_t shape, material;
+    std::int32_t group;        // the [body.NAME] of the scenario that it belongs to
+    bool fixed;                // moves only as its wall does
+    double mass;               // [kg], 2-D: [kg/m]
+    Mat<double, 3> inertia{};  // about the centre, in its own frame; 2-D: zz alone
+};
+
+/// What changes of a rigid body; numbers only, so that it can be archived as they are.
+template <int D>
+struct RigidBodyState {
+    Vec<double, D> centre, velocity;
+    Quaternion orientation;
+    Vec3 angular_momentum;        // of a fixed body, whose inertia is infinite: its spin
+    Vec<double, D> acceleration;  // averaged in time, as the fluid sees it
+    Vec3 spin_rate;
+    Vec<double, D> flow_force;  // of the fluid
+    Vec3 flow_torque;
+    double removed;  // 1: gone
+
+    bool is_removed() const { return removed != 0.0; }
+};
+
+/// A particle of a rigid body, in its frame; numbers only, as RigidBodyState.
+template <int D>
+struct RigidBodyPoint {
+    double body;
+    Vec<double, D> offset, normal;
+
+    std::size_t index() const { return static_cast<std::size_t>(body); }
+};
+
+/// Shapes and rigid bodies as one vector for each member, as archives keep them.
+template <int D>
+struct RigidBodyColumns {
+    std::vector<double> radius, mass;
+    std::vector<Vec<double, D>> corners, samples;  // of all shapes in turn
+    std::vector<std::int32_t> facet_count, sample_count, shape, material, group;
+    std::vector<std::uint8_t> fixed;
+    std::vector<Mat<double, 3>> inertia;
+
+    RigidBodyColumns() = default;
+    RigidBodyColumns(const std::vector<Shape<D>>& shapes, const std::vector<RigidBody<D>>& bodies) {
+        for (const Shape<D>& each : shapes) {
+            radius.push_back(each.radius);
+            for (const auto& facet : each.facets)
+                corners.insert(corners.end(), facet.begin(), facet.end());
+            samples.insert(samples.end(), each.samples.begin(), each.samples.end());
+            facet_count.push_back(static_cast<std::int32_t>(each.facets.size()));
+            sample_count.push_back(static_cast<std::int32_t>(each.samples.size()));
+        }
+        for (const RigidBody<D>& each : bodies) {
+            shape.push_back(each.shape), material.push_back(each.material),
+                group.push_back(each.group);
+            fixed.push_back(each.fixed), mass.push_back(each.mass), inertia.push_back(each.inertia);
+        }
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("shape_radius", radius), archive("shape_corners", corners),
+            archive("shape_samples", samples);
+        archive("shape_facets", facet_count), archive("shape_sample_count", sample_count);
+        archive("body_shape", shape), archive("body_material", material),
+            archive("body_named", group);
+        archive("body_fixed", fixed), archive("body_mass", mass), archive("body_inertia", inertia);
+    }
+
+    std::vector<Shape<D>> shapes() const {
+        std::vector<Shape<D>> result(radius.size());
+        auto corner = corners.begin(), sample = samples.begin();
+        for (std::size_t k = 0; k < result.size(); ++k) {
+            result[k].radius = radius[k];
+            for (int f = 0; f < facet_count.at(k); ++f, corner += D) {
+                result[k].facets.emplace_back();
+                std::copy_n(corner, D, result[k].facets.back().begin());
+            }
+            result[k].samples.assign(sample, sample + sample_count.at(k));
+            sample += sample_count[k];
+        }
+        return result;
+    }
+
+    RigidBody<D> rigid(std::size_t k) const {
+        return {shape.at(k),      material.at(k), group.at(k),
+                fixed.at(k) != 0, mass.at(k),     inertia.at(k)};
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,156 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "model/particles.hpp"
+
+namespace doseki {
+
+/// The prescribed motion of a fixed body: from `start` to `stop` it goes with `velocity` and turns
+/// with `spin` about a pivot that goes with it. At `removed_at` it vanishes, as an opened gate
+/// does.
+template <int D>
+struct WallMotion {
+    std::int32_t body = 0;
+    Vec<double, D> velocity{};                         // [m/s]
+    std::array<double, 3> spin{};                      // [rad/s]; 2-D: the last entry alone
+    Vec<double, D> pivot{};                            // at `start` [m]
+    double start = 0.0, stop = 0.0, removed_at = 0.0;  // [s]
+
+    bool moves(double t) const { return start <= t && t < stop; }
+
+    Vec<double, 3> spin_at(double t) const {
+        Vec<double, 3> w;
+        if (moves(t)) w.component = spin;
+        return w;
+    }
+
+    Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
+        if (!moves(t)) return {};
+        return velocity + cross_spin(x - pivot_at(t));
+    }
+
+    /// Where a point that is at x at time t is after dt, within which the motion does not change.
+    Vec<double, D> moved(const Vec<double, D>& x, double t, double dt) const {
+        return x + dt * velocity + turning(x - pivot_at(t), dt);
+    }
+
+    /// What turning for dt adds to a vector that is fixed to the body. It turns by the exact angle,
+    /// so a body keeps its shape over any number of steps.
+    Vec<double, D> turning(const Vec<double, D>& r, double dt) const {
+        const double rate = std::sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]);
+        if (rate == 0.0) return {};
+        // Rodrigues, k being the axis: k x r sin + k x (k x r) (1 - cos).
+        const Vec<double, D> once = (1.0 / rate) * cross_spin(r),
+                             twice = (1.0 / rate) * cross_spin(once);
+        const double half_sine = std::sin(0.5 * rate * dt);
+        return std::sin(rate * dt) * once + 2.0 * half_sine * half_sine * twice;
+    }
+
+private:
+    Vec<double, D> pivot_at(double t) const {
+        return pivot + (std::clamp(t, start, stop) - start) * velocity;
+    }
+
+    Vec<double, D> cross_spin(const Vec<double, D>& r) const {
+        Vec<double, D> v{};
+        v[0] = -spin[2] * r[1], v[1] = spin[2] * r[0];
+        if constexpr (D == 3)
+            v[0] += spin[1] * r[2], v[1] -= spin[0] * r[2], v[2] = spin[0] * r[1] - spin[1] * r[0];
+        return v;
+    }
+};
+
+/// The walls that move. Their motion follows from the time alone and their particles hold where
+/// they are, so there is no further state.
+template <int D>
+class MovingWalls {
+public:
+    void add(const WallMotion<D>& motion) {
+        const auto body = static_cast<std::size_t>(motion.body);
+        if (body >= of_body_.size()) of_body_.resize(body + 1, -1);
+        of_body_[body] = static_cast<int>(motions_.size());
+        motions_.push_back(motion);
+    }
+
+    /// The first time after t at which a motion begins or ends, or a body vanishes.
+    double next_event(double t) const {
+        double next = std::numeric_limits<double>::infinity();
+        for (const WallMotion<D>& motion : motions_)
+            for (double event : {motion.start, motion.stop, motion.removed_at})
+                if (event > t) next = std::min(next, event);
+        return next;
+    }
+
+    /// Takes walls from t to t + dt; returns the largest distance that a particle of theirs went.
+    double move(Particles<D>& particles, double t, double dt) const {
+        if (!any_moves(t)) return 0.0;
+        const double farthest = reduce(particles.size(), 0.0, maximum, [&](std::size_t p) {
+            const WallMotion<D>* motion = motion_of(particles.tag[p]);
+            if (!motion || !motion->moves(t)) return 0.0;
+            const Vec<double, D> step =
+                motion->moved(particles.position[p], t, dt) - particles.position[p];
+            for (int a = 0; a < D; ++a) particles.position[p][a] += step[a];
+            if (particles.wall.in_use) {
+                Vec<double, D>& normal = particles.wall.normal[p];
+                normal = normal + motion->turning(normal, dt);
+            }
+            return dot(step, step);
+        });
+        return std::sqrt(farthest);
+    }
+
+    /// Gives particles of moving walls their velocity at time t, zero outside the time they move.
+    void set_velocities(Particles<D>& particles, double t) const {
+        if (motions_.empty()) return;
+        for_each_particle(particles.size(), [&](std::size_t p) {
+            if (const WallMotion<D>* motion = motion_of(particles.tag[p]))
+                particles.velocity[p] = motion->velocity_at(particles.position[p], t);
+        });
+    }
+
+    /// Marks in `removed` what vanishes after `before` and up to t; true if there is any.
+    bool remove(const Particles<D>& particles, double before, double t,
+                std::vector<std::uint8_t>& removed) const {
+        bool any = false;
+        for (const WallMotion<D>& motion : motions_) any |= vanishes(motion, before, t);
+        if (!any) return false;
+        removed.resize(particles.size(), 0);
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            if (const WallMotion<D>* motion = motion_of(particles.tag[p]);
+                motion && vanishes(*motion, before, t))
+                removed[p] = 1;
+        return true;
+    }
+
+    /// Null for a body that stands still.
+    const WallMotion<D>* motion_of(std::int32_t named) const {
+        const auto body = static_cast<std::size_t>(named);
+        return body < of_body_.size() && of_body_[body] >= 0
+                   ? &motions_[static_cast<std::size_t>(of_body_[body])]
+                   : nullptr;
+    }
+
+private:
+    static bool vanishes(const WallMotion<D>& motion, double before, double t) {
+        return before < motion.removed_at && motion.removed_at <= t;
+    }
+
+    bool any_moves(double t) const {
+        return std::any_of(motions_.begin(), motions_.end(),
+                           [t](const auto& motion) { return motion.moves(t); });
+    }
+
+    const WallMotion<D>* motion_of(const Tag& tag) const {
+        return tag.motion == Motion::fixed ? motion_of(tag.body) : nullptr;
+    }
+
+    std::vector<WallMotion<D>> motions_;
+    std::vector<int> of_body_;  // index of its motion; -1: none
+};
+
+}  // namespace doseki

@@ -1,0 +1,248 @@
+#pragma once
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "boundaries/speed_table.hpp"
+#include "model/particles.hpp"
+
+namespace doseki {
+
+/// A number in (-1, 1) that depends on its arguments alone, so that a run can be repeated and
+/// resumed (the finaliser of SplitMix64, Steele et al. 2014).
+inline double symmetric_noise(std::int64_t id, int axis) {
+    auto z =
+        static_cast<std::uint64_t>(id) * 4 + static_cast<std::uint64_t>(axis) + 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return static_cast<double>(static_cast<std::int64_t>(z)) * 0x1p-63;
+}
+
+/// An inflow section: layers of particles, dp apart, pushed through it at a prescribed speed.
+/// Behind the section a buffer of driven layers carries the flow's pressure upstream; a layer that
+/// has crossed the section is set free and a new one joins at the back. The rate is therefore exact
+/// to one layer.
+template <int D>
+struct Inflow {
+    std::vector<Vec<double, D>> layer;  // positions of one layer in the plane of the section
+    Vec<double, D> direction{};         // unit vector of the flow
+    SpeedTable speed;                   // from the start of the inflow to its end
+    double spacing = 0.0;               // between layers [m]
+    int buffer_layers = 4;
+    double jitter = 0.0;  // random displacement of a particle, in spacings (< 1/2)
+    double mass = 0.0, density = 0.0, smoothing_length = 0.0;  // of one particle
+    std::int16_t material = 0;
+    std::int32_t body = 0;
+
+    // State: layers set free so far, and whether the buffer exists.
+    std::int64_t released = 0;
+    bool open = false, closed = false;
+
+    double mass_per_layer() const { return mass * static_cast<double>(layer.size()); }
+    /// Mass that was to enter until time t.
+    double requested_mass(double t) const {
+        return mass_per_layer() * speed.distance_at(t) / spacing;
+    }
+
+    /// The next time at which particles appear, are set free or vanish.
+    double next_event() const {
+        if (closed) return std::numeric_limits<double>::infinity();
+        if (!open) return speed.start();
+        return min(speed.stop(), speed.time_at((static_cast<double>(released) + 0.5) * spacing));
+    }
+
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("inflow_released", released), archive("inflow_open", open),
+            archive("inflow_closed", closed);
+    }
+
+    /// Distance of layer k beyond the section at time t (< 0: still in the buffer).
+    double advance(std::int64_t k, double t) const {
+        return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
+    }
+};
+
+/// Particles inside the box are removed and counted.
+template <int D>
+struct Outflow {
+    Vec<double, D> low{}, high{};
+    bool contains(const Vec<double, D>& x) const {
+        for (int a = 0; a < D; ++a)
+            if (x[a] < low[a] || x[a] > high[a]) return false;
+        return true;
+    }
+};
+
+/// Account of mass [kg], 2-D: [kg/m].
+struct Ledger {
+    double initial = 0.0, requested = 0.0, inflow = 0.0, outflow = 0.0;
+};
+
+/// Everything that adds or removes particles, with its account.
+template <int D>
+class OpenBoundaries {
+public:
+    std::vector<Inflow<D>> inflows;
+    std::vector<Outflow<D>> outflows;
+    Ledger ledger;  // of the particles of this rank
+    std::int64_t next_id = 0;
+    bool adds = true;  // on one rank only; from there particles go to their owners
+
+    double next_event() const {
+        double next = std::numeric_limits<double>::infinity();
+        for (const Inflow<D>& inflow : inflows) next = min(next, inflow.next_event());
+        return next;
+    }
+
+    /// Carries out all events up to time t; true if particles came or changed their motion, so that
+    /// neighbours must be sorted anew. Particles to remove are left in `removed`.
+    template <class State>
+    bool inject(State& particles, double t);
+
+    /// Gives driven particles the mean velocity from t to t + dt, so that a drift takes them
+    /// exactly as far as the table of their inflow says; nothing to do for one of constant speed.
+    void impose_mean_velocity(Particles<D>& particles, double t, double dt) const {
+        set_speeds(particles, [t, dt](const SpeedTable& table) {
+            return dt > 0.0 ? (table.distance_at(t + dt) - table.distance_at(t)) / dt
+                            : table.speed_at(t);
+        });
+    }
+
+    /// Gives driven particles their velocity at time t.
+    void impose_velocity(Particles<D>& particles, double t) const {
+        set_speeds(particles, [t](const SpeedTable& table) { return table.speed_at(t); });
+    }
+
+    /// Marks in `removed` the free particles inside an outflow, and what `remove_bodies(outflow,
+    /// removed)` marks there, which returns its mass.
+    template <class RemoveBodies>
+    void remove_outflow(const Particles<D>& particles, const RemoveBodies& remove_bodies);
+
+    std::vector<std::uint8_t> removed;
+
+    /// What changes during a run; `removed` is empty between steps.
+    template <class Archive>
+    void serialise(Archive& archive);
+
+private:
+    template <class Speed>
+    void set_speeds(Particles<D>& particles, Speed&& speed_of) const;
+    template <class State>
+    void add_layer(State& particles, const Inflow<D>& inflow, std::int64_t k, double t);
+    template <class State>
+    void release(State& particles, Inflow<D>& inflow, double t);
+};
+
+template <int D>
+template <class Archive>
+void OpenBoundaries<D>::serialise(Archive& archive) {
+    archive("mass_initial", ledger.initial), archive("mass_asked", ledger.requested);
+    archive("mass_entered", ledger.inflow), archive("mass_left", ledger.outflow);
+    archive("next_id", next_id);
+    for (std::size_t k = 0; k < inflows.size(); ++k)
+        archive.nested(std::to_string(k) + "_", inflows[k]);
+}
+
+template <int D>
+template <class Speed>
+void OpenBoundaries<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) const {
+    for (const Inflow<D>& inflow : inflows) {
+        if (inflow.speed.steady() || !inflow.open || inflow.closed) continue;
+        const Vec<double, D> velocity = speed_of(inflow.speed) * inflow.direction;
+        for (std::size_t p = 0; p < particles.size(); ++p) {
+            const Tag& tag = particles.tag[p];
+            if (tag.motion == Motion::driven && tag.body == inflow.body)
+                particles.velocity[p] = velocity;
+        }
+    }
+}
+
+template <int D>
+template <class State>
+void OpenBoundaries<D>::add_layer(State& particles, const Inflow<D>& inflow, std::int64_t k,
+                                  double t) {
+    if (!adds) {
+        next_id += static_cast<std::int64_t>(inflow.layer.size());
+        return;
+    }
+    const std::size_t first = particles.size();
+    resize(particles, first + inflow.layer.size());
+    for (std::size_t row = 0; row < inflow.layer.size(); ++row) {
+        const std::size_t p = first + row;
+        particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
+        for (int a = 0; a < D; ++a)
+            particles.position[p][a] +=
+                inflow.jitter * inflow.spacing * symmetric_noise(next_id, a);
+        particles.velocity[p] = inflow.speed.speed_at(t) * inflow.direction;
+        particles.acceleration[p] = {};
+        particles.density[p] = inflow.density;
+        particles.density_rate[p] = 0.0;
+        particles.mass[p] = inflow.mass;
+        particles.smoothing_length[p] = inflow.smoothing_length;
+        particles.tag[p] = {next_id++, inflow.body, inflow.material, Motion::driven};
+        particles.enter(p);
+    }
+}
+
+template <int D>
+template <class State>
+void OpenBoundaries<D>::release(State& particles, Inflow<D>& inflow, double t) {
+    for (; inflow.advance(inflow.released, t) >= 0.0; ++inflow.released)
+        add_layer(particles, inflow, inflow.released + inflow.buffer_layers, t);
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        Tag& tag = particles.tag[p];
+        if (tag.motion != Motion::driven || tag.body != inflow.body) continue;
+        const double beyond = dot(particles.position[p] - inflow.layer[0], inflow.direction);
+        // Half the way to the next layer at most: a layer is set free as a whole.
+        if (beyond >= -(inflow.jitter + 1e-9) * inflow.spacing) {
+            tag.motion = Motion::free;
+            ledger.inflow += particles.mass[p];
+        }
+    }
+}
+
+template <int D>
+template <class State>
+bool OpenBoundaries<D>::inject(State& particles, double t) {
+    bool changed = false;
+    for (Inflow<D>& inflow : inflows) {
+        if (t < inflow.next_event()) continue;
+        changed = true;
+        if (!inflow.open) {
+            inflow.open = true;
+            for (std::int64_t k = 0; k < inflow.buffer_layers; ++k)
+                add_layer(particles, inflow, k, t);
+        }
+        release(particles, inflow, min(t, inflow.speed.stop()));
+        if (t >= inflow.speed.stop()) {
+            inflow.closed = true;
+            removed.resize(particles.size(), 0);
+            for (std::size_t p = 0; p < particles.size(); ++p)
+                if (particles.tag[p].motion == Motion::driven &&
+                    particles.tag[p].body == inflow.body)
+                    removed[p] = 1;
+        }
+    }
+    ledger.requested = 0.0;
+    for (const Inflow<D>& inflow : inflows) ledger.requested += inflow.requested_mass(t);
+    return changed;
+}
+
+template <int D>
+template <class RemoveBodies>
+void OpenBoundaries<D>::remove_outflow(const Particles<D>& particles,
+                                       const RemoveBodies& remove_bodies) {
+    removed.resize(particles.size(), 0);
+    for (const Outflow<D>& outflow : outflows) ledger.outflow += remove_bodies(outflow, removed);
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        for (const Outflow<D>& outflow : outflows)
+            if (!removed[p] && particles.is_free(p) && outflow.contains(particles.position[p])) {
+                removed[p] = 1;
+                ledger.outflow += particles.mass[p];
+            }
+}
+
+}  // namespace doseki

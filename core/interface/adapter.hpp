@@ -1,0 +1,252 @@
+#pragma once
+// A simulation of one scheme, dimension and precision as its caller sees it.
+
+#include <memory>
+
+#include "base/phase_timer.hpp"
+#include "interface/any_simulation.hpp"
+#include "interface/archive.hpp"
+#include "interface/bodies.hpp"
+#include "interface/boundaries.hpp"
+#include "interface/options.hpp"
+#include "interface/particles.hpp"
+#include "pairs/pair_counter.hpp"
+#include "run/simulation.hpp"
+
+namespace doseki {
+
+/// Of schemes that offer it, in a header that their unit includes.
+template <class Scheme, class Lists>
+double bare_rate(const Scheme& scheme, const Lists& lists, double seconds) {
+    if constexpr (requires { bare_pair_rate(scheme, lists, seconds); })
+        return bare_pair_rate(scheme, lists, seconds);
+    else
+        throw std::invalid_argument("the scheme has no bare rate");
+}
+
+template <class SchemeOf>
+class Adapter final : public AnySimulation {
+    using Sim = Simulation<SchemeOf>;
+    static constexpr int D = SchemeOf::dim;
+    using Corner = std::vector<double>;
+
+public:
+    explicit Adapter(Setup<D> setup)
+        : sim_(std::move(setup.materials), setup.options, setup.domain) {}
+
+    static std::unique_ptr<AnySimulation> make(const std::vector<NamedValues>& materials,
+                                               const NamedValues& options) {
+        return std::make_unique<Adapter>(Setup<D>::read(materials, options));
+    }
+
+    void add_particles(const NamedValues& columns) override {
+        const std::size_t first = sim_.particles.size();
+        resize(sim_.particles, first + ParticleTables<D>::count(columns));
+        const std::int64_t next = ParticleTables<D>::set(sim_.particles, first, columns);
+        sim_.open_boundaries.next_id = std::max(sim_.open_boundaries.next_id, next);
+    }
+    void set_walls(const NamedValues& columns) override {
+        ParticleTables<D>::set_walls(sim_.particles, columns);
+    }
+    void add_shapes(const std::vector<NamedValues>& shapes) override {
+        for (const NamedValues& shape : shapes)
+            sim_.bodies.rigid.shapes.push_back(BodyTables<D>::shape(shape));
+    }
+    void add_rigid_bodies(const NamedValues& columns) override {
+        BodyTables<D>::add_rigid(sim_.bodies, columns);
+    }
+    void bind_points(const NamedValues& columns) override {
+        BodyTables<D>::bind(sim_.bodies, sim_.particles, columns);
+    }
+    void add_elastic_body(const NamedValues& body) override {
+        BodyTables<D>::add_elastic(sim_.bodies, sim_.particles, body);
+    }
+    void add_inflow(const NamedValues& inflow) override {
+        sim_.open_boundaries.inflows.push_back(BoundaryTables<D>::inflow(inflow));
+    }
+    void add_outflow(const Corner& low, const Corner& high) override {
+        sim_.open_boundaries.outflows.push_back(BoundaryTables<D>::outflow(low, high));
+    }
+    void move_body(const NamedValues& motion) override {
+        sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
+    }
+    void join(std::unique_ptr<Exchange> exchange) override {
+        exchange_ = std::move(exchange);
+        sim_.join(*exchange_);
+    }
+
+    void start() override { sim_.start(); }
+    void advance(double limit, double pause, std::int64_t max_steps) override {
+        sim_.advance(limit, pause, max_steps);
+    }
+
+    Progress progress() const override {
+        Progress now;
+        now.time = sim_.time(), now.timestep = sim_.last_timestep(), now.steps = sim_.steps();
+        now.rebuilds = sim_.rebuilds(), now.updates = sim_.updates();
+        now.particles = sim_.particles.size(), now.skin = sim_.skin();
+        return now;
+    }
+    double bytes_per_particle() const override { return sim_.bytes_per_particle(); }
+    double entries_per_particle() const override {
+        const auto particles = std::max<std::size_t>(1, sim_.particles.size());
+        return static_cast<double>(sim_.neighbours().entries()) / static_cast<double>(particles);
+    }
+    bool has_bodies() const override { return !sim_.bodies.empty(); }
+
+    NamedValues state() const override {
+        const auto order = ParticleTables<D>::id_order(sim_.particles);
+        NamedValues table = ParticleTables<D>::fields(sim_.particles, order, states());
+        table["stress"] = BodyTables<D>::stress(sim_.bodies, sim_.particles, order, states());
+        if (const auto& wall = sim_.particles.wall; wall.in_use) {
+            table["force"] = ParticleTables<D>::column(wall.force, order);
+            table["normal"] = ParticleTables<D>::column(wall.normal, order);
+            table["grain"] = BodyTables<D>::rigid_body_of(sim_.bodies, sim_.particles, order);
+        }
+        if constexpr (requires { sim_.particles.velocity_gradient; }) {
+            const auto& fluid = sim_.particles;
+            table["surface"] = ParticleTables<D>::column(fluid.surface, order);
+            table["velocity_gradient"] = ParticleTables<D>::column(fluid.velocity_gradient, order);
+        }
+        return table;
+    }
+
+    NamedValues rates() const override {
+        const auto order = ParticleTables<D>::id_order(sim_.particles);
+        NamedValues table = ParticleTables<D>::rates(sim_.particles, order);
+        table["deviatoric_stress_rate"] = ParticleTables<D>::stresses(
+            order, [this](std::size_t p) { return sim_.particles.stress_rate(p); });
+        NewArray<double> balsara({order.size()});
+        if constexpr (requires { sim_.scheme().balsara(0); })
+            for (std::size_t k = 0; k < order.size(); ++k)
+                balsara[k] = sim_.scheme().balsara(order[k]);
+        table["balsara"] = balsara, table["timestep"] = sim_.next_timestep();
+        table["av_power"] = sim_.scheme().dissipated_power();
+        return table;
+    }
+
+    NamedValues totals() const override {
+        const auto sum = sim_.totals();
+        const Ledger& ledger = sim_.open_boundaries.ledger;
+        NamedValues table;
+        table["mass"] = sum.mass;
+        table["momentum"] = List(sum.momentum.component.begin(), sum.momentum.component.end());
+        table["kinetic_energy"] = sum.kinetic_energy, table["bulk_energy"] = sum.bulk_energy;
+        table["shear_energy"] = sum.shear_energy, table["av_dissipation"] = sim_.dissipation();
+        table["mass_initial"] = ledger.initial, table["mass_asked"] = ledger.requested;
+        table["mass_entered"] = ledger.inflow, table["mass_left"] = ledger.outflow;
+        table["count"] = List(sum.count.begin(), sum.count.end());
+        return table;
+    }
+
+    NamedValues grains() const override { return BodyTables<D>::rigid(sim_.bodies); }
+
+    NamedValues sample(const Corner& low, const Corner& high) const override {
+        return ParticleTables<D>::sample(
+            sim_.particles, ParticleTables<D>::inside(sim_.particles, low, high), states());
+    }
+
+    NamedValues force_terms(std::int64_t id) override {
+        const ForceTerms<D> terms = sim_.force_terms(id);
+        NamedValues acceleration, timestep, table;
+        for (const auto& [name, term] : terms.acceleration) {
+            NewArray<double> values({static_cast<std::size_t>(D)});
+            std::copy(term.component.begin(), term.component.end(), values.data());
+            acceleration[name] = values;
+        }
+        for (const auto& [name, limit] : terms.timestep) timestep[name] = limit;
+        table["acceleration"] = acceleration, table["timestep"] = timestep;
+        return table;
+    }
+
+    NamedValues neighbour_counts() const override {
+        const auto counts = PairCounter(sim_.scheme(), sim_.neighbours()).counts();
+        const auto order = ParticleTables<D>::id_order(sim_.particles);
+        NewArray<std::int64_t> id({order.size()}), count({order.size()});
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            id[k] = sim_.particles.tag[order[k]].id;
+            count[k] = static_cast<std::int64_t>(counts[order[k]]);
+        }
+        NamedValues table;
+        table["id"] = id, table["count"] = count;
+        return table;
+    }
+
+    NamedValues shares() const override {
+        const Halo<D>& halo = sim_.halo();
+        const RankClock& clock = halo.ranks.clock;
+        NamedValues table;
+        for (std::size_t k = 0; k < share_names.size(); ++k)
+            table[share_names[k]] = clock.seconds()[k];
+        table["total"] = clock.total(), table["busy"] = clock.busy();
+        table["bytes_sent"] = halo.bytes_sent(), table["messages_sent"] = halo.messages_sent();
+        table["particles"] = static_cast<std::int64_t>(sim_.particles.size());
+        table["ghosts"] = static_cast<std::int64_t>(halo.ghosts());
+        return table;
+    }
+
+    NamedValues checkpoint() override {
+        SavingArchive archive;
+        int width = Sim::width;
+        archive("lanes", width);
+        sim_.serialise(archive);
+        return archive.arrays;
+    }
+
+    std::vector<std::string> particle_arrays() const override {
+        SavingArchive archive;
+        typename SchemeOf::State none(sim_.scheme().materials());
+        none.for_each_field(archive);
+        std::vector<std::string> names;
+        for (const auto& [name, array] : archive.arrays) names.push_back(name);
+        return names;
+    }
+
+    bool restore(const NamedValues& arrays) override {
+        LoadingArchive archive(arrays);
+        int width = 0;
+        archive("lanes", width);
+        sim_.serialise(archive);
+        if (exchange_ || width == 0) {
+            sim_.renew_order();
+            return false;
+        }
+        if (width == Sim::width) return true;
+        sim_.renew_lists();
+        return false;
+    }
+
+    void restore_shared(const NamedValues& arrays) override {
+        LoadingArchive archive(arrays);
+        sim_.serialise(archive);
+        sim_.leave_to_first_rank();
+        sim_.renew_order();
+    }
+
+    void time_phases(bool on) override { sim_.phases().restart(on); }
+    NamedValues phase_seconds() override {
+        const auto seconds = sim_.phases().seconds(thread_count());
+        NamedValues table;
+        for (std::size_t k = 0; k < phase_names.size(); ++k) table[phase_names[k]] = seconds[k];
+        return table;
+    }
+    double interacting_pairs() const override {
+        return PairCounter(sim_.scheme(), sim_.neighbours()).interacting_pairs();
+    }
+    double bare_pair_rate(double seconds) const override {
+        return bare_rate(sim_.scheme(), sim_.neighbours(), seconds);
+    }
+
+private:
+    PointStates<D> states() const {
+        return [this](std::size_t p) -> PointState<D> {
+            return {sim_.scheme().equation_of_state(sim_.particles, p),
+                    sim_.scheme().deviator(sim_.particles, p), sim_.particles.stress(p)};
+        };
+    }
+
+    std::unique_ptr<Exchange> exchange_;
+    Sim sim_;
+};
+
+}  // namespace doseki

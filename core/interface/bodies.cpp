@@ -1,0 +1,173 @@
+#include "interface/bodies.hpp"
+
+#include <algorithm>
+
+#include "interface/reader.hpp"
+
+namespace doseki {
+namespace {
+
+template <int D>
+void read_facets(ColumnReader& column, Shape<D>& shape) {
+    const auto vertices = column.vectors<D>("vertices");
+    for (const auto& x : vertices) shape.radius = std::max(shape.radius, norm(x));
+    const auto faces = column.numbers<std::int32_t>("faces", D);
+    for (std::size_t f = 0; f < faces.size() / D; ++f) {
+        typename Shape<D>::Facet facet;
+        for (std::size_t a = 0; a < D; ++a)
+            facet[a] = vertices.at(static_cast<std::size_t>(faces[f * D + a]));
+        shape.facets.push_back(facet);
+    }
+}
+
+}  // namespace
+
+DeformableBody read_elastic_body(const NamedValues& table, const std::vector<const char*>& others) {
+    DeformableBody body{};
+    std::string law;
+    double modulus = 0.0, ratio = 0.0;
+    Reader read(table, "elastic body");
+    read("rho0", body.rho0), read("elastic_law", law);
+    read("young_modulus", modulus), read("poisson_ratio", ratio);
+    read("spacing", body.spacing), read("hourglass", body.hourglass), read("damping", body.damping);
+    for (const char* key : others) read.allow(key);
+    read.finish();
+    body.law = alternative<Hyperelastic<double>>(law);
+    with_value(body.law, [&](auto& known) { known.lame = Lame<double>::of(modulus, ratio); });
+    return body;
+}
+
+template <int D>
+Shape<D> BodyTables<D>::shape(const NamedValues& table) {
+    Shape<D> shape;
+    if (table.find("radius")) {
+        Reader read(table, "shape");
+        read("radius", shape.radius);
+        read.finish();
+        return shape;
+    }
+    ColumnReader column(table, "shape", ColumnReader::any_rows);
+    read_facets(column, shape);
+    shape.samples = column.vectors<D>("samples");
+    column.finish();
+    return shape;
+}
+
+template <int D>
+void BodyTables<D>::add_rigid(Bodies<D>& bodies, const NamedValues& columns) {
+    ColumnReader column(columns, "rigid bodies");
+    const auto shape = column.numbers<std::int32_t>("shape"),
+               material = column.numbers<std::int32_t>("material"),
+               named = column.numbers<std::int32_t>("body");
+    const auto fixed = column.numbers<std::uint8_t>("fixed");
+    const auto mass = column.numbers<double>("mass"),
+               orientation = column.numbers<double>("orientation", 4),
+               inertia = column.numbers<double>("inertia", 9);
+    const auto centre = column.vectors<D>("centre"), velocity = column.vectors<D>("velocity");
+    const auto spin = column.vectors<3>("spin");
+    column.finish();
+    for (std::size_t k = 0; k < column.rows(); ++k) {
+        RigidBody<D> body{shape[k], material[k], named[k], fixed[k] != 0, mass[k], {}};
+        std::copy_n(&inertia[9 * k], 9, body.inertia.element.begin());
+        RigidBodyState<D> state{};
+        state.centre = centre[k], state.velocity = velocity[k];
+        const double* q = &orientation[4 * k];
+        state.orientation = {q[0], q[1], q[2], q[3]};
+        bodies.rigid.add(body, state, spin[k]);
+    }
+}
+
+template <int D>
+void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& columns) {
+    ColumnReader column(columns, "points of bodies");
+    const auto index = column.numbers<std::int32_t>("body");
+    column.finish();
+    if (index.size() != particles.size())
+        throw std::invalid_argument("bodies of particles: one index, or -1, for each particle");
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (index[p] >= 0) bodies.bind(particles, p, static_cast<std::size_t>(index[p]));
+}
+
+template <int D>
+void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
+                                const NamedValues& table) {
+    const std::vector<const char*> own{"material", "particles", "clamped", "surface"};
+    const DeformableBody body = read_elastic_body(table, own);
+    if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
+    std::int32_t material = 0;
+    Reader(table, "elastic body")("material", material);
+    ColumnReader column(table, "elastic body");
+    const auto members = column.numbers<std::int32_t>("particles");
+    const auto clamped = column.numbers<std::uint8_t>("clamped"),
+               surface = column.numbers<std::uint8_t>("surface");
+    bodies.deformable.add(particles, body, material, members, clamped, surface);
+}
+
+template <int D>
+NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
+    const RigidBodies<D>& rigid = bodies.rigid;
+    const std::size_t n = rigid.size();
+    NewArray<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}),
+        flow_force({n, D}), contact_force({n, D}), mass({n}), radius({n}), overlap({n});
+    NewArray<std::int32_t> contacts({n}), named({n}), material({n});
+    NewArray<bool> fixed({n}), removed({n});
+    auto put = [](NewArray<double>& array, std::size_t k, const auto& vector) {
+        std::copy(vector.component.begin(), vector.component.end(), array.row(k));
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+        const RigidBody<D>& body = rigid.body(k);
+        const RigidBodyState<D>& state = rigid.state(k);
+        const Quaternion& q = state.orientation;
+        put(centre, k, state.centre), put(velocity, k, state.velocity);
+        put(spin, k, rigid.spin(k));
+        put(orientation, k, Vec<double, 4>{{q.w, q.x, q.y, q.z}});
+        put(flow_force, k, state.flow_force), put(contact_force, k, rigid.contact_force(k));
+        mass[k] = body.mass, radius[k] = rigid.shape(k).radius;
+        named[k] = body.group, material[k] = body.material, fixed[k] = body.fixed;
+        removed[k] = state.is_removed();
+    }
+    bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
+        for (const std::int32_t k : {a, b}) {
+            if (static_cast<std::size_t>(k) >= n) continue;  // a deformable one
+            ++contacts[static_cast<std::size_t>(k)];
+            double& largest = overlap[static_cast<std::size_t>(k)];
+            largest = std::max(largest, share);
+        }
+    });
+    NamedValues table;
+    table["centre"] = centre, table["velocity"] = velocity, table["spin"] = spin;
+    table["orientation"] = orientation, table["flow_force"] = flow_force;
+    table["contact_force"] = contact_force, table["mass"] = mass, table["radius"] = radius;
+    table["contacts"] = contacts, table["overlap"] = overlap, table["body"] = named;
+    table["material"] = material, table["fixed"] = fixed, table["removed"] = removed;
+    table["worst_overlap"] = Value(bodies.contacts().max_overlap());
+    return table;
+}
+
+template <int D>
+Value BodyTables<D>::rigid_body_of(const Bodies<D>& bodies, const Particles<D>& particles,
+                                   const std::vector<std::size_t>& order) {
+    NewArray<std::int32_t> grain({order.size()});
+    for (std::size_t k = 0; k < order.size(); ++k)
+        grain[k] = bodies.rigid_body_of(particles, order[k]);
+    return grain;
+}
+
+template <int D>
+Value BodyTables<D>::stress(const Bodies<D>& bodies, const Particles<D>& particles,
+                            const std::vector<std::size_t>& order, const PointStates<D>& states) {
+    NewArray<double> stress({order.size(), 3, 3});
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        double* const out = stress.data() + 9 * k;
+        const PointState<D> state = states(order[k]);
+        ParticleTables<D>::fill_stress(out, state.eos.pressure, state.deviator);
+        if (bodies.deformable.has(particles, order[k]))
+            bodies.deformable.stress(particles, order[k], out);
+    }
+    return stress;
+}
+
+template struct BodyTables<2>;
+template struct BodyTables<3>;
+
+}  // namespace doseki

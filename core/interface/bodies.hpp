@@ -1,0 +1,40 @@
+#pragma once
+// Rigid and deformable bodies as tables, in and out.
+
+#include <vector>
+
+#include "bodies/bodies.hpp"
+#include "interface/particles.hpp"
+#include "interface/value.hpp"
+
+namespace doseki {
+
+/// Body parameters of a table {rho0, young_modulus, poisson_ratio, elastic_law, spacing, hourglass,
+/// damping}; `others` are keys that the caller reads itself.
+DeformableBody read_elastic_body(const NamedValues& table, const std::vector<const char*>& others);
+
+template <int D>
+struct BodyTables {
+    /// Balls {radius}, or convex shapes {vertices, faces, samples}.
+    static Shape<D> shape(const NamedValues& table);
+    static void add_rigid(Bodies<D>& bodies, const NamedValues& columns);
+    /// `body`: index of its rigid body for each particle, or -1.
+    static void bind(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& columns);
+    /// The parameters of read_elastic_body, its `material` and, for each of its `particles`,
+    /// whether it is `clamped` and whether it is on the `surface`.
+    static void add_elastic(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& table);
+
+    /// The rigid bodies, in the order in which they were added.
+    static NamedValues rigid(const Bodies<D>& bodies);
+    /// Index of the rigid body of each particle, or -1.
+    static Value rigid_body_of(const Bodies<D>& bodies, const Particles<D>& particles,
+                               const std::vector<std::size_t>& order);
+    /// Cauchy stress of particles, that of deformable bodies included.
+    static Value stress(const Bodies<D>& bodies, const Particles<D>& particles,
+                        const std::vector<std::size_t>& order, const PointStates<D>& states);
+};
+
+extern template struct BodyTables<2>;
+extern template struct BodyTables<3>;
+
+}  // namespace doseki

@@ -1,0 +1,64 @@
+#include "interface/boundaries.hpp"
+
+#include "interface/reader.hpp"
+
+namespace doseki {
+namespace {
+
+SpeedTable read_speeds(Reader& read, const NamedValues& table) {
+    SpeedTable speeds;
+    if (table.find("times")) {
+        read("times", speeds.time), read("distances", speeds.distance),
+            read("speeds", speeds.speed);
+    } else {
+        double start = 0.0, stop = 0.0, speed = 0.0;
+        read("start", start), read("stop", stop), read("speed", speed);
+        speeds = SpeedTable::constant(start, stop, speed);
+    }
+    if (speeds.time.size() < 2 || speeds.distance.size() != speeds.time.size() ||
+        speeds.speed.size() != speeds.time.size())
+        throw std::invalid_argument(
+            "inflow: expected two rows or more of times, distances and speeds");
+    return speeds;
+}
+
+}  // namespace
+
+template <int D>
+Inflow<D> BoundaryTables<D>::inflow(const NamedValues& table) {
+    Inflow<D> inflow;
+    Reader read(table, "inflow");
+    read("layer", inflow.layer), read("direction", inflow.direction);
+    inflow.speed = read_speeds(read, table);
+    read("spacing", inflow.spacing), read("buffer_layers", inflow.buffer_layers);
+    read("jitter", inflow.jitter), read("mass", inflow.mass), read("density", inflow.density);
+    read("smoothing_length", inflow.smoothing_length);
+    read("material", inflow.material), read("body", inflow.body);
+    read.finish();
+    return inflow;
+}
+
+template <int D>
+Outflow<D> BoundaryTables<D>::outflow(const std::vector<double>& low,
+                                      const std::vector<double>& high) {
+    if (low.size() != D || high.size() != D)
+        throw std::invalid_argument("box: corners of the wrong dimension");
+    return {vectors_of<D>(low)[0], vectors_of<D>(high)[0]};
+}
+
+template <int D>
+WallMotion<D> BoundaryTables<D>::motion(const NamedValues& table) {
+    WallMotion<D> motion;
+    Reader read(table, "motion");
+    read("body", motion.body), read("velocity", motion.velocity);
+    read("angular_velocity", motion.spin), read("pivot", motion.pivot);
+    read("start", motion.start), read("stop", motion.stop);
+    read("removed_at", motion.removed_at);
+    read.finish();
+    return motion;
+}
+
+template struct BoundaryTables<2>;
+template struct BoundaryTables<3>;
+
+}  // namespace doseki

@@ -1,0 +1,24 @@
+#pragma once
+// Inflows, outflows and prescribed motions as tables.
+
+#include <vector>
+
+#include "boundaries/moving_walls.hpp"
+#include "boundaries/open_boundaries.hpp"
+#include "interface/value.hpp"
+
+namespace doseki {
+
+template <int D>
+struct BoundaryTables {
+    /// An inflow of `times`, `distances` and `speeds`, or of a constant `speed` from `start` to
+    /// `stop`.
+    static Inflow<D> inflow(const NamedValues& table);
+    static Outflow<D> outflow(const std::vector<double>& low, const std::vector<double>& high);
+    static WallMotion<D> motion(const NamedValues& table);
+};
+
+extern template struct BoundaryTables<2>;
+extern template struct BoundaryTables<3>;
+
+}  // namespace doseki

@@ -1,0 +1,64 @@
+#pragma once
+// Particles as tables of columns, in and out.
+
+#include <functional>
+#include <vector>
+
+#include "interface/value.hpp"
+#include "model/particles.hpp"
+#include "physics/equation_of_state/thermodynamic_state.hpp"
+
+namespace doseki {
+
+/// What a scheme knows of a particle beyond its fields.
+template <int D>
+struct PointState {
+    ThermodynamicState<double> eos;
+    Deviator<double, D> deviator;  // of the whole stress [Pa]
+    Deviator<double, D> elastic;   // the part of it that evolves [Pa]
+};
+template <int D>
+using PointStates = std::function<PointState<D>(std::size_t)>;
+
+template <int D>
+struct ParticleTables {
+    static std::size_t count(const NamedValues& columns);
+    /// Sets the particles from `first` on; returns the number after the largest id among them.
+    static std::int64_t set(Particles<D>& particles, std::size_t first, const NamedValues& columns);
+    static void set_walls(Particles<D>& particles, const NamedValues& columns);
+
+    /// Indices of the particles in the order of their ids.
+    static std::vector<std::size_t> id_order(const Particles<D>& particles);
+    /// The same of those in a box.
+    static std::vector<std::size_t> inside(const Particles<D>& particles,
+                                           const std::vector<double>& low,
+                                           const std::vector<double>& high);
+    /// Columns of the particles in `order` that gauges read.
+    static NamedValues sample(const Particles<D>& particles, const std::vector<std::size_t>& order,
+                              const PointStates<D>& states);
+    /// All fields of a particle but the stress.
+    static NamedValues fields(const Particles<D>& particles, const std::vector<std::size_t>& order,
+                              const PointStates<D>& states);
+    static NamedValues rates(const Particles<D>& particles, const std::vector<std::size_t>& order);
+
+    /// One field of the particles in `order`.
+    static Value column(const Field<double>& field, const std::vector<std::size_t>& order);
+    static Value column(const Field<Vec<double, D>>& field, const std::vector<std::size_t>& order);
+    static Value column(const Field<Mat<double, D>>& field, const std::vector<std::size_t>& order);
+    /// Stresses, all nine components of each.
+    static Value stresses(const std::vector<std::size_t>& order,
+                          const std::function<Deviator<double, D>(std::size_t)>& deviator);
+
+    /// All nine components of S - p I.
+    static void fill_stress(double* out, double p, const Deviator<double, D>& S) {
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) out[3 * a + b] = S(std::min(a, b), std::max(a, b));
+        out[8] = S.zz();
+        for (int a = 0; a < 3; ++a) out[4 * a] -= p;
+    }
+};
+
+extern template struct ParticleTables<2>;
+extern template struct ParticleTables<3>;
+
+}  // namespace doseki

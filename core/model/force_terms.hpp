@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// What acts on one particle, and what limits its timestep, by name: the terms of the acceleration
+/// add up to it, the timestep is the smallest of its limits.
+template <int D>
+struct ForceTerms {
+    std::vector<std::pair<std::string, Vec<double, D>>> acceleration;  // [m/s^2]
+    std::vector<std::pair<std::string, double>> timestep;              // [s]
+
+    Vec<double, D> total_acceleration() const {
+        Vec<double, D> sum{};
+        for (const auto& [name, term] : acceleration) sum = sum + term;
+        return sum;
+    }
+};
+
+}  // namespace doseki

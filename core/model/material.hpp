@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+
+#include "physics/contact.hpp"
+#include "physics/equation_of_state.hpp"
+#include "physics/rheology.hpp"
+
+namespace doseki {
+
+enum class Law { fluid, solid };
+
+/// Parameters of one material, already scaled by xi (Eq. 19): c0 -> xi c0, mu -> xi^2 mu.
+struct Material {
+    std::string name;
+    Law law;
+    double rho0;  // [kg/m^3]
+    double c0;    // [m/s]
+    EquationOfState<double> eos;
+    // Of fluids.
+    Rheology<double> rheology;
+    // Of solids; no yield strength, cohesion or friction angle: never yields.
+    double shear_modulus;   // [Pa]; 0 = no strength
+    double yield_strength;  // von Mises [Pa]
+    double cohesion;        // Drucker-Prager [Pa]
+    double friction_angle;  // Drucker-Prager [rad]
+    ContactProperties contact;
+};
+
+}  // namespace doseki

@@ -1,0 +1,131 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// How a particle's position changes. Fixed particles give interactions but never move (the paper's
+/// slope); driven ones move with a prescribed velocity (the inflow buffer); bound ones are points
+/// of a body that moves as a whole.
+enum class Motion : std::uint8_t { free, fixed, driven, bound };
+
+/// The kind of body that a bound particle is a point of.
+enum class BodyKind : std::uint8_t { none, rigid, deformable };
+
+/// What a particle is, in one machine word and a half.
+struct Tag {
+    std::int64_t id;
+    std::int32_t body;
+    std::int16_t material;
+    Motion motion;
+};
+
+/// One quantity of all particles, in the order of storage.
+template <class T>
+using Field = std::vector<T>;
+
+/// What wall particles have: those of fixed bodies and the points of bodies that move.
+template <int D>
+struct WallState {
+    bool in_use = false;           // of schemes that tell walls from particles; else all are empty
+    Field<Vec<double, D>> normal;  // into the fluid
+    Field<double> depth;           // below the surface of the wall [m]
+    Field<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]
+    Field<double> pressure;        // of the fluid at its place [Pa]
+    // Of bound particles:
+    Field<BodyKind> body_kind;
+    Field<std::int32_t> point;  // index among the points of bodies of that kind
+
+    template <class F>
+    void for_each_field(F&& f) {
+        if (!in_use) return;
+        f("normal", normal), f("wall_depth", depth);
+        f("wall_force", force), f("wall_pressure", pressure);
+        f("body_kind", body_kind), f("point", point);
+    }
+};
+
+/// The state that every scheme has, one field per quantity, sorted in space by Neighbours.
+/// Everything is double: the precision of a run is that of its pair sums. A scheme's own State
+/// derives from this and adds what else it keeps of a particle.
+template <int D>
+struct Particles {
+    static constexpr int dim = D;
+
+    Field<Vec<double, D>> position;      // [m]
+    Field<Vec<double, D>> velocity;      // [m/s]
+    Field<Vec<double, D>> acceleration;  // [m/s^2]
+    Field<double> density;               // [kg/m^3]
+    Field<double> density_rate;          // [kg/m^3/s]
+    Field<double> mass;                  // [kg], 2-D: [kg/m]
+    Field<double> smoothing_length;      // [m]
+    Field<Tag> tag;
+    WallState<D> wall;
+
+    std::size_t size() const { return tag.size(); }
+
+    bool is_free(std::size_t p) const { return tag[p].motion == Motion::free; }
+    bool is_fixed(std::size_t p) const { return tag[p].motion == Motion::fixed; }
+    bool is_bound(std::size_t p) const { return tag[p].motion == Motion::bound; }
+    /// One that fluid meets as it meets a wall.
+    bool is_wall(std::size_t p) const { return is_fixed(p) || is_bound(p); }
+    /// Whether particle p is a point of a body of that kind.
+    bool is_point_of(std::size_t p, BodyKind kind) const {
+        return wall.in_use && is_bound(p) && wall.body_kind[p] == kind;
+    }
+    /// Its number among the points of bodies of its kind.
+    std::size_t point(std::size_t p) const { return static_cast<std::size_t>(wall.point[p]); }
+    void set_point(std::size_t p, BodyKind kind, std::size_t point) {
+        wall.body_kind[p] = kind, wall.point[p] = static_cast<std::int32_t>(point);
+    }
+    /// One that is in the account of masses.
+    bool is_counted(std::size_t p) const { return is_free(p) || is_bound(p); }
+
+protected:
+    /// Calls f(name, field) for the fields above.
+    template <class F>
+    void for_each_common_field(F&& f) {
+        f("position", position), f("velocity", velocity), f("acceleration", acceleration);
+        f("density", density), f("density_rate", density_rate);
+        f("mass", mass), f("smoothing_length", smoothing_length), f("tag", tag);
+        wall.for_each_field(f);
+    }
+
+    double sum_of_common_fields(std::size_t p) const {
+        double sum = density[p];
+        for (int a = 0; a < D; ++a) sum += position[p][a] + velocity[p][a];
+        return sum;
+    }
+};
+
+// A State lists its fields, those of Particles among them, in for_each_field(f(name, field)); from
+// that one list derive growth, sorting, migration and checkpoints.
+
+template <class State>
+void resize(State& state, std::size_t n) {
+    state.for_each_field([n](const char*, auto& field) { field.resize(n); });
+}
+
+/// New particle k is old particle order[k]; particles not named are gone.
+template <class State>
+void reorder(State& state, std::span<const std::uint32_t> order) {
+    state.for_each_field([order](const char*, auto& field) {
+        std::remove_reference_t<decltype(field)> sorted(order.size());
+        for_each_particle(order.size(), [&](std::size_t k) { sorted[k] = field[order[k]]; });
+        field.swap(sorted);
+    });
+}
+
+template <class State>
+std::size_t bytes_of(State& state) {
+    std::size_t bytes = 0;
+    state.for_each_field(
+        [&bytes](const char*, const auto& field) { bytes += field.capacity() * sizeof(field[0]); });
+    return bytes;
+}
+
+}  // namespace doseki

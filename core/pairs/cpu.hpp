@@ -1,0 +1,55 @@
+#pragma once
+#include "base/parallel.hpp"
+#include "pairs/backend.hpp"
+#include "pairs/neighbour_lists.hpp"
+
+namespace doseki {
+
+/// The processor as a back end: clusters of as many particles as a pack has lanes, one list each.
+template <class real>
+struct Cpu {
+    using Real = real;
+    static constexpr int width = lanes<real>;
+    template <int D>
+    using Lists = Neighbours<D>;
+
+    template <int D>
+    static std::vector<std::uint32_t> sort(Lists<D>& lists, const ParticlesToSort<D>& particles) {
+        return lists.sort(particles.position, particles.support, particles.is_fixed,
+                          particles.is_near);
+    }
+
+    template <int D>
+    static void build_lists(Lists<D>& lists, std::span<const Vec<double, D>> position,
+                            std::span<const double> support, double skin) {
+        lists.build(width, position, support, skin);
+    }
+
+    /// Sums a term over pairs and calls epilogue(p, sums) for each particle of the clusters.
+    template <class Term, class Epilogue>
+    static void sum_pairs(const Lists<Term::dim>& lists, const PairsToSum<real, Term::dim>& pairs,
+                          const Term& term, const Epilogue& epilogue) {
+        auto sum = [&]<bool periodic>() {
+            for_each_pair<periodic>(lists, pairs.clusters, pairs.records, pairs.frame, term,
+                                    epilogue, pairs.options);
+        };
+        if (lists.is_periodic())
+            sum.template operator()<true>();
+        else
+            sum.template operator()<false>();
+    }
+
+    template <class F>
+    static void for_each_particle(std::size_t count, F&& f) {
+        doseki::for_each_particle(count, f);
+    }
+    template <class Value, class Combine, class F>
+    static Value reduce(std::size_t count, Value start, Combine&& combine, F&& f) {
+        return doseki::reduce(count, start, combine, f);
+    }
+};
+
+static_assert(Backend<Cpu<double>, 2> && Backend<Cpu<double>, 3>);
+static_assert(Backend<Cpu<float>, 2> && Backend<Cpu<float>, 3>);
+
+}  // namespace doseki

@@ -1,0 +1,50 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "pairs/backend.hpp"
+
+namespace doseki {
+
+/// How many pairs the records of a scheme have.
+template <class Scheme>
+class PairCounter {
+public:
+    using Real = typename Scheme::Real;
+    using Backend = typename Scheme::Backend;
+    using Lists = typename Backend::template Lists<Scheme::dim>;
+    using Records = std::span<const MotionRecord<Real, Scheme::dim>>;
+
+    PairCounter(const Scheme& scheme, const Lists& lists) : scheme_(scheme), lists_(lists) {}
+
+    /// Pairs (i, j), each way counted, that are within support of each other.
+    double interacting_pairs() const { return count(lists_.clusters(), scheme_.motion_records()); }
+
+    /// Neighbours within support of each particle, ghosts left out.
+    std::vector<double> counts() const {
+        return counts(lists_.clusters(), scheme_.motion_records());
+    }
+
+    double count(std::span<const ClusterList> clusters, Records records) const {
+        double total = 0.0;
+        for (double count : counts(clusters, records)) total += count;
+        return total;
+    }
+
+    std::vector<double> counts(std::span<const ClusterList> clusters, Records records) const {
+        std::vector<double> of_particle(records.size());
+        // A cluster that holds moving and fixed particles lists fixed ones for both.
+        auto keep = [&](std::size_t p, const NeighbourCounts<double>& count) {
+            of_particle[p] = count.moving + (p < lists_.moving() ? count.fixed : 0.0);
+        };
+        Backend::sum_pairs(lists_, {clusters, records, scheme_.frame(), {}},
+                           CountTerm<Real, Scheme::dim>{records}, keep);
+        return of_particle;
+    }
+
+private:
+    const Scheme& scheme_;
+    const Lists& lists_;
+};
+
+}  // namespace doseki

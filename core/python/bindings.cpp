@@ -1,0 +1,22 @@
+// The compiled module.
+
+#include <nanobind/nanobind.h>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+
+namespace nb = nanobind;
+
+void bind_simulation(nb::module_& m);
+void bind_elastic(nb::module_& m);
+void bind_physics(nb::module_& m);
+
+NB_MODULE(DOSEKI_MODULE, m) {
+    nb::exception<doseki::PhysicsFailure>(m, "PhysicsFailure");
+    nb::exception<doseki::ResourceFailure>(m, "ResourceFailure");
+    m.def("set_threads", &doseki::set_threads, nb::arg("n"));
+    m.def("threads", &doseki::thread_count);
+    bind_simulation(m);
+    bind_elastic(m);
+    bind_physics(m);
+}

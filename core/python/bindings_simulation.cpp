@@ -1,0 +1,182 @@
+// Simulations as Python sees them: one class for every scheme, dimension and precision.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "base/error.hpp"
+#include "interface/any_simulation.hpp"
+#include "python/exchange.hpp"
+#include "python/values.hpp"
+
+namespace doseki {
+namespace {
+
+class PythonSimulation {
+    using Corner = std::vector<double>;
+
+public:
+    PythonSimulation(const std::string& scheme, int dim, const std::string& precision,
+                     const nb::list& materials, const nb::dict& options)
+        : core_(SimulationKind::make(scheme, dim, precision, to_tables(materials),
+                                     to_table(options))) {}
+
+    void add_particles(const nb::kwargs& columns) { core_->add_particles(to_table(columns)); }
+    void set_walls(const nb::kwargs& columns) { core_->set_walls(to_table(columns)); }
+    void add_shapes(const nb::list& shapes) { core_->add_shapes(to_tables(shapes)); }
+    void add_rigid_bodies(const nb::dict& columns) { core_->add_rigid_bodies(to_table(columns)); }
+    void bind_points(const nb::object& body) {
+        NamedValues columns;
+        columns["body"] = to_value(body);
+        core_->bind_points(columns);
+    }
+    void add_elastic_body(const nb::dict& body) { core_->add_elastic_body(to_table(body)); }
+    void add_inflow(const nb::dict& inflow) { core_->add_inflow(to_table(inflow)); }
+    void add_outflow(const Corner& low, const Corner& high) { core_->add_outflow(low, high); }
+    void move_body(const nb::dict& motion) { core_->move_body(to_table(motion)); }
+    void join(nb::object transport) {
+        core_->join(std::make_unique<PythonExchange>(std::move(transport)));
+    }
+
+    void start() {
+        guarded([&] { core_->start(); });
+    }
+    void advance(double limit, double pause, std::int64_t max_steps) {
+        guarded([&] { core_->advance(limit, pause, max_steps); });
+    }
+    std::pair<std::string, std::int64_t> failure() const { return failure_; }
+
+    nb::dict state() const { return to_python(core_->state()); }
+    nb::dict rates() const { return to_python(core_->rates()); }
+    nb::dict totals() const { return to_python(core_->totals()); }
+    nb::dict grains() const { return to_python(core_->grains()); }
+    nb::dict sample(const Corner& low, const Corner& high) const {
+        return to_python(core_->sample(low, high));
+    }
+    nb::dict force_terms(std::int64_t particle) { return to_python(core_->force_terms(particle)); }
+    nb::dict neighbour_counts() const { return to_python(core_->neighbour_counts()); }
+    nb::dict shares() const { return to_python(core_->shares()); }
+    nb::dict phase_seconds() { return to_python(core_->phase_seconds()); }
+
+    nb::dict checkpoint() { return to_python(core_->checkpoint()); }
+    bool restore(const nb::dict& arrays) { return core_->restore(to_table(arrays)); }
+    void restore_shared(const nb::dict& arrays) { core_->restore_shared(to_table(arrays)); }
+
+    AnySimulation& core() { return *core_; }
+    const AnySimulation& core() const { return *core_; }
+
+private:
+    /// Python's exceptions carry only a text; what else a failure says is kept here.
+    template <class F>
+    void guarded(F&& work) {
+        failure_ = {"", -1};
+        try {
+            work();
+        } catch (const PhysicsFailure& failure) {
+            failure_ = {name_of(failure.kind), failure.site.id};
+            throw;
+        }
+    }
+
+    std::unique_ptr<AnySimulation> core_;
+    std::pair<std::string, std::int64_t> failure_{"", -1};
+};
+
+using P = PythonSimulation;
+using Class = nb::class_<P>;
+
+void bind_setup(Class& c) {
+    c.def(nb::init<const std::string&, int, const std::string&, const nb::list&, const nb::dict&>(),
+          nb::arg("scheme"), nb::arg("dim"), nb::arg("precision"), nb::arg("materials"),
+          nb::arg("options"),
+          nb::sig("def __init__(self, scheme: str, dim: int, precision: str, materials: "
+                  "collections.abc.Sequence[doseki.solver.protocol.Table], options: "
+                  "doseki.solver.protocol.Table) -> None"))
+        .def("add_particles", &P::add_particles,
+             nb::sig("def add_particles(self, *, position: numpy.ndarray, velocity: numpy.ndarray, "
+                     "mass: numpy.ndarray, density: numpy.ndarray, smoothing_length: "
+                     "numpy.ndarray, material: numpy.ndarray, body: numpy.ndarray, motion: "
+                     "numpy.ndarray, id: numpy.ndarray) -> None"))
+        .def("set_walls", &P::set_walls,
+             nb::sig("def set_walls(self, *, normal: numpy.ndarray, depth: numpy.ndarray) -> None"))
+        .def("add_shapes", &P::add_shapes, nb::arg("shapes"),
+             nb::sig("def add_shapes(self, shapes: "
+                     "collections.abc.Sequence[doseki.solver.protocol.Table]) -> None"))
+        .def("add_rigid_bodies", &P::add_rigid_bodies, nb::arg("bodies"),
+             nb::sig("def add_rigid_bodies(self, bodies: doseki.solver.protocol.Arrays) -> None"))
+        .def("bind_points", &P::bind_points, nb::arg("body"),
+             nb::sig("def bind_points(self, body: numpy.ndarray) -> None"))
+        .def("add_elastic_body", &P::add_elastic_body, nb::arg("body"),
+             nb::sig("def add_elastic_body(self, body: doseki.solver.protocol.Table) -> None"))
+        .def("add_inflow", &P::add_inflow, nb::arg("inflow"),
+             nb::sig("def add_inflow(self, inflow: doseki.solver.protocol.Table) -> None"))
+        .def("add_outflow", &P::add_outflow, nb::arg("low"), nb::arg("high"))
+        .def("move_body", &P::move_body, nb::arg("motion"),
+             nb::sig("def move_body(self, motion: doseki.solver.protocol.Table) -> None"))
+        .def("join", &P::join, nb::arg("transport"),
+             nb::sig("def join(self, transport: object) -> None"));
+}
+
+void bind_results(Class& c) {
+    c.def("state", &P::state, nb::sig("def state(self) -> doseki.solver.protocol.Columns"))
+        .def("rates", &P::rates, nb::sig("def rates(self) -> doseki.solver.protocol.Rates"))
+        .def("totals", &P::totals, nb::sig("def totals(self) -> doseki.solver.protocol.Totals"))
+        .def("grains", &P::grains, nb::sig("def grains(self) -> doseki.solver.protocol.Grains"))
+        .def("sample", &P::sample, nb::arg("low"), nb::arg("high"),
+             nb::sig("def sample(self, low: collections.abc.Sequence[float], high: "
+                     "collections.abc.Sequence[float]) -> "
+                     "doseki.solver.protocol.Columns"))
+        .def("force_terms", &P::force_terms, nb::arg("particle"),
+             nb::sig("def force_terms(self, particle: int) -> doseki.solver.protocol.ForceTerms"))
+        .def("neighbour_counts", &P::neighbour_counts,
+             nb::sig("def neighbour_counts(self) -> doseki.solver.protocol.Columns"))
+        .def("shares", &P::shares, nb::sig("def shares(self) -> dict[str, float]"))
+        .def("phase_seconds", &P::phase_seconds,
+             nb::sig("def phase_seconds(self) -> dict[str, float]"))
+        .def("checkpoint", &P::checkpoint,
+             nb::sig("def checkpoint(self) -> doseki.solver.protocol.Columns"))
+        .def("restore", &P::restore, nb::arg("arrays"),
+             nb::sig("def restore(self, arrays: doseki.solver.protocol.Arrays) -> bool"))
+        .def("restore_shared", &P::restore_shared, nb::arg("arrays"),
+             nb::sig("def restore_shared(self, arrays: doseki.solver.protocol.Arrays) -> None"));
+}
+
+void bind_progress(Class& c) {
+    c.def_prop_ro("time", [](const P& p) { return p.core().progress().time; })
+        .def_prop_ro("timestep", [](const P& p) { return p.core().progress().timestep; })
+        .def_prop_ro("steps", [](const P& p) { return p.core().progress().steps; })
+        .def_prop_ro("rebuilds", [](const P& p) { return p.core().progress().rebuilds; })
+        .def_prop_ro("updates", [](const P& p) { return p.core().progress().updates; })
+        .def_prop_ro("skin", [](const P& p) { return p.core().progress().skin; })
+        .def("__len__", [](const P& p) { return p.core().progress().particles; })
+        .def_prop_ro("bytes_per_particle", [](const P& p) { return p.core().bytes_per_particle(); })
+        .def_prop_ro("entries_per_particle",
+                     [](const P& p) { return p.core().entries_per_particle(); })
+        .def_prop_ro("has_bodies", [](const P& p) { return p.core().has_bodies(); })
+        .def_prop_ro("particle_arrays", [](const P& p) { return p.core().particle_arrays(); })
+        .def_prop_ro("failure", &P::failure);
+}
+
+void bind_work(Class& c) {
+    const auto unlocked = nb::call_guard<nb::gil_scoped_release>();
+    c.def("start", &P::start, unlocked)
+        .def("advance", &P::advance, nb::arg("limit"), nb::arg("pause"), nb::arg("max_steps"),
+             unlocked)
+        .def(
+            "time_phases", [](P& p, bool on) { p.core().time_phases(on); }, nb::arg("on"))
+        .def(
+            "interacting_pairs", [](const P& p) { return p.core().interacting_pairs(); }, unlocked)
+        .def(
+            "bare_pair_rate",
+            [](const P& p, double seconds) { return p.core().bare_pair_rate(seconds); },
+            nb::arg("seconds"), unlocked);
+}
+
+}  // namespace
+}  // namespace doseki
+
+void bind_simulation(nanobind::module_& m) {
+    doseki::Class c(m, "Simulation", "What solver.protocol.CoreSimulation describes.");
+    doseki::bind_setup(c), doseki::bind_results(c), doseki::bind_progress(c), doseki::bind_work(c);
+}

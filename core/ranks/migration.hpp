@@ -1,0 +1,81 @@
+#pragma once
+// Who owns what: particles go to the rank whose part of space they are in.
+
+#include <cstring>
+#include <map>
+
+#include "model/particles.hpp"
+#include "ranks/exchange.hpp"
+
+namespace doseki {
+
+/// All fields of some particles, field by field.
+template <class State>
+Bytes pack(State& particles, std::span<const std::uint32_t> chosen) {
+    Bytes bytes;
+    particles.for_each_field([&](const char*, auto& field) {
+        static_assert(std::is_trivially_copyable_v<std::remove_reference_t<decltype(field[0])>>);
+        for (const std::uint32_t p : chosen) {
+            const auto* const value = reinterpret_cast<const std::byte*>(&field[p]);
+            bytes.insert(bytes.end(), value, value + sizeof(field[p]));
+        }
+    });
+    return bytes;
+}
+
+/// Appends particles that pack() made bytes of.
+template <class State>
+void unpack(State& particles, const Bytes& bytes) {
+    std::size_t each = 0;
+    particles.for_each_field([&](const char*, auto& field) { each += sizeof(field[0]); });
+    const std::size_t first = particles.size(), n = bytes.size() / each;
+    resize(particles, first + n);
+    const std::byte* from = bytes.data();
+    particles.for_each_field([&](const char*, auto& field) {
+        if (n > 0) std::memcpy(static_cast<void*>(&field[first]), from, n * sizeof(field[0]));
+        from += n * sizeof(field[0]);
+    });
+}
+
+template <int D>
+std::vector<double> coordinates_of(const Particles<D>& particles,
+                                   std::span<const std::uint32_t> chosen) {
+    std::vector<double> coordinates;
+    coordinates.reserve(chosen.size() * D);
+    for (const std::uint32_t p : chosen)
+        for (int a = 0; a < D; ++a) coordinates.push_back(particles.position[p][a]);
+    return coordinates;
+}
+
+/// Sends every particle to its owner.
+template <class State>
+void migrate(State& particles, Exchange& exchange) {
+    constexpr int D = State::dim;
+    const std::vector<double> region = exchange.region();
+    std::vector<std::uint32_t> leaving, staying;
+    for (std::uint32_t p = 0; p < particles.size(); ++p) {
+        bool inside = true;
+        for (int a = 0; a < D; ++a)
+            inside &= particles.position[p][a] >= region[static_cast<std::size_t>(a)] &&
+                      particles.position[p][a] < region[static_cast<std::size_t>(D + a)];
+        if (!inside) leaving.push_back(p);
+    }
+    const std::vector<int> owners = exchange.owners(coordinates_of(particles, leaving));
+    std::map<int, std::vector<std::uint32_t>> of_rank;
+    for (std::size_t k = 0; k < leaving.size(); ++k)
+        if (owners[k] != exchange.rank) of_rank[owners[k]].push_back(leaving[k]);
+    std::vector<Parcel> parcels;
+    std::vector<std::uint8_t> gone(particles.size(), 0);
+    for (const auto& [rank, chosen] : of_rank) {
+        parcels.push_back({rank, pack(particles, chosen)});
+        for (const std::uint32_t p : chosen) gone[p] = 1;
+    }
+    if (!parcels.empty()) {
+        for (std::uint32_t p = 0; p < particles.size(); ++p)
+            if (!gone[p]) staying.push_back(p);
+        reorder(particles, staying);
+    }
+    for (const Parcel& parcel : exchange.swap(parcels)) unpack(particles, parcel.content);
+}
+
+}  // namespace doseki

@@ -1,0 +1,186 @@
+#pragma once
+// What the resolved scheme sums over pairs, and what one pair adds: numbers in, numbers out, so
+// that one source serves packs on a processor and one thread for each particle on a device.
+
+#include "physics/kernel.hpp"
+#include "physics/riemann.hpp"
+#include "physics/viscosity.hpp"
+#include "physics/wall.hpp"
+#include "resolved/records.hpp"
+
+namespace doseki {
+
+struct FlowConstants {
+    double c;  // sound speed of the fluid [m/s]
+    double dp;
+    double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
+    ViscousForm<double> form;
+    bool harmonic = false;  // see pair_viscosity
+};
+
+/// Over the neighbours of a fluid particle i; gradients are those of the plain kernel.
+template <class T, int D>
+struct FluidAccumulators {
+    Vec<T, D> force;     // over V_i/2
+    Vec<T, D> traction;  // of rough walls, over V_i
+    T density_rate{};    // over rho_i
+    T power{};           // that pairs dissipate, over V_i
+    Vec<T, D> pressure_gradient, concentration_gradient, surface_gradient;
+    Mat<T, D> velocity_gradient;
+    Sym<T, D> moment;
+    T concentration{};  // sum of rest volumes times W
+    T wall_share{};     // of walls in it
+    T max_surface{};    // of the neighbours' free-surface indicators
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.force...), f(self.traction...), f(self.density_rate...), f(self.power...);
+        f(self.pressure_gradient...), f(self.concentration_gradient...);
+        f(self.surface_gradient...), f(self.velocity_gradient...), f(self.moment...);
+        f(self.concentration...), f(self.wall_share...), f(self.max_surface...);
+    }
+};
+
+/// Over the fluid around a wall particle, with weights V W but for the force.
+template <class T, int D>
+struct WallAccumulators {
+    Vec<T, D> force;  // of the fluid, over the wall particle's volume
+    T weight{}, height{}, pressure{}, density{};
+    Vec<T, D> velocity;
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.force...), f(self.weight...), f(self.height...), f(self.pressure...);
+        f(self.density...), f(self.velocity...);
+    }
+};
+
+/// Pressure and viscous stress between a fluid particle i and a wall particle w, the wall standing
+/// for fluid of mirrored velocity.
+template <class T, int D>
+struct WallContact {
+    Vec<T, D> force;  // 2 (p* r_iw - mu jump) -F V_w: force on i over V_i
+    T excess;         // of the pressure at w over p_i
+    T approach;       // (v_i - v_w).(-n)
+    T r_dot_n;
+    Vec<T, D> jump;  // v_i - velocity extrapolated to w
+    T power;
+};
+
+/// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle
+/// in front of its face; beyond an edge, the line between the two and no gravity.
+template <class T, int D>
+DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
+    WallPoint<T, D> seen = w;
+    const T front = select(dot(r_iw, w.normal) > w.depth, T(1), T(0)), beyond = (T(1) - front) / r;
+    for (int a = 0; a < D; ++a) seen.normal[a] = front * w.normal[a] + beyond * r_iw[a];
+    seen.g_normal = front * w.g_normal;
+    return seen;
+}
+
+template <class T, int D>
+DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw,
+                                         const T& r, const T& F, const FluidPoint<T, D>& i,
+                                         const WallPoint<T, D>& wall) {
+    WallContact<T, D> contact;
+    const WallPoint<T, D> w = facing(wall, r_iw, r);
+    const Vec<T, D> v_iw = i.v - w.v;
+    contact.r_dot_n = dot(r_iw, w.normal);
+    contact.approach = -dot(v_iw, w.normal);
+    const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
+    const T extra = approach_pressure(T(2) * contact.approach, i.rho, c);
+    contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
+                                          contact.r_dot_n, r_iw);
+    const T p = i.p + number<T>(0.5) * contact.excess + extra;
+    const T no_slip = w.no_slip * no_slip_factor(w.depth, contact.r_dot_n - w.depth, min_distance);
+    const Vec<T, D> sliding = v_iw + contact.approach * w.normal;
+    contact.jump = no_slip * sliding - (T(2) * contact.approach) * w.normal;
+    const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
+    contact.force = scale * (p * r_iw - mu_wall * sliding);
+    contact.power =
+        scale * (mu_wall * dot(sliding, v_iw) + extra * contact.approach * contact.r_dot_n);
+    return contact;
+}
+
+/// What every neighbour, fluid or wall, adds to the gradients.
+template <class T, int D>
+DOSEKI_FN void add_gradients(FluidAccumulators<T, D>& sums, const Vec<T, D>& r_ij, const T& VF,
+                             const T& p_ij, const Vec<T, D>& v_ij) {
+    for (int a = 0; a < D; ++a) {
+        const T gradient = VF * r_ij[a];
+        sums.concentration_gradient[a] += gradient;
+        sums.pressure_gradient[a] -= p_ij * gradient;
+        for (int b = 0; b < D; ++b) sums.velocity_gradient(b, a) -= v_ij[b] * gradient;
+        for (int b = a; b < D; ++b) sums.moment(a, b) -= gradient * r_ij[b];
+    }
+}
+
+/// What a fluid particle j adds to a fluid particle i.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
+                         const T& inverse_support, const Pair<T, D>& pair,
+                         const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
+    const T half = number<T>(0.5), c = T(constants.c);
+    const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+            VF = j.volume * F;
+    const Vec<T, D> v_ij = i.v - j.v;
+    const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
+    const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
+    const T extra = approach_pressure((smooth - v_dot_r) / pair.r, rho, c);
+    const T p = half * (i.p + j.p) + extra;
+    const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
+    const ViscousForm<T> form{T(constants.form.along_jump), T(constants.form.along_pair)};
+    const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, pair.r, pair.r_ij);
+    for (int a = 0; a < D; ++a) sums.force[a] -= VF * (p * pair.r_ij[a] - mu * viscous[a]);
+    sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r);
+    const T jump = pressure_jump(i.p, j.p, i.pressure_gradient, j.pressure_gradient, pair.r_ij);
+    sums.density_rate += VF * (v_dot_r + jump * pair.r / (rho * c));
+    add_gradients(sums, pair.r_ij, VF, i.p - j.p, v_ij);
+    const T surface = j.surface - i.surface;
+    for (int a = 0; a < D; ++a) sums.surface_gradient[a] += surface * (VF * pair.r_ij[a]);
+    sums.concentration += j.rest_volume * Kernel::value(pair.r, inverse_support);
+    sums.max_surface = max(sums.max_surface, select(F < T(0), j.surface, T(0)));
+}
+
+/// What a wall particle w adds to a fluid particle i.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
+                        const T& inverse_support, const Pair<T, D>& pair, const FluidPoint<T, D>& i,
+                        const WallPoint<T, D>& w) {
+    const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+            VF = w.volume * F;
+    const T W = Kernel::value(pair.r, inverse_support);
+    const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
+    const T half = number<T>(0.5);
+    for (int a = 0; a < D; ++a) {
+        sums.force[a] += half * contact.force[a];
+        sums.traction[a] += W * w.traction[a];
+    }
+    sums.power += contact.power;
+    sums.density_rate -= T(2) * VF * contact.approach * contact.r_dot_n;
+    add_gradients(sums, pair.r_ij, VF, -contact.excess, contact.jump);
+    sums.wall_share += w.volume * W;
+}
+
+/// What a fluid particle j adds to a wall particle w. `pair` points from the fluid particle j
+/// to the wall particle w.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstants& constants,
+                                 const T& inverse_support, const Pair<T, D>& pair,
+                                 const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
+    const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+            W = Kernel::value(pair.r, inverse_support);
+    const Vec<T, D> r_jw = T(-1) * pair.r_ij;
+    const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);
+    const T share = j.volume * W;
+    for (int a = 0; a < D; ++a) {
+        sums.force[a] -= j.volume * contact.force[a];
+        sums.velocity[a] += share * j.v[a];
+    }
+    sums.weight += share;
+    sums.density += share * j.rho;
+    sums.height += share * (contact.r_dot_n - w.depth);
+    sums.pressure += share * (j.p + contact.excess);
+}
+
+}  // namespace doseki

@@ -1,0 +1,172 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/pack.hpp"
+#include "resolved/model.hpp"
+#include "resolved/timestep.hpp"
+
+namespace doseki {
+
+/// What the scheme makes of the sums of a fluid particle: gradients, free-surface indicator,
+/// acceleration, rate of density, shifting velocity and timestep.
+template <int D>
+class FluidEpilogue {
+public:
+    using Sums = FluidAccumulators<double, D>;
+
+    FluidEpilogue(const ResolvedModel<D>& model, const FlowActivity& activity,
+                  std::span<const FluidRecord<D>> records, std::size_t fluid_count,
+                  std::span<FlowSummary> summaries, ResolvedState<D>& state)
+        : model_(model),
+          activity_(activity),
+          records_(records),
+          fluid_count_(fluid_count),
+          summaries_(summaries),
+          state_(state) {}
+
+    void operator()(std::size_t p, const Sums& sums) const {
+        if (p >= fluid_count_) return;  // a wall particle in the last cluster of fluid
+        correct_gradients(p, sums);
+        const FreeSurfaceIndicator indicator = free_surface(p, sums);
+        state_.surface[p] = indicator.x;
+        state_.shift[p] = {};
+        summary(p).fault.note_density(records_[p].rho, rho0(p), p);
+        if (!state_.is_free(p)) {
+            state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
+            return;
+        }
+        const Mat<double, D>& L = state_.velocity_gradient[p];
+        double norm = 0.0;
+        for (double element : L.element) norm += element * element;
+        summary(p).strain += norm;
+
+        Rates rates = momentum_and_continuity(p, sums);
+        if (sums.wall_share == 0.0 && sums.max_surface < FreeSurfaceIndicator::surface)
+            correct_interior(p, sums, rates);
+        if (model_.options.flow.shifting && indicator.x < FreeSurfaceIndicator::surface)
+            shift(p, sums, std::sqrt(norm), rates);
+        relax_density(p, indicator.normalised_density, rates);
+        state_.acceleration[p] = rates.acceleration;
+        state_.density_rate[p] = rates.density;
+        summary(p).power += records_[p].volume * sums.power;
+        limit_timestep(p);
+    }
+
+private:
+    /// Of rho0: what tears apart leaves a void, not water under tension.
+    static constexpr double min_density = 0.98;
+    /// Cap on the shifting velocity over the sound speed, half of the fastest flow; it diverges in
+    /// a closing gap.
+    static constexpr double max_shift = 0.05;
+
+    struct Rates {
+        Vec<double, D> acceleration;
+        double density;
+    };
+
+    double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
+    FlowSummary& summary(std::size_t p) const {
+        return summaries_[p / static_cast<std::size_t>(lanes<double>)];
+    }
+
+    /// Gradients of first order: those of the kernel times the inverse of their moment.
+    void correct_gradients(std::size_t p, const Sums& sums) const {
+        const Mat<double, D> B = inverse_moment(sums.moment);
+        auto corrected = [&B](const Vec<double, D>& raw) {
+            Vec<double, D> v;
+            for (int a = 0; a < D; ++a)
+                for (int b = 0; b < D; ++b) v[a] += B(a, b) * raw[b];
+            return v;
+        };
+        state_.pressure_gradient[p] = corrected(sums.pressure_gradient);
+        Mat<double, D>& L = state_.velocity_gradient[p];
+        for (int a = 0; a < D; ++a) {
+            Vec<double, D> row;
+            for (int b = 0; b < D; ++b) row[b] = sums.velocity_gradient(a, b);
+            row = corrected(row);
+            for (int b = 0; b < D; ++b) L(a, b) = row[b];
+        }
+    }
+
+    FreeSurfaceIndicator free_surface(std::size_t p, const Sums& sums) const {
+        const Vec<double, D>& gradient = sums.concentration_gradient;
+        const double slope = std::sqrt(dot(gradient, gradient));
+        return FreeSurfaceIndicator::of(
+            (sums.concentration + sums.wall_share) / model_.lattice_concentration,
+            model_.kernel_support() * state_.smoothing_length[p] * slope,
+            model_.options.flow.wide_kernel);
+    }
+
+    Rates momentum_and_continuity(std::size_t p, const Sums& sums) const {
+        const double rho = records_[p].rho, B = model_.options.attraction;
+        Vec<double, D> a =
+            (1.0 / rho) * (2.0 * sums.force + sums.traction) + model_.options.gravity;
+        a = a - B * B * state_.position[p];
+        return {a, rho * sums.density_rate};
+    }
+
+    /// In the interior, subtract the zeroth-order pressure error and use the corrected gradient.
+    void correct_interior(std::size_t p, const Sums& sums, Rates& rates) const {
+        const FluidRecord<D>& record = records_[p];
+        const double blending = activity_.interior_blending;
+        const Vec<double, D> noise = sums.pressure_gradient - state_.pressure_gradient[p];
+        rates.acceleration =
+            rates.acceleration +
+            (blending / record.rho) * (2.0 * record.p * sums.concentration_gradient + noise);
+        rates.density += blending * record.rho *
+                         (trace(sums.velocity_gradient) - trace(state_.velocity_gradient[p]));
+    }
+
+    /// Moves the particle relative to the fluid, and its rates with it: what it carries is that of
+    /// where it goes.
+    void shift(std::size_t p, const Sums& sums, double strain, Rates& rates) const {
+        const double c = model_.constants.c;
+        Vec<double, D> velocity =
+            shifting_velocity(sums.concentration_gradient, std::max(strain, activity_.strain),
+                              state_.smoothing_length[p]);
+        if (sums.max_surface > FreeSurfaceIndicator::surface)
+            velocity = tangential(velocity, sums.surface_gradient);
+        const double fastest = max_shift * c, speed = std::sqrt(dot(velocity, velocity));
+        if (speed > fastest) velocity = (fastest / speed) * velocity;
+        state_.shift[p] = velocity;
+        const Mat<double, D>& L = state_.velocity_gradient[p];
+        for (int k = 0; k < D; ++k)
+            for (int l = 0; l < D; ++l) rates.acceleration[k] += L(k, l) * velocity[l];
+        rates.density += dot(state_.pressure_gradient[p], velocity) / (c * c);
+    }
+
+    /// What continuity sums up over many steps forgets how far apart particles are: the density is
+    /// drawn to the one that their arrangement says.
+    void relax_density(std::size_t p, double normalised_density, Rates& rates) const {
+        const double rho = records_[p].rho;
+        const double time =
+            (density_relaxation + (1.0 - activity_.interior_blending) *
+                                      (density_relaxation_at_rest - density_relaxation)) *
+            state_.smoothing_length[p] / model_.constants.c;
+        rates.density += (normalised_density * rho0(p) - rho) / time;
+        if (rho < min_density * rho0(p)) rates.density = std::max(0.0, rates.density);
+    }
+
+    void limit_timestep(std::size_t p) const {
+        const Vec<double, D>&a = state_.acceleration[p], &v = state_.velocity[p];
+        const double dt =
+            FlowTimestep::of(model_.options, records_[p], state_.smoothing_length[p],
+                             std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), model_.constants.c)
+                .smallest();
+        FlowSummary& of_cluster = summary(p);
+        if (dt < of_cluster.timestep)
+            of_cluster.timestep = dt, of_cluster.limiting = static_cast<std::int64_t>(p);
+        of_cluster.fault.note_right_hand_side(dot(a, a) + state_.density_rate[p], p);
+    }
+
+    const ResolvedModel<D>& model_;
+    const FlowActivity& activity_;
+    std::span<const FluidRecord<D>> records_;
+    std::size_t fluid_count_;
+    std::span<FlowSummary> summaries_;
+    ResolvedState<D>& state_;
+};
+
+}  // namespace doseki

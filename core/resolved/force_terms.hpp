@@ -1,0 +1,95 @@
+#pragma once
+// The sums of one fluid particle taken apart: the same sums again, with parts of them left out.
+
+#include <span>
+#include <vector>
+
+#include "model/force_terms.hpp"
+#include "pairs/backend.hpp"
+#include "resolved/interactions.hpp"
+#include "resolved/model.hpp"
+#include "resolved/timestep.hpp"
+
+namespace doseki {
+
+/// The sums of a fluid particle without what walls add.
+template <class Kernel, int D>
+struct UnwalledFluidTerm : FluidTerm<Kernel, D> {
+    template <class T>
+    DOSEKI_FN void add_fixed(FluidAccumulators<T, D>&, const Pair<T, D>&, const FluidPoint<T, D>&,
+                             const WallPoint<T, D>&) const {}
+};
+
+/// What the sums over fluid particles read.
+template <int D, class Backend>
+struct FluidPass {
+    const typename Backend::template Lists<D>& lists;
+    CoordinateFrame<double, D> frame;
+    FlowRecords<D> records;
+    const ResolvedModel<D>& model;
+
+    /// The sums that a term has for particle p.
+    template <class Term>
+    FluidAccumulators<double, D> sums_of(std::size_t p, const Term& term) const {
+        const std::size_t cluster = p / static_cast<std::size_t>(Backend::width);
+        FluidAccumulators<double, D> found{};
+        Backend::sum_pairs(lists,
+                           {lists.clusters().subspan(cluster, 1),
+                            records.motion,
+                            frame,
+                            {.first_cluster = cluster}},
+                           term, [&](std::size_t q, const FluidAccumulators<double, D>& sums) {
+                               if (q == p) found = sums;
+                           });
+        return found;
+    }
+
+    /// Terms of Eq. (27) for particle p: pressure and viscosity among fluids, and what walls do.
+    template <class Kernel>
+    ForceTerms<D> pair_forces(std::size_t p) const {
+        std::vector<FluidRecord<D>> inviscid(records.fluid_fields.begin(),
+                                             records.fluid_fields.end());
+        for (FluidRecord<D>& record : inviscid) record.mu = 0.0;
+        FlowRecords<D> without_viscosity = records;
+        without_viscosity.fluid_fields = inviscid;
+
+        const auto all = sums_of(p, FluidTerm<Kernel, D>{records, model.constants});
+        const auto fluid = sums_of(p, UnwalledFluidTerm<Kernel, D>{{records, model.constants}});
+        const auto pressure =
+            sums_of(p, UnwalledFluidTerm<Kernel, D>{{without_viscosity, model.constants}});
+        const double over_rho = 1.0 / records.fluid_fields[p].rho;
+        ForceTerms<D> terms;
+        terms.acceleration = {
+            {"pressure", over_rho * (2.0 * pressure.force)},
+            {"viscosity", over_rho * (2.0 * (fluid.force - pressure.force))},
+            {"walls", over_rho * (2.0 * (all.force - fluid.force) + all.traction)},
+        };
+        return terms;
+    }
+};
+
+/// Eqs. (27) and (41) of particle p. What its acceleration has beside the forces of pairs and
+/// bodies is the correction in the interior and what shifting carries along.
+template <int D, class Backend>
+ForceTerms<D> force_terms(const FluidPass<D, Backend>& pass, const ResolvedState<D>& state,
+                          std::size_t p) {
+    const Options<D>& options = pass.model.options;
+    ForceTerms<D> terms = options.flow.wide_kernel ? pass.template pair_forces<WendlandC6<D>>(p)
+                                                   : pass.template pair_forces<WendlandC2<D>>(p);
+    const double attraction = options.attraction * options.attraction;
+    terms.acceleration.emplace_back("gravity", options.gravity);
+    if (attraction > 0.0)
+        terms.acceleration.emplace_back("attraction", -attraction * state.position[p]);
+    const Vec<double, D> a = state.acceleration[p], v = state.velocity[p];
+    terms.acceleration.emplace_back("correction_and_shifting", a - terms.total_acceleration());
+
+    const auto limits =
+        FlowTimestep::of(options, pass.records.fluid_fields[p], state.smoothing_length[p],
+                         std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), pass.model.constants.c);
+    terms.timestep = {{"the sound speed", limits.acoustic},
+                      {"the acceleration", limits.forced},
+                      {"the viscosity", limits.viscous}};
+    return terms;
+}
+
+}  // namespace doseki

@@ -1,0 +1,110 @@
+#pragma once
+// The two sums of the resolved scheme as terms of the pair loop (pairs/pair_term.hpp).
+
+#include <span>
+
+#include "pairs/rows.hpp"
+#include "resolved/accumulators.hpp"
+
+namespace doseki {
+
+/// Where the records of a step lie. Fluid particles come first in storage, wall particles after
+/// them, and then ghosts of either kind, whose records have the same places in these arrays:
+/// `fluid` has a gap where wall particles are.
+template <int D>
+struct FlowRecords {
+    std::span<const MotionRecord<double, D>> motion;
+    std::span<const FluidRecord<D>> fluid_fields;
+    std::span<const WallRecord<D>> wall_fields;
+    std::uint32_t fluid_count, count;  // without ghosts
+    double inverse_support;
+
+    std::uint32_t first_wall() const { return fluid_count; }
+
+    template <class Rows>
+    DOSEKI_FN auto fluid(Rows rows) const {
+        using T = typename Rows::Number;
+        return FluidPoint<T, D>{take<MotionPoint<T, D>>(motion, rows),
+                                take<FluidFields<T, D>>(fluid_fields, rows)};
+    }
+    template <class Rows>
+    DOSEKI_FN auto wall(Rows rows) const {
+        using T = typename Rows::Number;
+        return WallPoint<T, D>{
+            take<MotionPoint<T, D>>(motion, rows),
+            take<WallFields<T, D>>(wall_fields, rows.counted_from(first_wall()))};
+    }
+};
+
+/// Everything that a fluid particle sums, in one pass.
+template <class Kernel, int D>
+struct FluidTerm {
+    using Real = double;
+    static constexpr int dim = D;
+    template <class T>
+    using Accumulators = FluidAccumulators<T, D>;
+
+    FlowRecords<D> records;
+    FlowConstants constants;
+
+    template <class Rows>
+    DOSEKI_FN auto load(Rows rows) const {
+        return records.fluid(rows.within(0, records.fluid_count - 1));
+    }
+    template <class T>
+    DOSEKI_FN auto load_moving(OneRow<T> j) const {
+        return records.fluid(j);
+    }
+    template <class T>
+    DOSEKI_FN auto load_fixed(OneRow<T> j) const {
+        return records.wall(j);
+    }
+
+    template <class T>
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const FluidPoint<T, D>& i,
+                       const FluidPoint<T, D>& j) const {
+        add_fluid<Kernel>(sums, constants, T(records.inverse_support), pair, i, j);
+    }
+    template <class T>
+    DOSEKI_FN void add_fixed(Accumulators<T>& sums, const Pair<T, D>& pair,
+                             const FluidPoint<T, D>& i, const WallPoint<T, D>& w) const {
+        add_wall<Kernel>(sums, constants, T(records.inverse_support), pair, i, w);
+    }
+};
+
+/// What a wall particle sums of the fluid around it.
+template <class Kernel, int D>
+struct WallTerm {
+    using Real = double;
+    static constexpr int dim = D;
+    template <class T>
+    using Accumulators = WallAccumulators<T, D>;
+
+    FlowRecords<D> records;
+    FlowConstants constants;
+
+    template <class Rows>
+    DOSEKI_FN auto load(Rows rows) const {
+        return records.wall(rows.within(records.first_wall(), records.count - 1));
+    }
+    template <class T>
+    DOSEKI_FN auto load_moving(OneRow<T> j) const {
+        return records.fluid(j);
+    }
+    template <class T>
+    DOSEKI_FN auto load_fixed(OneRow<T> j) const {
+        return records.wall(j);
+    }
+
+    template <class T>
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const WallPoint<T, D>& w,
+                       const FluidPoint<T, D>& j) const {
+        add_fluid_to_wall<Kernel>(sums, constants, T(records.inverse_support), pair, w, j);
+    }
+    /// Walls do not act on walls; a cluster that has fluid as well lists some.
+    template <class T>
+    DOSEKI_FN void add_fixed(Accumulators<T>&, const Pair<T, D>&, const WallPoint<T, D>&,
+                             const WallPoint<T, D>&) const {}
+};
+
+}  // namespace doseki

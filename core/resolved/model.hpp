@@ -1,0 +1,98 @@
+#pragma once
+// What the parts of the resolved scheme share: materials, options, and what follows from them once.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "model/fault.hpp"
+#include "model/material.hpp"
+#include "model/options.hpp"
+#include "physics/free_surface.hpp"
+#include "physics/kernel.hpp"
+#include "resolved/accumulators.hpp"
+#include "resolved/state.hpp"
+
+namespace doseki {
+
+/// Relaxation time [h/c] of the integrated density towards the summation density, in flow and at
+/// rest.
+inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest = 1000.0;
+
+template <int D>
+struct ResolvedModel {
+    std::vector<Material> materials;
+    Options<D> options;
+    FlowConstants constants{};
+    double lattice_concentration = 1.0;
+    std::array<double, D + 1> spacing_power{1.0};  // dp^k
+
+    ResolvedModel(std::vector<Material> given, const Options<D>& opts)
+        : materials(std::move(given)), options(opts) {
+        for (const Material& material : materials) {
+            if (material.law == Law::fluid) constants.c = std::max(constants.c, material.c0);
+            constants.harmonic |= has_yield_stress(material.rheology);
+        }
+        const FlowOptions& flow = options.flow;
+        constants.dp = flow.dp;
+        for (int k = 1; k <= D; ++k) spacing_power[k] = spacing_power[k - 1] * flow.dp;
+        const double support = kernel_support() * options.eta * flow.dp;
+        const auto lattice = flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(flow.dp, support)
+                                              : lattice_sums<WendlandC2<D>, D>(flow.dp, support);
+        lattice_concentration = lattice.concentration;
+        constants.gradient_scale = 1.0 / lattice.moment;
+        constants.form = flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}
+                                              : ViscousForm<double>{1.0, 0.0};
+    }
+
+    double kernel_support() const {
+        return options.flow.wide_kernel ? WendlandC6<D>::support : WendlandC2<D>::support;
+    }
+    const Material& material(const Tag& tag) const { return materials[tag.material]; }
+    const WallCondition& wall_condition(const Tag& tag) const {
+        return options.flow.walls.at(static_cast<std::size_t>(tag.body));
+    }
+    bool has_rough_walls() const {
+        return std::any_of(options.flow.walls.begin(), options.flow.walls.end(),
+                           [](const WallCondition& wall) { return wall.ks > 0.0; });
+    }
+
+    /// Tension holds inside; a free surface takes none.
+    static double without_surface_tension(double p, double surface) {
+        return surface > FreeSurfaceIndicator::surface ? std::max(0.0, p) : p;
+    }
+
+    /// rho l^2 |D| of Smagorinsky, or of Prandtl's mixing length, over rho [m^2/s].
+    double eddy_viscosity(const ResolvedState<D>& state, std::size_t p) const {
+        const FlowOptions& flow = options.flow;
+        if (flow.turbulence == Turbulence::none) return 0.0;
+        const double l = flow.turbulence == Turbulence::mixing_length ? state.mixing_length[p]
+                                                                      : flow.smagorinsky * flow.dp;
+        return l * l * strain_rate(state.velocity_gradient[p]);
+    }
+};
+
+/// What a cluster adds to the totals of an evaluation, reduced in the order of clusters.
+struct FlowSummary {
+    double timestep = std::numeric_limits<double>::max();
+    double power = 0.0, strain = 0.0;  // dissipated [W]; sum of |L|^2
+    Fault fault;
+    std::int64_t limiting = -1;
+};
+
+/// How lively the fluid as a whole is, from the evaluation before.
+struct FlowActivity {
+    /// Root mean square of |L| h/c below which a fluid counts as at rest.
+    static constexpr double at_rest = 5e-4;
+
+    double strain = 0.0;             // root mean square of |L| [1/s]
+    double interior_blending = 0.0;  // 0: at rest, pairs conserve momentum; 1: corrected gradients
+
+    void update(double mean_square_strain, double h, double c) {
+        strain = std::sqrt(mean_square_strain);
+        interior_blending = std::clamp(h * strain / (at_rest * c) - 1.0, 0.0, 1.0);
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,52 @@
+#pragma once
+#include "pairs/records.hpp"
+
+namespace doseki {
+
+/// What the sums of the resolved scheme need of a fluid particle beside its motion: W of them, or
+/// one in memory.
+template <class T, int D>
+struct FluidFields {
+    Vec<T, D> pressure_gradient;
+    Sym<T, D> strain;       // symmetric part of the velocity gradient
+    T volume, rest_volume;  // m/rho, m/rho0
+    T rho, p;
+    T mu;       // molecular and eddy viscosity [Pa s]
+    T surface;  // free-surface indicator of the last step
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.pressure_gradient...), f(self.strain...), f(self.volume...);
+        f(self.rest_volume...), f(self.rho...), f(self.p...), f(self.mu...), f(self.surface...);
+    }
+};
+
+/// What they need of a wall particle.
+template <class T, int D>
+struct WallFields {
+    Vec<T, D> normal;    // into the fluid
+    Vec<T, D> traction;  // force of a rough bed on a fluid particle over V_i W
+    T volume;
+    T depth;     // below the surface of the wall [m]
+    T g_normal;  // see wall_excess_pressure
+    T no_slip;   // 1: no slip; 0: the wall pass has the friction
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.normal...), f(self.traction...), f(self.volume...), f(self.depth...);
+        f(self.g_normal...), f(self.no_slip...);
+    }
+};
+
+template <int D>
+using FluidRecord = FluidFields<double, D>;
+template <int D>
+using WallRecord = WallFields<double, D>;
+
+/// Particle i or j of a pair.
+template <class T, int D>
+struct FluidPoint : MotionPoint<T, D>, FluidFields<T, D> {};
+template <class T, int D>
+struct WallPoint : MotionPoint<T, D>, WallFields<T, D> {};
+
+}  // namespace doseki

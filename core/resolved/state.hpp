@@ -1,0 +1,47 @@
+#pragma once
+#include <vector>
+
+#include "model/material.hpp"
+#include "model/particles.hpp"
+
+namespace doseki {
+
+/// What the resolved scheme keeps of particles beside the common fields. Gradients and the
+/// free-surface indicator are those of the last evaluation, which the next one reads.
+template <int D>
+struct ResolvedState : Particles<D> {
+    explicit ResolvedState(const std::vector<Material>&) { this->wall.in_use = true; }
+
+    Field<Vec<double, D>> pressure_gradient;  // [Pa/m]
+    Field<Mat<double, D>> velocity_gradient;  // [1/s]
+    Field<Vec<double, D>> shift;              // velocity relative to the fluid [m/s]
+    Field<double> surface;                    // free-surface indicator
+    Field<double> mixing_length;              // [m]
+    Field<double> mean_pressure;              // over a time, where friction depends on it [Pa]
+
+    template <class F>
+    void for_each_field(F&& f) {
+        this->for_each_common_field(f);
+        f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
+        f("shift", shift), f("surface", surface);
+        f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
+    }
+
+    /// Stresses of a fluid are not part of its state.
+    Deviator<double, D> stress(std::size_t) const { return {}; }
+    Deviator<double, D> stress_rate(std::size_t) const { return {}; }
+
+    /// A particle that an inflow has just added, whose common fields are set. It counts as one of
+    /// the surface, which takes no tension, until it has been summed over.
+    void enter(std::size_t p) { surface[p] = 1.0; }
+    void kick(std::size_t, double) {}
+    /// With which a particle moves.
+    Vec<double, D> transport_velocity(std::size_t p) const { return this->velocity[p] + shift[p]; }
+
+    /// The density of a wall particle means nothing.
+    bool has_density(std::size_t p) const { return !this->is_wall(p); }
+    /// Not finite where any field is not that a step starts from.
+    double sum_of_fields(std::size_t p) const { return this->sum_of_common_fields(p); }
+};
+
+}  // namespace doseki

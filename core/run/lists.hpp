@@ -1,0 +1,173 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/phase_timer.hpp"
+#include "model/domain.hpp"
+#include "model/particles.hpp"
+#include "pairs/backend.hpp"
+#include "pairs/skin.hpp"
+#include "ranks/balance.hpp"
+#include "ranks/halo.hpp"
+#include "ranks/migration.hpp"
+
+namespace doseki {
+
+/// The neighbour lists of a run and what keeps them true: the skin, the distance that particles
+/// have gone since the last build, and the ghosts of other ranks. Lists hold as long as no two
+/// particles can have come nearer by more than the skin.
+template <class Scheme>
+class RunLists {
+public:
+    static constexpr int D = Scheme::dim;
+    using State = typename Scheme::State;
+    using Backend = typename Scheme::Backend;
+    using Lists = typename Backend::template Lists<D>;
+    static_assert(doseki::Backend<Backend, D>);
+
+    RunLists(const Domain<D>& domain, double skin, bool adapts)
+        : given_skin_(skin), adapts_(adapts), lists_(domain), halo_(domain) {}
+
+    const Lists& lists() const { return lists_; }
+    /// The other ranks and the ghosts that they send.
+    Halo<D>& halo() { return halo_; }
+    const Halo<D>& halo() const { return halo_; }
+    /// Margin of the lists over the smallest support radius, as a fraction of it.
+    double skin() const { return skin_; }
+    double min_support() const { return min_support_; }
+    std::int64_t rebuilds() const { return rebuilds_; }
+
+    /// Particles have gone `distance` at most in one more step; true where lists have to be built.
+    bool wear(double distance) {
+        moved_ += distance;
+        return !(2.0 * moved_ < skin_width_);
+    }
+
+    /// Whether lists are new since the last call.
+    bool take_news() { return std::exchange(news_, false); }
+
+    /// Cuts space anew where that pays. On one rank this and send_to_owners() do nothing.
+    void cut_space(const State& state, PhaseTimer& phases);
+    void send_to_owners(State& state) {
+        if (halo_.alone()) return;
+        const auto timing = halo_.ranks.clock.measure(Share::migrate);
+        migrate(state, halo_.ranks.exchange());
+    }
+
+    /// Sorts particles and builds lists. `supports()` are the support radii of the particles as
+    /// they are stored.
+    template <class Supports>
+    void rebuild(State& state, const Supports& supports, std::int64_t steps, PhaseTimer& phases);
+
+    template <class Archive>
+    void serialise_wear(Archive& archive) {
+        archive("rebuilds", rebuilds_), archive("moved", moved_);
+        archive("skin_width", skin_width_), archive("skin", skin_);
+        archive("rebuild_step", rebuild_step_);
+    }
+    template <class Archive>
+    void serialise_lists(Archive& archive, const State& state) {
+        lists_.serialise(archive);
+        lists_.set_size(state.size());
+    }
+
+private:
+    static std::vector<std::uint8_t> wall_flags(const State& state) {
+        std::vector<std::uint8_t> fixed(state.size());
+        for (std::size_t p = 0; p < state.size(); ++p) fixed[p] = state.is_wall(p);
+        return fixed;
+    }
+    double cheapest_skin(double min_support, std::int64_t steps) const;
+    void append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
+                       std::vector<double>& support);
+
+    double given_skin_;
+    bool adapts_;
+    Lists lists_;
+    Halo<D> halo_;
+    double skin_ = 0.0;         // of the smallest support radius
+    double skin_width_ = 0.0;   // [m]
+    double min_support_ = 0.0;  // [m]
+    double moved_ = 0.0;        // since the lists were built [m]
+    std::int64_t rebuilds_ = 0;
+    std::int64_t rebuild_step_ = 0;  // when the lists were built
+    bool news_ = false;
+    double cut_busy_ = 0.0;  // of the clock, when cutting was last considered [s]
+};
+
+template <class Scheme>
+void RunLists<Scheme>::cut_space(const State& state, PhaseTimer& phases) {
+    if (halo_.alone()) return;
+    const auto timing = halo_.ranks.clock.measure(Share::balance);
+    Exchange& exchange = halo_.ranks.exchange();
+    const double busy = halo_.ranks.clock.busy() - cut_busy_;
+    cut_busy_ += busy;
+    if (!exchange.wants_cuts(busy)) return;
+    std::vector<std::uint32_t> everyone(state.size());
+    std::iota(everyone.begin(), everyone.end(), 0u);
+    const auto costs = particle_costs(lists_.clusters(), Backend::width, lists_.moving(),
+                                      state.size(), phases, thread_count(), Scheme::cost_of_lists);
+    exchange.cut(coordinates_of(state, everyone), costs);
+    phases.restart(true);
+}
+
+/// From what the lists that end now have lasted.
+template <class Scheme>
+double RunLists<Scheme>::cheapest_skin(double min_support, std::int64_t steps) const {
+    const std::int64_t lasted = steps - rebuild_step_;
+    if (!adapts_ || skin_ == 0.0) return given_skin_;
+    if (lasted == 0) return skin_;
+    return CheapestSkin<D>::at(moved_ / (static_cast<double>(lasted) * min_support));
+}
+
+template <class Scheme>
+template <class Supports>
+void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int64_t steps,
+                               PhaseTimer& phases) {
+    std::vector<double> support = supports();
+    const std::vector<std::uint8_t> fixed = wall_flags(state);
+    const double own_support = support.empty() ? std::numeric_limits<double>::max()
+                                               : *std::min_element(support.begin(), support.end());
+    min_support_ = halo_.ranks.smallest(own_support);
+    skin_ = cheapest_skin(min_support_, steps);
+    skin_width_ = skin_ * min_support_;
+    if (!halo_.alone()) {
+        const auto timing = halo_.ranks.clock.measure(Share::halo);
+        halo_.find_exports(state.position, support, fixed, skin_width_);
+    }
+    {
+        const auto timing = phases.measure(Phase::sort);
+        const auto order = Backend::sort(
+            lists_, ParticlesToSort<D>{state.position, support, fixed, halo_.exported()});
+        reorder(state, order);
+        halo_.renumber(order);
+    }
+    support = supports();
+    std::vector<Vec<double, D>> with_ghosts;
+    if (!halo_.alone()) append_ghosts(state, with_ghosts, support);
+    const auto timing = phases.measure(Phase::list_build);
+    const std::span<const Vec<double, D>> position =
+        halo_.alone() ? std::span<const Vec<double, D>>(state.position) : with_ghosts;
+    Backend::build_lists(lists_, position, std::span<const double>(support), skin_width_);
+    moved_ = 0.0, news_ = true, rebuild_step_ = steps;
+    ++rebuilds_;
+}
+
+/// Positions and supports of the particles here, sorted, and of their ghosts after them.
+template <class Scheme>
+void RunLists<Scheme>::append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
+                                     std::vector<double>& support) {
+    const auto timing = halo_.ranks.clock.measure(Share::halo);
+    position.assign(state.position.begin(), state.position.end());
+    const auto ghosts = halo_.announce(position, support, wall_flags(state));
+    const auto order = lists_.sort_ghosts(ghosts.position, ghosts.support, ghosts.is_fixed);
+    halo_.place(order, position.size());
+    for (const std::uint32_t k : order)
+        position.push_back(ghosts.position[k]), support.push_back(ghosts.support[k]);
+}
+
+}  // namespace doseki

@@ -1,0 +1,332 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "bodies/bodies.hpp"
+#include "boundaries/moving_walls.hpp"
+#include "boundaries/open_boundaries.hpp"
+#include "run/diagnostics.hpp"
+#include "run/failure.hpp"
+#include "run/integrate.hpp"
+#include "run/lists.hpp"
+#include "run/scheme.hpp"
+
+namespace doseki {
+
+/// A run: state, right-hand side (the scheme) and clock. Owned by Python, which says until when to
+/// go on.
+template <class SchemeOf>
+class Simulation {
+    static_assert(Scheme<SchemeOf>, "see run/scheme.hpp for what a scheme must have");
+
+public:
+    static constexpr int D = SchemeOf::dim;
+    static constexpr int width = SchemeOf::Backend::width;
+    using State = typename SchemeOf::State;
+
+    Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
+        : particles(materials),
+          bodies(domain, options.gravity, options.contact, contact_properties(materials),
+                 averaging_time(materials, options)),
+          options_(options),
+          domain_(domain),
+          lists_(domain, options.skin, options.auto_skin),
+          scheme_(std::move(materials), options) {
+        for (const Material& material : scheme_.materials())
+            sound_speed_ = max(sound_speed_, material.c0);
+    }
+
+    State particles;
+    OpenBoundaries<D> open_boundaries;
+    MovingWalls<D> moving_walls;
+    Bodies<D> bodies;
+
+    /// Makes this one of several ranks. Every call that steps or sorts is then made by all of them.
+    void join(Exchange& exchange) {
+        ranks().join(&exchange);
+        open_boundaries.adds = exchange.rank == 0;
+        phases().restart(true);
+    }
+
+    /// Leaves a restored state to rank 0; the next sort sends particles to their owners.
+    void leave_to_first_rank() {
+        if (ranks().rank() == 0) return;
+        resize(particles, 0);
+        open_boundaries.ledger = {}, dissipation_ = 0.0, updates_ = 0;
+    }
+
+    /// Sorts, builds lists and evaluates the right-hand side. Call once, after the particles are
+    /// in.
+    void start() {
+        if (ranks().rank() > 0) resize(particles, 0);  // was filled for the sake of bodies
+        for (std::size_t p = 0; p < particles.size(); ++p)
+            if (particles.is_counted(p)) open_boundaries.ledger.initial += particles.mass[p];
+        moving_walls.set_velocities(particles, time_);
+        open_boundaries.inject(particles, time_);
+        bodies.start(particles);
+        bodies.set_velocities(particles, 0.0);
+        renew_lists();
+    }
+
+    /// Steps until `limit` (met exactly), or returns early at the first step at or past `pause`, or
+    /// after `max_steps`.
+    void advance(double limit, double pause, std::int64_t max_steps) {
+        for (std::int64_t n = 0; n < max_steps && time_ < limit && time_ < pause; ++n) step(limit);
+    }
+
+    /// What acts on the particle of this id; nothing on ranks that do not have it. All ranks call
+    /// it. Where a state was restored, the right-hand side is evaluated first.
+    ForceTerms<D> force_terms(std::int64_t id) {
+        if (evaluated_at_ != time_) evaluate(0.0);
+        std::int64_t p = -1;
+        for (std::size_t q = 0; q < particles.size(); ++q)
+            if (particles.tag[q].id == id) p = static_cast<std::int64_t>(q);
+        return scheme_.force_terms(particles, lists_.lists(), lists_.halo(), p);
+    }
+
+    /// What must be kept for the run to go on as if it had not been interrupted.
+    template <class Archive>
+    void serialise(Archive& archive) {
+        archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
+        archive("updates", updates_), archive("av_dissipation", dissipation_);
+        archive("least_timestep", min_timestep_);
+        lists_.serialise_wear(archive);
+        particles.for_each_field(archive);
+        open_boundaries.serialise(archive);
+        bodies.serialise(archive);
+        scheme_.serialise(archive);
+        lists_.serialise_lists(archive, particles);
+    }
+
+    /// Makes lists anew, for a state that was saved with clusters of another width. The run goes on
+    /// with sums in another order.
+    void renew_lists() {
+        rebuild_lists();
+        for (int n = 0; n < SchemeOf::first_evaluations; ++n) evaluate(0.0);
+    }
+
+    /// The same for a state that keeps its rates: only the order of sums changes.
+    void renew_order() { rebuild_lists(); }
+
+    double time() const { return time_; }
+    double last_timestep() const { return last_dt_; }
+    double next_timestep() const { return min(scheme_.timestep(), bodies.timestep()); }
+    /// By viscosity, of the particles of this rank, as are updates() and totals().
+    double dissipation() const { return dissipation_; }
+    std::int64_t steps() const { return steps_; }
+    std::int64_t rebuilds() const { return lists_.rebuilds(); }
+    /// Particles stepped, summed over the steps.
+    std::int64_t updates() const { return updates_; }
+    const auto& neighbours() const { return lists_.lists(); }
+    const SchemeOf& scheme() const { return scheme_; }
+    const Options<D>& options() const { return options_; }
+    PhaseTimer& phases() { return scheme_.phases(); }
+    const Halo<D>& halo() const { return lists_.halo(); }
+    /// Margin of the lists over the smallest support radius, as a fraction of it.
+    double skin() const { return lists_.skin(); }
+
+    Totals<D> totals() const {
+        Totals<D> sum = doseki::totals(particles, scheme_);
+        if (halo().ranks.rank() > 0) return sum;  // every rank has all bodies
+        sum.kinetic_energy += bodies.kinetic_energy();
+        sum.shear_energy += bodies.deformable.strain_energy();
+        return sum;
+    }
+
+    /// Bytes held per particle: state, records, lists.
+    double bytes_per_particle() const {
+        const std::size_t bytes =
+            neighbours().bytes() + scheme_.bytes() + bytes_of(const_cast<State&>(particles));
+        return static_cast<double>(bytes) /
+               static_cast<double>(max<std::size_t>(1, particles.size()));
+    }
+
+private:
+    /// Abort limits: Mach number, and dt relative to the acoustic dt at rest.
+    static constexpr double max_mach = 10.0, min_relative_timestep = 1e-4;
+
+    static auto contact_properties(const std::vector<Material>& materials) {
+        std::vector<ContactProperties> contact;
+        for (const Material& material : materials) contact.push_back(material.contact);
+        return contact;
+    }
+    /// Several times what sound takes from one particle to the next.
+    static double averaging_time(const std::vector<Material>& materials,
+                                 const Options<D>& options) {
+        double c = 0.0;
+        for (const Material& material : materials)
+            if (material.law == Law::fluid) c = max(c, material.c0);
+        return c > 0.0 ? 5.0 * options.flow.dp / c : 0.0;
+    }
+
+    Ranks& ranks() { return lists_.halo().ranks; }
+
+    void step(double limit);
+    void kick(double half_dt);
+    double drift(double dt);
+    double next_event() const;
+    void update_lists(double before, double moved);
+    void evaluate(double half_dt);
+
+    void rebuild_lists();
+    void wrap_positions();
+    void remove_outflow();
+    void drop_removed();
+    std::vector<double> support_radii() const;
+    [[noreturn]] void fail(FailureKind kind, std::int64_t p);
+
+    Options<D> options_;
+    Domain<D> domain_;
+    RunLists<SchemeOf> lists_;
+    SchemeOf scheme_;
+    double time_ = 0.0, last_dt_ = 0.0;
+    double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
+    double dissipation_ = 0.0;
+    double sound_speed_ = 0.0;   // of the stiffest material at rest [m/s]
+    double min_timestep_ = 0.0;  // [s]
+    std::int64_t steps_ = 0, updates_ = 0;
+};
+
+/// Kick, drift, kick. The velocities that the second evaluation sees are those predicted for the
+/// end of the step.
+template <class SchemeOf>
+void Simulation<SchemeOf>::step(double limit) {
+    const auto timing = ranks().clock.measure_total();
+    const double before = time_, end = min(limit, next_event()),
+                 dt = min(next_timestep(), end - before), power = scheme_.dissipated_power();
+
+    kick(0.5 * dt);
+    const double own_moved = drift(dt), moved = ranks().largest(own_moved);
+    time_ = dt < end - before ? before + dt : end;
+    if (moved > max_mach * sound_speed_ * dt)
+        fail(FailureKind::speed, own_moved < moved ? -1 : fastest_particle(particles));
+    moving_walls.set_velocities(particles, time_);
+    bodies.set_velocities(particles, 0.5 * dt);
+    open_boundaries.impose_velocity(particles, time_);
+    update_lists(before, moved);
+    evaluate(0.5 * dt);
+    kick(0.5 * dt);
+    scheme_.end_step(particles);
+    bodies.set_velocities(particles, 0.0);
+
+    dissipation_ += 0.5 * dt * (power + scheme_.dissipated_power());
+    last_dt_ = dt;
+    ++steps_;
+    updates_ += static_cast<std::int64_t>(particles.size());
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::kick(double half_dt) {
+    const auto timing = phases().measure(Phase::integrate);
+    doseki::kick(particles, half_dt);
+    bodies.kick(half_dt);
+}
+
+/// Returns the largest distance that a particle went.
+template <class SchemeOf>
+double Simulation<SchemeOf>::drift(double dt) {
+    const auto timing = phases().measure(Phase::integrate);
+    open_boundaries.impose_mean_velocity(particles, time_, dt);
+    bodies.advance(moving_walls, time_, dt);
+    return max(max(doseki::drift(particles, dt), moving_walls.move(particles, time_, dt)),
+               bodies.place(particles));
+}
+
+/// The next time that a step must meet exactly.
+template <class SchemeOf>
+double Simulation<SchemeOf>::next_event() const {
+    const double inflow = open_boundaries.next_event();
+    return min(moving_walls.next_event(time_),
+               inflow > time_ ? inflow : std::numeric_limits<double>::infinity());
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::update_lists(double before, double moved) {
+    const bool worn = lists_.wear(moved);
+    bool changed = open_boundaries.inject(particles, time_);
+    changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
+    if (changed || worn) rebuild_lists();
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::evaluate(double half_dt) {
+    evaluated_at_ = time_;
+    scheme_.evaluate(particles, lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
+    bodies.gather(particles, ranks());
+    if (const Fault& fault = scheme_.fault(); fault.rank != Fault::none)
+        fail(fault.rank == Fault::density ? FailureKind::density : FailureKind::not_finite,
+             fault.particle);
+    if (scheme_.timestep() < min_timestep_ &&
+        ranks().largest(static_cast<double>(scheme_.limiting_particle())) >= 0.0)
+        fail(FailureKind::timestep, scheme_.limiting_particle());
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::rebuild_lists() {
+    const std::int64_t lost = lost_particle(particles, domain_);
+    if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
+    wrap_positions();
+    remove_outflow();
+    lists_.cut_space(particles, phases());
+    drop_removed();
+    if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
+        throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
+    lists_.send_to_owners(particles);
+    lists_.rebuild(particles, [this] { return support_radii(); }, steps_, phases());
+    min_timestep_ = min_relative_timestep * options_.cflnumber * lists_.min_support() /
+                    (scheme_.kernel_support() * sound_speed_);
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::wrap_positions() {
+    for (int a = 0; a < D; ++a) {
+        if (!domain_.periodic[a]) continue;
+        const double length = domain_.length(a);
+        for (auto& x : particles.position)
+            x[a] -= length * std::floor((x[a] - domain_.low[a]) / length);
+    }
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::remove_outflow() {
+    open_boundaries.remove_outflow(particles, [this](const Outflow<D>& outflow, auto& removed) {
+        return bodies.drain(particles, outflow, removed);
+    });
+}
+
+template <class SchemeOf>
+void Simulation<SchemeOf>::drop_removed() {
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t p = 0; p < particles.size(); ++p)
+        if (!open_boundaries.removed[p]) kept.push_back(p);
+    if (kept.size() < particles.size()) reorder(particles, kept);
+    open_boundaries.removed.clear();
+}
+
+/// As large as they may become before the next sort.
+template <class SchemeOf>
+std::vector<double> Simulation<SchemeOf>::support_radii() const {
+    std::vector<double> support(particles.size());
+    const bool grows = options_.h_mode == SmoothingLengthMode::eq10;
+    for (std::size_t p = 0; p < support.size(); ++p) {
+        double h = particles.smoothing_length[p];
+        if (grows) {
+            const double rho0 = scheme_.materials()[particles.tag[p].material].rho0;
+            h = max(h, 1.25 * options_.eta * std::pow(particles.mass[p] / rho0, 1.0 / D));
+        }
+        support[p] = scheme_.kernel_support() * h;
+    }
+    return support;
+}
+
+/// Throws the same on all ranks; `p` is -1 on those that have not the particle to blame.
+template <class SchemeOf>
+void Simulation<SchemeOf>::fail(FailureKind kind, std::int64_t p) {
+    const FailureSite own = p < 0 ? FailureSite{} : site_of(particles, static_cast<std::size_t>(p));
+    const FailureSite site = first_site(ranks(), own);
+    throw PhysicsFailure(described(site, D, time_, steps_ + 1, scheme_.materials()), kind, site);
+}
+
+}  // namespace doseki

@@ -1,0 +1,105 @@
+"""What a run will take: particles, memory, disk, steps and wall time, from a short burst."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..record import vtkhdf
+from ..scenario.model import Scenario
+from ..scene.inflow_sections import build_inflows
+from ..solver.protocol import Simulation
+
+BURST_SECONDS = 1.0  # of wall time
+HISTORY_BYTES = 260  # a row
+CHECKPOINT_SECONDS = 600.0  # between two, of which the last two are kept
+PROCESS_BYTES = 100e6  # Python, numpy, scipy and the core themselves
+
+
+@dataclass
+class Estimate:
+    """What a run takes, SI units and bytes."""
+
+    particles: int  # at the start
+    most_particles: float
+    memory: float
+    disk: float
+    steps: float
+    seconds: float
+    timestep: float
+
+
+def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) -> Estimate:
+    """Measure on a started `simulation`, which is stepped, and extrapolate to time_max."""
+    start = len(simulation)
+    rate, timestep = _burst(simulation, scenario.time_max)
+    mean, most = _particles(scenario, body_names, start)
+    steps = simulation.steps + (scenario.time_max - simulation.time) / timestep
+    snapshot_bytes, snapshot_seconds = _snapshot(scenario, simulation, body_names)
+    per_particle = simulation.bytes_per_particle
+    snapshots = scenario.time_max / scenario.time_out + 1
+    checkpoint = sum(array.nbytes for array in simulation.checkpoint().values()) / len(simulation)
+    rows = scenario.time_max / scenario.time_history
+    seconds = steps * mean / rate + snapshots * mean * snapshot_seconds
+    checkpoints = 1 if seconds < CHECKPOINT_SECONDS else 2
+    return Estimate(
+        particles=start,
+        most_particles=most,
+        # Beside the state, a copy of it for failures, one to be written, and the image of a file.
+        memory=PROCESS_BYTES + most * (per_particle + 3 * checkpoint),
+        disk=snapshots * snapshot_bytes * mean
+        + rows * HISTORY_BYTES
+        + checkpoints * most * checkpoint,
+        steps=steps,
+        seconds=seconds,
+        timestep=timestep,
+    )
+
+
+def _burst(simulation: Simulation, time_max: float) -> tuple[float, float]:
+    """Particle updates per second, and the timestep, over the second half of a burst."""
+    steps = 1
+    started = time.perf_counter()
+    middle = (started, simulation.updates, simulation.steps, simulation.time)
+    while (now := time.perf_counter()) - started < BURST_SECONDS and simulation.time < time_max:
+        if now - started < 0.5 * BURST_SECONDS:
+            middle = (now, simulation.updates, simulation.steps, simulation.time)
+        simulation.advance(limit=time_max, pause=time_max, max_steps=steps)
+        steps = min(2 * steps, max(1, int(0.1 * simulation.steps)))
+    elapsed = time.perf_counter() - middle[0]
+    steps = max(1, simulation.steps - middle[2])
+    return (simulation.updates - middle[1]) / elapsed, (simulation.time - middle[3]) / steps
+
+
+def _particles(scenario: Scenario, body_names: list[str], start: int) -> tuple[float, float]:
+    """Mean and largest number of particles, if nothing that enters leaves again."""
+    mean = most = float(start)
+    for section in build_inflows(scenario, body_names):
+        entered = section.entered(np.linspace(0.0, scenario.time_max, 1001))
+        most += float(entered[-1])
+        mean += float(entered.mean())
+    return mean, most
+
+
+def _snapshot(
+    scenario: Scenario, simulation: Simulation, body_names: list[str]
+) -> tuple[float, float]:
+    """Bytes and seconds that a snapshot takes for each particle."""
+    header = vtkhdf.Header(
+        simulation.time,
+        simulation.steps,
+        simulation.timestep,
+        scenario.dim,
+        tuple(scenario.material_names),
+        tuple(body_names),
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "snapshot"
+        started = time.perf_counter()
+        vtkhdf.write(file, simulation.state(), header)
+        seconds = time.perf_counter() - started
+        return file.stat().st_size / len(simulation), seconds / len(simulation)

@@ -1,0 +1,81 @@
+"""Numbers that tell before a run how well its scenario is resolved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ..record.particles import BOUND, FIXED, FREE
+from ..scenario.model import Scenario
+
+State = Mapping[str, np.ndarray]
+
+
+def grain_spacings(scenario: Scenario) -> float | None:
+    """Particles across a grain, where the scenario has grains (a parameter `diameter`)."""
+    diameter = scenario.constants.get("diameter")
+    return None if not isinstance(diameter, int | float) else diameter / scenario.dp
+
+
+def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict[str, float]:
+    """Particles over the depth of each body of fluid, and of each inflow."""
+    fluids = [
+        i for i, n in enumerate(scenario.material_names) if scenario.materials[n].law == "fluid"
+    ]
+    depths = {name: inflow.height / scenario.dp for name, inflow in scenario.inflow.items()}
+    for body, name in names.items():
+        of_it = (
+            (state["body"] == body) & (state["motion"] == FREE) & np.isin(state["material"], fluids)
+        )
+        if of_it.any() and name not in depths:
+            depths[name] = float(_extent(state["position"][of_it], scenario).min()) + 1.0
+    return depths
+
+
+def mach_number(scenario: Scenario, state: State) -> tuple[float, float]:
+    """Largest speed to expect, m/s, and what it is in sound speeds of the slowest material.
+
+    The speed is that of the start, of an inflow or of a wall that goes (not: turns), or of a free
+    fall through all of the scene.
+    """
+    free = state["motion"] != FIXED
+    speeds = np.linalg.norm(state["velocity"][free], axis=1)
+    given = max(float(speeds.max(initial=0.0)), *(_given_speeds(scenario)), 0.0)
+    expected = math.sqrt(given**2 + 2 * _fall(scenario, state))
+    slowest = min(scenario.materials[name].speedsound for name in scenario.material_names)
+    return expected, expected / (slowest * scenario.xi)
+
+
+def _given_speeds(scenario: Scenario) -> Iterator[float]:
+    yield 0.0
+    for inflow in scenario.inflow.values():
+        yield inflow.peak_rate / (inflow.height * inflow.width)
+    for body in scenario.body.values():
+        motion = body.prescribed_motion
+        if motion is not None and motion.velocity is not None:
+            yield float(np.linalg.norm(motion.velocity))
+
+
+def _fall(scenario: Scenario, state: State) -> float:
+    """g times the height that particles can fall through, m2/s2."""
+    moving = np.isin(state["motion"], (FREE, BOUND))
+    along = state["position"] @ scenario.gravity
+    starts = [along[moving].min()] if moving.any() else []
+    starts += [float(inflow.position @ scenario.gravity) for inflow in scenario.inflow.values()]
+    return max(0.0, float(along.max() - min(starts))) if starts else 0.0
+
+
+def _extent(position: np.ndarray, scenario: Scenario) -> np.ndarray:
+    """Extent of particles along axes that are not periodic, in spacings."""
+    axes = [a for a in range(scenario.dim) if "xyz"[a] not in scenario.periodic]
+    return np.ptp(position[:, axes], axis=0) / scenario.dp if axes else np.array([np.inf])
+
+
+def gap(one: np.ndarray, other: np.ndarray, reach: float) -> float:
+    """Least distance between two sets of points (n, dim), m; inf if it is over `reach`."""
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(other).query(one, distance_upper_bound=reach * (1 + 1e-9))
+    return float(distance.min())

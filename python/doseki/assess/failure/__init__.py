@@ -1,0 +1,1 @@
+"""Why a run failed: forces on a particle, the cause, the remedy."""

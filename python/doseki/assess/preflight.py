@@ -1,0 +1,107 @@
+"""`doseki check`: what a scenario will take and what is doubtful about it, before it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..errors import PhysicsError, ResourceError
+from ..record.particles import FIXED
+from ..scenario.model import Scenario
+from ..solver.build import filled_simulation, load_core
+from ..solver.protocol import SimulationView
+from ..util.finding import Finding
+from ..util.memory import available_bytes
+from .cost import Estimate, estimate
+from .estimates import flow_depths, grain_spacings, mach_number
+from .summary import duration_text
+from .warnings import findings, thorough_findings
+
+WIDTH = 18
+
+
+def check_scenario(scenario: Scenario, threads: int | None = None) -> str:
+    """The report of `doseki check`; raises UserError or PhysicsError for what cannot start."""
+    core = load_core()
+    if threads:
+        core.set_threads(threads)
+    try:
+        simulation, body_names, warnings = filled_simulation(scenario)
+        simulation.start()
+        state = simulation.state()
+        expected = estimate(scenario, simulation, body_names)
+    except core.ResourceFailure as failure:
+        raise ResourceError(str(failure)) from failure
+    except core.PhysicsFailure as failure:
+        raise PhysicsError(f"the first steps already fail: {failure}") from failure
+    lines = [scenario.title or "scenario", ""]
+    lines += [*_particles(scenario, state, body_names), *_costs(expected)]
+    lines += [*_resolution(scenario, state, body_names)]
+    doubts = thorough_findings(scenario, state, body_names, warnings)
+    lines += ["", *(f"warning: {doubt}" for doubt in doubts)] if doubts else ["", "no warnings"]
+    return "\n".join(lines)
+
+
+def brief_check(
+    scenario: Scenario,
+    simulation: SimulationView,
+    body_names: list[str],
+    warnings: Sequence[Finding] = (),
+) -> list[str]:
+    """A few lines about a simulation that has just been started; costs well under a second.
+
+    `warnings` are those that came up when the scene was built.
+    """
+    state, dt = simulation.state(), simulation.rates()["timestep"]
+    memory = len(simulation) * simulation.bytes_per_particle
+    head = (
+        f"{len(simulation):,} particles, {_size(memory)}, first timestep {dt:.3g} s: about"
+        f" {scenario.time_max / dt:,.0f} steps"
+    )
+    doubts = findings(scenario, state, body_names, warnings)
+    return [head, *(f"warning: {doubt}" for doubt in doubts)]
+
+
+def _line(name: str, text: str) -> str:
+    return f"{name:<{WIDTH}}{text}"
+
+
+def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str]) -> Iterator[str]:
+    fixed = int(np.sum(state["motion"] == FIXED))
+    yield _line("particles", f"{len(state['id']):,} at the start, {fixed:,} of them fixed")
+    for body, name in enumerate(names):
+        count = int(np.sum(state["body"] == body))
+        if count:
+            material = scenario.material_names[state["material"][state["body"] == body][0]]
+            yield _line(f"  {name}", f"{count:,} {material}")
+
+
+def _costs(expected: Estimate) -> Iterator[str]:
+    yield _line("most particles", f"{expected.most_particles:,.0f}, if nothing leaves")
+    free = available_bytes()
+    yield _line("memory", f"{_size(expected.memory)} of {_size(free)} free")
+    yield _line("disk", _size(expected.disk))
+    yield _line("timestep", f"{expected.timestep:.3g} s")
+    yield _line("steps", f"{expected.steps:,.0f}")
+    yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second")
+
+
+def _resolution(
+    scenario: Scenario, state: dict[str, np.ndarray], names: list[str]
+) -> Iterator[str]:
+    across = grain_spacings(scenario)
+    if across is not None:
+        yield _line("per grain", f"{across:.3g} particles across")
+    for name, depth in flow_depths(scenario, state, dict(enumerate(names))).items():
+        yield _line(f"depth of {name}"[: WIDTH - 1], f"{depth:.3g} particles")
+    speed, mach = mach_number(scenario, state)
+    yield _line("Mach number", f"{mach:.2g} at up to {speed:.3g} m/s, xi = {scenario.xi:.4g}")
+
+
+def _size(size: float) -> str:
+    for unit in ("B", "kB", "MB"):
+        if size < 1000:
+            return f"{size:.3g} {unit}"
+        size /= 1000
+    return f"{size:.3g} GB"

@@ -1,0 +1,122 @@
+"""A run on one screen of text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..measure.flow import Flow, WindowFlow, measure_flow
+from ..measure.numbers import speed
+from ..measure.views import with_flow
+from ..record.reader import Run
+from .trust.report import trust_lines
+
+WIDTH = 18  # of the column of names
+
+
+def summary_text(run: Run) -> str:
+    """What was run, how it went and the key results: about 20 lines."""
+    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run), _warnings(run)]
+    parts.append(_trust(run))
+    return "\n".join(line for part in parts for line in part)
+
+
+def _line(name: str, text: str) -> str:
+    return f"{name:<{WIDTH}}{text}"
+
+
+def _title(run: Run) -> Iterator[str]:
+    yield run.scenario.get("title") or str(run.directory)
+    yield ""
+    if status := run.summary.get("status"):
+        yield _line("status", status)
+    if failure := run.summary.get("failure"):
+        yield _line("failure", failure)
+
+
+def _computed(run: Run) -> Iterator[str]:
+    """How much was computed: particles, time, steps, wall time, memory."""
+    said = run.summary
+    scheme, dim = run.scenario.get("scheme", ""), run.scenario["dim"]
+    spacing = f"dp = {1e3 * run.scenario['dp']:.4g} mm"
+    yield _line("scheme", f"{scheme}, {dim}-D, {spacing}, xi = {run.scenario.get('xi', 1.0):.4g}")
+    if len(run.history) and len(run.history["time"]):
+        last = {column: values[-1] for column, values in run.history.items()}
+        yield _line("time", f"{last['time']:.6g} s of {run.scenario['time_max']:.6g} s")
+        yield _line("steps", f"{last['step']:,.0f}, the last one {last['dt']:.3g} s")
+    if "wall_seconds" in said:
+        rate = said.get("particle_updates_per_second", math.nan)
+        yield _line("wall time", f"{duration_text(said['wall_seconds'])}, {rate:.3g} updates/s")
+    if "bytes_per_particle" in said:
+        yield _line("memory", f"{said['bytes_per_particle']:.0f} bytes per particle")
+
+
+def duration_text(seconds: float) -> str:
+    """Minutes and seconds, or seconds alone."""
+    minutes, rest = divmod(seconds, 60)
+    return f"{minutes:.0f} min {rest:.0f} s" if minutes else f"{rest:.1f} s"
+
+
+def _state(run: Run) -> Iterator[str]:
+    """Particles and speeds at the end, by material."""
+    if not len(run):
+        return
+    last = run[-1]
+    fixed = last["fixed"]
+    yield _line("particles", f"{len(fixed):,}, {np.count_nonzero(fixed):,} of them fixed")
+    for name in last.material_names:
+        of_it = (last["material"] == name) & ~fixed
+        if np.any(of_it):
+            speeds = speed(last["velocity"][of_it])
+            mean, highest = speeds.mean(), speeds.max()
+            text = f"{len(speeds):,} free, speed {mean:.3g} m/s mean, {highest:.3g} m/s highest"
+            yield _line(f"  {name}", text)
+
+
+def _ledger(run: Run) -> Iterator[str]:
+    """Mass: initial + entered = inside + left."""
+    said = run.summary
+    names = ("mass_initial", "mass_entered", "mass_left", "mass_inside")
+    if not all(name in said for name in names):
+        return
+    initial, entered, left, inside = (said[name] for name in names)
+    unit = "kg/m" if run.scenario["dim"] == 2 else "kg"
+    residual = initial + entered - left - inside
+    yield _line("mass", f"{initial:.6g} {unit} initial + {entered:.6g} entered")
+    yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")
+
+
+def _results(run: Run) -> Iterator[str]:
+    """The front and the windows, where a fluid flows."""
+    flow = measure_flow(run)
+    if flow is None:
+        return
+    yield _line("front", f"x = {flow.front[-1]:.4g} m at {flow.times[-1]:.4g} s")
+    for name, entry in flow.windows.items():
+        yield _line(f"window {name}", _window(run, flow, entry))
+
+
+def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
+    arrival = entry.arrival(flow.times)
+    k = with_flow(run, entry.view)
+    if math.isnan(arrival):
+        text = "no fluid yet"
+    else:
+        mean = f"{entry.fluid_velocity[k]:.3g} m/s at {flow.times[k]:.3g} s"
+        text = f"fluid from {arrival:.3g} s on, mean v_x {mean}"
+    if entry.grain_count[k]:
+        text += f"; {entry.grain_count[k]} grains, mean speed {entry.grain_speed[k]:.3g} m/s"
+    return text
+
+
+def _warnings(run: Run) -> Iterator[str]:
+    for warning in run.summary.get("warnings", ()):
+        yield _line("warning", warning)
+
+
+def _trust(run: Run) -> Iterator[str]:
+    """The verdicts on the run, worst first."""
+    for k, (word, text) in enumerate(trust_lines(run.trust) if run.trust else ()):
+        yield _line("" if k else "trust", f"{word}: {text}")

@@ -1,0 +1,86 @@
+"""Checks of single quantities against limits: pure functions of what `look` saw."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...record.reader import Run
+from ...scenario.schemes import RESOLVED, UETA2022
+from ...scene.checks.particle_overlaps import TOO_NEAR
+from ..warnings import MIN_ACROSS_FLOW, MIN_ACROSS_GRAIN
+from .snapshots import Seen, gravity_of
+from .verdicts import Check, judged, max_of, unknown
+
+MACH = (0.1, 0.3)  # speed over sound speed
+DENSITY = (0.01, 0.05)  # |rho/rho0 - 1|
+DEPTH = (float(MIN_ACROSS_FLOW), MIN_ACROSS_FLOW / 2)  # particles
+CLOSEST = (0.5, TOO_NEAR)  # spacings
+RESOLVED_MACH = 0.1  # for which the resolved scheme chooses its sound speed
+
+
+def mach_check(seen: Seen, xi: float, scheme: str = UETA2022) -> Check:
+    """Speeds against the sound speed of the run."""
+    if not seen.mach:
+        return unknown("Mach number", MACH, "no free particle in any snapshot")
+    value = max_of(seen.mach)
+    remedy = "see the failure"
+    if math.isfinite(value):
+        remedy = f"raise xi to {xi * value / MACH[0]:.2g}"
+        if scheme == RESOLVED:
+            remedy += f", that is speed_max {value / RESOLVED_MACH:.2g} times"
+    return judged(
+        "Mach number", value, MACH, f"free particles of {len(seen.mach)} snapshots", remedy
+    )
+
+
+def density_check(seen: Seen, tension: str, xi: float, scheme: str = UETA2022) -> Check:
+    """Compression against none; the verdict is on the 99th percentile."""
+    name = "density fluctuation"
+    if not seen.density_most:
+        return unknown(name, DENSITY, "no free particle in any snapshot")
+    value = max_of(seen.density_most)
+    what = {"free": "both signs", "clamp_fluid": "both signs of solids, compression of fluids"}
+    signs = what.get(tension, "compression")
+    if scheme == RESOLVED:
+        signs = "both signs inside, compression of the free surface"
+    counted = f"99th percentile of free particles, {signs}"
+    raised = "speed_max" if scheme == RESOLVED else f"xi (now {xi:.3g})"
+    remedy = f"raise {raised}; look for particles squeezed at the start or into walls"
+    largest = max_of(seen.density_highest)
+    return judged(name, value, DENSITY, counted, remedy, highest=largest)
+
+
+def depth_check(run: Run, seen: Seen) -> Check:
+    """Particles over the depth of the fluid."""
+    name, dp = "particles per flow depth", run.scenario["dp"]
+    if not seen.depth:
+        return unknown(name, DEPTH, "no free fluid")
+    if not any(gravity_of(run.scenario)):
+        return unknown(name, DEPTH, "no gravity, hence no depth")
+    value = float(np.median(seen.depth))
+    counted = f"columns of fluid along the last axis, median of {len(seen.depth)} snapshots"
+    remedy = f"dp = {dp * value / DEPTH[0]:.2g} would resolve the flow"
+    return judged(name, value, DEPTH, counted, remedy, least=float(np.min(seen.depth)))
+
+
+def contact_check(seen: Seen, xi: float) -> Check:
+    """Closest approach of grains of one particle, in spacings: the scheme has no contact law."""
+    name = "closest approach"
+    if not seen.closest:
+        return unknown(name, CLOSEST, "no two free solid grains of one particle")
+    counted = f"free solid grains of one particle in {len(seen.closest)} snapshots, over spacing"
+    remedy = f"raise xi (now {xi:.3g}), or resolve the grains: {MIN_ACROSS_GRAIN} dp across"
+    return judged(name, float(np.min(seen.closest)), CLOSEST, counted, remedy)
+
+
+def overlap_check(run: Run, seen: Seen) -> Check:
+    """How far bodies are pressed into one another, against what contacts are stiff enough for."""
+    name, contact = "overlap of contacts", run.scenario.get("contact", {})
+    allowed = float(contact.get("overlap", 0.01))
+    limits = (allowed, 5 * allowed)
+    value = max_of(seen.overlap)
+    counted = f"bodies that move in {len(seen.overlap)} snapshots, over the diameter"
+    remedy = f"raise contact.speed {max(value / allowed, 1):.2g} times"
+    return judged(name, value, limits, counted, remedy)

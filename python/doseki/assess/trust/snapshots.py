@@ -1,0 +1,148 @@
+"""What the snapshots of a run show: speeds, densities, depths, distances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...measure.numbers import speed
+from ...record.particles import FIXED, FREE
+from ...record.reader import Run, Snapshot
+from ...scenario.materials import Material, complete_materials
+from ...scenario.schemes import RESOLVED, UETA2022
+from ..warnings import MIN_ACROSS_GRAIN
+
+COLUMN = 4  # spacings, width of the columns in which depths are measured
+
+
+@dataclass
+class Seen:
+    """What the snapshots of a run show, one entry for each that has such particles."""
+
+    mach: list[float] = field(default_factory=list)
+    density_highest: list[float] = field(default_factory=list)  # |rho/rho0 - 1|
+    density_most: list[float] = field(default_factory=list)  # its 99th percentile
+    depth: list[float] = field(default_factory=list)  # particles
+    closest: list[float] = field(default_factory=list)  # spacings
+    potential: list[float] = field(default_factory=list)  # J (2-D: J/m), -m g.x of free particles
+    motions: set[int] = field(default_factory=set)
+    overlap: list[float] = field(default_factory=list)  # largest of contacts, over the diameter
+    walls_go: bool = False  # whether a fixed particle has a velocity
+
+
+def look(run: Run) -> Seen:
+    """Measure every snapshot, one at a time."""
+    seen = Seen()
+    materials = complete_materials(run.scenario.get("material", {}))
+    single = _single_grain_bodies(run.scenario)
+    for snapshot in run:
+        seen.motions |= set(np.unique(snapshot["motion"]).tolist())
+        free = snapshot["motion"] == FREE
+        if len(bodies := snapshot.grains):
+            seen.overlap.append(float(np.max(bodies["overlap"])))
+        seen.walls_go |= bool(np.any(snapshot["velocity"][snapshot["motion"] == FIXED]))
+        gravity = np.array(gravity_of(run.scenario))
+        along = snapshot["position"][free] @ gravity
+        seen.potential.append(float(-(snapshot["mass"][free] @ along)))
+        if free.any():
+            _look_at_free(seen, run.scenario, snapshot, free, materials)
+            _look_at_grains(seen, snapshot, free & np.isin(snapshot["body"], single), materials)
+    return seen
+
+
+def _look_at_free(
+    seen: Seen,
+    scenario: Mapping[str, Any],
+    snapshot: Snapshot,
+    free: np.ndarray,
+    materials: Mapping[str, Material],
+) -> None:
+    names = snapshot["material"][free]
+    sound = scenario.get("xi", 1.0) * _of(names, materials, "speedsound")
+    seen.mach.append(float(np.max(speed(snapshot["velocity"][free]) / sound)))
+    fluid = _is_fluid(names, materials)
+    strain = snapshot["density"][free] / _of(names, materials, "rho0") - 1
+    clamped = _clamped(scenario, fluid, snapshot["pressure"][free])
+    strain = np.where(clamped, np.maximum(strain, 0.0), np.abs(strain))
+    seen.density_highest.append(float(strain.max()))
+    seen.density_most.append(float(np.quantile(strain, 0.99)))
+    if fluid.any():
+        volume = snapshot["mass"][free][fluid] / _of(names[fluid], materials, "rho0")
+        position = snapshot["position"][free][fluid]
+        seen.depth.append(flow_depth(position, volume, scenario["dp"]))
+
+
+def _look_at_grains(
+    seen: Seen, snapshot: Snapshot, grain: np.ndarray, materials: Mapping[str, Material]
+) -> None:
+    grain = grain.copy()
+    names = snapshot["material"]
+    grain[grain] = ~_is_fluid(names[grain], materials)
+    if grain.sum() > 1:
+        volume = snapshot["mass"][grain] / _of(names[grain], materials, "rho0")
+        spacing = float(volume.min()) ** (1 / snapshot.dim)
+        seen.closest.append(closest_pair(snapshot["position"][grain]) / spacing)
+
+
+def _of(names: np.ndarray, materials: Mapping[str, Material], parameter: str) -> np.ndarray:
+    """A material parameter of each particle, unscaled, from the names of their materials."""
+    unique, index = np.unique(names, return_inverse=True)
+    return np.array([getattr(materials[str(name)], parameter) for name in unique])[index]
+
+
+def _is_fluid(names: np.ndarray, materials: Mapping[str, Material]) -> np.ndarray:
+    return np.isin(names, [name for name, entry in materials.items() if entry.law == "fluid"])
+
+
+def _clamped(scenario: Mapping[str, Any], fluid: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Which particles have no pressure, hence no meaning, below rho0.
+
+    In the resolved scheme those are particles of the free surface, whatever `tension` says.
+    """
+    if is_resolved(scenario):
+        return pressure == 0
+    tension = scenario.get("tension", "clamp_fluid")
+    return {"free": np.zeros_like(fluid), "clamp_fluid": fluid}.get(tension, np.ones_like(fluid))
+
+
+def _single_grain_bodies(scenario: Mapping[str, Any]) -> list[str]:
+    """Bodies whose particles are grains of their own: single ones, or all of unresolved grains."""
+    diameter = scenario.get("parameters", {}).get("diameter", {})
+    diameter = diameter.get("value") if isinstance(diameter, Mapping) else diameter
+    known = isinstance(diameter, int | float)
+    unresolved = known and diameter < MIN_ACROSS_GRAIN * scenario["dp"]
+    bodies = scenario.get("body", {}).items()
+    return [name for name, body in bodies if unresolved or body.get("fill") == "single"]
+
+
+def flow_depth(position: np.ndarray, volume: np.ndarray, dp: float) -> float:
+    """Depth along the last axis in spacings: volume (m3; 2-D: m2) in columns over their section.
+
+    Columns are COLUMN spacings wide; the depth is that of the column that the median particle is
+    in, so that spray counts for little.
+    """
+    cells = np.floor(position[:, :-1] / (COLUMN * dp) + 1e-6).astype(np.int64)
+    _, column = np.unique(cells, axis=0, return_inverse=True)
+    column = column.ravel()
+    section = (COLUMN * dp) ** cells.shape[1]
+    depth = np.bincount(column, volume) / section / dp
+    return float(np.median(depth[column]))
+
+
+def closest_pair(position: np.ndarray) -> float:
+    """Least distance between two of the points (N, dim), m; not across periodic sides."""
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(position).query(position, k=2)  # the first is the point itself
+    return float(distance[:, 1].min())
+
+
+def is_resolved(scenario: Mapping[str, Any]) -> bool:
+    return scenario.get("scheme", UETA2022) == RESOLVED
+
+
+def gravity_of(scenario: Mapping[str, Any]) -> list[float]:
+    return list(scenario.get("gravity", [0.0] * scenario["dim"]))

@@ -1,0 +1,200 @@
+"""Warnings before a run: what is likely to go wrong, with the remedy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..driver.gauges import outside_everything
+from ..record.particles import BOUND, DRIVEN, FIXED, FREE
+from ..scenario.model import Scenario
+from ..scenario.schemes import UETA2022
+from ..util.finding import Finding
+from .estimates import State, flow_depths, gap, grain_spacings, mach_number
+
+MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
+MIN_ACROSS_FLOW = 10  # particles over the depth; below, a film is too viscous
+MAX_MACH = 0.1  # for which weak compressibility is a good approximation
+TOUCHING = 1.5  # spacings; beyond, two bodies are apart
+REACH = 4  # spacings within which a neighbour is looked for
+
+
+@dataclass(frozen=True)
+class UnresolvedGrains(Finding):
+    """Grains, in the paper's scheme, of too few particles to be bodies."""
+
+    across: float  # particles
+
+    def __str__(self) -> str:
+        return (
+            f"{self.across:.2g} particles across a grain: grains are points that neither roll nor"
+            f" collide as bodies; resolved ones need dp = diameter/{MIN_ACROSS_GRAIN} or less"
+        )
+
+
+@dataclass(frozen=True)
+class ShallowFlow(Finding):
+    """Too few particles over the depth of a flow."""
+
+    across: float  # particles
+    dp: float  # m
+
+    def __str__(self) -> str:
+        enough = self.across * self.dp / MIN_ACROSS_FLOW
+        return (
+            f"{self.place}: {self.across:.2g} particles over its depth; below {MIN_ACROSS_FLOW} it"
+            f" flows too slowly: dp = {enough:.2g} would do"
+        )
+
+
+@dataclass(frozen=True)
+class ThinWall(Finding):
+    """A wall thinner than the support, which lets particles feel its end, or pass it."""
+
+    layers: int
+    needed: int
+    dp: float  # m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: a wall of {self.layers} layers is thinner than the kernel's reach;"
+            f" make it {self.needed} layers ({self.needed * self.dp:.3g} m) thick"
+        )
+
+
+@dataclass(frozen=True)
+class LargeRoughness(Finding):
+    """Roughness larger than the flow is deep: no wall law describes that."""
+
+    ks: float  # m
+    depth: float  # m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place} = {self.ks:.3g} m is larger than the depth of the flow,"
+            f" {self.depth:.3g} m: model such roughness as bodies"
+        )
+
+
+@dataclass(frozen=True)
+class GaugeOutside(Finding):
+    """A gauge where there will be nothing to read."""
+
+    position: tuple[float, ...]  # m
+
+    def __str__(self) -> str:
+        return f"{self.place} = {list(self.position)} m lies outside everything in the scene"
+
+
+@dataclass(frozen=True)
+class HighMach(Finding):
+    """Speeds too high for the reduced sound speed."""
+
+    speed: float  # m/s
+    mach: float
+    xi: float
+
+    def __str__(self) -> str:
+        return (
+            f"speeds up to {self.speed:.3g} m/s are Mach {self.mach:.2g} at xi = {self.xi:.3g}; for"
+            f" Mach {MAX_MACH} set xi = {self.xi * self.mach / MAX_MACH:.2g}"
+        )
+
+
+@dataclass(frozen=True)
+class Detached(Finding):
+    """A free body that touches nothing: under gravity it falls before the flow begins."""
+
+    gap: float  # spacings to its nearest neighbour; inf: more than REACH
+
+    def __str__(self) -> str:
+        said = f"{self.gap:.2g} dp" if math.isfinite(self.gap) else f"more than {REACH} dp"
+        return (
+            f"{self.place}: touches nothing, its nearest neighbour is {said} away;"
+            " move it if it should rest"
+        )
+
+
+def findings(
+    scenario: Scenario, state: State, body_names: list[str], of_scene: Sequence[Finding] = ()
+) -> list[Finding]:
+    """Every doubt about the particles of `state` (the core's fields) that is found at once.
+
+    `of_scene` are those that came up when the scene was built; they come first.
+    """
+    names = dict(enumerate(body_names))
+    found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, state, names)]
+    found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
+    found += [*_gauges(scenario, state), *_mach(scenario, state)]
+    return list(dict.fromkeys(found))
+
+
+def thorough_findings(
+    scenario: Scenario, state: State, body_names: list[str], of_scene: Sequence[Finding] = ()
+) -> list[Finding]:
+    """Those of `findings`, and those that take a while to find."""
+    names = dict(enumerate(body_names))
+    return [*findings(scenario, state, body_names, of_scene), *_detached(scenario, state, names)]
+
+
+def _grains(scenario: Scenario) -> Iterator[Finding]:
+    across = grain_spacings(scenario) if scenario.scheme == UETA2022 else None
+    if across is not None and across < MIN_ACROSS_GRAIN:
+        yield UnresolvedGrains("", across)
+
+
+def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
+    for name, across in flow_depths(scenario, state, names).items():
+        if across < MIN_ACROSS_FLOW - 1e-6:
+            yield ShallowFlow(name, across, scenario.dp)
+
+
+def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
+    needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
+    for body, name in names.items():
+        table = scenario.body.get(name)
+        of_it = (state["body"] == body) & (state["motion"] == FIXED)
+        if table is None or not of_it.any():
+            continue
+        layers = table.layers(scenario.dp)
+        if layers is not None and layers < needed:
+            yield ThinWall(name, layers, needed, scenario.dp)
+
+
+def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
+    depths = flow_depths(scenario, state, names)
+    depth = min((across * scenario.dp for across in depths.values()), default=math.inf)
+    rough = [(f"body.{name}.ks", b.given("ks")) for name, b in scenario.body.items()]
+    rough += [(f"inflow.{name}.ks", inflow.ks) for name, inflow in scenario.inflow.items()]
+    for place, ks in rough:
+        if ks is not None and ks > depth:
+            yield LargeRoughness(place, ks, depth)
+
+
+def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:
+    for name, place in outside_everything(scenario, state).items():
+        yield GaugeOutside(f"gauge.{name}.position", tuple(place.tolist()))
+
+
+def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
+    speed, mach = mach_number(scenario, state)
+    if mach > MAX_MACH * 1.05:
+        yield HighMach("", speed, mach, scenario.xi)
+
+
+def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
+    if not np.any(scenario.gravity):
+        return
+    for body, name in names.items():
+        of_it = state["body"] == body
+        is_free = np.isin(state["motion"][of_it], (FREE, BOUND)).all()
+        if not is_free or not of_it.any() or of_it.all():
+            continue
+        others = ~of_it & (state["motion"] != DRIVEN)
+        position, reach = state["position"], REACH * scenario.dp
+        apart = gap(position[of_it], position[others], reach) / scenario.dp
+        if apart > TOUCHING:
+            yield Detached(name, apart)

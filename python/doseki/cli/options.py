@@ -1,0 +1,38 @@
+"""Options that several commands have, and the folder they write to without one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ScenarioName = Annotated[
+    str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scenario; repeatable."),
+]
+Threads = Annotated[int | None, typer.Option(min=1, max=4096, help="Threads [all cores].")]
+CheckpointEvery = Annotated[
+    float | None,
+    typer.Option(min=1e-12, metavar="SECONDS", help="Simulated time between checkpoints."),
+]
+CheckpointMinutes = Annotated[
+    float, typer.Option(min=0.0, metavar="M", help="Wall time between checkpoints.")
+]
+Ranks = Annotated[
+    int | None,
+    typer.Option(min=1, max=100_000, help="MPI ranks on this machine; or start with mpiexec."),
+]
+Figures = Annotated[bool, typer.Option(help="Draw the figures at the end.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
+Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")]
+
+
+def free_directory(name: str) -> Path:
+    """runs/NAME, or runs/NAME-2, -3 ... where that is taken."""
+    base = Path("runs") / Path(name).stem
+    candidates = [base, *(base.with_name(f"{base.name}-{k}") for k in range(2, 10000))]
+    return next(path for path in candidates if not path.exists())

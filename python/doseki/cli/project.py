@@ -1,0 +1,114 @@
+"""Commands about doseki itself: list, bench, validate."""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from .options import Threads, free_directory
+
+Tier = StrEnum("Tier", ["coarse", "full"])
+
+
+def list_scenarios() -> None:
+    """List the scenarios that are shipped."""
+    from ..scenario.load import list_scenarios as shipped
+
+    table = Table("scenario", "what it is", box=None)
+    for name, title, _path in shipped():
+        table.add_row(name, title)
+    Console().print(table)
+
+
+def bench(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Smaller and fewer: under a minute.")
+    ] = False,
+    sizes: Annotated[
+        str | None, typer.Option(metavar="N,...", help="Particles, e.g. 1e4,1e6.")
+    ] = None,
+    dims: Annotated[str | None, typer.Option(metavar="2,3", help="Dimensions.")] = None,
+    precision: Annotated[
+        str | None, typer.Option(metavar="double,float", help="Of the pairs.")
+    ] = None,
+    threads: Annotated[
+        str | None, typer.Option(metavar="T,...", help="Threads [1, 2, all].")
+    ] = None,
+    isa: Annotated[
+        str | None,
+        typer.Option(metavar="v4,...", help="Instruction sets [best; others at one size]."),
+    ] = None,
+    scheme: Annotated[
+        str | None, typer.Option(metavar="NAME", help="ueta2022 or resolved [ueta2022].")
+    ] = None,
+    ranks: Annotated[
+        str | None,
+        typer.Option(metavar="R,...", help="Scaling over MPI ranks of this machine instead."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
+    append: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Also append the rows to FILE, one line a run."),
+    ] = None,
+) -> None:
+    """Measure speed and memory here; exit code 4 when memory is over its limit."""
+    from ..bench.command import bench_command, make_plan
+
+    options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
+    options |= {"--threads": threads, "--isa": isa, "--scheme": scheme}
+    plan = make_plan(options, quick)
+    if ranks is None:
+        bench_command(plan, as_json, append)
+        return
+    from ..bench.command import counts_of
+    from ..bench.ranks import bench_ranks
+
+    counts = counts_of("--ranks", ranks, 100_000)
+    bench_ranks(counts, plan.dims, plan.scheme, next(iter(plan.sizes), None), as_json)
+
+
+def validate(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME ...]", help="Cases [all].")
+    ] = None,
+    tier: Annotated[
+        Tier, typer.Option(help="coarse: the coarsest resolution only; full: all of them.")
+    ] = Tier.coarse,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Of the report [runs/validation]."),
+    ] = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+    only_list: Annotated[bool, typer.Option("--list", help="List the cases and stop.")] = False,
+) -> None:
+    """Compare runs with formulas and measurements; exit code 1 when a case fails."""
+    from ..validate import report
+    from ..validate.catalogue import chosen_cases
+    from ..validate.command import validate as validate_cases
+    from ..validate.judging import failed
+
+    cases = chosen_cases(names or [])
+    if only_list:
+        for case in cases:
+            typer.echo(f"{case.name:28} {case.title}")
+        return
+    directory = output or free_directory("validation")
+    results = validate_cases(
+        cases, tier.value, directory, threads, lambda text: typer.echo(text, err=True)
+    )
+    if as_json:
+        typer.echo(json.dumps(report.report_table(results, tier.value)))
+    else:
+        typer.echo(report.table_text(results))
+        for line in report.remarks(results):
+            typer.echo(line)
+        typer.echo(f"{report.summary_line(results)}; in {directory}: validation.md, pictures")
+    if failed(results):
+        raise typer.Exit(1)

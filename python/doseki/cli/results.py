@@ -1,0 +1,78 @@
+"""Commands that read a run: plot, census, export."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..errors import UserError
+from .options import Directory
+
+
+def plot(
+    directory: Directory,
+    movie: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Also make a movie: FILE.gif or FILE.mp4.")
+    ] = None,
+    colour: Annotated[
+        str, typer.Option(help="Colour of the movie: material, velocity_x ...")
+    ] = "material",
+) -> None:
+    """Draw the figures of a run (and a movie on request)."""
+    from ..figures.movie import make_movie
+    from ..figures.plot import plot_run
+    from ..record.reader import load
+
+    for picture in plot_run(directory):
+        typer.echo(str(picture))
+    if movie:
+        typer.echo(str(make_movie(load(directory), movie, colour=colour)))
+
+
+def census(
+    directory: Directory,
+    window: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help='Of the speeds [the window "outlet", else all].'),
+    ] = None,
+    start: Annotated[
+        float, typer.Option("--from", metavar="SECONDS", help="Of the speeds.")
+    ] = float("-inf"),
+    end: Annotated[float, typer.Option("--to", metavar="SECONDS", help="Of the speeds.")] = float(
+        "inf"
+    ),
+    sections: Annotated[
+        list[float] | None,
+        typer.Option("--section", metavar="X", help="Where passing is counted, m; repeatable [0]."),
+    ] = None,
+    sample: Annotated[int, typer.Option(min=1, help="Grains in a random sample.")] = 30,
+    draws: Annotated[int, typer.Option(min=1, max=100_000, help="Number of samples.")] = 2000,
+    bin_width: Annotated[float, typer.Option(min=1e-6, help="Of the histogram, m/s.")] = 0.1,
+) -> None:
+    """Take a census of the grains of a run into DIR/census: tables and figures."""
+    from ..figures.census_output import CensusOptions, write_census
+
+    chosen = tuple(sections or [0.0])
+    options = CensusOptions(window, start, end, chosen, sample, draws, bin_width)
+    for line in write_census(directory, options):
+        typer.echo(line)
+
+
+def export(
+    directory: Directory,
+    vtu: Annotated[
+        bool, typer.Option("--vtu", help="VTU files and a .pvd, for older viewers.")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="[DIR/vtu]")
+    ] = None,
+) -> None:
+    """Write the snapshots of a run in another format."""
+    from ..record.export import export_vtu
+    from ..record.reader import load
+
+    if not vtu:
+        raise UserError("say which format to export to: --vtu")
+    typer.echo(str(export_vtu(load(directory), output)))

@@ -1,0 +1,142 @@
+"""Commands that run scenarios: run, check, resume, explain."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .options import (
+    AsJson,
+    CheckpointEvery,
+    CheckpointMinutes,
+    Directory,
+    Figures,
+    Ranks,
+    ScenarioName,
+    Settings,
+    Threads,
+    free_directory,
+)
+from .ranks import join
+
+
+def run(
+    scenario: ScenarioName,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Output folder [runs/NAME]."),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    ranks: Ranks = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")
+    ] = False,
+    checkpoint_every: CheckpointEvery = None,
+    checkpoint_minutes: CheckpointMinutes = 10.0,
+    figures: Figures = True,
+    as_json: AsJson = False,
+) -> None:
+    """Run a scenario; the record, figures and a one-screen summary go to DIR."""
+    from ..assess.preflight import brief_check
+    from ..run.progress import progress_bar
+    from ..run.runner import RunOptions, run_scenario
+    from ..scenario.load import load_scenario
+
+    team = join(ranks)
+    loaded = load_scenario(scenario, settings or [])
+    directory = output or team.agree(free_directory(scenario))
+
+    def tell(*started: Any) -> None:
+        for line in brief_check(*started):
+            typer.echo(line, err=True)
+
+    with progress_bar(loaded.title, loaded.time_max) as progress:
+        options = RunOptions(
+            threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes, team
+        )
+        summary = run_scenario(loaded, directory, options)
+    if team.is_root:
+        _report(directory, summary, figures, as_json)
+
+
+def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
+    """Figures and the summary on one screen, or as JSON."""
+    from ..assess.summary import summary_text
+    from ..figures.plot import plot_run
+    from ..record.reader import load
+
+    pictures = plot_run(directory) if figures else []
+    text = summary_text(load(directory))
+    (directory / "summary.txt").write_text(text + "\n")
+    if as_json:
+        typer.echo(
+            json.dumps(
+                summary | {"directory": str(directory), "figures": [str(p) for p in pictures]}
+            )
+        )
+        return
+    typer.echo(text)
+    typer.echo(f"\nIn {directory}: summary.txt, history.csv, snapshots, figures:")
+    for picture in pictures:
+        typer.echo(f"  {picture}")
+
+
+def check(
+    scenario: ScenarioName,
+    settings: Settings = None,
+    threads: Threads = None,
+) -> None:
+    """Say what a scenario will take, and what is doubtful about it, without running it."""
+    from ..assess.preflight import check_scenario
+    from ..scenario.load import load_scenario
+
+    typer.echo(check_scenario(load_scenario(scenario, settings or []), threads))
+
+
+def resume(
+    directory: Directory,
+    settings: Settings = None,
+    until: Annotated[
+        float,
+        typer.Option("--from", metavar="SECONDS", help="Not from a checkpoint later than this."),
+    ] = float("inf"),
+    threads: Threads = None,
+    ranks: Ranks = None,
+    checkpoint_every: CheckpointEvery = None,
+    checkpoint_minutes: CheckpointMinutes = 10.0,
+    figures: Figures = True,
+    as_json: AsJson = False,
+) -> None:
+    """Go on with a run that was stopped, killed or failed, from its last checkpoint."""
+    from ..record.reader import load
+    from ..run.progress import progress_bar
+    from ..run.resume import resume_run
+    from ..run.runner import RunOptions
+
+    team = join(ranks)
+    scenario = load(directory).scenario
+    with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
+        options = RunOptions(
+            threads,
+            progress=progress,
+            checkpoint_every=checkpoint_every,
+            checkpoint_minutes=checkpoint_minutes,
+            ranks=team,
+        )
+        summary, notes = resume_run(directory, settings or [], options, until)
+    for note in notes:
+        typer.echo(f"warning: {note}", err=True)
+    if team.is_root:
+        _report(directory, summary, figures, as_json)
+
+
+def explain(directory: Directory) -> None:
+    """Say why a run failed, and what to change."""
+    from ..assess.failure.failure import explanation
+    from ..record.reader import load
+
+    typer.echo(explanation(load(directory).folder))

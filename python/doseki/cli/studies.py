@@ -1,0 +1,70 @@
+"""Commands that run a scenario several times: trust, compare."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..errors import UserError
+from .options import AsJson, ScenarioName, Settings, Threads, free_directory
+
+
+def trust(
+    scenario: ScenarioName,
+    key: Annotated[
+        str, typer.Option("--vary", metavar="xi", help="What to halve and double.")
+    ] = "xi",
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Of the runs [runs/NAME-trust]."),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run a scenario at half, given and double xi, and say how much the results moved."""
+    from ..record.writer import jsonable
+    from ..studies.vary import vary, vary_text
+
+    directory = output or free_directory(f"{Path(scenario).stem}-trust")
+    report = vary(scenario, settings or [], key, directory, threads)
+    typer.echo(json.dumps(jsonable(report)) if as_json else vary_text(report))
+
+
+def compare(
+    name: Annotated[str, typer.Argument(metavar="flume", help="What to compare.")],
+    runs: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[RUN RUN]", help="Runs of both schemes [both are run now]."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", "--output", metavar="DIR", help="[runs/NAME-comparison]"),
+    ] = None,
+    settings: Settings = None,
+    threads: Threads = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+) -> None:
+    """Compare the paper's scheme, the resolved one and the experiment, on one page."""
+    from ..run.runner import RunOptions
+    from ..studies.compare import check_name, compare_runs, run_both
+
+    check_name(name)
+    if runs and len(runs) != 2:
+        raise UserError(f"compare takes two runs, one of each scheme, or none; not {len(runs)}")
+    if runs and settings:
+        raise UserError("--set changes a scenario that is run; these runs are made already")
+    directory = output or free_directory(f"{name}-comparison")
+    folders = runs or run_both(
+        name,
+        settings or [],
+        directory,
+        RunOptions(threads),
+        lambda text: typer.echo(text, err=True),
+    )
+    comparison = compare_runs(folders, directory)
+    typer.echo((directory / "comparison.json").read_text() if as_json else comparison.text())
+    typer.echo(f"In {directory}: comparison.md, pictures", err=as_json)

@@ -1,0 +1,128 @@
+"""The compiled core: which instruction set runs here."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Protocol, cast
+
+# What a module was compiled for, and the processor flags that must be there for it.
+INSTRUCTION_SETS: dict[str, dict[str, set[str]]] = {
+    "x86": {
+        "v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
+        "v3": {"avx2", "fma", "bmi1", "bmi2", "f16c"},
+        "scalar": set(),
+    },
+    "other": {"native": set(), "scalar": set()},
+}
+
+# How long a thread that waits for the others spins before it sleeps.  OpenMP's own choice, some
+# milliseconds, makes a run many times slower as soon as another program wants one of its cores.
+SPIN_COUNT = "2000"
+
+Table = list[list[float]]  # columns of numbers
+
+
+class PointFunction(Protocol):
+    """A function of core/physics on columns of numbers, one column per argument and result."""
+
+    def __call__(self, columns: Table, pack: bool = False) -> Table:
+        """The results; `pack` works on several rows at once."""
+        ...
+
+
+class PointFunctions(Protocol):
+    """The functions of core/physics in one number of dimensions."""
+
+    def __getattr__(self, name: str) -> PointFunction: ...
+
+
+class Physics(Protocol):
+    """Point functions in two and three dimensions."""
+
+    two: PointFunctions
+    three: PointFunctions
+
+
+class Core(Protocol):
+    """A compiled module."""
+
+    __name__: str
+    lanes: int  # numbers of double precision that it works on at once
+    physics: Physics
+    PhysicsFailure: type[Exception]
+    ResourceFailure: type[Exception]
+
+    def Simulation(  # noqa: N802 (a class)
+        self,
+        scheme: str,
+        dim: int,
+        precision: str,
+        materials: Sequence[Mapping[str, object]],
+        options: Mapping[str, object],
+    ) -> object:
+        """A solver.protocol.CoreSimulation.
+
+        Raises ValueError for a key or word that is unknown, or a key that is missing.
+        """
+        ...
+
+    def set_threads(self, n: int) -> None:
+        """Threads of the calls that follow."""
+        ...
+
+    def threads(self) -> int:
+        """How many threads calls take."""
+        ...
+
+
+def _processor_flags() -> set[str]:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return set()
+    return next((set(line.split()) for line in lines if line.startswith("flags")), set())
+
+
+def usable_instruction_sets() -> list[str]:
+    """Instruction sets that this processor has, fastest first, whether built or not."""
+    machine = "x86" if platform.machine() in {"x86_64", "AMD64"} else "other"
+    flags = _processor_flags()
+    return [isa for isa, needed in INSTRUCTION_SETS[machine].items() if needed <= flags]
+
+
+def available_instruction_sets() -> list[str]:
+    """Instruction sets that were built and that this processor has, fastest first."""
+    return [
+        isa for isa in usable_instruction_sets() if find_spec(f"doseki._core_{isa}") is not None
+    ]
+
+
+@cache
+def load_core(isa: str | None = None) -> Core:
+    """The extension module for an instruction set.
+
+    `isa` is "v4" (AVX-512), "v3" (AVX2), "native" (other processors) or "scalar" (one lane, the
+    reference); by default the environment variable DOSEKI_ISA, else the fastest one available.
+    Raises UserError when it is not available here.
+    """
+    from .errors import UserError  # the build runs this file by itself
+
+    available = available_instruction_sets()
+    chosen = isa or os.environ.get("DOSEKI_ISA") or (available[0] if available else None)
+    if chosen not in available:
+        raise UserError(
+            f"instruction set {chosen!r} is not available on this {platform.machine()} processor;"
+            f" built and usable here: {', '.join(available) or 'none (is the core built?)'}"
+        )
+    os.environ.setdefault("GOMP_SPINCOUNT", SPIN_COUNT)
+    return cast(Core, import_module(f"doseki._core_{chosen}"))
+
+
+if __name__ == "__main__":  # what CMakeLists.txt asks: the one instruction set to build here
+    print(usable_instruction_sets()[0])

@@ -1,0 +1,201 @@
+"""One run in progress: the simulation, its record, and where it stands in it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from ..record.folder import RunFolder
+from ..record.writer import Recorder
+from ..scenario.model import Scenario
+from ..solver.protocol import Simulation
+from ..solver.rigid_bodies import grain_table
+from ..util.finding import Finding
+from .checkpoint import Checkpoint, CheckpointFolder, Position
+from .gauges import GaugeReader, build_gauges
+from .ranks import OneRank
+from .rewind import Rewind
+from .schedule import CheckpointClock, OutputTimes, StopRequests
+
+BURST_SECONDS = 0.2  # wall time between two looks at signals and the progress bar
+FIRST_BURST, LAST_BURST = 1, 1_000_000  # steps
+
+Progress = Callable[[float, float, int], None]  # time, timestep, step
+
+
+def history_row(simulation: Simulation, material_names: list[str]) -> dict[str, float]:
+    """One row of history.csv (columns and units: docs/output.md)."""
+    totals = simulation.totals()
+    axes = "xyz"[: len(totals["momentum"])]
+    row = {"time": simulation.time, "step": simulation.steps, "dt": simulation.timestep}
+    row["mass"] = totals["mass"]
+    row |= {f"momentum_{axis}": p for axis, p in zip(axes, totals["momentum"], strict=True)}
+    row["kinetic_energy"] = totals["kinetic_energy"]
+    row["bulk_energy"] = totals["bulk_energy"]
+    row["shear_energy"] = totals["shear_energy"]
+    row["av_dissipation"] = totals["av_dissipation"]
+    row["mass_asked"] = totals["mass_asked"]
+    row["mass_entered"] = totals["mass_entered"]
+    row["mass_left"] = totals["mass_left"]
+    row["mass_inside"] = totals["mass"]
+    row["mass_initial"] = totals["mass_initial"]
+    row["n_particles"] = len(simulation)
+    row |= {f"n_{name}": n for name, n in zip(material_names, totals["count"], strict=True)}
+    return row
+
+
+class ActiveRun:
+    """A run between its start and its end."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        simulation: Simulation,
+        recorder: Recorder,
+        body_names: list[str],
+        ranks: OneRank,
+        warnings: Sequence[Finding] = (),
+    ) -> None:
+        """`warnings` are those that came up when the scene was built."""
+        self.scenario = scenario
+        self.simulation = simulation
+        self.recorder = recorder
+        self.body_names = body_names
+        self.warnings = warnings
+        self.ranks = ranks
+        self.folder = RunFolder(recorder.directory)
+        self.checkpoints = CheckpointFolder(self.folder.checkpoints)
+        self.position = Position()
+        self.rewind = Rewind()
+        self.outputs = OutputTimes(scenario.time_out, scenario.time_max)
+        self.gauges = [
+            (gauge, OutputTimes(gauge.interval, scenario.time_max))
+            for gauge in build_gauges(scenario, body_names)
+        ]
+        self._started = time.perf_counter()
+
+    @property
+    def wall_seconds(self) -> float:
+        """Wall time spent, parts before a resumption included."""
+        return self.position.wall_seconds + time.perf_counter() - self._started
+
+    def record_snapshot(self) -> None:
+        """Write the state; the next snapshot is due one interval later."""
+        simulation = self.simulation
+        self.recorder.snapshot(
+            simulation.state(),
+            time=simulation.time,
+            step=simulation.steps,
+            dt=simulation.timestep,
+            grains=grain_table(simulation),
+        )
+        self.position.outputs += 1
+        self.position.snapshots += 1
+
+    def record_history(self) -> None:
+        """Write a row of diagnostics; the next one is due one interval later."""
+        self.recorder.history(self.history_row())
+        self.position.rows += 1
+        while self.position.next_history <= self.simulation.time:
+            self.position.next_history += self.scenario.time_history
+
+    def history_row(self) -> dict[str, float]:
+        """What is known of the run now."""
+        row = history_row(self.simulation, self.scenario.material_names)
+        return row | self.ranks.balance(self.simulation)
+
+    def record_gauge(self, gauge: GaugeReader) -> None:
+        """Write a sample."""
+        rows = gauge.read(self.simulation)
+        self.recorder.gauge(gauge.name, gauge.header, rows)
+        written = self.position.gauge_rows.get(gauge.name, 0) + len(rows)
+        self.position.gauge_rows = self.position.gauge_rows | {gauge.name: written}
+
+    def checkpoint(self) -> Checkpoint:
+        """A copy of the state and of where the run stands."""
+        position = Position(**vars(self.position) | {"wall_seconds": self.wall_seconds})
+        names = self.scenario.material_names, self.body_names
+        return Checkpoint(self.simulation.checkpoint(), position, *names)
+
+    def write_checkpoint(self, clock: CheckpointClock) -> None:
+        """Put the state safely on the disk."""
+        clock.reset(self.simulation.time)
+        self.position.next_checkpoint = clock.next_time
+        self.recorder.sync()
+        self.store(self.checkpoint())
+
+    def store(self, checkpoint: Checkpoint) -> None:
+        """Write a copy of the state."""
+        state = self.ranks.whole_checkpoint(self.simulation, checkpoint.state)
+        self.ranks.on_root(lambda: self.checkpoints.write(replace(checkpoint, state=state)))
+
+    def next_output(self) -> float:
+        """Time of the next snapshot; the last one is always at time_max."""
+        return self.outputs.time(self.position.outputs)
+
+    def limit_at(self, simulated: float) -> float:
+        """The limit that steps have at a simulated time: the next snapshot or sample."""
+        times = [self.outputs, *(times for _, times in self.gauges)]
+        limit = min(each.after(simulated) for each in times)
+        return min(limit, self.scenario.time_max)
+
+    def start(self) -> None:
+        """Take the first rates; record the initial state."""
+        self.simulation.start()
+        self.record_snapshot()
+        self.record_history()
+        for gauge, _ in self.gauges:
+            self.record_gauge(gauge)
+
+    def advance(self, clock: CheckpointClock, progress: Progress, stop: StopRequests) -> bool:
+        """Steps to the end, or to the first look after a stop request; true if it came to the end.
+
+        `clock` says when to write checkpoints; `progress` is called after each burst of steps.
+        """
+        simulation, burst = self.simulation, FIRST_BURST
+        stopped = False
+        while simulation.time < self.scenario.time_max and not stopped:
+            if self.ranks.agree(self.rewind.is_due()):
+                self.rewind.keep(self.checkpoint)
+            burst = self._burst(burst, clock.next_time)
+            if self.ranks.agree(clock.is_due(simulation.time)):
+                self.write_checkpoint(clock)
+            progress(simulation.time, simulation.timestep, simulation.steps)
+            stopped = self.ranks.agree(bool(stop))
+        self.write_checkpoint(clock)
+        if stopped:
+            self.record_snapshot()
+            self.record_history()
+        return not stopped
+
+    def _burst(self, steps: int, pause: float) -> int:
+        """Steps and records; returns how many steps to take next time."""
+        simulation, limit = self.simulation, self.limit_at(self.simulation.time)
+        samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
+        started, first = time.perf_counter(), simulation.steps
+        pause = min(limit, pause, self.position.next_history)
+        simulation.advance(limit=limit, pause=pause, max_steps=steps)
+        rate = (simulation.steps - first) / (time.perf_counter() - started)
+        if self.outputs.is_due(simulation.time, self.next_output()):
+            self.record_snapshot()
+        for gauge, planned in samples:
+            if self.outputs.is_due(simulation.time, planned):
+                self.record_gauge(gauge)
+        if simulation.time >= min(self.position.next_history, self.scenario.time_max):
+            self.record_history()
+        return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))
+
+    def step_back(self) -> bool:
+        """After a failed step, go back to the state before it and put that safely on the disk.
+
+        False if there is no way back: the run failed before its first step.
+        """
+        simulation = self.simulation
+        copy = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
+        if copy is None:
+            return False
+        # The step before may be past saving; the run may go on from the state well before it.
+        self.store(copy)
+        self.write_checkpoint(CheckpointClock(None, 0.0))
+        return True

@@ -1,0 +1,57 @@
+"""Pictures of a census: classes and passed mass over time, speeds, the outline of the deposit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..measure.census import CLASSES, Census, SpeedDraws
+from .kinds.histogram import draw_speed_row
+from .kinds.series import draw_curves
+from .layout import chart_grid
+
+COLOURS = ("#bdbdbd", "#fdae61", "#3182bd", "#74c476", "#756bb1", "#636363")  # of CLASSES
+
+
+def draw_classes(census: Census) -> Figure:
+    """Shares of the load in each class, one above the other, over time."""
+    figure, grid = chart_grid(1, 1, (7.0, 3.2), "Grains by class")
+    shares = [census.mass_of(kind) / census.load_mass for kind in range(len(CLASSES))]
+    axes = grid[0, 0]
+    axes.stackplot(census.times, shares, labels=CLASSES, colors=COLOURS)
+    axes.set(xlabel="time (s)", ylabel="share of the load", ylim=(0, 1))
+    axes.margins(x=0)
+    axes.legend(
+        loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, frameon=False,
+        fontsize="small", reverse=True,
+    )  # fmt: skip
+    return figure
+
+
+def draw_speed_histogram(drawn: SpeedDraws, where: str) -> Figure:
+    """All speeds, and what random samples of them look like."""
+    figure, grid = chart_grid(1, 2, (4.2, 3.0), f"Speed of the grains, {where}")
+    draw_speed_row(grid[0], drawn, "grains")
+    return figure
+
+
+def draw_passed(census: Census, sections: Sequence[float], dim: int) -> Figure:
+    """Mass that has crossed each section, over time."""
+    figure, grid = chart_grid(1, 1, (7.0, 3.0), "Grains that have passed")
+    curves = {f"x = {section:g} m": census.passed(section) for section in sections}
+    draw_curves(grid[0, 0], census.times, curves)
+    unit = "kg/m" if dim == 2 else "kg"
+    grid[0, 0].set(xlabel="time (s)", ylabel=f"passed ({unit} of {census.load_mass:.4g})")
+    return figure
+
+
+def draw_deposit(outline: np.ndarray, dim: int) -> Figure:
+    """The outline, in the axes of the window."""
+    figure, grid = chart_grid(1, 1, (7.0, 3.0), "Outline of the deposit")
+    closed = outline if dim == 2 else np.concatenate([outline, outline[:1]])
+    grid[0, 0].plot(closed[:, 0], closed[:, 1], color=COLOURS[-1])
+    grid[0, 0].set(xlabel="x' (m)", ylabel="height (m)" if dim == 2 else "y' (m)")
+    grid[0, 0].grid(alpha=0.3)
+    return figure

@@ -1,0 +1,178 @@
+"""What `doseki census` leaves in DIR/census: tables as CSV and HDF5, figures, a short text."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ..errors import UserError
+from ..measure.census import CLASSES, Census, SpeedDraws, deposit_outline, draw_speeds, take_census
+from ..measure.views import View, named_window, windows
+from ..record.reader import Run, load
+from ..record.writer import refuse_links
+from ..util.files import clear_errors, write_whole, write_whole_text
+from .census import draw_classes, draw_deposit, draw_passed, draw_speed_histogram
+
+OUTLET, DEPOSIT = "outlet", "deposit"  # windows that are used by default
+
+
+@dataclass(frozen=True)
+class CensusOptions:
+    """What of a census is asked for."""
+
+    window: str | None = None  # of the speeds; default: "outlet" if there is one, else everywhere
+    start: float = -math.inf  # s, of the speeds
+    end: float = math.inf
+    sections: tuple[float, ...] = (0.0,)  # m, at which passing mass is summed
+    sample: int = 30
+    draws: int = 2000
+    bin_width: float = 0.1  # m/s
+
+
+def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
+    """Take the census of the run in `directory` into DIR/census; returns lines that tell of it.
+
+    Raises UserError for no run, no grains, an unknown window or an empty range of time.
+    """
+    run = load(directory)
+    refuse_links(run.folder)
+    if options.end < options.start:
+        raise UserError(f"--to = {options.end:g} s must not be before --from = {options.start:g} s")
+    census = take_census(run)
+    known = windows(run)
+    name = options.window or (OUTLET if OUTLET in known else None)
+    view = named_window(run, name)
+    rows = census.rows(view, options.start, options.end)
+    speeds = np.linalg.norm(census.table["velocity"][rows], axis=1)
+    drawn = draw_speeds(speeds, options.bin_width, options.sample, options.draws)
+    folder = run.directory / "census"
+    with clear_errors(folder):
+        folder.mkdir(exist_ok=True)
+    tables = {
+        "grains": grain_table(census),
+        "classes": class_table(census),
+        "speeds": speed_table(drawn),
+        "passed": passed_table(census, options.sections),
+    }
+    outline = _outline(census, known)
+    if outline is not None:
+        tables["deposit"] = {
+            "x": outline[:, 0],
+            "height" if run.scenario["dim"] == 2 else "y": outline[:, 1],
+        }
+    write_tables(folder, tables)
+    where = f"window {name}" if name else "everywhere"
+    _write_figures(folder, run, census, drawn, where, outline, options.sections)
+    files = f"In {folder}: {', '.join(tables)} (.csv, census.h5), figures"
+    return [*_told(census, drawn, where, options.sections), files]
+
+
+def _outline(census: Census, known: Mapping[str, View]) -> np.ndarray | None:
+    return deposit_outline(census, known[DEPOSIT]) if DEPOSIT in known else None
+
+
+def grain_table(census: Census) -> dict[str, np.ndarray]:
+    """One row for each grain and time, one column for each component."""
+    table = census.table
+    columns = {"time": table["time"], "grain": table["id"]}
+    for name in ("position", "velocity"):
+        letter = {"position": "", "velocity": "v"}[name]
+        axes = "xyz"[: table[name].shape[1]]
+        columns |= {f"{letter}{axis}": table[name][:, k] for k, axis in enumerate(axes)}
+    columns |= {f"spin_{axis}": table["spin"][:, k] for k, axis in enumerate("xyz")}
+    columns |= {name: table[name] for name in ("contacts", "diameter", "mass")}
+    return columns | {"class": np.array(CLASSES)[table["kind"]]}
+
+
+def class_table(census: Census) -> dict[str, np.ndarray]:
+    """Mass of each class and position of the water front over time."""
+    masses = {name: census.mass_of(kind) for kind, name in enumerate(CLASSES)}
+    return {"time": census.times, "front": census.front} | masses
+
+
+def speed_table(drawn: SpeedDraws) -> dict[str, np.ndarray]:
+    """The histogram: all grains, and mean and quantiles of samples, per bin."""
+    edges = {"from": drawn.edges[:-1], "to": drawn.edges[1:]}
+    return edges | {"all": drawn.counts, "mean": drawn.mean, "low": drawn.low, "high": drawn.high}
+
+
+def passed_table(census: Census, sections: Sequence[float]) -> dict[str, np.ndarray]:
+    """Mass that has crossed each section, over time."""
+    passed = {f"x = {section:g}": census.passed(section) for section in sections}
+    return {"time": census.times} | passed
+
+
+def write_tables(folder: Path, tables: Mapping[str, Mapping[str, np.ndarray]]) -> None:
+    """Each table as NAME.csv, and all as groups of census.h5; raises ResourceError, UserError."""
+    image = io.BytesIO()
+    with h5py.File(image, "w") as file:
+        for name, table in tables.items():
+            group = file.create_group(name)
+            for column, values in table.items():
+                stored = values.astype("S") if values.dtype.kind == "U" else values
+                group.create_dataset(
+                    column, data=stored, compression="gzip" if len(values) else None
+                )
+            write_whole_text(folder / f"{name}.csv", _csv(table))
+    write_whole(folder / "census.h5", lambda path: path.write_bytes(image.getbuffer()))
+
+
+def _csv(table: Mapping[str, np.ndarray]) -> str:
+    """Seven digits are more than a census is worth."""
+    texts = [
+        np.char.mod("%.7g", values) if values.dtype.kind == "f" else values.astype(str)
+        for values in table.values()
+    ]
+    lines = [",".join(table), *(",".join(row) for row in zip(*texts, strict=True))]
+    return "\n".join(lines) + "\n"
+
+
+def _write_figures(
+    folder: Path,
+    run: Run,
+    census: Census,
+    drawn: SpeedDraws,
+    where: str,
+    outline: np.ndarray | None,
+    sections: Sequence[float],
+) -> None:
+    figures = {
+        "classes": draw_classes(census),
+        "speeds": draw_speed_histogram(drawn, where),
+        "passed": draw_passed(census, sections, run.scenario["dim"]),
+    }
+    if outline is not None and len(outline):
+        figures["deposit"] = draw_deposit(outline, run.scenario["dim"])
+    for name, figure in figures.items():
+        write_whole(folder / f"{name}.png", partial(figure.savefig, format="png"))
+
+
+def _told(census: Census, drawn: SpeedDraws, where: str, sections: Sequence[float]) -> list[str]:
+    """The census in a few lines."""
+    shares = census_shares(census)
+    greatest = ", ".join(f"{name} {100 * share.max():.0f} %" for name, share in shares.items())
+    lines = [f"{len(np.unique(census.table['id']))} grains at {len(census.times)} times"]
+    lines.append(f"most of the load at once: {greatest}")
+    if len(drawn.speeds):
+        lines.append(
+            f"{where}: {len(drawn.speeds)} speeds, mean {drawn.speeds.mean():.3g} m/s; samples of "
+            f"{drawn.size}: {drawn.sample_means.mean():.3g} +- {drawn.sample_means.std():.2g} m/s"
+        )
+    else:
+        lines.append(f"{where}: no grain in this range of time")
+    for section in sections:
+        share = census.passed(section)[-1] / census.load_mass
+        lines.append(f"passed x = {section:g} m at the end: {100 * share:.1f} % of the load")
+    return lines
+
+
+def census_shares(census: Census) -> dict[str, np.ndarray]:
+    """Share (T,) of the load in each class over time."""
+    return {name: census.mass_of(kind) / census.load_mass for kind, name in enumerate(CLASSES)}

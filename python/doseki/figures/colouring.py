@@ -1,0 +1,124 @@
+"""What colour a particle has in a picture, and the key that explains it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib import colormaps, colors
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.patches import Patch
+
+from ..measure.quantities import quantity
+from ..measure.views import View, fluid_names, select
+from ..record.quantities import CATEGORIES, check_quantity, quantity_label
+from ..record.reader import Run, Snapshot
+from .layout import PanelGrid
+
+FIXED_COLOUR = "#262626"  # the slope is black, as in the paper
+FIXED_BESIDE_SCALE = "#a6a6a6"  # grey, because black is a colour of the scale
+FLUID_COLOURS = ("#3182bd", "#41b6c4", "#54278f")  # water blue, debris red
+SOLID_COLOURS = ("#d7301f", "#fd8d3c", "#8c510a", "#dd3497")
+OTHER_COLOURS = ("#3182bd", "#d7301f", "#31a354", "#fd8d3c", "#756bb1", "#8c510a", "#41b6c4")
+SCALE = "viridis"
+MAX_ENTRIES = 12
+FEW = 1000  # with more particles than this the colour scale leaves out the outermost 1 %
+
+
+class CategoryColours:
+    """One colour for each material or body; fixed particles are black."""
+
+    def __init__(self, run: Run, snapshots: Sequence[Snapshot], name: str) -> None:
+        """`name` is "material" or "body"."""
+        self._name = name
+        self.heading = ""
+        free, fixed = set(), set()
+        for snapshot in snapshots:
+            free |= set(snapshot[name][~snapshot["fixed"]].tolist())
+            fixed |= set(snapshot[name][snapshot["fixed"]].tolist())
+        self._free = _palette(sorted(free), name, fluid_names(run))
+        self._fixed = sorted(fixed)
+
+    def rgba(self, snapshot: Snapshot) -> np.ndarray:
+        """Colours (N, 4) from 0 to 1."""
+        kinds, kind = np.unique(snapshot[self._name], return_inverse=True)
+        table = [colors.to_rgba(self._free.get(name, FIXED_COLOUR)) for name in kinds]
+        colours = np.array(table).reshape(-1, 4)[kind]
+        colours[snapshot["fixed"]] = colors.to_rgba(FIXED_COLOUR)
+        return colours
+
+    def legend_entries(self) -> list[tuple[str, str]]:
+        """(label, colour) of every kind; none when they are too many to name."""
+        fixed = [(f"{kind} (fixed)", FIXED_COLOUR) for kind in self._fixed]
+        entries = [*self._free.items(), *fixed]
+        return entries if len(entries) <= MAX_ENTRIES else []
+
+    def add_key(self, grid: PanelGrid, axes: Axes, first: bool) -> None:
+        """Explain the colours to the right of the panel `axes` if it is the `first` of them."""
+        if not first:
+            return
+        handles = [Patch(color=colour, label=label) for label, colour in self.legend_entries()]
+        axes.legend(
+            handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0,
+            frameon=False, fontsize="small", handlelength=1.0,
+        )  # fmt: skip
+
+
+class ScaleColours:
+    """A colour scale for a number; fixed particles are grey."""
+
+    def __init__(self, snapshots: Sequence[Snapshot], name: str, view: View) -> None:
+        """The scale spans what the particles that can move have in `view`."""
+        self._name = name
+        self.heading = quantity_label(name)
+        values = [quantity(s, name)[select(s, view)] for s in snapshots]
+        self._limits = _limits(np.concatenate(values))
+        self._norm = colors.Normalize(*self._limits)
+
+    def rgba(self, snapshot: Snapshot) -> np.ndarray:
+        """Colours (N, 4) from 0 to 1."""
+        colours = colormaps[SCALE](self._norm(quantity(snapshot, self._name)))
+        colours[snapshot["fixed"]] = colors.to_rgba(FIXED_BESIDE_SCALE)
+        return colours
+
+    def legend_entries(self) -> list[tuple[str, str]]:
+        """(label, colour) of a few values of the scale."""
+        values = np.linspace(*self._limits, 5)
+        return [(f"{v:.3g}", colors.to_hex(colormaps[SCALE](self._norm(v)))) for v in values]
+
+    def add_key(self, grid: PanelGrid, axes: Axes, first: bool) -> None:
+        """Explain the colours by a bar to the right of the panel `axes`, `first` or not."""
+        bar = grid.figure.colorbar(ScalarMappable(self._norm, SCALE), cax=grid.beside(axes))
+        bar.set_label(self.heading, fontsize="small")
+
+
+Colouring = CategoryColours | ScaleColours
+
+
+def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) -> Colouring:
+    """The colours of `snapshots` by the quantity `name`; raises UserError for an unknown name."""
+    check_quantity(name, run.scenario["dim"])
+    if name in CATEGORIES:
+        return CategoryColours(run, snapshots, name)
+    return ScaleColours(snapshots, name, view)
+
+
+def _palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str]:
+    if name != "material":
+        return {k: OTHER_COLOURS[i % len(OTHER_COLOURS)] for i, k in enumerate(kinds)}
+    flowing = [kind for kind in kinds if kind in fluids]
+    solid = [kind for kind in kinds if kind not in fluids]
+    colours = {k: FLUID_COLOURS[i % len(FLUID_COLOURS)] for i, k in enumerate(flowing)}
+    return colours | {k: SOLID_COLOURS[i % len(SOLID_COLOURS)] for i, k in enumerate(solid)}
+
+
+def _limits(values: np.ndarray) -> tuple[float, float]:
+    """Ends of the colour scale: never the same number twice."""
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return 0.0, 1.0
+    trim = 0.5 if len(values) > FEW else 0.0
+    low, high = np.percentile(values, (trim, 100 - trim))
+    margin = 0.05 * (abs(low) or 1.0) if low == high else 0.0
+    return low - margin, high + margin

@@ -1,0 +1,126 @@
+"""Particles as dots that are true to scale: which ones a view shows, and drawing them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
+
+from ..measure.views import View
+from ..record.reader import Snapshot
+from ..scenario.schemes import SUPPORT
+from .colouring import Colouring
+from .layout import Extent
+from .raster import coloured, splat
+
+MARGIN = 0.02  # of the size of the picture, around all particles
+FEW_CIRCLES = 100
+MAX_CIRCLES = 200_000  # more particles than this are drawn as pixels
+RASTER_WIDTH = 2000
+TRIM = 0.05  # per cent of the particles at each end that may be far from all others
+WHITE = (255, 255, 255)
+
+
+@dataclass(frozen=True)
+class Dots:
+    """The particles of a snapshot that a view shows: indices (n,), points (n, 2), radii (n,)."""
+
+    index: np.ndarray
+    points: np.ndarray
+    radius: np.ndarray
+
+
+def dots(snapshot: Snapshot, view: View, size: str = "grain", material: str | None = None) -> Dots:
+    """The particles to draw, in order: fixed ones, then light before heavy (rock over water).
+
+    In 3-D they are those of a thin slice along x and z.
+    With `material` only the particles of that material.
+
+    `size` is "grain" (a circle has the area, a sphere the volume, of the particle) or "support"
+    (its radius is H h, as in the figures of the paper).
+    """
+    position = view.coordinates(snapshot["position"])
+    mask = _in_slice(position, snapshot, view)
+    if material is not None:
+        mask &= snapshot["material"] == material
+    index = np.flatnonzero(mask)
+    index = index[np.lexsort((snapshot["density"][index], ~snapshot["fixed"][index]))]
+    radius = (
+        SUPPORT * snapshot["smoothing_length"] if size == "support" else _grain_radius(snapshot)
+    )
+    return Dots(index, position[index][:, [0, -1]], radius[index])
+
+
+def _grain_radius(snapshot: Snapshot) -> np.ndarray:
+    volume = snapshot["mass"] / snapshot["density"]
+    if snapshot.dim == 2:
+        return np.sqrt(volume / np.pi)
+    return np.cbrt(3 * volume / (4 * np.pi))
+
+
+def _in_slice(position: np.ndarray, snapshot: Snapshot, view: View) -> np.ndarray:
+    """In 3-D: across the flow within the view, or near the middle where the view has no bounds."""
+    if snapshot.dim == 2 or len(position) == 0:
+        return np.ones(len(position), bool)
+    across = position[:, 1]
+    if np.all(np.isfinite([view.lower[1], view.upper[1]])):
+        return (across >= view.lower[1]) & (across <= view.upper[1])
+    middle = (across.min() + across.max()) / 2
+    spacing = np.cbrt(snapshot["mass"] / snapshot["density"])
+    return np.abs(across - middle) <= 0.75 * spacing
+
+
+def extent_of(snapshots: Sequence[Snapshot], view: View, size: str = "grain") -> Extent:
+    """The bounds of the view; where these are infinite, what holds the particles."""
+    shown = [d for d in (dots(s, view, size) for s in snapshots) if len(d.index)]
+    low, high = view.lower[[0, -1]], view.upper[[0, -1]]
+    if shown:
+        ends = _ends(np.concatenate([d.points for d in shown]))
+        margin = max(d.radius.max() for d in shown) + MARGIN * np.max(ends[1] - ends[0])
+        low = np.where(np.isfinite(low), low, ends[0] - margin)
+        high = np.where(np.isfinite(high), high, ends[1] + margin)
+    low, high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 1.0)
+    return low[0], high[0], low[1], high[1]
+
+
+def _ends(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates, without the few particles that fly far from all others."""
+    low, high = np.percentile(points, (TRIM, 100 - TRIM), axis=0)
+    near = 0.1 * (high - low)
+    least, greatest = points.min(axis=0), points.max(axis=0)
+    return (
+        np.where(least > low - near, least, low),
+        np.where(greatest < high + near, greatest, high),
+    )
+
+
+def draw_particles(
+    axes: Axes, snapshot: Snapshot, shown: Dots, colours: Colouring, extent: Extent
+) -> None:
+    """Draw the dots in data units: circles, or pixels when there are very many."""
+    rgba = colours.rgba(snapshot)[shown.index]
+    if len(shown.index) > MAX_CIRCLES:
+        axes.imshow(
+            picture(shown, rgba, extent, RASTER_WIDTH), extent=extent, interpolation="nearest"
+        )
+    else:
+        axes.add_collection(_circles(axes, shown, rgba))
+    axes.set(xlim=extent[:2], ylim=extent[2:], aspect="equal")
+
+
+def picture(shown: Dots, rgba: np.ndarray, extent: Extent, width: int) -> np.ndarray:
+    """The dots as pixels (rows, `width`, 3) uint8 on white; `rgba` (n, 4) is from 0 to 1."""
+    rgb = np.round(255 * rgba[:, :3]).astype(np.uint8)
+    return coloured(splat(shown.points, shown.radius, extent, width), rgb, WHITE)
+
+
+def _circles(axes: Axes, shown: Dots, rgba: np.ndarray) -> EllipseCollection:
+    few = len(shown.index) <= FEW_CIRCLES  # then circles that overlap shine through
+    return EllipseCollection(
+        2 * shown.radius, 2 * shown.radius, np.zeros(len(shown.index)), units="xy",
+        offsets=shown.points, offset_transform=axes.transData, facecolors=rgba,
+        edgecolors="black" if few else "none", linewidths=0.5, alpha=0.8 if few else 1.0,
+    )  # fmt: skip

@@ -1,0 +1,40 @@
+"""The flow over time: where its front is, how fast water and grains are, what has passed."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..measure.flow import Flow
+from ..record.reader import Run
+from .kinds.series import draw_curves
+from .layout import chart_grid
+
+MEASURES = (  # attribute of WindowFlow, what it is, its unit (3-D, 2-D)
+    ("fluid_velocity", "mean velocity x of the fluid", "m/s", "m/s"),
+    ("grain_speed", "mean speed of grains", "m/s", "m/s"),
+    ("grain_mass", "mass of grains", "kg", "kg/m"),
+    ("passed_mass", "grains passed", "kg", "kg/m"),
+)
+
+
+def draw_flow(run: Run, flow: Flow) -> Figure:
+    """One panel for the front, and one for each thing that windows show."""
+    panels = {"front of the fluid (m)": {"": flow.front}} | _window_panels(run, flow)
+    figure, grid = chart_grid(len(panels), 1, (7.0, 2.0), "The flow over time")
+    for axes, (label, curves) in zip(grid[:, 0], panels.items(), strict=True):
+        draw_curves(axes, flow.times, curves)
+        axes.set_ylabel(label, fontsize="small")
+    grid[-1, 0].set_xlabel("time (s)")
+    return figure
+
+
+def _window_panels(run: Run, flow: Flow) -> dict[str, dict[str, np.ndarray]]:
+    """Curves of every window (so that each has one colour throughout) by the label of the axis."""
+    panels = {}
+    for attribute, meaning, unit, unit_in_2d in MEASURES:
+        curves = {name: np.array(getattr(w, attribute)) for name, w in flow.windows.items()}
+        if any(np.any(np.isfinite(curve)) for curve in curves.values()):
+            label = f"{meaning} ({unit_in_2d if run.scenario['dim'] == 2 else unit})"
+            panels[label] = curves
+    return panels

@@ -1,0 +1,63 @@
+"""Curves of what a gauge read: over time, or profiles over height at some times."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ...errors import UserError
+from ...measure.views import tables
+from ...record.reader import GaugeRecord, Run
+from ...scenario.gauges.gauge import Gauge
+from ...scenario.tables.figure import GaugeFigure
+from ...util.spelling import suggestion
+from ..layout import chart_grid
+from .series import draw_curves
+
+PROFILES = 4  # drawn, where no times are given
+
+
+def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
+    """The figure [figure.NAME]: one panel for each column (default: all) of a gauge.
+
+    Raises UserError if the gauge has left no record.
+    """
+    gauges = tables(run, "gauge", Gauge)
+    if table.gauge not in run.gauges or table.gauge not in gauges:
+        known = suggestion(table.gauge, run.gauges)
+        raise UserError(f"{run.directory}: no gauge {table.gauge!r}{known}")
+    record, gauge = run.gauges[table.gauge], gauges[table.gauge]
+    shown = table.columns or gauge.curves(run.scenario["dim"])
+    figure, grid = chart_grid(len(shown), 1, (7.0, 2.4), table.title or table.gauge)
+    for axes, column in zip(grid[:, 0], shown, strict=True):
+        label = f"{column.replace('_', ' ')} ({record.units[column]})"
+        if gauge.is_profile:
+            _draw_profiles(axes, record, column, table.times)
+            axes.set_xlabel(label)
+        else:
+            draw_curves(axes, record["time"], {"": record[column]})
+            axes.set_ylabel(label)
+    if not gauge.is_profile:
+        grid[-1, 0].set_xlabel("time (s)")
+    return figure
+
+
+def _draw_profiles(axes: Axes, record: GaugeRecord, column: str, times: Sequence[float]) -> None:
+    for time, rows in _profiles(record, times):
+        axes.plot(record[column][rows], record["height"][rows], label=f"{time:.3g} s")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize="small")
+    axes.grid(alpha=0.3)
+    axes.set_ylabel("height (m)")
+
+
+def _profiles(record: GaugeRecord, times: Sequence[float]) -> list[tuple[float, np.ndarray]]:
+    """Time and rows of the samples nearest to `times`, or of some spread over the run."""
+    sampled = np.unique(record["time"])
+    if not len(sampled):
+        return []
+    wanted = times or np.linspace(sampled[0], sampled[-1], PROFILES)
+    chosen = sorted({float(sampled[np.argmin(np.abs(sampled - time))]) for time in wanted})
+    return [(time, record["time"] == time) for time in chosen]

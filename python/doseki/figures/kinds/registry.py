@@ -1,0 +1,33 @@
+"""How the figures of each kind are drawn: one line each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from matplotlib.figure import Figure as Picture
+
+from ...record.reader import Run
+from ...scenario.tables.figure import (
+    Figure,
+    GaugeFigure,
+    HistogramFigure,
+    SeriesFigure,
+    SnapshotFigure,
+)
+from .gauge import draw_gauge
+from .histogram import draw_histogram
+from .series import draw_series
+from .snapshot import draw_snapshots
+
+DRAWN_BY: dict[type[Figure], Callable[[Run, str, Any], Picture]] = {
+    SnapshotFigure: draw_snapshots,
+    HistogramFigure: draw_histogram,
+    SeriesFigure: draw_series,
+    GaugeFigure: draw_gauge,
+}
+
+
+def draw(run: Run, name: str, table: Figure) -> Picture:
+    """The figure [figure.NAME] of a run, as its kind is drawn."""
+    return DRAWN_BY[type(table)](run, name, table)

@@ -1,0 +1,124 @@
+"""Movies of a run: GIF always, MP4 where the program ffmpeg is there."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+from PIL import Image, ImageDraw, ImageFont
+
+from ..errors import UserError
+from ..measure.views import View, named_window, tilt, whole_space
+from ..record.reader import Run, Snapshot
+from ..util.files import clear_errors, write_whole
+from .colouring import Colouring, colouring
+from .dots import WHITE, dots, extent_of, picture
+from .layout import time_text
+
+WIDTH = 1200  # pixels
+HEADER = 40  # pixels above the particles for time and key
+KEY_LEFT = 140  # pixels to the left of the key
+SAMPLES = 20  # snapshots looked at to choose the limits of the picture and of the colours
+
+
+def make_movie(
+    run: Run,
+    path: str | Path,
+    colour: str = "material",
+    window: str | None = None,
+    frames_per_second: int = 20,
+) -> Path:
+    """Write every snapshot as one frame into `path`, which ends in .gif or .mp4.
+
+    `colour` names a quantity (see quantities.py), `window` a window of the scenario (default:
+    everything, gravity pointing down).  Raises UserError for another ending, a file that exists,
+    an unknown colour or window, and an .mp4 without ffmpeg.
+    """
+    path = Path(path)
+    encode = {".gif": _encode_gif, ".mp4": _encode_mp4}.get(path.suffix.lower())
+    if encode is None:
+        raise UserError(f"{path}: a movie is a .gif or an .mp4")
+    if path.exists():
+        raise UserError(f"{path}: exists and is not overwritten")
+    if not len(run):
+        raise UserError(f"{run.directory}: the run has no snapshot to show")
+    camera = _Camera(run, colour, window)
+    with clear_errors(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, lambda temporary: encode(temporary, camera.frames(), frames_per_second))
+    return path
+
+
+class _Camera:
+    """Turns snapshots into frames that all have the same limits and colours."""
+
+    def __init__(self, run: Run, colour: str, window: str | None) -> None:
+        self._run = run
+        self._view = self._choose_view(window)
+        step = max(1, len(run) // SAMPLES)
+        samples = [*run[::step], run[-1]]
+        self._extent = extent_of(samples, self._view)
+        self._colours = colouring(run, samples, colour, self._view)
+
+    def _choose_view(self, window: str | None) -> View:
+        if window is not None:
+            return named_window(self._run, window)
+        return whole_space(self._run.scenario["dim"], rotate=-tilt(self._run))
+
+    def frames(self) -> Iterator[Image.Image]:
+        """One picture for each snapshot."""
+        return (self._frame(snapshot) for snapshot in self._run)
+
+    def _frame(self, snapshot: Snapshot) -> Image.Image:
+        shown = dots(snapshot, self._view)
+        rgba = self._colours.rgba(snapshot)[shown.index]
+        pixels = picture(shown, rgba, self._extent, WIDTH)
+        height = HEADER + pixels.shape[0]
+        frame = Image.new("RGB", (WIDTH, height + height % 2), WHITE)  # MP4 wants even sizes
+        frame.paste(Image.fromarray(pixels), (0, HEADER))
+        text = time_text(snapshot.time, self._run.times[-1])
+        _write_header(frame, text, self._colours)
+        return frame
+
+
+def _write_header(frame: Image.Image, text: str, colours: Colouring) -> None:
+    draw = ImageDraw.Draw(frame)
+    font = ImageFont.load_default(size=18)
+    draw.text((10, 8), text, "black", font)
+    draw.text((KEY_LEFT, 8), colours.heading, "black", font)
+    left = KEY_LEFT + int(draw.textlength(colours.heading, font)) + 12
+    for label, colour in colours.legend_entries():
+        draw.rectangle((left, 12, left + 16, 28), fill=colour)
+        draw.text((left + 24, 8), label, "black", font)
+        left += 50 + int(draw.textlength(label, font))
+
+
+def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
+    small = (frame.quantize(64) for frame in frames)
+    first = next(small)
+    first.save(
+        path, format="GIF", save_all=True, append_images=small, loop=0,
+        duration=round(1000 / frames_per_second),
+    )  # fmt: skip
+
+
+def _encode_mp4(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
+    program = shutil.which("ffmpeg")
+    if program is None:
+        raise UserError("an .mp4 needs the program ffmpeg, which is not installed; a .gif does not")
+    first = next(frames)
+    command = [
+        program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
+        "-s", f"{first.width}x{first.height}", "-r", str(frames_per_second), "-i", "-",
+        "-pix_fmt", "yuv420p", "-f", "mp4", str(path),
+    ]  # fmt: skip
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
+        assert encoder.stdin is not None
+        encoder.stdin.write(first.tobytes())
+        for frame in frames:
+            encoder.stdin.write(frame.tobytes())
+        _, message = encoder.communicate()
+    if encoder.returncode:
+        raise UserError(f"{path}: ffmpeg failed: {message.decode().strip()}")

@@ -1,0 +1,1 @@
+"""From a record to numbers: windows, the flow over time, a census of grains."""

@@ -1,0 +1,299 @@
+"""A census of the grains of a run: where each is, how it moves, and what the flow does with it.
+
+Grains are the rows of a snapshot's table of bodies; in a run without one (scheme ueta2022) every
+free particle of a solid is a grain.  Classes are defined in docs/census.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..errors import UserError
+from ..record.particles import FIXED, FREE
+from ..record.reader import Run, Snapshot
+from . import numbers as measure
+from .views import View, flow_direction, fluid_names
+
+CLASSES = ("waiting", "preceding", "carried", "floating", "rolling", "deposited")
+WAITING, PRECEDING, CARRIED, FLOATING, ROLLING, DEPOSITED = range(len(CLASSES))
+AT_REST = 0.05  # m/s
+TOUCHING = 0.2  # diameters between a grain and a fixed body
+COLUMN = 2.0  # diameters: width of the columns of plan in which depths are taken
+WET_DEPTH = 0.1  # diameters of water that make a column wet
+FRONT_DEPTH = 0.4  # diameters of water that make a flow, in a column and over a stretch of them
+FRONT_STRETCH = 5  # columns
+
+
+@dataclass(frozen=True)
+class Grains:
+    """The grains at one time, SI units; `id` stays with a grain."""
+
+    id: np.ndarray  # (n,)
+    position: np.ndarray  # (n, dim)
+    velocity: np.ndarray  # (n, dim)
+    spin: np.ndarray  # (n, 3) rad/s; nan where a grain is one particle
+    contacts: np.ndarray  # (n,) number of bodies or grains it touches
+    diameter: np.ndarray  # (n,)
+    mass: np.ndarray  # (n,) kg, 2-D: kg/m
+
+    @property
+    def speed(self) -> np.ndarray:
+        """|v| (n,), m/s."""
+        return measure.speed(self.velocity)
+
+    @property
+    def volume(self) -> np.ndarray:
+        """Of balls (discs in 2-D) of these diameters, (n,)."""
+        dim = self.position.shape[1]
+        return math.pi * self.diameter**dim / (4 if dim == 2 else 6)
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What is around the grains: water with its volume, fixed particles with their spacing."""
+
+    water: np.ndarray  # (m, dim)
+    water_volume: np.ndarray  # (m,)
+    fixed: np.ndarray  # (k, dim)
+    fixed_spacing: np.ndarray  # (k,)
+
+
+def grains_of(snapshot: Snapshot, fluids: set[str]) -> Grains:
+    """The grains of a snapshot; those that have left the run are not among them."""
+    if table := snapshot.grains:
+        kept = table["removed"] == 0
+        names = "position velocity spin contacts diameter mass".split()
+        return Grains(np.flatnonzero(kept), *(table[name][kept] for name in names))
+    solid = (snapshot["motion"] == FREE) & ~np.isin(snapshot["material"], sorted(fluids))
+    position, mass = snapshot["position"][solid], snapshot["mass"][solid]
+    volume = mass / snapshot["density"][solid]
+    diameter = np.sqrt(4 * volume / math.pi) if snapshot.dim == 2 else np.cbrt(6 * volume / math.pi)
+    return Grains(
+        snapshot["id"][solid], position, snapshot["velocity"][solid],
+        np.full((len(mass), 3), np.nan), _near(position, diameter), diameter, mass,
+    )  # fmt: skip
+
+
+def _near(position: np.ndarray, diameter: np.ndarray) -> np.ndarray:
+    """Number of grains whose centres are nearer than a diameter."""
+    if not len(position):
+        return np.zeros(0, int)
+    return cKDTree(position).query_ball_point(position, diameter, return_length=True) - 1
+
+
+def surroundings_of(snapshot: Snapshot, fluids: set[str]) -> Surroundings:
+    """Water and fixed particles of a snapshot."""
+    volume = snapshot["mass"] / snapshot["density"]
+    water = (snapshot["motion"] == FREE) & np.isin(snapshot["material"], sorted(fluids))
+    fixed = snapshot["motion"] == FIXED
+    x = snapshot["position"]
+    return Surroundings(x[water], volume[water], x[fixed], volume[fixed] ** (1 / snapshot.dim))
+
+
+class Columns:
+    """Columns of plan of equal width: water, grains and the bed in each of them."""
+
+    def __init__(self, grains: Grains, around: Surroundings) -> None:
+        """Their width is COLUMN mean diameters."""
+        self.width = COLUMN * float(grains.diameter.mean()) if len(grains.id) else math.inf
+        every = [around.water, around.fixed, grains.position]
+        keys = np.floor(np.concatenate(every)[:, :-1] / self.width).astype(np.int64)
+        self.keys, index = np.unique(keys, axis=0, return_inverse=True)
+        ends = np.cumsum([len(part) for part in every])[:-1]
+        self._of_water, self._of_fixed, self.of_grain = np.split(index.ravel(), ends)
+        area, n = self.width ** keys.shape[1], len(self.keys)
+        self.water = np.bincount(self._of_water, around.water_volume, n) / area
+        self.depth = self.water + np.bincount(self.of_grain, grains.volume, n) / area
+        self.bed = np.full(n, -math.inf)
+        top = around.fixed[:, -1] + 0.5 * around.fixed_spacing
+        np.maximum.at(self.bed, self._of_fixed, top)
+
+    def front(self, direction: int, min_depth: float) -> float:
+        """The downstream edge, along the first axis, of the last column of a flow.
+
+        There the water is deeper than `min_depth`, and so it is on the mean over FRONT_STRETCH
+        columns from there upstream; spray ahead of a flow is not part of it.  nan: no flow.
+        """
+        along = direction * self.keys[:, 0]
+        depth = np.zeros(int(np.ptp(along)) + 1)
+        np.maximum.at(depth, along - along.min(), self.water)
+        wet = np.flatnonzero(depth)
+        if not len(wet):
+            return math.nan
+        total = np.concatenate([[0.0], np.cumsum(depth[wet[0] :])])
+        end = np.arange(1, len(total))
+        start = np.maximum(end - FRONT_STRETCH, 0)
+        mean = (total[end] - total[start]) / (end - start)
+        flow = np.flatnonzero((depth[wet[0] :] > min_depth) & (mean > min_depth))
+        if not len(flow):
+            return math.nan
+        last = int(along.min() + wet[0] + flow[-1])
+        return self.width * (last + 1 if direction > 0 else -last)
+
+
+def classify(
+    grains: Grains, start: np.ndarray, around: Surroundings, direction: int
+) -> tuple[np.ndarray, float]:
+    """(class of each grain, front of the water along the first axis, m; nan without water).
+
+    `start` (n, dim) is where each grain was first; the flow runs along `direction` (+1, -1).
+    """
+    if not len(grains.id):
+        return np.zeros(0, np.int8), math.nan
+    columns = Columns(grains, around)
+    d, here = grains.diameter, columns.of_grain
+    front = columns.front(direction, FRONT_DEPTH * float(d.mean()))
+    slow = grains.speed < AT_REST
+    displaced = np.linalg.norm(grains.position - start, axis=1) >= d
+    ahead = direction * (grains.position[:, 0] - front) > 0 if np.isfinite(front) else ~slow
+    height = grains.position[:, -1] - columns.bed[here]
+    wet = columns.water[here] > WET_DEPTH * d
+    kinds = np.full(len(d), CARRIED, np.int8)
+    kinds[wet & (height > 0.5 * columns.depth[here])] = FLOATING
+    kinds[_gap(grains, around) <= TOUCHING * d] = ROLLING
+    kinds[ahead] = PRECEDING
+    kinds[slow] = np.where(displaced, DEPOSITED, WAITING)[slow]
+    return kinds, front
+
+
+def _gap(grains: Grains, around: Surroundings) -> np.ndarray:
+    """Distance (n,) between the surface of each grain and that of the nearest fixed particle, m."""
+    if not len(around.fixed):
+        return np.full(len(grains.id), math.inf)
+    distance, nearest = cKDTree(around.fixed).query(grains.position)
+    return distance - 0.5 * (grains.diameter + around.fixed_spacing[nearest])
+
+
+@dataclass(frozen=True)
+class Census:
+    """The grains of all snapshots of a run, one row for each grain and time.
+
+    `table` has time, id, position (N, dim), velocity (N, dim), spin (N, 3), contacts, diameter,
+    mass and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water, m.
+    """
+
+    times: np.ndarray
+    front: np.ndarray
+    table: dict[str, np.ndarray]
+    direction: int
+
+    @cached_property
+    def load_mass(self) -> float:
+        """Mass of all grains that ever were, kg (2-D: kg/m)."""
+        _, first = np.unique(self.table["id"], return_index=True)
+        return float(self.table["mass"][first].sum())
+
+    def rows(
+        self, view: View | None = None, start: float = -math.inf, end: float = math.inf
+    ) -> np.ndarray:
+        """Mask (N,) of the rows inside a window and a range of time, both ends included."""
+        time = self.table["time"]
+        mask = (time >= start) & (time <= end)
+        return mask if view is None else mask & view.contains(self.table["position"])
+
+    def mass_of(self, kind: int) -> np.ndarray:
+        """Mass (T,) of the grains of a class over time, kg (2-D: kg/m)."""
+        mine = self.table["kind"] == kind
+        index = np.searchsorted(self.times, self.table["time"][mine])
+        return np.bincount(index, self.table["mass"][mine], len(self.times))
+
+    def passed(self, section: float) -> np.ndarray:
+        """Mass (T,) that has crossed x = `section` by each time, kg (2-D: kg/m)."""
+        passed = measure.PassedMass(section, self.direction)
+        x, mass, ids = self.table["position"][:, 0], self.table["mass"], self.table["id"]
+        return np.array([passed.update(x[s], mass[s], ids[s]) for s in self._slices()])
+
+    def _slices(self) -> Iterator[slice]:
+        starts = np.searchsorted(self.table["time"], self.times)
+        for a, b in zip(starts, [*starts[1:], len(self.table["time"])], strict=True):
+            yield slice(int(a), int(b))
+
+    def last(self) -> np.ndarray:
+        """Mask (N,) of the rows of the last time."""
+        return self.table["time"] == self.times[-1]
+
+
+def take_census(run: Run) -> Census:
+    """The census of all snapshots; raises UserError for a run without grains or snapshots."""
+    fluids, direction = fluid_names(run), flow_direction(run)
+    first: dict[int, np.ndarray] = {}
+    parts: list[dict[str, np.ndarray]] = []
+    fronts: list[float] = []
+    times = np.unique(run.times)
+    for time in times:  # a run that was stopped has its last time twice
+        snapshot = run.at(time)
+        grains = grains_of(snapshot, fluids)
+        start = np.array(
+            [
+                first.setdefault(k, x)
+                for k, x in zip(grains.id.tolist(), grains.position, strict=True)
+            ]
+        ).reshape(-1, snapshot.dim)
+        kinds, front = classify(grains, start, surroundings_of(snapshot, fluids), direction)
+        parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | {"kind": kinds})
+        fronts.append(front)
+    if not first:
+        raise UserError(f"{run.directory}: the run has no grains to take a census of")
+    table = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+    return Census(times, np.array(fronts), table, direction)
+
+
+@dataclass(frozen=True)
+class SpeedDraws:
+    """Speeds of grains in bins, and how much a random sample of `size` of them varies."""
+
+    speeds: np.ndarray  # all of them, m/s
+    edges: np.ndarray  # of the bins
+    counts: np.ndarray  # of all
+    mean: np.ndarray  # per bin, of samples
+    low: np.ndarray  # 5 % quantile
+    high: np.ndarray  # 95 % quantile
+    sample_means: np.ndarray  # (draws,) mean speed of each sample, m/s
+    size: int
+
+
+def draw_speeds(
+    speeds: np.ndarray, bin_width: float = 0.1, size: int = 30, draws: int = 2000, seed: int = 0
+) -> SpeedDraws:
+    """Histogram of `speeds` in bins of `bin_width` m/s, and `draws` random samples of `size`."""
+    edges, counts = measure.speed_histogram(speeds, bin_width)
+    size = min(size, len(speeds))
+    mean, low, high = measure.sampled_histogram(speeds, edges, size, draws, seed)
+    random = np.random.default_rng(seed)
+    means = [random.choice(speeds, size, replace=False).mean() for _ in range(draws if size else 0)]
+    return SpeedDraws(speeds, edges, counts, mean, low, high, np.array(means), size)
+
+
+def deposit_outline(census: Census, view: View) -> np.ndarray:
+    """Outline (k, 2) of what lies deposited in a window at the end, in the axes of the window, m.
+
+    In 2-D the top of the deposit over the first axis, one point for each column that has grains;
+    in 3-D the convex outline in plan.  Fewer than 3 grains have none in 3-D.
+    """
+    there = census.last() & census.rows(view) & (census.table["kind"] == DEPOSITED)
+    x = view.coordinates(census.table["position"][there])
+    radius = 0.5 * census.table["diameter"][there]
+    if x.shape[1] == 3:
+        return _hull(x[:, :2])
+    if not len(x):
+        return np.zeros((0, 2))
+    width = 2 * float(radius.mean())
+    column, index = np.unique(np.floor(x[:, 0] / width), return_inverse=True)
+    top = np.full(len(column), -math.inf)
+    np.maximum.at(top, index, x[:, 1] + radius)
+    return np.column_stack([(column + 0.5) * width, top])
+
+
+def _hull(plan: np.ndarray) -> np.ndarray:
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return plan[ConvexHull(plan).vertices]
+    except (QhullError, ValueError):
+        return np.zeros((0, 2))

@@ -1,0 +1,95 @@
+"""The flow over time, measured on the snapshots of a run: its front, and what windows show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..record.reader import Run, Snapshot
+from . import numbers as measure
+from .views import View, flow_direction, fluid_names, select, whole_space, windows
+
+
+@dataclass
+class WindowFlow:
+    """What a window shows, one entry per snapshot; nan where nothing is there."""
+
+    view: View
+    fluid_count: list[int] = field(default_factory=list)
+    fluid_velocity: list[float] = field(default_factory=list)  # mean along the first axis, m/s
+    grain_count: list[int] = field(default_factory=list)
+    grain_speed: list[float] = field(default_factory=list)  # mean, m/s
+    grain_mass: list[float] = field(default_factory=list)  # kg (2-D: kg/m)
+    passed_mass: list[float] = field(default_factory=list)  # grains beyond its downstream end, kg
+
+    def arrival(self, times: np.ndarray) -> float:
+        """Time of the first snapshot with fluid in the window, s; nan if there is none."""
+        there = np.flatnonzero(self.fluid_count)
+        return float(times[there[0]]) if len(there) else math.nan
+
+
+@dataclass
+class Flow:
+    """The flow of a run: times (s), position of the front (m), and its windows by name."""
+
+    times: np.ndarray
+    front: np.ndarray
+    windows: dict[str, WindowFlow]
+
+
+def measure_flow(run: Run) -> Flow | None:
+    """Measure every snapshot; None where no fluid is in the run.
+
+    Fluid is every material with the law "fluid", grains are all others; fixed particles are
+    neither.
+    """
+    fluids = fluid_names(run)
+    everywhere = whole_space(run.scenario["dim"])
+    direction = flow_direction(run)
+    seen = {name: WindowFlow(view) for name, view in windows(run).items()}
+    passed = {name: _section(entry.view, direction) for name, entry in seen.items()}
+    front = []
+    for snapshot in run:
+        is_fluid = select(snapshot, everywhere, fluids)
+        front.append(measure.front(snapshot["position"][is_fluid, 0], direction))
+        for name, entry in seen.items():
+            _look(entry, snapshot, is_fluid)
+            entry.passed_mass.append(_passed(passed[name], snapshot, is_fluid))
+    if not np.any(np.isfinite(front)):
+        return None
+    return Flow(run.times, np.array(front), seen)
+
+
+def _look(entry: WindowFlow, snapshot: Snapshot, is_fluid: np.ndarray) -> None:
+    """Append what the window of `entry` shows in one snapshot."""
+    inside = select(snapshot, entry.view)
+    fluid, grain = inside & is_fluid, inside & ~is_fluid
+    velocity, mass = snapshot["velocity"], snapshot["mass"]
+    entry.fluid_count.append(int(np.count_nonzero(fluid)))
+    entry.fluid_velocity.append(float(measure.mean_velocity(velocity[fluid], mass[fluid])[0]))
+    entry.grain_count.append(int(np.count_nonzero(grain)))
+    entry.grain_speed.append(_mean(measure.speed(velocity[grain])))
+    entry.grain_mass.append(float(mass[grain].sum()))
+
+
+def _section(view: View, direction: int) -> measure.PassedMass | None:
+    """The section at the downstream end of a window that lies along the first axis."""
+    end = view.upper[0] if direction > 0 else view.lower[0]
+    along = view.rotate == 0 and math.isfinite(end)
+    return measure.PassedMass(float(end), direction) if along else None
+
+
+def _passed(section: measure.PassedMass | None, snapshot: Snapshot, is_fluid: np.ndarray) -> float:
+    if section is None:
+        return math.nan
+    grain = ~is_fluid & ~snapshot["fixed"]
+    x = snapshot["position"][grain, 0]
+    return section.update(x, snapshot["mass"][grain], snapshot["id"][grain])
+
+
+def _mean(values: Iterable[float]) -> float:
+    values = np.asarray(values)
+    return float(values.mean()) if len(values) else math.nan

@@ -1,0 +1,219 @@
+"""Reading a recorded run: `doseki.load(DIR)`."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import UserError
+from ..util.spelling import suggestion
+from . import vtkhdf
+from .fields import FIELD_BY_KEY
+from .folder import RunFolder, read_history
+from .particles import FIXED
+
+
+def load(directory: str | Path) -> Run:
+    """The run recorded in `directory`; raises UserError if there is none.
+
+    Nothing but the names of its files is read until it is asked for; a run that is still going on
+    can be loaded, too.
+    """
+    folder = RunFolder(Path(directory))
+    if not folder.path.is_dir():
+        raise UserError(f"{directory}: no such folder")
+    if not folder.is_run():
+        raise UserError(
+            f"{directory}: not the folder of a run: {folder.scenario.name} or "
+            f"{folder.snapshots.name}/ is missing"
+        )
+    return Run(folder)
+
+
+class Snapshot(Mapping[str, np.ndarray]):
+    """The particles at one time: a mapping from field name to array, SI units, read when asked.
+
+    The names are those of fields.FIELDS and `fixed` (bool).  `material` and `body` are arrays of
+    names; vectors are (N, dim), tensors (N, 3, 3).
+    """
+
+    def __init__(self, path: Path, header: vtkhdf.Header) -> None:
+        self.path = path
+        self.time = header.time
+        self.step = header.step
+        self.dt = header.dt
+        self.dim = header.dim
+        self.material_names = header.material_names
+        self.body_names = header.body_names
+        self._arrays: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, key: str) -> np.ndarray:
+        if key not in self._arrays:
+            self._arrays[key] = self._read(key)
+        return self._arrays[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*FIELD_BY_KEY, "fixed"))
+
+    def __len__(self) -> int:
+        return len(FIELD_BY_KEY) + 1
+
+    def _read(self, key: str) -> np.ndarray:
+        if key == "fixed":
+            return self["motion"] == FIXED
+        if key not in FIELD_BY_KEY:
+            raise KeyError(f"{key!r} is not a field of a snapshot{suggestion(key, self)}")
+        names = {"material": self.material_names, "body": self.body_names}.get(key)
+        stored = self.stored(key)
+        return stored if names is None else np.array(names, dtype=str)[stored]
+
+    def stored(self, key: str) -> np.ndarray:
+        """A field as in the file, where `material` and `body` are indices of their names."""
+        with _readable(self.path):
+            return vtkhdf.read_field(self.path, FIELD_BY_KEY[key], self.dim)
+
+    @cached_property
+    def grains(self) -> dict[str, np.ndarray]:
+        """The bodies that move, by the keys of fields.GRAIN_FIELDS; empty where there are none.
+
+        `body` is an array of names; row k is what the field `grain` of a particle says.
+        """
+        with _readable(self.path):
+            table = vtkhdf.read_grains(self.path, self.dim)
+        names = np.array(self.body_names, dtype=str)
+        return table | {"body": names[table["body"]]} if table else {}
+
+
+class History(Mapping[str, np.ndarray]):
+    """The diagnostics of a run: a mapping from column name to the values over time."""
+
+    of = "the history"  # what its columns belong to
+
+    def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        self.columns = list(columns)
+        table = np.array([[float(cell) for cell in row] for row in rows])
+        self._table = table.reshape(len(rows), len(self.columns))
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        if column not in self.columns:
+            known = suggestion(column, self.columns)
+            raise KeyError(f"{column!r} is not a column of {self.of}{known}")
+        return self._table[:, self.columns.index(column)]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+
+class GaugeRecord(History):
+    """What a gauge read: a mapping from column name to an array (N,), in `units`.
+
+    A velocity profile has one row for each sample and height.
+    """
+
+    of = "the gauge"
+
+    def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """`columns` as in the file, "name [unit]" each."""
+        parts = [column.removesuffix("]").split(" [") for column in columns]
+        super().__init__([name for name, _ in parts], rows)
+        self.units = dict(parts)
+
+
+class Run(Sequence[Snapshot]):
+    """A recorded run: a sequence of snapshots in order of time, with its history and scenario."""
+
+    def __init__(self, folder: RunFolder) -> None:
+        self.folder = folder
+
+    @cached_property
+    def _headers(self) -> list[tuple[Path, vtkhdf.Header]]:
+        return [(path, _read_header(path)) for path in self.folder.snapshot_files()]
+
+    def __len__(self) -> int:
+        return len(self._headers)
+
+    def __getitem__(self, index: Any) -> Any:
+        """Snapshot `index` (negative: from the end), or a list of them for a slice.
+
+        Each call gives a new Snapshot, so that its arrays go when the caller drops it.
+        """
+        if isinstance(index, slice):
+            return [Snapshot(*entry) for entry in self._headers[index]]
+        return Snapshot(*self._headers[index])
+
+    @property
+    def directory(self) -> Path:
+        """The folder of the run."""
+        return self.folder.path
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times of the snapshots, s."""
+        return np.array([header.time for _, header in self._headers])
+
+    def at(self, time: float) -> Snapshot:
+        """The snapshot nearest to `time`, s; raises UserError when there is none at all."""
+        if not self._headers:
+            raise UserError(f"{self.directory}: the run has no snapshot yet")
+        return self[int(np.argmin(np.abs(self.times - time)))]
+
+    @cached_property
+    def history(self) -> History:
+        """The diagnostics."""
+        with _readable(self.folder.history):
+            return History(*read_history(self.folder.history))
+
+    @cached_property
+    def gauges(self) -> dict[str, GaugeRecord]:
+        """What the gauges read, by their names."""
+        records = {}
+        for file in sorted(self.folder.gauges.glob("*.csv")):
+            with _readable(file):
+                records[file.stem] = GaugeRecord(*read_history(file))
+        return records
+
+    @cached_property
+    def scenario(self) -> dict[str, Any]:
+        """The effective scenario."""
+        with _readable(self.folder.scenario):
+            return tomllib.loads(self.folder.scenario.read_text(encoding="utf-8"))
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """What the run came to; empty while it is going on."""
+        if not self.folder.summary.is_file():
+            return {}
+        with _readable(self.folder.summary):
+            return json.loads(self.folder.summary.read_text(encoding="utf-8"))
+
+    @cached_property
+    def trust(self) -> dict[str, Any]:
+        """How far the run can be trusted (trust.json); empty while it is going on."""
+        if not self.folder.trust.is_file():
+            return {}
+        with _readable(self.folder.trust):
+            return json.loads(self.folder.trust.read_text(encoding="utf-8"))
+
+
+def _read_header(path: Path) -> vtkhdf.Header:
+    with _readable(path):
+        return vtkhdf.read_header(path)
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Turn whatever a damaged or forbidden file raises into a UserError that names it."""
+    try:
+        yield
+    except (OSError, KeyError, ValueError) as error:
+        raise UserError(f"{path}: cannot be read: {str(error).splitlines()[0]}") from None

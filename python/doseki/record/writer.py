@@ -1,0 +1,219 @@
+"""The record of a run: an output folder that grows while the run goes on."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ..errors import UserError
+from ..util.files import clear_errors, sync, write_whole, write_whole_text
+from . import vtkhdf
+from .folder import RunFolder, read_history
+
+
+class Recorder:
+    """Writes the folder of a run: scenario, snapshots, history, summary.
+
+    Each snapshot is whole or absent, each history row is written at once: a run that is killed
+    leaves a folder that can be loaded.  Every method raises ResourceError when the disk is full
+    and UserError when it may not be written to.
+    """
+
+    def __init__(
+        self,
+        directory: str | Path,
+        scenario_text: str,
+        material_names: Sequence[str],
+        body_names: Sequence[str],
+        dim: int,
+        overwrite: bool = False,
+    ) -> None:
+        """Start a new record in `directory`; raises UserError if something is there already.
+
+        `scenario_text` is the effective scenario; the names are those that the fields `material`
+        and `body` of the snapshots index.  With `overwrite` an earlier run is removed first.
+        """
+        folder = RunFolder(Path(directory))
+        _make_room(folder, overwrite)
+        write_whole_text(folder.scenario, scenario_text)
+        self._attach(folder, material_names, body_names, dim)
+
+    @classmethod
+    def reopen(
+        cls,
+        directory: str | Path,
+        snapshots: int,
+        rows: int,
+        gauge_rows: Mapping[str, int] = MappingProxyType({}),
+    ) -> Recorder:
+        """Go on with the record of a resumed run: keep its first snapshots and rows."""
+        folder = RunFolder(Path(directory))
+        refuse_links(folder)
+        files = folder.snapshot_files()
+        if not files:
+            raise UserError(f"{directory}: holds no snapshot from which a run could go on")
+        if len(files) < snapshots or len(read_history(folder.history)[1]) < rows:
+            raise UserError(f"{directory}: snapshots or rows have gone since the checkpoint")
+        for name, count in gauge_rows.items():
+            if len(read_history(folder.gauge(name))[1]) < count:
+                raise UserError(f"{folder.gauge(name)}: rows have gone since the checkpoint")
+        headers = {file: vtkhdf.read_header(file) for file in files}
+        first = headers[files[0]]
+        recorder = cls.__new__(cls)
+        recorder._attach(folder, first.material_names, first.body_names, first.dim)
+        with clear_errors(folder.path):
+            ended = (folder.summary, folder.summary_text, folder.trust, folder.failure)
+            for file in ended:
+                file.unlink(missing_ok=True)
+            for file in files[snapshots:]:
+                file.unlink()
+        recorder._index = [(file.name, headers[file].time) for file in files[:snapshots]]
+        recorder._write_series()
+        _truncate(folder.history, rows)
+        recorder._columns = read_history(folder.history)[0]
+        for file in folder.gauges.glob("*.csv"):
+            _truncate(file, gauge_rows.get(file.stem, 0))
+        return recorder
+
+    def _attach(
+        self,
+        folder: RunFolder,
+        material_names: Sequence[str],
+        body_names: Sequence[str],
+        dim: int,
+    ) -> None:
+        self._folder = folder
+        self._material_names = tuple(material_names)
+        self._body_names = tuple(body_names)
+        self._dim = dim
+        self._index: list[tuple[str, float]] = []  # file name and time of each snapshot
+        self._columns: list[str] = []
+
+    @property
+    def directory(self) -> Path:
+        """The folder that is written."""
+        return self._folder.path
+
+    def snapshot(
+        self,
+        state: Mapping[str, np.ndarray],
+        *,
+        time: float,
+        step: int,
+        dt: float,
+        grains: Mapping[str, np.ndarray] | None = None,
+    ) -> Path:
+        """Write one snapshot and return its file.
+
+        `state` holds every field of fields.FIELDS under its Python name and shape, SI units;
+        `time` and `dt` are in s; `grains` holds every field of fields.GRAIN_FIELDS.
+        """
+        header = vtkhdf.Header(time, step, dt, self._dim, self._material_names, self._body_names)
+        file = self._folder.snapshot(len(self._index))
+        write_whole(file, lambda temporary: vtkhdf.write(temporary, state, header, grains))
+        self._index.append((file.name, float(time)))
+        self._write_series()
+        return file
+
+    def history(self, row: Mapping[str, float]) -> None:
+        """Append one row; the first row gives the columns, the others must have the same ones."""
+        lines = [[_number_text(value) for value in row.values()]]
+        if not self._columns:
+            self._columns = list(row)
+            lines.insert(0, self._columns)
+        if list(row) != self._columns:
+            raise ValueError(f"history columns changed from {self._columns} to {list(row)}")
+        path = self._folder.history
+        with clear_errors(path), path.open("a", encoding="utf-8") as file:
+            file.write(_csv(lines))
+
+    def gauge(self, name: str, header: Sequence[str], rows: Sequence[Sequence[float]]) -> None:
+        """Append rows of a gauge; the first ones come after the header, "name [unit]" each."""
+        path = self._folder.gauge(name)
+        lines = [[_number_text(value) for value in row] for row in rows]
+        with clear_errors(path):
+            path.parent.mkdir(exist_ok=True)
+            if not path.is_file() or path.stat().st_size == 0:
+                lines.insert(0, list(header))
+            with path.open("a", encoding="utf-8") as file:
+                file.write(_csv(lines))
+
+    def sync(self) -> None:
+        """Put the tables safely on the disk, so that a checkpoint never knows more rows."""
+        for path in (self._folder.history, *self._folder.gauges.glob("*.csv")):
+            with clear_errors(path):
+                sync(path)
+
+    def close(self, summary: Mapping[str, Any]) -> None:
+        """Write `summary` (numbers, words, lists and dicts of them): the run has ended."""
+        text = json.dumps(jsonable(summary), indent=2, allow_nan=False) + "\n"
+        write_whole_text(self._folder.summary, text)
+
+    def _write_series(self) -> None:
+        names = self._folder.snapshots.name
+        files = [{"name": f"{names}/{name}", "time": time} for name, time in self._index]
+        index = {"file-series-version": "1.0", "files": files}
+        write_whole_text(self._folder.series, json.dumps(index, indent=1) + "\n")
+
+
+def _make_room(folder: RunFolder, overwrite: bool) -> None:
+    """Create the folder, or empty it of an earlier run if that is wanted."""
+    with clear_errors(folder.path):
+        if folder.path.exists() and not folder.path.is_dir():
+            raise UserError(f"{folder.path}: is a file, not a folder")
+        if folder.path.is_dir() and any(folder.path.iterdir()):
+            _refuse_to_overwrite(folder, overwrite)
+            refuse_links(folder)
+            for file in folder.written_files():
+                file.unlink()
+        folder.snapshots.mkdir(parents=True, exist_ok=True)
+
+
+def refuse_links(folder: RunFolder) -> None:
+    """Raise UserError where writing into the folder would write outside it."""
+    if links := folder.links():
+        raise UserError(f"{links[0]}: is a symbolic link; nothing is written through it")
+
+
+def _refuse_to_overwrite(folder: RunFolder, overwrite: bool) -> None:
+    if not overwrite:
+        raise UserError(
+            f"{folder.path}: exists and is not empty; give another folder or --overwrite"
+        )
+    if not folder.is_run():
+        raise UserError(f"{folder.path}: is not the folder of a run, so it is not overwritten")
+
+
+def _truncate(path: Path, count: int) -> None:
+    """Keep the header and the first rows of a table; without any row, nothing."""
+    columns, rows = read_history(path)
+    if columns:
+        write_whole_text(path, _csv([columns, *rows[:count]]) if count else "")
+
+
+def _csv(rows: Sequence[Sequence[str]]) -> str:
+    return "".join(",".join(row) + "\n" for row in rows)
+
+
+def _number_text(value: float) -> str:
+    """Shortest text that reads back as the same number."""
+    return str(int(value)) if isinstance(value, int | np.integer) else repr(float(value))
+
+
+def jsonable(value: Any) -> Any:
+    """The same in types that JSON has; a number that is not finite becomes null."""
+    if isinstance(value, Mapping):
+        return {str(key): jsonable(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [jsonable(entry) for entry in value]
+    if isinstance(value, np.generic):
+        return jsonable(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,1 @@
+"""Running a scenario, and going on with a run."""

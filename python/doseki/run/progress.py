@@ -1,0 +1,80 @@
+"""The progress of a run: a bar with percentage and finish time, or plain lines in a log."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime, timedelta
+
+from rich.console import Console
+from rich.progress import BarColumn, TaskProgressColumn, TextColumn
+from rich.progress import Progress as RichProgress
+
+from ..driver.active_run import Progress
+
+LOG_SECONDS = 15.0  # between lines where there is no terminal
+
+
+class FinishTime:
+    """When a run that has come so far will be done, from its speed until now."""
+
+    def __init__(self, time_max: float) -> None:
+        self.time_max = time_max
+        self.started = time.monotonic()
+
+    def text(self, simulated: float) -> str:
+        """Clock time of the end, with the date when that is not today."""
+        if simulated <= 0.0:
+            return "--:--"
+        elapsed = time.monotonic() - self.started
+        left = elapsed * (self.time_max - simulated) / simulated
+        end = datetime.now() + timedelta(seconds=min(left, 1e9))
+        return end.strftime("%H:%M:%S" if end.date() == datetime.now().date() else "%Y-%m-%d %H:%M")
+
+
+def _bar(progress: RichProgress, title: str, time_max: float) -> Progress:
+    task = progress.add_task(title, total=time_max, finish="--:--", at="")
+    finish = FinishTime(time_max)
+
+    def update(simulated: float, timestep: float, step: int) -> None:
+        at = f"t = {simulated:.4g}/{time_max:g} s, dt = {timestep:.2e} s, step {step}"
+        progress.update(task, completed=simulated, finish=finish.text(simulated), at=at)
+
+    return update
+
+
+def _lines(console: Console, time_max: float) -> Progress:
+    finish = FinishTime(time_max)
+    last = time.monotonic()
+
+    def update(simulated: float, timestep: float, step: int) -> None:
+        nonlocal last
+        if time.monotonic() - last < LOG_SECONDS:
+            return
+        last = time.monotonic()
+        console.print(
+            f"{100 * simulated / time_max:5.1f} %  t = {simulated:.4g} s  dt = {timestep:.2e} s"
+            f"  step {step}  finish time {finish.text(simulated)}",
+            highlight=False,
+        )
+
+    return update
+
+
+@contextmanager
+def progress_bar(title: str, time_max: float) -> Iterator[Progress]:
+    """A function of (time, timestep, step) that shows the progress on standard error."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield _lines(console, time_max)
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("finish time {task.fields[finish]}"),
+        TextColumn("{task.fields[at]}"),
+    )
+    with RichProgress(*columns, console=console) as progress:
+        yield _bar(progress, title, time_max)

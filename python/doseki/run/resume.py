@@ -1,0 +1,105 @@
+"""Goes on with a run from its last checkpoint."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..compiled import load_core
+from ..driver.active_run import ActiveRun
+from ..driver.checkpoint import Checkpoint, CheckpointFolder
+from ..driver.ranks import OneRank
+from ..errors import UserError
+from ..record.reader import load
+from ..record.writer import Recorder
+from ..scenario.load import load_scenario
+from ..scenario.model import Scenario
+from ..util.files import write_whole_text
+from ..util.toml_writer import to_toml
+from .runner import RunOptions, carry_out
+
+# What may differ from the run so far: nothing that the particles or the record were made with.
+CHANGEABLE = {
+    "time_max", "cflnumber", "cfl_force", "fixed_limits_dt", "alpha", "balsara", "skin", "gravity",
+    "title",
+}  # fmt: skip
+
+
+def resume_run(
+    directory: str | Path,
+    overrides: Sequence[str] = (),
+    options: RunOptions | None = None,
+    until: float = math.inf,
+) -> tuple[dict[str, Any], list[str]]:
+    """Goes on to the end; returns the summary, and sentences about damaged checkpoints.
+
+    With the same threads or others, and no `overrides`, the record becomes that of a run that was
+    never interrupted, bit for bit.  It goes on from the newest checkpoint at a time of at most
+    `until`, s.  `overrides` are KEY=VALUE for keys in CHANGEABLE.  Raises as
+    run_scenario does, and UserError when there is nothing to go on from.
+    """
+    options = options or RunOptions()
+    folder = load(directory).folder
+    checkpoint, notes = CheckpointFolder(folder.checkpoints).read_last(until)
+    scenario = _scenario(folder.scenario, overrides)
+    if checkpoint.time >= scenario.time_max and folder.summary.is_file():
+        raise UserError(
+            f"{directory}: the run has reached time_max = {scenario.time_max:g} s;"
+            " go further with --set time_max=..."
+        )
+    run = _restored(directory, scenario, checkpoint, notes, options.ranks)
+    if overrides:
+        # The last snapshot may have been made early, at the time_max of then.
+        run.position.outputs = int(checkpoint.time / scenario.time_out + 1e-9) + 1
+        options.ranks.on_root(lambda: write_whole_text(folder.scenario, scenario.effective_toml()))
+    return carry_out(run, options, fresh=False), notes
+
+
+def _scenario(path: Path, overrides: Sequence[str]) -> Scenario:
+    """The scenario of the run, with overrides that do not contradict the state."""
+    before, after = load_scenario(path), load_scenario(path, overrides)
+    tables = before.model_dump(by_alias=True), after.model_dump(by_alias=True)
+    changed = [key for key in tables[0] if _text(tables[0][key]) != _text(tables[1][key])]
+    if wrong := sorted(set(changed) - CHANGEABLE):
+        raise UserError(
+            f"{wrong[0]} cannot change when a run is resumed; these can:"
+            f" {', '.join(sorted(CHANGEABLE))}"
+        )
+    return after
+
+
+def _text(value: Any) -> str:
+    return to_toml({"value": value}) if value is not None else ""
+
+
+def _restored(
+    directory: str | Path,
+    scenario: Scenario,
+    checkpoint: Checkpoint,
+    notes: list[str],
+    ranks: OneRank,
+) -> ActiveRun:
+    if scenario.material_names != checkpoint.material_names:
+        raise UserError(f"{directory}: the scenario's materials are not those of its checkpoint")
+    try:
+        simulation, same_bits = ranks.restored_simulation(
+            scenario, checkpoint.body_names, checkpoint.state
+        )
+    except ValueError as error:
+        raise UserError(f"{directory}: {error}") from None
+    if ranks.count > 1 or checkpoint.is_of_many_ranks:
+        notes.append("the run is, or was, spread over ranks: results agree to rounding only")
+    elif not same_bits:
+        notes.append(
+            "the checkpoint was written with another instruction set: results agree to rounding"
+            f" only (DOSEKI_ISA chooses one; now {load_core().__name__.rpartition('_')[2]})"
+        )
+    position = checkpoint.position
+    written = position.snapshots, position.rows, position.gauge_rows
+    recorder = ranks.recorder(directory, lambda: Recorder.reopen(directory, *written))
+    run = ActiveRun(scenario, simulation, recorder, checkpoint.body_names, ranks)
+    run.position = position
+    ranks.on_root(lambda: run.checkpoints.drop_later(checkpoint.step))
+    return run

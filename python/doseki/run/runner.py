@@ -1,0 +1,152 @@
+"""Runs a scenario to its end, or to its failure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..assess.failure.failure import Failure, explain_failure
+from ..assess.trust.report import write_trust
+from ..driver.active_run import ActiveRun, Progress
+from ..driver.ranks import OneRank
+from ..driver.schedule import CheckpointClock, StopRequests
+from ..errors import PhysicsError, ResourceError
+from ..record.reader import load
+from ..record.writer import Recorder
+from ..scenario.model import Scenario
+from ..solver.build import load_core
+from ..solver.protocol import SimulationView
+from ..util.finding import Finding
+
+CHECKPOINT_MINUTES = 10.0  # what a crash may cost
+
+# Scenario, core simulation, names of bodies, warnings about the scene.
+Started = Callable[[Scenario, SimulationView, list[str], Sequence[Finding]], None]
+
+
+def _no_progress(_time: float, _timestep: float, _step: int) -> None:
+    pass
+
+
+def _say_nothing(
+    _scenario: Scenario,
+    _simulation: SimulationView,
+    _body_names: list[str],
+    _warnings: Sequence[Finding],
+) -> None:
+    pass
+
+
+@dataclass
+class RunOptions:
+    """How a run is carried out, as against what it simulates."""
+
+    threads: int | None = None
+    overwrite: bool = False
+    progress: Progress = field(default=_no_progress)
+    started: Started = field(default=_say_nothing)  # called before the first step
+    checkpoint_every: float | None = None  # s of simulated time
+    checkpoint_minutes: float = CHECKPOINT_MINUTES  # of wall time
+    ranks: OneRank = field(default_factory=OneRank)
+
+
+def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
+    simulation, scenario = run.simulation, run.scenario
+    last = run.history_row()
+    balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
+    return {
+        "status": status,
+        "title": scenario.title,
+        "scheme": scenario.scheme,
+        "dim": scenario.dim,
+        "precision": scenario.precision,
+        "dp": scenario.dp,
+        "xi": scenario.xi,
+        "ranks": run.ranks.count,
+        "wall_seconds": run.wall_seconds,
+        "particle_updates_per_second": simulation.updates / run.wall_seconds,
+        "neighbour_rebuilds": simulation.rebuilds,
+        "bytes_per_particle": simulation.bytes_per_particle,
+        "list_entries_per_particle": simulation.entries_per_particle,
+        "ledger_residual": balance,
+        "largest_overlap": simulation.grains()["worst_overlap"],
+        "warnings": [str(warning) for warning in run.warnings],
+        **last,
+    }
+
+
+def run_scenario(
+    scenario: Scenario, directory: str | Path, options: RunOptions | None = None
+) -> dict[str, Any]:
+    """Simulates `scenario` and writes its record into `directory`.
+
+    Returns the summary, which is also DIR/summary.json; its `status` is "done", or "stopped" after
+    SIGINT, SIGTERM or a file DIR/STOP.  Raises UserError for a scenario or folder that cannot be
+    used (nothing is written then), PhysicsError when the state becomes unphysical (the record up to
+    there is kept, the summary says "failed"), ResourceError when memory or disk runs out.
+    """
+    options = options or RunOptions()
+    simulation, body_names, warnings = options.ranks.filled_simulation(scenario)
+    names = scenario.material_names, body_names
+    text = scenario.effective_toml()
+    recorder = options.ranks.recorder(
+        directory,
+        lambda: Recorder(directory, text, *names, scenario.dim, overwrite=options.overwrite),
+    )
+    run = ActiveRun(scenario, simulation, recorder, body_names, options.ranks, warnings)
+    return carry_out(run, options, fresh=True)
+
+
+def _explained(run: ActiveRun, message: str) -> Failure:
+    """What happened to a run, which is taken back to the last good step and recorded there."""
+    simulation = run.simulation
+    kind, particle = simulation.failure
+    state, time, steps = simulation.state(), simulation.time, simulation.steps
+    rewound = run.step_back()
+    run.record_snapshot()
+    failure = Failure(kind, particle, message, state, time, steps, rewound)
+    explain_failure(run, failure)
+    return failure
+
+
+def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any]:
+    """Takes a run, `fresh` or restored, to its end; see run_scenario."""
+    core, directory = load_core(), run.folder.path
+    threads = run.ranks.threads(options.threads)
+    if threads:
+        core.set_threads(threads)
+    run.ranks.working_in(directory, run.simulation)
+    stop = StopRequests(directory)
+    try:
+        with stop.listening():
+            if fresh:
+                run.start()
+                run.ranks.show(
+                    run.simulation,
+                    lambda whole: options.started(
+                        run.scenario, whole, run.body_names, run.warnings
+                    ),
+                )
+            clock = CheckpointClock(
+                options.checkpoint_every, options.checkpoint_minutes, run.position.next_checkpoint
+            )
+            status = "done" if run.advance(clock, options.progress, stop) else "stopped"
+    except core.ResourceFailure as failure:
+        raise ResourceError(str(failure)) from failure
+    except core.PhysicsFailure as failure:
+        explained = _explained(run, str(failure))
+        run.recorder.close(_summary(run, "failed") | {"failure": str(failure)})
+        raise PhysicsError(
+            f"{failure}. {explained.advice} The record up to there is in {directory};"
+            f" more: doseki explain {directory}",
+            explained.kind,
+            explained.particle,
+        ) from failure
+    except ResourceError as error:
+        raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
+    summary = _summary(run, status)
+    run.recorder.close(summary)
+    run.ranks.on_root(lambda: write_trust(load(directory)))
+    return summary

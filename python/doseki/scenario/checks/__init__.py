@@ -1,0 +1,1 @@
+"""Checks of the tables of a scenario against one another."""

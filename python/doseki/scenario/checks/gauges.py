@@ -1,0 +1,34 @@
+"""Checks of gauges and figures against the rest of a scenario."""
+
+from __future__ import annotations
+
+from ..gauges.gauge import Gauge
+from ..model import Scenario
+
+MAX_SAMPLES = 1e6
+
+
+def check_gauges(scenario: Scenario) -> None:
+    """Raise UserError for gauges that can show nothing."""
+    setting = scenario.setting()
+    for name, gauge in scenario.gauge.items():
+        _check_interval(scenario, name, gauge)
+        for key, why in gauge.objections(setting):
+            raise scenario.where.error(("gauge", name, key), f"gauge.{name}.{key}{why}")
+
+
+def check_figures(scenario: Scenario) -> None:
+    """Raise UserError for figures of what is not there: none must fail after a long run."""
+    for name, figure in scenario.figure.items():
+        for key, why in figure.objections(scenario.gauge, scenario.dim):
+            raise scenario.where.error(("figure", name, key), f"figure.{name}.{key}{why}")
+
+
+def _check_interval(scenario: Scenario, name: str, gauge: Gauge) -> None:
+    interval = scenario.interval_of(gauge)
+    if scenario.time_max / interval > MAX_SAMPLES:
+        raise scenario.where.error(
+            ("gauge", name, "interval"),
+            f"gauge.{name}.interval = {interval:g} s is too short for time_max = "
+            f"{scenario.time_max:g} s; at most {MAX_SAMPLES:g} samples are taken",
+        )

@@ -1,0 +1,75 @@
+"""Checks of the names of tables, and of what tables refer to by name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from ...util.spelling import suggestion
+from ..materials import Material
+from ..particle_files.reader import ParticleTable
+from ..tables.root import ScenarioTable
+from ..tables.sections import SECTIONS
+from ..values.toml_source import Where
+from ..values.types import RefersTo
+
+
+def check_names(tables: ScenarioTable, where: Where) -> None:
+    """Names of tables become names of files and columns, so they must be fit for that.
+
+    Raises UserError.
+    """
+    for section in SECTIONS:
+        for name in getattr(tables, section):
+            if not re.fullmatch(r"\w[\w .+-]{0,59}", name):
+                raise where.error(
+                    (section, name),
+                    f'"{name}" cannot be a name in [{section}]; names begin with a letter or digit'
+                    " and have at most 60 letters, digits, spaces, _, -, + or dots",
+                )
+
+
+def check_references(
+    tables: ScenarioTable,
+    where: Where,
+    materials: Mapping[str, Material],
+    read: Mapping[str, ParticleTable],
+) -> None:
+    """Every table that is named must exist, and there must be something to run.
+
+    Raises UserError.
+    """
+    if not tables.body and not tables.inflow:
+        raise where.error((), "a scenario needs at least one [body.NAME] or [inflow.NAME]")
+    known = {name: getattr(tables, name) for name in SECTIONS} | {"material": materials}
+    for section in SECTIONS:
+        for name, part in getattr(tables, section).items():
+            for key, field in type(part).model_fields.items():
+                for about in field.metadata:
+                    if isinstance(about, RefersTo):
+                        keys, value = (section, name, key), getattr(part, key)
+                        _check_known(where, keys, value, about.section, known[about.section])
+    for name, particles in read.items():
+        for material in particles.material_names:
+            if material not in materials:
+                path = f"body.{name}.file"
+                message = f'{path}: the file names the unknown material "{material}"'
+                raise where.error(("body", name, "file"), message + suggestion(material, materials))
+
+
+def _check_known(
+    where: Where,
+    keys: tuple[str, str, str],
+    value: str | list[str] | None,
+    section: str,
+    known: Mapping[str, object],
+) -> None:
+    """Raise UserError where the value at `keys`, a name or several, is not in a section."""
+    path = ".".join(keys)
+    if isinstance(value, str) and value not in known:
+        message = f'{path} = "{value}" is not a known {section}{suggestion(value, known)}'
+        raise where.error(keys, message)
+    for name in value if isinstance(value, list) else ():
+        if name not in known:
+            message = f'{path}: "{name}" is not a known {section}{suggestion(name, known)}'
+            raise where.error(keys, message)

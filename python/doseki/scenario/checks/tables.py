@@ -1,0 +1,94 @@
+"""Checks of a scenario's tables against one another."""
+
+from __future__ import annotations
+
+from ..materials import EQUATIONS_OF_STATE, RHEOLOGIES, laws_of
+from ..model import Scenario
+from ..schemes import RESOLVED, UETA2022
+from .bodies import check_bodies
+from .gauges import check_figures, check_gauges
+from .motions import check_motions
+
+MAX_OUTPUTS = 1e6
+
+
+def check_scenario(scenario: Scenario) -> None:
+    """Raise UserError where tables that are right by themselves do not fit together."""
+    _check_outputs(scenario)
+    _check_periodic(scenario)
+    if scenario.scheme == RESOLVED:
+        _check_resolved(scenario)
+    else:
+        _check_ueta2022(scenario)
+    check_bodies(scenario)
+    check_motions(scenario)
+    check_gauges(scenario)
+    check_figures(scenario)
+
+
+def _check_outputs(scenario: Scenario) -> None:
+    """An interval that is far too short would fill the disk."""
+    for key, interval in (("time_out", scenario.time_out), ("time_history", scenario.time_history)):
+        if scenario.time_max / interval > MAX_OUTPUTS:
+            raise scenario.where.error(
+                (key,),
+                f"{key} = {interval:g} s is too short for time_max = {scenario.time_max:g} s; "
+                f"at most {MAX_OUTPUTS:g} outputs are made",
+            )
+
+
+def _check_periodic(scenario: Scenario) -> None:
+    """Periodic axes must exist and have a domain."""
+    for axis in scenario.periodic:
+        if axis not in "xyz"[: scenario.dim]:
+            raise scenario.where.error(("periodic",), f'periodic: a 2-D run has no axis "{axis}"')
+        if scenario.domain_min is None or scenario.domain_max is None:
+            raise scenario.where.error(("periodic",), "periodic needs domain_min and domain_max")
+
+
+def _check_ueta2022(scenario: Scenario) -> None:
+    """What the scheme of the paper does not have."""
+    if scenario.kernel != "wendland_c6":
+        message = f'kernel = "{scenario.kernel}": the scheme ueta2022 has wendland_c6 alone'
+        raise scenario.where.error(("kernel",), message)
+    if scenario.eos != type(scenario).model_fields["eos"].default:
+        own = " or ".join(laws_of(EQUATIONS_OF_STATE, UETA2022))
+        raise scenario.where.error(
+            ("eos",),
+            f'eos = "{scenario.eos}": the scheme ueta2022 has {own} alone; use scheme = "resolved"',
+        )
+    for name in scenario.material_names:
+        rheology = scenario.materials[name].rheology
+        if scenario.scheme not in RHEOLOGIES[rheology].schemes:
+            raise scenario.where.error(
+                ("material", name, "rheology"),
+                f'material.{name}.rheology = "{rheology}": the scheme ueta2022 has newtonian '
+                'fluids alone; use scheme = "resolved"',
+            )
+
+
+def _check_resolved(scenario: Scenario) -> None:
+    """What the resolved scheme needs or cannot do."""
+    if scenario.precision != "double":
+        raise scenario.where.error(
+            ("precision",), 'precision: the resolved scheme runs in "double"'
+        )
+    if not scenario.model_fields_set & {"xi", "xi_height", "speed_max"}:
+        raise scenario.where.error(
+            ("scheme",),
+            "the resolved scheme needs the highest speed to expect: give speed_max (m/s), "
+            "xi_height (m) or xi",
+        )
+    for name, body in scenario.body.items():
+        keys = ("body", name)
+        normal = body.given("normal")
+        if normal is not None and not normal.any():
+            raise scenario.where.error((*keys, "normal"), f"body.{name}.normal must not be zero")
+        if body.given("wall") == "rough" and body.given("ks") is None:
+            raise scenario.where.error((*keys, "ks"), f"body.{name}: a rough wall needs ks (m)")
+    for name, inflow in scenario.inflow.items():
+        if scenario.materials[inflow.material].law != "fluid":
+            raise scenario.where.error(
+                ("inflow", name, "material"),
+                f"inflow.{name}: the resolved scheme moves fluids only, not {inflow.material}",
+            )

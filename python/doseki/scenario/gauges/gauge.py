@@ -1,0 +1,121 @@
+"""What a gauge is: a table [gauge.NAME] that knows its columns and how it is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+from pydantic import Field
+
+from ..table import Part
+from ..values.types import OptionalMaterialName, Positive, Vector
+
+State = Mapping[str, np.ndarray]  # fields of particles by name, as record.fields has them
+Rows = list[list[float]]
+
+
+class Sampled(Protocol):
+    """The particles of a running simulation, as far as gauges look at them."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+
+    def sample(self, low: list[float], high: list[float]) -> State:
+        """Fields of the particles in a box (m), on all ranks."""
+
+    def state(self) -> State:
+        """Fields of all particles, and the force (N, dim) on each; none beyond rank 0."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What surrounds a gauge in its run, SI units."""
+
+    dim: int
+    dp: float  # particle spacing
+    scheme: str
+    gravity: np.ndarray  # (dim,)
+    periodic: tuple[int, ...]  # axes
+    domain: tuple[np.ndarray, np.ndarray] | None  # lower and upper corner, where there is one
+    fixed: Mapping[str, bool]  # whether the bodies of a table [body.NAME] are
+    material_names: Sequence[str]  # that the field `material` indexes
+    body_names: Sequence[str]  # that the field `body` indexes
+    named: Mapping[str, Sequence[str]]  # bodies that a table stands for
+
+    def periods(self) -> Iterator[tuple[int, float, float]]:
+        """Each periodic axis, with where the domain begins and ends along it, m."""
+        if self.domain is not None:
+            low, high = self.domain
+            for axis in self.periodic:
+                yield axis, float(low[axis]), float(high[axis])
+
+    def is_of_material(self, material: str | None, state: State) -> np.ndarray:
+        """Mask (N,) of the particles of a material; of all where it is None."""
+        if material is None:
+            return np.ones(len(state["material"]), bool)
+        names = list(self.material_names)
+        return state["material"] == (names.index(material) if material in names else -1)
+
+    def is_of_bodies(self, tables: Sequence[str], state: State) -> np.ndarray:
+        """Mask (N,) of the particles of the bodies that tables [body.NAME] stand for."""
+        names = [name for table in tables for name in self.named[table]]
+        return np.isin(state["body"], [self.body_names.index(name) for name in names])
+
+
+class Gauge(Part):
+    """An instrument that is read at times of its own."""
+
+    is_profile: ClassVar[bool] = False  # a sample has one row for each `height`
+
+    kind: str
+    interval: Positive | None = Field(None, description="s between samples; default: time_out")
+
+    @property
+    def place(self) -> np.ndarray | None:
+        """The point (dim,) at which it looks, if it is a point."""
+        return None
+
+    def columns(self, dim: int) -> dict[str, str]:
+        """Name and unit of each column of its file."""
+        raise NotImplementedError
+
+    def curves(self, dim: int) -> list[str]:
+        """The columns that a figure draws where none are named."""
+        return [name for name in self.columns(dim) if name != "time"]
+
+    def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
+        """Why it can show nothing in this setting: the key to blame, and what to say after it."""
+        yield from ()
+
+    def read(self, run: Sampled, setting: Setting) -> Rows:
+        """A sample: values of the columns, one row or, of a profile, several."""
+        raise NotImplementedError
+
+
+class FlowGauge(Gauge):
+    """One that looks at what moves near a point."""
+
+    position: Vector = Field(description="where it stands, m")
+    material: OptionalMaterialName = Field(
+        None, description="look only at this material; default: all that moves"
+    )
+
+    @property
+    def place(self) -> np.ndarray:
+        """The point (dim,) at which it looks."""
+        return self.position
+
+    def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
+        """It must stand inside the domain."""
+        if setting.domain is None:
+            return
+        low, high = setting.domain
+        if np.any(self.position < low) or np.any(self.position > high):
+            yield (
+                "position",
+                f" = {self.position.tolist()} lies outside the domain, "
+                f"{low.tolist()} to {high.tolist()} m",
+            )

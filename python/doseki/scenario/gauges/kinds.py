@@ -1,0 +1,28 @@
+"""The kinds of gauges: one line each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..table import Kinds
+from .discharge import Discharge
+from .force import ForceGauge
+from .gauge import Gauge
+from .pressure import PressureGauge
+from .surface_height import SurfaceHeight
+from .velocity_profile import VelocityProfile
+
+GAUGES = Kinds.by_word(
+    "kind",
+    Gauge,
+    SurfaceHeight,
+    VelocityProfile,
+    PressureGauge,
+    Discharge,
+    ForceGauge,
+)
+
+if TYPE_CHECKING:
+    GaugeTable = Gauge
+else:
+    GaugeTable = GAUGES.union

@@ -1,0 +1,133 @@
+"""The particles near a gauge, and what is interpolated from them."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from ...record.particles import FIXED
+from .gauge import Sampled, Setting, State
+
+REACH = 3.0  # spacings; radius of the interpolation
+STEP = 0.5  # spacings; between two looks for the surface
+MIN_VOID = 0.25  # share of a neighbourhood that walls leave; below, nothing is told from it
+INSIDE = 0.5  # volume fraction from which on a point lies within the flow
+
+
+def kernel(r: np.ndarray, radius: float, dim: int) -> np.ndarray:
+    """Wendland's C6 kernel of support `radius`, m, at distances r, m; in 1/m^dim."""
+    q = np.minimum(r / radius, 1.0)
+    factor = 78 / (7 * np.pi) if dim == 2 else 1365 / (64 * np.pi)
+    return factor / radius**dim * (1 - q) ** 8 * (1 + 8 * q + 25 * q**2 + 32 * q**3)
+
+
+def particles_in(run: Sampled, setting: Setting, low: np.ndarray, high: np.ndarray) -> State:
+    """Fields of the particles in a box, images across periodic axes included."""
+    low, high = np.array(low), np.array(high)
+    shifts: list[tuple[float, ...]] = [(0.0,)] * setting.dim
+    for axis, first, last in setting.periods():
+        length = last - first
+        low[axis], high[axis] = max(low[axis], first - length), min(high[axis], last + length)
+        shifts[axis] = (-length, 0.0, length)
+    found = []
+    for shift in product(*shifts):
+        part = run.sample(list(low - shift), list(high - shift))
+        if len(part["mass"]):
+            found.append({**part, "position": part["position"] + shift})
+    if not found:
+        return run.sample(list(low), list(high))
+    return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
+
+
+class Neighbourhood:
+    """The particles around a gauge: those that count, and walls."""
+
+    def __init__(self, setting: Setting, material: str | None, state: State) -> None:
+        self.dim, self.radius = setting.dim, REACH * setting.dp
+        walls = state["motion"] == FIXED
+        counts = ~walls & setting.is_of_material(material, state)
+        self.position = state["position"][counts]
+        self.velocity = state["velocity"][counts]
+        self.pressure = state["pressure"][counts]
+        self.mass = state["mass"][counts]
+        self.volume = self.mass / state["density"][counts]
+        self.wall_position = state["position"][walls]
+        self.wall_volume = (state["mass"] / state["density"])[walls]
+
+    def weights(self, x: np.ndarray, radius: float | None = None) -> np.ndarray:
+        """Volume times kernel of each particle at a point."""
+        return _weights(self.position, self.volume, x, radius or self.radius, self.dim)
+
+    def fraction(self, x: np.ndarray) -> float:
+        """Share of the space that walls leave around a point which the particles fill."""
+        walls = _weights(self.wall_position, self.wall_volume, x, self.radius, self.dim)
+        return float(self.weights(x).sum() / max(1.0 - walls.sum(), MIN_VOID))
+
+
+def _weights(
+    position: np.ndarray, volume: np.ndarray, x: np.ndarray, radius: float, dim: int
+) -> np.ndarray:
+    return volume * kernel(np.linalg.norm(position - x, axis=1), radius, dim)
+
+
+class Column:
+    """Particles near a line, in order along it, so that each look at it meets only a few."""
+
+    def __init__(
+        self, position: np.ndarray, volume: np.ndarray, foot: np.ndarray, up: np.ndarray
+    ) -> None:
+        """`up` is the unit vector of the line, which begins at `foot`."""
+        away = position - foot
+        along = away @ up
+        order = np.argsort(along, kind="stable")
+        self.along, self.volume = along[order], volume[order]
+        self.aside = ((away - np.outer(along, up)) ** 2).sum(axis=1)[order]  # m2
+
+    def filled(self, height: float, radius: float, dim: int) -> float:
+        """Share of the space around the point at `height` along the line that they fill."""
+        first, last = np.searchsorted(self.along, (height - radius, height + radius))
+        r = np.sqrt(self.aside[first:last] + (self.along[first:last] - height) ** 2)
+        return float(self.volume[first:last] @ kernel(r, radius, dim))
+
+
+def column_height(around: Neighbourhood, foot: np.ndarray, up: np.ndarray, step: float) -> float:
+    """Height, m, above `foot` at which the fraction first falls below one half, going up.
+
+    Drops above a gap do not count; a gap right above the bed, where a flow hovers within the reach
+    of the kernel, does not end the column.  `step` is the distance between looks, m; within a step
+    the fraction is taken as linear.
+    """
+    radius, dim = around.radius, around.dim
+    flow = Column(around.position, around.volume, foot, up)
+    walls = Column(around.wall_position, around.wall_volume, foot, up)
+    top, before = float(flow.along.max(initial=-np.inf)) + radius, 0.0
+    for k in range(int(top / step) + 2 if top > 0 else 0):
+        void = max(1.0 - walls.filled(k * step, radius, dim), MIN_VOID)
+        now = flow.filled(k * step, radius, dim) / void
+        if now < INSIDE <= before:
+            return step * (k - 1 + (before - INSIDE) / (before - now))
+        if now < INSIDE and k * step > radius:
+            return 0.0
+        before = now
+    return 0.0
+
+
+def tube(
+    foot: np.ndarray, up: np.ndarray, length: float, radius: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Bounding box of what is within `radius` of a line from `foot`, m."""
+    if np.isfinite(length):
+        far = foot + length * up
+    else:
+        far = np.where(np.abs(up) > 1e-9, np.copysign(np.inf, up), foot)
+    ends = np.array([foot, far])
+    return ends.min(axis=0) - radius, ends.max(axis=0) + radius
+
+
+def beside(state: State, foot: np.ndarray, up: np.ndarray, radius: float) -> State:
+    """Those particles within `radius` of the line through `foot`."""
+    away = state["position"] - foot
+    away = away - np.outer(away @ up, up)
+    near = (away**2).sum(axis=1) < radius**2
+    return {name: values[near] for name, values in state.items()}

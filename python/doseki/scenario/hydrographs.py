@@ -1,0 +1,150 @@
+"""Inflows completed: hydrographs read from files, the normal depth worked out."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import UserError
+from .particle_files.columns_csv import read_csv_columns
+from .tables.inflow import Inflow
+from .values.toml_source import Where, check_regular_file
+from .values.types import LARGEST, RATE_UNITS, checked_hydrograph
+
+TIME_UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}
+HEADERS = {"t": TIME_UNITS, "Q": RATE_UNITS}
+MAX_BYTES = 20_000_000
+
+
+def completed_inflows(
+    inflows: Mapping[str, Inflow], gravity: np.ndarray, where: Where
+) -> dict[str, Inflow]:
+    """The inflows with the rows of their hydrographs and their depths in m; raises UserError."""
+    return {name: _completed(name, inflow, gravity, where) for name, inflow in inflows.items()}
+
+
+def _completed(name: str, inflow: Inflow, gravity: np.ndarray, where: Where) -> Inflow:
+    _check_rate(where, name, inflow)
+    found: dict[str, Any] = {}
+    if isinstance(inflow.hydrograph, str):
+        found["hydrograph"] = _from_file(where, name, inflow.hydrograph)
+    if inflow.depth == "normal":
+        found["depth"] = _normal_depth(where, name, inflow, gravity)
+    return inflow.model_copy(update=found)
+
+
+def _check_rate(where: Where, name: str, inflow: Inflow) -> None:
+    """Either a rate and a duration, or a hydrograph."""
+    table = f"inflow.{name}"
+    if inflow.hydrograph is None:
+        for key in ("rate", "duration"):
+            if getattr(inflow, key) is None:
+                also = "" if key == "duration" else ", or a hydrograph"
+                raise where.error(("inflow", name), f"{table}.{key} is missing{also}")
+        return
+    for key in ("rate", "duration"):
+        if getattr(inflow, key) is not None:
+            raise where.error(
+                ("inflow", name, key), f"{table}.{key} and {table}.hydrograph exclude each other"
+            )
+
+
+def _from_file(where: Where, name: str, file: str) -> list[list[float]]:
+    keys = ("inflow", name, "hydrograph")
+    path = where.folder(keys) / file
+    try:
+        return read_hydrograph(path)
+    except (ValueError, UserError) as error:
+        place = "" if isinstance(error, UserError) else f"{path}: "
+        raise where.error(keys, f"inflow.{name}.hydrograph: {place}{error}") from None
+
+
+def read_hydrograph(path: Path) -> list[list[float]]:
+    """Rows [t, Q] in s and m3/s of a CSV file with columns t and Q, such as "t [s],Q [L/s]".
+
+    Raises UserError for a file that cannot be read, ValueError for one that is no hydrograph.
+    """
+    check_regular_file(path)
+    if path.stat().st_size > MAX_BYTES:
+        raise UserError(f"{path}: a hydrograph may have at most {MAX_BYTES // 10**6} MB")
+    columns = read_csv_columns(path)
+    t, rate = (_column(columns, name) for name in HEADERS)
+    return checked_hydrograph(list(zip(t, rate, strict=True)))
+
+
+def _column(columns: dict[str, np.ndarray], wanted: str) -> list[float]:
+    """The column `wanted` in SI units."""
+    units = HEADERS[wanted]
+    for header, texts in columns.items():
+        found = re.fullmatch(rf"{wanted}\s*(?:[\[(]\s*(\S+)\s*[\])])?", header, re.IGNORECASE)
+        if not found:
+            continue
+        if found[1] is not None and found[1] not in units:
+            raise ValueError(f'unit of "{header}" is not known; allowed: {", ".join(units)}')
+        factor = 1.0 if found[1] is None else units[found[1]]
+        return [factor * _number(str(text), wanted, row) for row, text in enumerate(texts, start=1)]
+    raise ValueError(f'no column {wanted}; expected a header such as "t [s],Q [L/s]"')
+
+
+def _number(text: str, name: str, row: int) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"row {row}: {name} = {text!r} is not a number") from None
+
+
+def _normal_depth(where: Where, name: str, inflow: Inflow, gravity: np.ndarray) -> float:
+    """Depth of uniform flow with the inflow's constant rate, m."""
+    table = f"inflow.{name}"
+    if inflow.hydrograph is not None or inflow.rate is None:
+        raise where.error(
+            ("inflow", name, "depth"),
+            f'{table}.depth = "normal" goes with a constant rate; with a hydrograph give a length',
+        )
+    if inflow.ks is None:
+        raise where.error(("inflow", name), f'{table}.ks is missing: depth = "normal" needs it')
+    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    pull = float(gravity @ direction)
+    if pull <= 0:
+        raise where.error(
+            ("inflow", name, "direction"),
+            f'{table}: depth = "normal" needs a flow down a slope; gravity along the direction is '
+            f"{pull:.3g} m/s2",
+        )
+    try:
+        return normal_depth(inflow.rate / inflow.width, pull, inflow.ks)
+    except ValueError as error:
+        raise where.error(
+            ("inflow", name, "ks"), f"{table}.ks = {inflow.ks:g} m: {error}"
+        ) from None
+
+
+def keulegan_rate(depth: float, pull: float, ks: float) -> float:
+    """Discharge of uniform flow in a wide rough channel, m2/s (Keulegan 1938).
+
+    q = h u* (6.25 + 5.75 log10(h/ks)) with u* = sqrt(g sin(slope) h); `pull` is g sin(slope), m/s2.
+    """
+    return depth * math.sqrt(pull * depth) * (6.25 + 5.75 * math.log10(depth / ks))
+
+
+def normal_depth(rate: float, pull: float, ks: float) -> float:
+    """The depth h, m, at which `keulegan_rate` is `rate`, m2/s.
+
+    Raises ValueError where h would be below ks, where the law ends, or absurd.
+    """
+    low = high = ks
+    if keulegan_rate(low, pull, ks) > rate:
+        raise ValueError("the normal depth would be less than ks")
+    while keulegan_rate(high, pull, ks) < rate:
+        high *= 2
+        if high > LARGEST:
+            raise ValueError(f"the normal depth would be more than {LARGEST:g} m")
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if keulegan_rate(middle, pull, ks) < rate else (low, middle)
+    return 0.5 * (low + high)

@@ -1,0 +1,109 @@
+"""Loading: from a TOML file and --set options to a checked scenario."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from .checks.references import check_names, check_references
+from .checks.tables import check_scenario
+from .hydrographs import completed_inflows
+from .materials import Material, MaterialError, complete_materials, equation_of_state
+from .model import Scenario, file_of, min_sound_speed, names_in_use
+from .particle_files.reader import ParticleTable, read_particles
+from .reading.files import find_scenario, merged_table, read_with_bases, scenario_folder
+from .reading.messages import to_user_error
+from .reading.overrides import apply_overrides
+from .reading.resolve import resolve_table
+from .schemes import with_scheme_defaults
+from .tables.root import ScenarioTable
+from .values.toml_source import Where, read_toml
+
+HISTORY_ROWS = 1000  # of a run that does not give time_history
+
+
+def load_scenario(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
+    """Read, override, evaluate and check a scenario; raises UserError with one clear sentence."""
+    sources = read_with_bases(find_scenario(str(name_or_path)))
+    where = Where(sources)
+    table = with_scheme_defaults(apply_overrides(merged_table(sources, where), overrides, where))
+    table, constants = resolve_table(table, where)
+    try:
+        tables = ScenarioTable.model_validate(table, context={"dim": table["dim"]})
+    except ValidationError as error:
+        raise to_user_error(error, table, where) from None
+    return _completed(tables, where, constants)
+
+
+def list_scenarios() -> list[tuple[str, str, Path]]:
+    """(name, title, path) of the scenarios that come with doseki."""
+    return [
+        (path.stem, str(read_toml(path).table.get("title", "")), path)
+        for path in sorted(scenario_folder().glob("*.toml"))
+    ]
+
+
+def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -> Scenario:
+    """Fill in what follows from the tables together; raises UserError where they disagree."""
+    materials = _materials(tables, where)
+    read = {
+        name: read_particles(file_of(where, name, body.given("file")), tables.dim, body.material)
+        for name, body in tables.body.items()
+        if body.is_read
+    }
+    check_names(tables, where)
+    check_references(tables, where, materials, read)
+    gravity = tables.gravity
+    if gravity is None:
+        gravity = _gravity_on_slope(tables.slope, tables.g, tables.dim)
+    completed = {
+        "gravity": gravity,
+        "time_history": tables.time_history or tables.time_max / HISTORY_ROWS,
+        "inflow": completed_inflows(tables.inflow, gravity, where),
+        "xi": tables.xi or _reduction_factor(tables, gravity, materials, read),
+    }
+    scenario = Scenario.made_of(tables, completed, where, materials, constants, read)
+    check_scenario(scenario)
+    return scenario
+
+
+def _gravity_on_slope(slope: float | None, g: float, dim: int) -> np.ndarray:
+    """Gravity along axes aligned with a slope, x pointing up it; zero without a slope."""
+    gravity = np.zeros(dim)
+    if slope is not None:
+        angle = math.radians(slope)
+        gravity[0], gravity[-1] = -g * math.sin(angle), -g * math.cos(angle)
+    return gravity
+
+
+def _materials(tables: ScenarioTable, where: Where) -> dict[str, Material]:
+    given = {name: table.model_dump(exclude_none=True) for name, table in tables.material.items()}
+    try:
+        return complete_materials(given, equation_of_state(tables.scheme, tables.eos))
+    except MaterialError as error:
+        keys = ("material", error.material)
+        raise where.error(keys, f"material.{error.material}: {error}") from None
+
+
+def _reduction_factor(
+    tables: ScenarioTable,
+    gravity: np.ndarray,
+    materials: Mapping[str, Material],
+    read: Mapping[str, ParticleTable],
+) -> float:
+    """xi = 10 sqrt(2 g H)/min c0 over the materials in use (eq. 19); 1 without a height.
+
+    With `speed_max` in place of a height it is 10 speed_max/min c0.
+    """
+    g = float(np.linalg.norm(gravity)) or tables.g
+    speed = tables.speed_max
+    if tables.xi_height is not None:
+        speed = math.sqrt(2 * g * tables.xi_height)
+    if speed is None:
+        return 1.0
+    return 10 * speed / min_sound_speed(tables, materials, names_in_use(tables, read))

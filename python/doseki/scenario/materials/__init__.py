@@ -1,0 +1,31 @@
+"""Materials and the laws that they follow, each declared once."""
+
+from .complete import MaterialError, complete_materials
+from .laws import (
+    ELASTIC_DEFAULTS,
+    EQUATIONS_OF_STATE,
+    HYPERELASTIC_LAWS,
+    RHEOLOGIES,
+    Law,
+    equation_of_state,
+    laws_of,
+)
+from .material import BUILT_IN, LAWS, MATERIAL_PARAMETERS, Material
+from .parameters import MaterialParameter
+
+__all__ = [
+    "BUILT_IN",
+    "ELASTIC_DEFAULTS",
+    "EQUATIONS_OF_STATE",
+    "HYPERELASTIC_LAWS",
+    "LAWS",
+    "MATERIAL_PARAMETERS",
+    "RHEOLOGIES",
+    "Law",
+    "Material",
+    "MaterialError",
+    "MaterialParameter",
+    "complete_materials",
+    "equation_of_state",
+    "laws_of",
+]

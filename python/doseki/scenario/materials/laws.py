@@ -1,0 +1,129 @@
+"""The laws that a scenario chooses by name, with the parameters that only they have.
+
+The core knows each law under the same name, and its parameters under the same names: see
+core/physics/rheology.hpp, equation_of_state.hpp and hyperelastic.hpp.  A new law is declared here
+and named there; what is not a parameter of every material stands with the law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from ..schemes import RESOLVED, UETA2022
+from .parameters import MaterialParameter
+
+
+def _no_objection(numbers: Mapping[str, float]) -> str | None:
+    return None
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law, the parameters of its own, and the schemes that obey it.
+
+    `needed` are the parameters that must be given, greater than 0.  `objection(numbers)` says what
+    is wrong with parameters that do not fit together, or None.
+    """
+
+    name: str
+    doc: str
+    parameters: tuple[MaterialParameter, ...] = ()
+    needed: tuple[str, ...] = ()
+    schemes: tuple[str, ...] = (UETA2022, RESOLVED)
+    objection: Callable[[Mapping[str, float]], str | None] = _no_objection
+
+
+def _table(*laws: Law) -> dict[str, Law]:
+    return {law.name: law for law in laws}
+
+
+def _fluid(name: str, unit: str, doc: str, default: float = 0.0) -> MaterialParameter:
+    return MaterialParameter(name, unit, doc, least=0.0, default=default, law="fluid")
+
+
+def _friction_falls(numbers: Mapping[str, float]) -> str | None:
+    if numbers["mu_2"] < numbers["mu_s"]:
+        return f"mu_2 = {numbers['mu_2']:g} must be at least mu_s = {numbers['mu_s']:g}"
+    return None
+
+
+_YIELD_STRESS = _fluid("yield_stress", "Pa", "yield stress")
+_REGULARISATION = _fluid("regularisation", "s", "Papanastasiou's regularisation")
+_VISCOSITY_MAX = _fluid("viscosity_max", "Pa s", "greatest viscosity")
+
+# How the viscosity of a fluid follows from the rate of strain: `rheology` of a material.
+RHEOLOGIES = _table(
+    Law("newtonian", "constant kinematic viscosity nu, eq. 7"),
+    Law(
+        "herschel_bulkley",
+        "yield stress and power law, eq. 64",
+        parameters=(
+            _YIELD_STRESS,
+            _fluid("consistency", "Pa s^n", "consistency"),
+            _fluid("flow_index", "", "flow index", default=1.0),
+            _REGULARISATION,
+            _VISCOSITY_MAX,
+        ),
+        needed=("consistency", "regularisation", "flow_index", "viscosity_max"),
+        schemes=(RESOLVED,),
+    ),
+    Law(
+        "mu_i",
+        "friction of dense grains, eq. 65",
+        parameters=(
+            _fluid("mu_s", "", "static coefficient of friction"),
+            _fluid("mu_2", "", "limiting coefficient of friction"),
+            _fluid("inertial_number", "", "reference inertial number"),
+            _fluid("grain_diameter", "m", "diameter of the grains"),
+            _fluid("grain_density", "kg/m3", "density of the grains"),
+            _VISCOSITY_MAX,
+        ),
+        needed=("mu_s", "inertial_number", "grain_diameter", "grain_density", "viscosity_max"),
+        schemes=(RESOLVED,),
+        objection=_friction_falls,
+    ),
+)
+
+# How pressure follows from density: `eos` of a scenario.
+EQUATIONS_OF_STATE = _table(
+    Law("birch_murnaghan", "Birch and Murnaghan's, eq. 8", schemes=(UETA2022,)),
+    Law("linear", "pressure in proportion to compression, eq. 26", schemes=(RESOLVED,)),
+    Law("tait", "Tait's with the exponent 7 of water, eq. 26", schemes=(RESOLVED,)),
+)
+
+# How the stress of a deformable body follows from its deformation: `elastic_law` of a body.
+HYPERELASTIC_LAWS = _table(
+    Law("st_venant_kirchhoff", "linear in the Green strain, eq. 81", schemes=(RESOLVED,)),
+    Law("neo_hookean", "compressible rubber, eq. 81", schemes=(RESOLVED,)),
+)
+# Of deformable bodies that say nothing else.
+ELASTIC_DEFAULTS = {"elastic_law": "st_venant_kirchhoff", "damping": 0.02, "hourglass": 0.5}
+
+
+def laws_of(family: Mapping[str, Law], scheme: str) -> tuple[str, ...]:
+    """The names of the laws of a family that a scheme obeys."""
+    return tuple(name for name, law in family.items() if scheme in law.schemes)
+
+
+def equation_of_state(scheme: str, chosen: str) -> str:
+    """The equation of state of a run: the chosen one, or the only one that its scheme has."""
+    obeyed = laws_of(EQUATIONS_OF_STATE, scheme)
+    return chosen if chosen in obeyed else obeyed[0]
+
+
+def owners(family: Mapping[str, Law], parameter: MaterialParameter) -> tuple[str, ...]:
+    """The names of the laws that have a parameter of their own of that name."""
+    return tuple(
+        law.name for law in family.values() if parameter.name in (p.name for p in law.parameters)
+    )
+
+
+def parameters_of(families: Iterable[Mapping[str, Law]]) -> dict[str, MaterialParameter]:
+    """The parameters of all laws by name, each once."""
+    return {
+        parameter.name: parameter
+        for family in families
+        for law in family.values()
+        for parameter in law.parameters
+    }

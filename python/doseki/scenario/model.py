@@ -1,0 +1,183 @@
+"""A scenario that has been read and checked: the description of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ConfigDict, PrivateAttr
+
+from ..util.toml_writer import to_toml
+from .gauges.gauge import Gauge, Setting
+from .kinematics import Kinematics
+from .materials import Material
+from .particle_files.reader import ParticleTable
+from .schemes import KERNEL_SUPPORT, RESOLVED
+from .tables.root import ScenarioTable
+from .tables.sections import SECTIONS
+from .values.toml_source import Where
+from .values.types import Positive, Vector
+
+
+class Scenario(ScenarioTable):
+    """A run, checked and without expressions; lengths in m, times in s, angles in degrees.
+
+    The tables of the file are `parameters`, `body`, `inflow`, `outflow`, `gauge`, `window` and
+    `figure`, dictionaries by name.  `gravity` is an array (dim,) also where the file gives a
+    slope, and `xi` a number also where it gives a height.  Nothing of it changes once it is made;
+    `with_xi` makes another one.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    gravity: Vector
+    time_history: Positive
+    xi: Positive
+
+    _where: Where = PrivateAttr()
+    _materials: Mapping[str, Material] = PrivateAttr()
+    _constants: Mapping[str, Any] = PrivateAttr()
+    _particle_tables: Mapping[str, ParticleTable] = PrivateAttr()
+
+    @classmethod
+    def made_of(
+        cls,
+        tables: ScenarioTable,
+        completed: Mapping[str, Any],
+        where: Where,
+        materials: Mapping[str, Material],
+        constants: Mapping[str, Any],
+        particle_tables: Mapping[str, ParticleTable],
+    ) -> Scenario:
+        """The scenario of checked `tables`, with the values `completed` that follow from them."""
+        fields = ScenarioTable.model_fields.items()
+        values = {field.alias or name: getattr(tables, name) for name, field in fields}
+        made = cls.model_construct(tables.model_fields_set, **values | dict(completed))
+        made._where, made._materials = where, materials
+        made._constants, made._particle_tables = constants, particle_tables
+        return made
+
+    @property
+    def where(self) -> Where:
+        """Names the place of a key in error messages."""
+        return self._where
+
+    @property
+    def materials(self) -> Mapping[str, Material]:
+        """Every known material by name, with unscaled values."""
+        return self._materials
+
+    @cached_property
+    def material_names(self) -> list[str]:
+        """The materials in use, in order of first use; particles hold indices into this list."""
+        return names_in_use(self, self._particle_tables)
+
+    @property
+    def constants(self) -> Mapping[str, Any]:
+        """What expressions may use: the parameters and the top-level numbers."""
+        return self._constants
+
+    @property
+    def particle_tables(self) -> Mapping[str, ParticleTable]:
+        """What was read for the bodies with shape = "file", by body name."""
+        return self._particle_tables
+
+    @property
+    def support(self) -> float:
+        """How far a particle of spacing dp acts, m: H h = 2.5 eta dp (Wendland C2: 2 eta dp)."""
+        return KERNEL_SUPPORT[self.kernel] * self.eta * self.dp
+
+    def smoothing_length(self, mass: np.ndarray, density: np.ndarray) -> np.ndarray:
+        """h = eta (m/rho)^(1/dim) (eq. 10), m, of particles (N,)."""
+        return self.eta * (mass / density) ** (1 / self.dim)
+
+    @property
+    def min_sound_speed(self) -> float:
+        """Smallest unscaled sound speed of the materials that limit the speed of the flow, m/s."""
+        return min_sound_speed(self, self.materials, self.material_names)
+
+    def kinematics_of(self, name: str) -> Kinematics:
+        """How the particles of [body.NAME] move."""
+        body = self.body[name]
+        law = self.materials[body.material].law if body.material is not None else None
+        return body.kinematics_in(self.scheme, law)
+
+    def names_of_bodies(self, name: str) -> list[str]:
+        """The bodies that [body.NAME] stands for: a file may have names of its own."""
+        read = self.particle_tables.get(name)
+        return [name] if read is None or read.body is None else list(read.body_names)
+
+    def interval_of(self, gauge: Gauge) -> float:
+        """Time between two samples, s."""
+        return self.time_out if gauge.interval is None else gauge.interval
+
+    def setting(self, body_names: Sequence[str] = ()) -> Setting:
+        """What surrounds its gauges; `body_names` are those that particles index."""
+        low, high = self.domain_min, self.domain_max
+        domain = None
+        if low is not None and high is not None and np.all(low < high):
+            domain = low, high
+        return Setting(
+            dim=self.dim,
+            dp=self.dp,
+            scheme=self.scheme,
+            gravity=self.gravity,
+            periodic=tuple("xyz".index(axis) for axis in self.periodic),
+            domain=domain,
+            fixed={name: body.fixed for name, body in self.body.items()},
+            material_names=self.material_names,
+            body_names=body_names,
+            named={name: self.names_of_bodies(name) for name in self.body},
+        )
+
+    def ends_of(self, axis: int) -> tuple[float, float]:
+        """Lower and upper end of the domain along an axis that has them, m."""
+        assert self.domain_min is not None
+        assert self.domain_max is not None
+        return float(self.domain_min[axis]), float(self.domain_max[axis])
+
+    def with_xi(self, xi: float) -> Scenario:
+        """The same run with another reduction factor, whatever it follows from in the file."""
+        return self.model_copy(update={"xi": xi})
+
+    def effective_toml(self) -> str:
+        """The scenario as TOML that `load_scenario` reads back to the same run."""
+        implied = {"xi_height", "speed_max", "slope"}  # xi and gravity say the same
+        table = self.model_dump(by_alias=True, exclude_none=True, exclude=implied | set(SECTIONS))
+        given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
+        given["material"] = {name: self.materials[name].table() for name in self.material_names}
+        for material in given["material"].values():
+            del material["name"]  # to_toml leaves out what is None
+        for name, body in self.body.items():
+            if (file := body.given("file")) is not None:
+                given["body"][name]["file"] = str(file_of(self.where, name, file).resolve())
+        return to_toml(table | {name: given.get(name, {}) for name in SECTIONS})
+
+
+def file_of(where: Where, name: str, file: str) -> Path:
+    """The file of [body.NAME]; its path is relative to the scenario file that names it."""
+    return where.folder(("body", name, "file")) / file
+
+
+def names_in_use(tables: ScenarioTable, read: Mapping[str, ParticleTable]) -> list[str]:
+    """The materials of bodies, of the particles `read` from files, and of inflows, none twice."""
+    used: list[str] = []
+    for name, body in tables.body.items():
+        if name in read:
+            used += read[name].material_names
+        elif body.material is not None:
+            used.append(body.material)
+    used += [inflow.material for inflow in tables.inflow.values()]
+    return list(dict.fromkeys(used))
+
+
+def min_sound_speed(
+    tables: ScenarioTable, materials: Mapping[str, Material], in_use: list[str]
+) -> float:
+    """Smallest unscaled sound speed that counts, m/s: in the resolved scheme walls have none."""
+    fluids = [name for name in in_use if materials[name].law == "fluid"]
+    limiting = fluids if tables.scheme == RESOLVED and fluids else in_use
+    return min(materials[name].speedsound for name in limiting)

@@ -1,0 +1,1 @@
+"""Particles read from files: CSV and HDF5."""

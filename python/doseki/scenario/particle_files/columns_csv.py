@@ -1,0 +1,84 @@
+"""Columns of a CSV file, as text."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from ...errors import UserError
+
+ROWS_AT_ONCE = 100_000
+MAX_COLUMNS = 64
+MAX_FIELD = 200  # characters; a wrong file (a binary, an essay) fails here, not in memory
+
+
+def read_csv_columns(path: Path) -> dict[str, np.ndarray]:
+    """Column name -> array (N,) of strings; spaces around fields are dropped.
+
+    Blank lines and lines that begin with # are skipped.  Raises UserError.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            return _read(path, _Lines(file))
+    except UnicodeDecodeError:
+        raise UserError(f"{path}: neither HDF5 nor a CSV text in UTF-8") from None
+    except csv.Error as error:
+        raise UserError(f"{path}: not a CSV file: {error}") from None
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+class _Lines:
+    """Lines of a file that hold data, each of bounded length; `number` is that of the last one."""
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self.number = 0
+
+    def __iter__(self) -> Iterator[str]:
+        while line := self._file.readline(MAX_COLUMNS * MAX_FIELD):
+            self.number += 1
+            if line.strip() and not line.lstrip().startswith("#"):
+                yield line
+
+
+def _read(path: Path, lines: _Lines) -> dict[str, np.ndarray]:
+    reader = csv.reader(lines, skipinitialspace=True)
+    names = [name.strip() for name in next(reader, [])]
+    _check_header(path, names)
+    chunks: list[list[np.ndarray]] = [[] for _ in names]
+    while rows := list(islice(_checked_rows(path, reader, lines, len(names)), ROWS_AT_ONCE)):
+        for chunk, column in zip(chunks, zip(*rows, strict=True), strict=True):
+            chunk.append(np.char.strip(np.array(column, dtype=str)))
+    return {
+        name: np.concatenate(chunk) if chunk else np.zeros(0, dtype=str)
+        for name, chunk in zip(names, chunks, strict=True)
+    }
+
+
+def _check_header(path: Path, names: list[str]) -> None:
+    if not names:
+        raise UserError(f"{path}: the file is empty; expected a CSV header such as x,y,vx,vy,...")
+    if len(names) > MAX_COLUMNS:
+        raise UserError(f"{path}: {len(names)} columns; at most {MAX_COLUMNS} are allowed")
+    repeated = [name for name in names if names.count(name) > 1]
+    if repeated:
+        raise UserError(f'{path}: the column "{repeated[0]}" appears twice')
+
+
+def _checked_rows(
+    path: Path, reader: Iterator[list[str]], lines: _Lines, width: int
+) -> Iterator[list[str]]:
+    for row in reader:
+        if len(row) != width:
+            raise UserError(
+                f"{path}, line {lines.number}: {len(row)} fields; the header has {width} columns"
+            )
+        if max(map(len, row)) > MAX_FIELD:
+            raise UserError(f"{path}, line {lines.number}: a field is too long")
+        yield row

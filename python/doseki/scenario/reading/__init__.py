@@ -1,0 +1,1 @@
+"""Reading a scenario: shipped files, `extends`, --set, expressions, error messages."""

@@ -1,0 +1,123 @@
+"""What pydantic objects to, said in one sentence about one key."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from ...errors import UserError
+from ...util.spelling import suggestion
+from ..table import Kinds
+from ..tables.sections import SECTIONS, table_at
+from ..values.toml_source import KeyPath, Where, dotted
+
+EXPECTED = {
+    "float_type": 'a number, or an expression such as "= 2*dp"',
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "a string",
+    "list_type": "a list [ , ]",
+    "dict_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+}
+RANGES = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
+
+
+def to_user_error(
+    error: ValidationError, table: dict[str, Any], where: Where, above: KeyPath = ()
+) -> UserError:
+    """The UserError for the first objection; unknown keys come first (they cause others).
+
+    `table` is what was validated and `above` the keys under which it stands in the file.
+    """
+    objections = sorted(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
+    first = objections[0]
+    keys = above + _keys_in(table, first)
+    for key in reversed(above):
+        table = {str(key): table}
+    return where.error(keys, _sentence(keys, first, table))
+
+
+def _keys_in(table: Any, objection: Any) -> KeyPath:
+    """The objection's location as keys of the file, without pydantic's names of union members."""
+    keys: list[str | int] = []
+    for key in objection["loc"]:
+        if _holds(table, key):
+            table = table[key]
+            keys.append(key)
+        elif objection["type"] == "missing" and key == objection["loc"][-1]:
+            keys.append(key)
+    return tuple(keys)
+
+
+def _holds(table: Any, key: str | int) -> bool:
+    if isinstance(table, dict):
+        return key in table
+    return isinstance(table, list) and isinstance(key, int) and key < len(table)
+
+
+def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any]) -> str:
+    name, kind, value = dotted(keys), objection["type"], objection["input"]
+    context = objection.get("ctx", {})
+    about = _description(keys, table)
+    if kind == "extra_forbidden":
+        return f"{name} is not a known key{_nearest_key(keys, table)}"
+    if kind == "missing":
+        return f"{name} is missing{about}"
+    if kind == "union_tag_not_found" and not isinstance(value, dict):
+        return f"{name} = {_shown(value)} must be a table{about}"
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        section = SECTIONS[str(keys[0])]
+        assert isinstance(section, Kinds)
+        return _tag_sentence(name, section, context.get("tag"))
+    if kind == "literal_error":
+        return f"{name} = {_shown(value)} is not allowed; choose {context['expected']}{about}"
+    if kind == "value_error":
+        return f"{name}: {context['error']}"
+    if kind == "finite_number":
+        return f"{name} = {_shown(value)} must be finite{about}"
+    if kind in EXPECTED:
+        return f"{name} = {_shown(value)} must be {EXPECTED[kind]}{about}"
+    for bound, words in RANGES.items():
+        if bound in context:
+            limit = f"{words} {context[bound]:g}"
+            return f"{name} = {_shown(value)} is out of range; must be {limit}{about}"
+    return f"{name} = {_shown(value)}: {objection['msg']}{about}"
+
+
+def _tag_sentence(name: str, kinds: Kinds, tag: str | None) -> str:
+    """About a table that does not say rightly of which kind it is."""
+    if tag is None:
+        return f"{name}.{kinds.key} is missing; choose one of {', '.join(kinds.words)}"
+    said = tag.removeprefix(kinds.tag(""))
+    return f'{name}.{kinds.key} = "{said}" is not a {kinds.key}{suggestion(said, kinds.words)}'
+
+
+def _description(keys: KeyPath, table: dict[str, Any]) -> str:
+    """What the key means, in brackets."""
+    for length in range(len(keys), 0, -1):
+        kind = table_at(keys[: length - 1], table)
+        if kind is None:
+            continue
+        for name, field in kind.model_fields.items():
+            if keys[length - 1] == (field.alias or name) and field.description:
+                return f" ({field.description})"
+        return ""
+    return ""
+
+
+def _nearest_key(keys: KeyPath, table: dict[str, Any]) -> str:
+    kind = table_at(keys[:-1], table)
+    if kind is None:
+        return ""
+    known = [field.alias or name for name, field in kind.model_fields.items()]
+    return suggestion(str(keys[-1]), known)
+
+
+def _shown(value: Any) -> str:
+    """The value as the file has it, cut short."""
+    text = {True: "true", False: "false"}[value] if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

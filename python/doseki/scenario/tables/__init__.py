@@ -1,0 +1,1 @@
+"""The tables of a scenario file: keys, types, units and bounds, each declared once."""

@@ -1,0 +1,203 @@
+"""[body.NAME] of each shape."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ..kinematics import SINGLE, Kinematics
+from ..table import Kinds
+from ..values.types import (
+    Grading,
+    Length,
+    Mass,
+    OptionalMaterialName,
+    Positive,
+    Vector,
+)
+from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
+
+
+class Box(LatticeBody):
+    """Particles at min + (k + 1/2) dp, round(length/dp) of them along each side."""
+
+    shape: Literal["box"]
+    min: Vector = Field(description="lower corner before rotation, m")
+    max: Vector = Field(description="upper corner before rotation, m")
+    count: int | None = Field(
+        None, gt=0, description="keep this many particles, filled row by row from below"
+    )
+    wetted_by: OptionalMaterialName = Field(
+        None,
+        description="material that lies on its top at rest: the density is such that the cover "
+        "brings it to rho0; else whatever comes to a dry bed hovers one support above it",
+    )
+
+    @model_validator(mode="after")
+    def _wetted_whole(self) -> Box:
+        if self.wetted_by is not None and self.where is not None:
+            raise ValueError("wetted_by and where exclude each other: a wetted box is whole")
+        return self
+
+    def layers(self, dp: float) -> int | None:
+        """Particles of spacing `dp`, m, across its thinnest side."""
+        return round(float(np.min(self.max - self.min)) / (self.dp or dp))
+
+
+class Disc(LatticeBody):
+    """A disc (2-D) or sphere (3-D) on a lattice centred on a particle, or one single particle."""
+
+    can_be_single: ClassVar[bool] = True
+
+    shape: Literal["disc", "sphere"]
+    centre: Vector = Field(description="its centre, m")
+    radius: Length = Field(description="its radius, m")
+    fill: Literal["lattice", "single"] = Field(
+        "lattice", description="lattice: particles nearer than radius; single: one with its mass"
+    )
+
+    def kinematics_in(self, scheme: str, law: str | None) -> Kinematics:
+        """As of any body; a ball that is one particle moves as one."""
+        found = super().kinematics_in(scheme, law)
+        return SINGLE if found.is_whole and self.fill == "single" else found
+
+
+class Grains(TurnedBody):
+    """Discs (2-D) or spheres (3-D) packed at random into a box, from its bottom upwards."""
+
+    is_solid: ClassVar[bool] = True
+    can_be_single: ClassVar[bool] = True
+
+    shape: Literal["disc", "sphere"]
+    min: Vector = Field(description="lower corner of the box before rotation, m")
+    max: Vector = Field(description="upper corner of the box before rotation, m")
+    d: Length | None = Field(None, description="diameter, m; excludes grading")
+    grading: Grading | None = Field(
+        None, description="[[d, share], ...] in m and parts of the mass; excludes d"
+    )
+    count: int | None = Field(None, gt=0, description="number of grains; excludes mass_total")
+    mass_total: Mass | None = Field(
+        None, description='kg or a string such as "20 kg"; default: what fills the box'
+    )
+    width: Length = Field(1.0, description="2-D: m; mass_total is that of a slice so wide")
+    packing: float | None = Field(
+        None,
+        gt=0,
+        lt=1,
+        description="solid fraction; with count or mass_total the box is filled up to a level, and "
+        "without packing evenly all over (default 0.75, in 3-D 0.55)",
+    )
+    wetted: float = Field(
+        1.0,
+        gt=0.3,
+        le=1,
+        description="diameter that water sees over the true one; below 1 in 2-D, where discs that "
+        "touch would leave water no way between them",
+    )
+    random_seed: int = Field(1, ge=0, description="of the packing")
+    settle: bool | Positive = Field(
+        False,
+        description="settle dry under gravity before the start, between the sides of "
+        "the box: true, until at rest, or s",
+    )
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Grains:
+        if (self.d is None) == (self.grading is None):
+            raise ValueError("give either d or grading")
+        if self.count is not None and self.mass_total is not None:
+            raise ValueError("count and mass_total exclude each other: give one")
+        if not np.all(self.min < self.max):
+            raise ValueError("every entry of min must be below that of max")
+        return self
+
+    @property
+    def described(self) -> str:
+        """The keys that make it what it is, for messages."""
+        return f"{super().described} with d"
+
+    @property
+    def rows(self) -> list[list[float]]:
+        """Rows [diameter, m; share of the mass]."""
+        return [[self.d, 1.0]] if self.d is not None else self.grading or []
+
+
+class Polygon(TurnedBody):
+    """A convex polygon of a 2-D run."""
+
+    only_dim: ClassVar[int | None] = 2
+    is_solid: ClassVar[bool] = True
+
+    shape: Literal["polygon"]
+    vertices: list[Vector] = Field(description="its corners in order, m", min_length=3)
+
+
+class Mesh(TurnedBody):
+    """A closed convex polyhedron of a 3-D run."""
+
+    only_dim: ClassVar[int | None] = 3
+    is_solid: ClassVar[bool] = True
+
+    shape: Literal["stl"]
+    file: str = Field(description="path, relative to this scenario file")
+    scale: Positive = Field(1.0, description="m per unit of the file")
+    centre: Vector | None = Field(
+        None, description="where its centre of mass is put, m; default: where the file has it"
+    )
+
+
+class Points(ShapedBody):
+    """Particles at given positions."""
+
+    can_be_single: ClassVar[bool] = True
+    must_be_single: ClassVar[bool] = True
+
+    shape: Literal["points"]
+    position: list[Vector] = Field(description="one vector per particle, m", min_length=1)
+    mass: Positive = Field(description="mass of each particle, kg (2-D: kg/m)")
+
+
+class ParticleFile(BodyTable):
+    """Particles read from a CSV or HDF5 file."""
+
+    is_read: ClassVar[bool] = True
+
+    shape: Literal["file"]
+    file: str = Field(description="path, relative to this scenario file")
+    fixed: bool = Field(False, description="where the file has no column `fixed`")
+    material: OptionalMaterialName = Field(
+        None, description="where the file has no column `material`"
+    )
+
+
+GRAINS = "grains"
+
+
+def _packed(table: dict[str, Any]) -> str | None:
+    """Discs and spheres with a diameter in place of a radius are grains."""
+    is_ball = table.get("shape") in ("disc", "sphere")
+    return GRAINS if is_ball and ("d" in table or "grading" in table) else None
+
+
+BODIES = Kinds(
+    "shape",
+    ShapedBody,
+    {
+        "box": Box,
+        "disc": Disc,
+        "sphere": Disc,
+        "polygon": Polygon,
+        "stl": Mesh,
+        "points": Points,
+        "file": ParticleFile,
+        GRAINS: Grains,
+    },
+    special=_packed,
+)
+
+if TYPE_CHECKING:
+    AnyBody = BodyTable
+else:
+    AnyBody = BODIES.union

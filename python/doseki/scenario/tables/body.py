@@ -1,0 +1,147 @@
+"""[body.NAME]: what bodies of several shapes have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+from pydantic import Field
+
+from ..kinematics import ELASTIC, FIXED, PARTICLES, RIGID, SINGLE, Kinematics
+from ..materials import ELASTIC_DEFAULTS, HYPERELASTIC_LAWS
+from ..schemes import RESOLVED
+from ..table import Part
+from ..values.types import Length, MaterialName, Positive, ScalarField, Vector, VelocityField
+from .motion import Motion
+
+if TYPE_CHECKING:
+    ElasticLaw = str
+else:
+    ElasticLaw = Literal[tuple(HYPERELASTIC_LAWS)]
+
+
+class BodyTable(Part):
+    """What every table [body.NAME] has, and what its shape means for the checks of a scenario."""
+
+    only_dim: ClassVar[int | None] = None  # of runs that have this shape; None: any
+    is_solid: ClassVar[bool] = False  # a solid of the resolved scheme, made of bodies also if fixed
+    can_be_single: ClassVar[bool] = False  # as one particle per body
+    must_be_single: ClassVar[bool] = False
+    is_read: ClassVar[bool] = False  # from a file of particles
+    of_particles: ClassVar[tuple[str, ...]] = ()  # keys for particles that move by themselves
+
+    shape: str
+    fixed: bool
+    material: str | None
+
+    @property
+    def described(self) -> str:
+        """The keys that make it what it is, for messages."""
+        return f'shape = "{self.shape}"'
+
+    @property
+    def prescribed_motion(self) -> Motion | None:
+        """How a fixed body moves."""
+        return None
+
+    def layers(self, dp: float) -> int | None:
+        """Particles of spacing `dp`, m, across its thinnest side, if it has sides."""
+        return None
+
+    def kinematics_in(self, scheme: str, law: str | None) -> Kinematics:
+        """How its particles move, in a scheme and with the law of its material."""
+        return FIXED if self.fixed else PARTICLES
+
+
+class ShapedBody(BodyTable):
+    """What every body with a shape has."""
+
+    of_particles: ClassVar[tuple[str, ...]] = ("pressure",)
+
+    material: MaterialName = Field(description="name of its material")
+    pressure: ScalarField | None = Field(
+        None,
+        description="initial pressure, Pa; a number or an expression of x, y, z; particles keep "
+        "their volume",
+    )
+    fixed: bool = Field(False, description="true: interacts but moves only as `motion` says")
+    motion: Motion | None = Field(None, description="prescribed motion of a fixed body")
+    velocity: VelocityField | None = Field(
+        None, description="initial velocity, m/s; expressions may use x, y, z"
+    )
+    wall: Literal["no_slip", "free_slip", "rough"] = Field(
+        "no_slip", description="fixed, resolved scheme: how fluid meets it"
+    )
+    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
+    normal: Vector | None = Field(
+        None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
+    )
+    kinematics: Literal["rigid", "elastic", "single"] | None = Field(
+        None,
+        description="free solids of the resolved scheme: rigid (the default), elastic, or single: "
+        "one particle per grain",
+    )
+    clamped: ScalarField | None = Field(
+        None, description="elastic: points do not move where this expression of x, y, z is above 0"
+    )
+    elastic_law: ElasticLaw | None = Field(
+        None,
+        description=f"elastic: law of stress; default {ELASTIC_DEFAULTS['elastic_law']}",
+    )
+    damping: float | None = Field(
+        None,
+        ge=0,
+        le=1,
+        description=f"elastic: viscosity over rho0 c_P dp; default {ELASTIC_DEFAULTS['damping']}",
+    )
+    hourglass: float | None = Field(
+        None,
+        ge=0,
+        le=1,
+        description="elastic: springs over the shear modulus; default "
+        f"{ELASTIC_DEFAULTS['hourglass']}",
+    )
+    spin: float | Vector | None = Field(
+        None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
+    )
+
+    @property
+    def prescribed_motion(self) -> Motion | None:
+        """How a fixed body moves."""
+        return self.motion
+
+    def kinematics_in(self, scheme: str, law: str | None) -> Kinematics:
+        """Solids of the resolved scheme move as bodies."""
+        if self.fixed or scheme != RESOLVED or law != "solid":
+            return super().kinematics_in(scheme, law)
+        return {"elastic": ELASTIC, "single": SINGLE}.get(self.kinematics or "", RIGID)
+
+
+class TurnedBody(ShapedBody):
+    """A body that can be rotated."""
+
+    dp: Length | None = Field(None, description="particle spacing, m (default: the run's)")
+    rotate: float = Field(0.0, description="degrees, from the first axis towards the last")
+    rotate_axis: Vector | None = Field(None, description="3-D: axis of a right-handed rotation")
+    pivot: Vector | None = Field(None, description="point about which it is rotated, m")
+
+
+class LatticeBody(TurnedBody):
+    """A body filled with particles on a lattice."""
+
+    of_particles: ClassVar[tuple[str, ...]] = (
+        "pressure",
+        "jitter",
+        "where",
+        "mass_per_particle",
+        "wetted_by",
+        "count",
+    )
+
+    mass_per_particle: Positive | None = Field(None, description="kg; default rho0 dp^dim")
+    jitter: float = Field(
+        0.0, ge=0, le=0.5, description="random displacement along each axis, in spacings"
+    )
+    random_seed: int = Field(1, ge=0, description="of the jitter")
+    where: ScalarField | None = Field(
+        None, description="expression of x, y, z; only particles where it is above zero are kept"
+    )

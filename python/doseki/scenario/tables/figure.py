@@ -1,0 +1,125 @@
+"""[figure.NAME] of each kind: a picture made from the record of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import AfterValidator, Field, ValidationInfo
+
+from ...errors import UserError
+from ...record.quantities import check_quantity
+from ...util.spelling import suggestion
+from ..gauges.gauge import Gauge
+from ..table import Kinds, Part
+from ..values.types import (
+    GaugeName,
+    OptionalMaterialName,
+    OptionalWindowName,
+    Positive,
+    dimension,
+)
+
+
+def _known_quantities(names: list[str], info: ValidationInfo) -> list[str]:
+    for name in names:
+        try:
+            check_quantity(name, dimension(info))
+        except UserError as error:
+            raise ValueError(str(error)) from None
+    return names
+
+
+Quantities = Annotated[list[str], AfterValidator(_known_quantities)]
+
+
+class Figure(Part):
+    """What figures of all kinds have."""
+
+    kind: str
+    title: str = Field("", description="caption")
+
+    def objections(self, gauges: Mapping[str, Gauge], dim: int) -> Iterator[tuple[str, str]]:
+        """Why it cannot be drawn: the key to blame, and what to say after it."""
+        yield from ()
+
+
+class FigureOfSnapshots(Figure):
+    """What figures of particles at some moments have."""
+
+    window: OptionalWindowName = Field(
+        None, description="name of a [window.NAME]; default: everything"
+    )
+    times: list[float] = Field(
+        default_factory=list, description="s; nearest snapshots; default: see `when`"
+    )
+    when: Literal["all", "first", "last", "before_flow", "with_flow"] = Field(
+        "last",
+        description="which snapshots, where no times are given: before_flow is the last one with "
+        "no fluid in the window, with_flow the first one with fluid across all of it",
+    )
+    material: OptionalMaterialName = Field(None, description="count or draw only this material")
+
+
+class SnapshotFigure(FigureOfSnapshots):
+    """The particles at some moments."""
+
+    kind: Literal["snapshot"]
+    colour: Quantities = Field(
+        default_factory=lambda: ["material"],
+        description="one panel each: material, body, speed, velocity_x, pressure, density ...",
+    )
+
+
+class HistogramFigure(FigureOfSnapshots):
+    """How fast particles are at some moments."""
+
+    kind: Literal["histogram"]
+    bin_width: Positive = Field(0.1, description="of the bins, m/s")
+    sample: int = Field(30, gt=0, description="size of a random sample of particles")
+
+
+class SeriesFigure(Figure):
+    """Columns of the history over time."""
+
+    kind: Literal["series"]
+    columns: list[str] = Field(default_factory=list, description="columns of the history")
+
+
+class GaugeFigure(Figure):
+    """What a gauge has read."""
+
+    kind: Literal["gauge"]
+    gauge: GaugeName = Field(description="name of a [gauge.NAME]")
+    columns: list[str] = Field(
+        default_factory=list, description="columns of the gauge; default: all"
+    )
+    times: list[float] = Field(
+        default_factory=list, description="of profiles, s; default: some spread over the run"
+    )
+
+    def objections(self, gauges: Mapping[str, Gauge], dim: int) -> Iterator[tuple[str, str]]:
+        """Its columns must be those of the gauge; only profiles are drawn at certain times."""
+        gauge = gauges[self.gauge]
+        known = gauge.columns(dim)
+        for column in self.columns:
+            if column not in known:
+                why = f': "{column}" is not a column of {self.gauge}'
+                yield "columns", why + suggestion(column, known)
+        if self.times and not gauge.is_profile:
+            yield "times", f": {self.gauge} is no profile; its curves show all times"
+
+
+FIGURES = Kinds.by_word(
+    "kind",
+    Figure,
+    SnapshotFigure,
+    HistogramFigure,
+    SeriesFigure,
+    GaugeFigure,
+)
+
+if TYPE_CHECKING:
+    FigureTable = Figure
+else:
+    FigureTable = FIGURES.union

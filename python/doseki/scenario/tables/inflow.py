@@ -1,0 +1,60 @@
+"""[inflow.NAME]: a section through which particles enter."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydantic import Field
+
+from ..table import Part
+from ..values.types import (
+    Depth,
+    Direction,
+    Hydrograph,
+    Length,
+    MaterialName,
+    NonNegative,
+    Positive,
+    Rate,
+    Vector,
+)
+
+
+class Inflow(Part):
+    """A section through which particles enter, at a constant rate or as a hydrograph says."""
+
+    material: MaterialName = Field(description="name of the material that enters")
+    rate: Rate | None = Field(None, description='m3/s, or a string such as "3 L/s"')
+    hydrograph: Hydrograph | None = Field(
+        None,
+        description="[[t, Q], ...] in s after `start` and m3/s, or a CSV file with columns t and"
+        " Q; excludes rate",
+    )
+    width: Length = Field(description="m; a 2-D run enters rate/width")
+    position: Vector = Field(description="bottom point of the section, m")
+    direction: Direction = Field(description="direction of the flow")
+    depth: Depth = Field(
+        description='m, extent along the section\'s upward normal, or "normal": of uniform flow'
+    )
+    ks: Length | None = Field(None, description="roughness of the bed in the normal depth, m")
+    start: NonNegative = Field(0.0, description="s")
+    duration: Positive | None = Field(None, description="s; a hydrograph has its own")
+    jitter: float = Field(
+        0.0, ge=0, lt=0.5, description="random displacement along each axis, in spacings"
+    )
+
+    @property
+    def height(self) -> float:
+        """The depth in m, once that of uniform flow has been worked out."""
+        assert isinstance(self.depth, float)
+        return self.depth
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Rows (n, 2) of time, s, and discharge, m3/s; linear in between."""
+        given = self.hydrograph or [[0.0, self.rate], [self.duration, self.rate]]
+        return np.array(given, dtype=float) + np.array([self.start, 0.0])
+
+    @property
+    def peak_rate(self) -> float:
+        """Largest discharge, m3/s."""
+        return float(self.rows[:, 1].max())

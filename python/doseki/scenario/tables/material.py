@@ -1,0 +1,37 @@
+"""[material.NAME]: the parameters of a material."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field, create_model
+
+from ..materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
+from ..table import Table
+
+
+def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
+    description = f"{parameter.doc}, {parameter.unit}".removesuffix(", ")
+    return (
+        float | None,
+        Field(
+            None,
+            gt=parameter.above,
+            ge=parameter.least,
+            lt=parameter.below,
+            le=parameter.most,
+            description=description,
+        ),
+    )
+
+
+_FIELDS: dict[str, Any] = {
+    "law": (Literal[LAWS] | None, Field(None, description="how stress follows from motion")),
+    "rheology": (
+        Literal[tuple(RHEOLOGIES)] | None,
+        Field(None, description="how a fluid's viscosity follows"),
+    ),
+    "based_on": (str | None, Field(None, description="material that supplies what is not given")),
+} | {parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS}
+
+MaterialTable = create_model("MaterialTable", __base__=Table, **_FIELDS)

@@ -1,0 +1,42 @@
+"""[body.NAME.motion]: a prescribed motion."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ..table import Table
+from ..values.types import NonNegative, Positive, Vector
+
+
+class Motion(Table):
+    """A prescribed motion of a fixed body."""
+
+    velocity: Vector | None = Field(None, description="m/s; default: none")
+    angular_velocity: float | Vector | None = Field(
+        None, description="rad/s, anticlockwise; 3-D: a vector; default: none"
+    )
+    pivot: Vector | None = Field(
+        None, description="point about which it turns, which goes with it, m"
+    )
+    start: NonNegative = Field(0.0, description="when it begins to move, s")
+    stop: Positive | None = Field(None, description="when it stands still again, s")
+    removed_at: Positive | None = Field(None, description="when the body vanishes, s")
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Motion:
+        if self.stop is not None and self.stop <= self.start:
+            raise ValueError(f"stop = {self.stop:g} s must be later than start = {self.start:g} s")
+        if self.angular_velocity is not None and self.pivot is None:
+            raise ValueError("angular_velocity needs a pivot, the point about which the body turns")
+        if self.velocity is None and self.angular_velocity is None and self.removed_at is None:
+            raise ValueError("give velocity, angular_velocity or removed_at")
+        return self
+
+    def spin(self, dim: int) -> np.ndarray:
+        """Angular velocity as a vector (3,), rad/s; in 2-D along the axis that is not there."""
+        if self.angular_velocity is None:
+            return np.zeros(3)
+        if dim == 2:
+            return np.array([0.0, 0.0, self.angular_velocity])
+        return np.array(self.angular_velocity, dtype=float)

@@ -1,0 +1,91 @@
+"""A whole scenario file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from pydantic import Field
+
+from ..gauges.kinds import GaugeTable
+from ..materials import EQUATIONS_OF_STATE, laws_of
+from ..schemes import RESOLVED
+from ..table import Table
+from ..values.types import Axis, Length, NonNegative, Positive, Skin, Vector
+from .bodies import AnyBody
+from .contact import Contact
+from .figure import FigureTable
+from .inflow import Inflow
+from .material import MaterialTable
+from .parameter import Parameter
+from .region import Outflow, Window
+
+if TYPE_CHECKING:
+    EquationOfState = str
+else:
+    EquationOfState = Literal[laws_of(EQUATIONS_OF_STATE, RESOLVED)]
+
+
+class ScenarioTable(Table):
+    """A whole scenario file, every expression evaluated."""
+
+    schema_version: Literal[1] = Field(1, alias="schema", description="version of this format")
+    title: str = Field("", description="one line")
+    description: str = Field("", description="what it is and where it comes from")
+    dim: Literal[2, 3] = Field(description="number of space dimensions")
+    dp: Length = Field(description="particle spacing, m")
+    time_max: Positive = Field(description="end of the run, s")
+    time_out: Positive = Field(description="time between snapshots, s")
+    time_history: Positive | None = Field(None, description="s between history rows")
+    scheme: Literal["ueta2022", "resolved"] = Field("ueta2022", description="the list of terms")
+    kernel: Literal["wendland_c2", "wendland_c6"] = Field(
+        "wendland_c6", description="W; the resolved scheme has wendland_c2 by default"
+    )
+    eos: EquationOfState = Field("linear", description="resolved: law of pressure")
+    viscosity: Literal["morris", "monaghan_cleary"] = Field(
+        "morris",
+        description="resolved: form of the viscous term; the second keeps angular momentum",
+    )
+    turbulence: Literal["none", "smagorinsky", "mixing_length"] = Field(
+        "none", description="resolved: eddy viscosity"
+    )
+    smagorinsky: NonNegative = Field(0.12, description="resolved: C_s of the eddy viscosity")
+    shifting: bool = Field(True, description="resolved: keep particles evenly spread")
+    speed_max: Positive | None = Field(
+        None, description="highest speed expected, m/s: sound speed 10 times that; excludes xi"
+    )
+    precision: Literal["double", "float"] = Field("double", description="of the pair arithmetic")
+    gravity: Vector | None = Field(None, description="m/s2; excludes slope")
+    slope: float | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
+    g: Positive = Field(9.8, description="gravity on a slope and in eq. 19, m/s2")
+    attraction: NonNegative = Field(
+        0.0, description="resolved: B of a force -B^2 x per mass towards the origin, 1/s"
+    )
+    eta: float = Field(1.2, ge=0.8, le=3, description="smoothing length over spacing (eq. 10)")
+    alpha: NonNegative = Field(1.0, description="artificial viscosity (eq. 13)")
+    balsara: bool = Field(True, description="Balsara switch")
+    strength: bool = Field(True, description="elastic deviatoric stress of solids")
+    tension: Literal["free", "clamp_fluid", "clamp_all"] = Field(
+        "clamp_fluid", description="where negative pressure is set to zero"
+    )
+    h_mode: Literal["constant", "eq10"] = Field("constant", description="smoothing length in time")
+    sym_grad: bool = Field(False, description="mean kernel gradient also in eqs. 9 and 11")
+    cflnumber: float = Field(0.1, gt=0, le=1, description="C_CFL of eq. 18")
+    cfl_force: float = Field(0.1, gt=0, le=1, description="C_f of eq. 18")
+    xi: Positive | None = Field(None, description="reduction factor (eq. 19); excludes xi_height")
+    xi_height: Length | None = Field(None, description="H of eq. 19, m; excludes xi")
+    fixed_limits_dt: bool = Field(
+        True, description="false: in eq. 18 a fixed particle is no stiffer than what it meets"
+    )
+    skin: Skin = Field(0.05, description='margin of the lists over the support, or "auto"')
+    periodic: list[Axis] = Field(default_factory=list, description="periodic axes")
+    domain_min: Vector | None = Field(None, description="lower corner of the periodic domain, m")
+    domain_max: Vector | None = Field(None, description="upper corner of the periodic domain, m")
+    contact: Contact = Field(default_factory=Contact)
+    parameters: dict[str, Parameter] = Field(default_factory=dict)
+    material: dict[str, MaterialTable] = Field(default_factory=dict)
+    body: dict[str, AnyBody] = Field(default_factory=dict)
+    inflow: dict[str, Inflow] = Field(default_factory=dict)
+    outflow: dict[str, Outflow] = Field(default_factory=dict)
+    gauge: dict[str, GaugeTable] = Field(default_factory=dict)
+    window: dict[str, Window] = Field(default_factory=dict)
+    figure: dict[str, FigureTable] = Field(default_factory=dict)

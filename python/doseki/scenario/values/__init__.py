@@ -1,0 +1,1 @@
+"""Values in a scenario file: expressions, units, bounds, and where in the text they stand."""

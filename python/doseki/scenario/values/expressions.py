@@ -1,0 +1,187 @@
+"""Arithmetic written in a scenario file: strings that begin with "=".
+
+Only numbers, names, arithmetic, comparisons, `a if c else b` and the functions below exist; there
+are no attributes, subscripts or operations on strings, so a scenario file cannot run code.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from simpleeval import FunctionNotDefined, NameNotDefined, SimpleEval
+
+from ...errors import UserError
+from ...util.spelling import suggestion
+
+MAX_LENGTH = 500
+POSITION_NAMES = ("x", "y", "z")
+CONSTANTS = {"pi": math.pi}
+NODES = (
+    ast.Expr,
+    ast.Constant,
+    ast.Name,
+    ast.UnaryOp,
+    ast.BinOp,
+    ast.BoolOp,
+    ast.Compare,
+    ast.IfExp,
+    ast.Call,
+)
+Function = Callable[..., Any]
+Functions = Mapping[str, Function]
+
+SCALAR_FUNCTIONS: dict[str, Function] = {
+    "sqrt": math.sqrt,
+    "sin": math.sin,
+    "cos": math.cos,
+    "tan": math.tan,
+    "exp": math.exp,
+    "radians": math.radians,
+    "round": round,
+    "floor": math.floor,
+    "ceil": math.ceil,
+    "abs": abs,
+    "min": min,
+    "max": max,
+}
+ARRAY_FUNCTIONS: dict[str, Function] = SCALAR_FUNCTIONS | {
+    "sqrt": np.sqrt,
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "exp": np.exp,
+    "radians": np.radians,
+    "round": np.round,
+    "floor": np.floor,
+    "ceil": np.ceil,
+    "abs": np.abs,
+    "min": np.minimum,
+    "max": np.maximum,
+}
+RESERVED_NAMES = {*POSITION_NAMES, *CONSTANTS, *SCALAR_FUNCTIONS}
+
+
+class ExpressionError(ValueError):
+    """An expression that cannot be evaluated; the message says why, in words."""
+
+
+def is_expression(value: object) -> bool:
+    """Whether a value of a scenario file is an expression."""
+    return isinstance(value, str) and value.lstrip().startswith("=")
+
+
+def names_in(text: str) -> set[str]:
+    """The names an expression mentions, functions included."""
+    return {node.id for node in ast.walk(_parse(text)) if isinstance(node, ast.Name)}
+
+
+def evaluate(text: str, names: Mapping[str, Any]) -> Any:
+    """The value of the expression `text` ("= ...") with the given names.
+
+    Raises ExpressionError, or the UserError that looking up a name raised.
+    """
+    return _evaluate(text, names, SCALAR_FUNCTIONS)
+
+
+def evaluate_at(text: str, names: Mapping[str, Any], position: np.ndarray) -> np.ndarray:
+    """The expression at each of N positions (N, dim), as an array (N,); it may use x, y, z.
+
+    Raises ExpressionError, also when a value is not finite.
+    """
+    axes = dict(zip(POSITION_NAMES, position.T, strict=False))
+    value = _evaluate(text, {**names, **axes}, ARRAY_FUNCTIONS)
+    try:
+        values = np.broadcast_to(np.asarray(value, dtype=float), len(position)).copy()
+    except (TypeError, ValueError):
+        raise ExpressionError(f'"{text}" is not a number at every particle') from None
+    if not np.isfinite(values).all():
+        raise ExpressionError(f'"{text}" is not finite at every particle')
+    return values
+
+
+def _parse(text: str) -> ast.Expression:
+    source = text.strip().removeprefix("=").strip()
+    if len(source) > MAX_LENGTH:
+        raise ExpressionError(f"an expression may have {MAX_LENGTH} characters, not {len(source)}")
+    try:
+        return ast.parse(source, mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise ExpressionError(f'"{text}" is not a valid expression') from None
+
+
+def _evaluate(text: str, names: Mapping[str, Any], functions: Functions) -> Any:
+    tree = _parse(text)
+    evaluator = SimpleEval(operators=OPERATORS, functions=dict(functions), names=_Names(names))
+    evaluator.nodes = {kind: run for kind, run in evaluator.nodes.items() if kind in NODES}
+    try:
+        with np.errstate(all="ignore"):
+            return evaluator.eval(text, previously_parsed=tree.body)
+    except (ExpressionError, UserError):
+        raise
+    except FunctionNotDefined as error:
+        known = ", ".join(functions)
+        raise ExpressionError(
+            f'"{text}" calls {error.func_name}, which is not one of {known}'
+        ) from None
+    except NameNotDefined as error:
+        near = suggestion(error.name, [*names, *CONSTANTS])
+        raise ExpressionError(f'"{text}" uses the unknown name {error.name}{near}') from None
+    except ZeroDivisionError:
+        raise ExpressionError(f'"{text}" divides by zero') from None
+    except RecursionError:
+        raise ExpressionError(f'"{text}" is nested too deeply') from None
+    except Exception as error:
+        # Whatever the arithmetic objects to (types, domains, overflow) is the user's expression.
+        raise ExpressionError(f'"{text}" cannot be evaluated: {error}') from None
+
+
+class _Names:
+    """Names as simpleeval reads them: anything with [] that raises KeyError when unknown."""
+
+    def __init__(self, names: Mapping[str, Any]) -> None:
+        self._names = names
+
+    def __getitem__(self, name: str) -> Any:
+        return CONSTANTS[name] if name in CONSTANTS else self._names[name]
+
+
+def _of_numbers(operation: Function) -> Function:
+    """The operation, refused for anything but numbers and arrays (no "a" * 10**9)."""
+
+    def checked(*operands: Any) -> Any:
+        if not all(isinstance(x, int | float | np.ndarray) for x in operands):
+            raise ExpressionError("arithmetic needs numbers")
+        return operation(*operands)
+
+    return checked
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    """base ** exponent in floating point, so that integers cannot grow without bound."""
+    result = np.asarray(base, dtype=float) ** exponent
+    return result if result.ndim else float(result)
+
+
+OPERATORS = {
+    ast.Add: _of_numbers(operator.add),
+    ast.Sub: _of_numbers(operator.sub),
+    ast.Mult: _of_numbers(operator.mul),
+    ast.Div: _of_numbers(operator.truediv),
+    ast.FloorDiv: _of_numbers(operator.floordiv),
+    ast.Mod: _of_numbers(operator.mod),
+    ast.Pow: _of_numbers(_power),
+    ast.USub: _of_numbers(operator.neg),
+    ast.UAdd: _of_numbers(operator.pos),
+    ast.Not: operator.not_,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}

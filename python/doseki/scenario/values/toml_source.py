@@ -1,0 +1,153 @@
+"""A scenario file as text and table: reading, `extends`, and where in the text a key stands."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...errors import UserError
+
+MAX_BYTES = 16 * 2**20
+MAX_DEPTH = 32
+KeyPath = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class TomlSource:
+    """The text of one TOML file and the table it holds."""
+
+    path: Path
+    text: str
+    table: dict[str, Any]
+
+    def line_of(self, keys: KeyPath) -> int | None:
+        """The line (from 1) where `keys` is set, or the nearest table that would hold it."""
+        wanted = [str(key) for key in keys]
+        best_line, best_depth = None, 0
+        header: list[str] = []
+        for number, line in enumerate(self.text.splitlines(), start=1):
+            here = _keys_of_line(line, header)
+            if here is None:
+                continue
+            if line.lstrip().startswith("["):
+                header = here
+            if len(here) > best_depth and here == wanted[: len(here)]:
+                best_line, best_depth = number, len(here)
+        return best_line
+
+
+def _keys_of_line(line: str, header: list[str]) -> list[str] | None:
+    """The full key path that a header `[a.b]` or an assignment `a.b = ...` names."""
+    key = r"[\w-]+|\"[^\"]*\""
+    path = rf"((?:{key})(?:\s*\.\s*(?:{key}))*)"
+    if found := re.match(rf"\s*\[\s*{path}\s*\]", line):
+        return _split(found[1])
+    if found := re.match(rf"\s*{path}\s*=", line):
+        return header + _split(found[1])
+    return None
+
+
+def _split(path: str) -> list[str]:
+    return [part.strip().strip('"') for part in path.split(".")]
+
+
+def read_toml(path: Path) -> TomlSource:
+    """Read one TOML file; raises UserError for anything that is not readable TOML."""
+    text = _read_text(path)
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{path}: not valid TOML: {error}") from None
+    except (RecursionError, ValueError) as error:
+        raise UserError(f"{path}: cannot be read as TOML: {error}") from None
+    if _is_deep(table):
+        raise UserError(f"{path}: tables or lists nested more than {MAX_DEPTH} deep")
+    return TomlSource(path, text, table)
+
+
+def _is_deep(table: dict[str, Any]) -> bool:
+    """Whether the nesting would exhaust functions that call themselves."""
+    level: list[Any] = [table]
+    for _ in range(MAX_DEPTH):
+        inside = [part.values() if isinstance(part, dict) else part for part in level]
+        level = [entry for part in inside for entry in part if isinstance(entry, dict | list)]
+    return bool(level)
+
+
+def _read_text(path: Path) -> str:
+    check_regular_file(path)
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise UserError(f"{path}: a scenario file may have at most {MAX_BYTES // 2**20} MiB")
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise UserError(f"{path}, line {line}: not a text file in UTF-8") from None
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def check_regular_file(path: Path) -> None:
+    """Raise UserError unless `path` is a file (not absent, a folder, a pipe or a device)."""
+    try:
+        if path.is_file():
+            return
+        kind = "not a regular file" if path.exists() else "no such file"
+        kind = "a folder, not a file" if path.is_dir() else kind
+    except (OSError, ValueError) as error:
+        kind = f"cannot be read: {error}"
+    raise UserError(f"{path}: {kind}")
+
+
+class Where:
+    """Names the place of a key for an error message: file and line, or the --set option."""
+
+    def __init__(self, sources: Sequence[TomlSource]) -> None:
+        self._sources = sources  # the scenario first, then the files it extends
+        self._options: dict[KeyPath, str] = {}
+
+    def folder(self, keys: KeyPath) -> Path:
+        """To what a file name given at `keys` is relative: that file, or here for an option."""
+        return Path() if self._option(keys) else self._deepest(keys).path.parent
+
+    def note_override(self, keys: KeyPath, option: str) -> None:
+        """Remember that --set gave this key, under the name `option`."""
+        self._options[keys] = option
+
+    def error(self, keys: KeyPath, message: str) -> UserError:
+        """A UserError about `keys`, which names the file and line, or the option, to look at."""
+        return UserError(f"{self._place(keys)}: {message}")
+
+    def _place(self, keys: KeyPath) -> str:
+        if option := self._option(keys):
+            return f"--set {option}"
+        source = self._deepest(keys)
+        line = source.line_of(keys)
+        return f"{source.path}, line {line}" if line else f"{source.path}"
+
+    def _option(self, keys: KeyPath) -> str | None:
+        """The --set option that gave `keys`, or a table they are in."""
+        prefixes = (keys[:length] for length in range(len(keys), 0, -1))
+        return next((self._options[p] for p in prefixes if p in self._options), None)
+
+    def _deepest(self, keys: KeyPath) -> TomlSource:
+        """The source that holds the most of `keys`, an extending file before what it extends."""
+        return max(self._sources, key=lambda source: _depth(source.table, keys))
+
+
+def _depth(table: Any, keys: KeyPath) -> int:
+    """How many of `keys` can be followed into `table`."""
+    for depth, key in enumerate(keys):
+        if not isinstance(table, dict) or key not in table:
+            return depth
+        table = table[key]
+    return len(keys)
+
+
+def dotted(keys: KeyPath) -> str:
+    """The key path as a user writes it: body.left.velocity."""
+    return ".".join(str(key) for key in keys)

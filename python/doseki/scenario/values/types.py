@@ -1,0 +1,181 @@
+"""Kinds of values in a scenario file: bounded numbers, vectors, rates with a unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationInfo
+
+from .expressions import is_expression
+
+# A length beyond these is a slip of the keyboard, and would overflow further on.
+SMALLEST, LARGEST = 1e-12, 1e12
+RATE_UNITS = {"m3/s": 1.0, "m^3/s": 1.0, "L/s": 1e-3, "l/s": 1e-3}
+MASS_UNITS = {"kg": 1.0, "g": 1e-3, "t": 1e3}
+
+
+def dimension(info: ValidationInfo) -> int:
+    """Of the run whose table is validated: the reader says so."""
+    context: dict[str, int] = info.context or {}
+    return context["dim"]
+
+
+def _of_dimension(vector: list[Any], info: ValidationInfo) -> list[Any]:
+    dim = dimension(info)
+    if len(vector) != dim:
+        raise ValueError(f"a {dim}-D run needs {dim} entries here, not {len(vector)}")
+    return vector
+
+
+def _numbers_or_expressions(vector: list[Any]) -> list[Any]:
+    for entry in vector:
+        number = isinstance(entry, int | float) and not isinstance(entry, bool)
+        if not (is_expression(entry) or (number and abs(entry) <= LARGEST)):
+            raise ValueError(f'entries must be finite numbers or "= expression", not {entry!r}')
+    return vector
+
+
+def _number_or_expression(value: Any) -> Any:
+    return _numbers_or_expressions([value])[0]
+
+
+def _bound(value: Any) -> Any:
+    """TOML can write inf; the strings "inf" and "-inf" mean the same."""
+    return float(value) if value in ("inf", "+inf", "-inf") else value
+
+
+def _not_nan(value: float) -> float:
+    if math.isnan(value):
+        raise ValueError("nan is not a position")
+    return value
+
+
+def _not_zero(vector: np.ndarray) -> np.ndarray:
+    if not np.any(vector):
+        raise ValueError("the direction must not be the zero vector")
+    return vector
+
+
+def _rate(value: Any) -> Any:
+    """A rate in m3/s from a number, or from a string with its unit such as "3 L/s"."""
+    wrong = 'a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"'
+    return _with_unit(value, RATE_UNITS, wrong)
+
+
+def _mass(value: Any) -> Any:
+    """A mass in kg from a number, or from a string with its unit such as "20 kg"."""
+    return _with_unit(value, MASS_UNITS, 'a mass is a number in kg or a string such as "20 kg"')
+
+
+def _with_unit(value: Any, units: dict[str, float], wrong: str) -> Any:
+    if not isinstance(value, str):
+        return value
+    found = re.fullmatch(r"\s*([-+.\deE]+)\s*(\S+)\s*", value)
+    if not found or found[2] not in units:
+        raise ValueError(wrong)
+    try:
+        return float(found[1]) * units[found[2]]
+    except ValueError:
+        raise ValueError(f"{found[1]!r} is not a number") from None
+
+
+def _grading(rows: list[list[float]]) -> list[list[float]]:
+    """Checked rows [d, share of the mass]."""
+    for row in rows:
+        if len(row) != 2 or not all(SMALLEST <= value <= LARGEST for value in row):
+            raise ValueError(f"{row} must be [d, share of the mass], both above 0")
+    return rows
+
+
+def _depth(value: float | str) -> float | str:
+    if value != "normal" and not (isinstance(value, float) and SMALLEST <= value <= LARGEST):
+        shown = repr(value)[:60]
+        raise ValueError(f'{shown} must be a length in m from {SMALLEST:g} on, or "normal"')
+    return value
+
+
+def _hydrograph(value: Any) -> str | list[list[float]]:
+    """The path of a CSV file, or checked rows [t, Q] in s and m3/s."""
+    if isinstance(value, str) and value:
+        return value
+    if not isinstance(value, list) or not all(
+        isinstance(row, list) and len(row) == 2 for row in value
+    ):
+        raise ValueError("must be a list of [t, Q] pairs, or the path of a CSV file")
+    return checked_hydrograph([(t, _rate(rate)) for t, rate in value])
+
+
+def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
+    """Rows [t, Q] in s and m3/s; raises ValueError where they are no hydrograph."""
+    if len(rows) < 2:
+        raise ValueError(f"{len(rows)} rows; two or more are needed")
+    for number, (t, rate) in enumerate(rows, start=1):
+        for name, value in (("t", t), ("Q", rate)):
+            is_number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not is_number or not 0 <= value <= LARGEST:
+                shown = repr(value)[:60]
+                raise ValueError(f"row {number}: {name} = {shown}; allowed: numbers from 0 on")
+        if number > 1 and t < rows[number - 2][0]:
+            before = rows[number - 2][0]
+            raise ValueError(f"row {number}: t = {t:g} s goes back; allowed: {before:g} s or later")
+    if rows[0][0] == rows[-1][0] or not any(rate > 0 for _, rate in rows):
+        raise ValueError("nothing would enter; times must go on and some Q be above 0")
+    return [[float(t), float(rate)] for t, rate in rows]
+
+
+def _skin(value: float | str) -> float | str:
+    if value != "auto" and not (isinstance(value, float) and 0 <= value <= 1):
+        raise ValueError('must be a number from 0 to 1, or "auto"')
+    return value
+
+
+@dataclass(frozen=True)
+class RefersTo:
+    """What a key names: a table of this section."""
+
+    section: str
+
+
+Positive = Annotated[float, Field(gt=0)]
+Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+NonNegative = Annotated[float, Field(ge=0)]
+VelocityField = Annotated[
+    list[Any], AfterValidator(_of_dimension), AfterValidator(_numbers_or_expressions)
+]
+ScalarField = Annotated[Any, AfterValidator(_number_or_expression)]
+Bound = Annotated[
+    float, Field(allow_inf_nan=True), BeforeValidator(_bound), AfterValidator(_not_nan)
+]
+MaterialName = Annotated[str, RefersTo("material")]
+BodyNames = Annotated[list[str], RefersTo("body"), Field(min_length=1)]
+GaugeName = Annotated[str, RefersTo("gauge")]
+OptionalWindowName = Annotated[str | None, RefersTo("window")]
+OptionalMaterialName = Annotated[str | None, RefersTo("material")]
+
+# Lists in the file, arrays (dim,) in a scenario.
+if TYPE_CHECKING:
+    Vector: TypeAlias = np.ndarray
+    Direction: TypeAlias = np.ndarray
+    Corner: TypeAlias = np.ndarray
+else:
+    _AS_ARRAY = (
+        AfterValidator(_of_dimension),
+        AfterValidator(np.array),
+        PlainSerializer(np.ndarray.tolist, return_type=list),
+    )
+    Vector = Annotated[list[Coordinate], *_AS_ARRAY]
+    Direction = Annotated[Vector, AfterValidator(_not_zero)]
+    Corner = Annotated[list[Bound], *_AS_ARRAY]
+Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
+Mass = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_mass)]
+Grading = Annotated[list[list[float]], Field(min_length=1), AfterValidator(_grading)]
+Depth = Annotated[float | str, AfterValidator(_depth)]
+Hydrograph = Annotated[Any, AfterValidator(_hydrograph)]
+Axis = Literal["x", "y", "z"]
+Skin = Annotated[float | str, AfterValidator(_skin)]

@@ -1,0 +1,1 @@
+"""From a scenario to arrays: bodies, lattices, packings, wall normals, inflow sections."""

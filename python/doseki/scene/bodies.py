@@ -1,0 +1,42 @@
+"""The bodies of a scene: rigid and fixed ones in groups, deformable ones by their particles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .groups import Group
+
+
+@dataclass(frozen=True)
+class ElasticBody:
+    """One deformable body: n of the particles of a run."""
+
+    name: str  # of its table
+    material: str
+    members: np.ndarray  # (n,) int32, indices of particles
+    spacing: float  # each particle has spacing^dim of its volume, m
+    clamped: np.ndarray  # (n,) bool: does not move
+    surface: np.ndarray  # (n,) bool: touches other bodies
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Bodies that move (first) and fixed ones that they touch; none where nothing moves.
+
+    For each particle: `grain`, the index of its body or -1, and for those of bodies the outward
+    `normal` and the `depth` below the surface, m; `shaped` tells which particles have these.
+    """
+
+    groups: list[Group]
+    velocity: np.ndarray  # (n, dim) m/s, of all bodies in order
+    spin: np.ndarray  # (n, 3) rad/s
+    grain: np.ndarray  # (N,) int32
+    shaped: np.ndarray  # (N,) bool
+    normal: np.ndarray  # (N, dim)
+    depth: np.ndarray  # (N,)
+    elastic: list[ElasticBody] = field(default_factory=list)  # deformable ones, not in `groups`
+
+    def __len__(self) -> int:
+        return sum(len(group) for group in self.groups)

@@ -1,0 +1,192 @@
+"""The scene of a run: particles and bodies, made from a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import ResourceError
+from ..record.particles import FREE, ParticleSet, concatenate
+from ..scenario.model import Scenario
+from ..util.finding import Finding
+from ..util.memory import available_bytes
+from .bodies import Bodies, ElasticBody
+from .checks.groups import check_overlaps
+from .checks.particle_overlaps import find_overlaps
+from .checks.particles import check_particles
+from .checks.resolution import resolution_warnings
+from .contacts import contact_groups
+from .groups import Group, inside_bodies, particles_of
+from .kinds.body import Body
+from .kinds.registry import bodies_of
+
+MAX_PARTICLES = 2_000_000_000
+BYTES_PER_PARTICLE = 500  # what a run holds, lists included
+
+
+class Settled(NamedTuple):
+    """Groups of bodies where they come to rest, and what did not."""
+
+    groups: list[Group]
+    warnings: list[Finding]
+
+
+Settle = Callable[[Scenario, list[Group], list[str]], Settled]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a run starts from: particles, the names of their bodies, and rigid bodies."""
+
+    particles: ParticleSet
+    names: list[str]
+    bodies: Bodies
+    warnings: list[Finding]  # what is allowed but probably not meant
+
+
+def build_bodies(scenario: Scenario) -> tuple[ParticleSet, list[str]]:
+    """The particles of all bodies, and the names their `body` indices stand for.
+
+    The names of the inflows come last; no particle has them yet.  Raises UserError, or
+    ResourceError when there are too many particles.  Grains stand as they were packed.
+    """
+    scene = build_scene(scenario)
+    return scene.particles, scene.names
+
+
+def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
+    """The particles and rigid bodies of a scenario, with warnings; see `build_bodies`.
+
+    `settle` moves bodies to where they come to rest: from all of them, those that stay last, and
+    the names of bodies to all of them.
+    """
+    bodies, warnings = bodies_of(scenario), list[Finding]()
+    _check_size(bodies)
+    names = _body_names(scenario)
+    parts = {n: body.particles(names) for n, body in bodies.items() if not body.is_of_bodies}
+    made = [body.group() for body in bodies.values() if body.is_of_bodies]
+    groups = sorted(made, key=lambda group: group.fixed)
+    moves = any(not group.fixed for group in groups)
+    if moves:
+        loose = concatenate(list(parts.values()), scenario.dim)
+        groups += contact_groups(scenario, bodies, names, loose)
+        warnings += resolution_warnings(bodies, groups)
+        check_overlaps(scenario, groups)
+        if settle is not None:
+            groups, unsettled = settle(scenario, groups, names)
+            warnings += unsettled
+    particles, rigid = _joined(scenario, bodies, names, parts, groups, moves)
+    check_particles(scenario, particles, names)
+    warnings += find_overlaps(particles, names)
+    return Scene(particles, names, rigid, warnings)
+
+
+def _joined(
+    scenario: Scenario,
+    bodies: Mapping[str, Body[Any]],
+    names: list[str],
+    parts: Mapping[str, ParticleSet],
+    groups: list[Group],
+    moves: bool,
+) -> tuple[ParticleSet, Bodies]:
+    """The parts in the order of the scenario; fluid makes room for bodies."""
+    sets: list[ParticleSet] = []
+    tables: list[_PointTable] = []
+    kept = [group for group in groups if not group.elastic] if moves else []
+    first = dict(zip((g.name for g in kept), _first_indices(kept), strict=True))
+    elastic: list[ElasticBody] = []
+    of_name = {group.name: group for group in reversed(groups)}
+    for name, body in bodies.items():
+        if name in parts:
+            sets.append(_outside(scenario, parts[name], groups))
+            tables.append(_PointTable.of_loose(sets[-1]))
+            continue
+        group = of_name[name]
+        placed, owner = particles_of(group, body.spacing, scenario.dim)
+        if group.elastic:
+            elastic += body.elastic_bodies(group, placed, owner, sum(map(len, sets)))
+        sets.append(body.particles_of_bodies(group, names, placed.position, owner))
+        still = group.fixed or group.elastic
+        grain = np.full(len(owner), -1) if still else first[name] + owner
+        shaped = np.ones(len(owner), bool)
+        tables.append(_PointTable(grain.astype(np.int32), shaped, placed.normal, placed.depth))
+    particles = concatenate(sets, scenario.dim)
+    points = _PointTable.joined(tables, scenario.dim)
+    velocity, spin = _velocities(bodies, kept, scenario.dim)
+    return particles, Bodies(kept, velocity, spin, *points, elastic)
+
+
+class _PointTable(NamedTuple):
+    """What Bodies says of each of N particles."""
+
+    grain: np.ndarray
+    shaped: np.ndarray
+    normal: np.ndarray
+    depth: np.ndarray
+
+    @classmethod
+    def of_loose(cls, particles: ParticleSet) -> _PointTable:
+        """Of particles that are no parts of bodies."""
+        n = len(particles)
+        none = np.full(n, -1, np.int32)
+        return cls(none, np.zeros(n, bool), np.zeros((n, particles.dim)), np.zeros(n))
+
+    @classmethod
+    def joined(cls, tables: Iterable[_PointTable], dim: int) -> _PointTable:
+        """The tables one after the other."""
+        empty = cls.of_loose(ParticleSet.empty(dim))
+        return cls(*(np.concatenate(column) for column in zip(empty, *tables, strict=True)))
+
+
+def _first_indices(groups: list[Group]) -> list[int]:
+    """The index of the first body of each group."""
+    ends = np.cumsum([0, *(len(group) for group in groups)])
+    return [int(end) for end in ends[:-1]]
+
+
+def _velocities(
+    bodies: Mapping[str, Body[Any]], groups: list[Group], dim: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities (n, dim) and spins (n, 3) of bodies at the start."""
+    velocity, spin = [np.zeros((0, dim))], [np.zeros((0, 3))]
+    for group in groups:
+        body = bodies.get(group.name)
+        still = np.zeros_like(group.centre)
+        velocity.append(body.velocity_at(group.centre) if body is not None else still)
+        turning = body.spin if body is not None else np.zeros(3)
+        spin.append(np.tile(turning, (len(group), 1)))
+    return np.concatenate(velocity), np.concatenate(spin)
+
+
+def _outside(scenario: Scenario, particles: ParticleSet, groups: list[Group]) -> ParticleSet:
+    """The particles without the free ones that lie inside a body that moves."""
+    inside = np.zeros(len(particles), bool)
+    for group in groups:
+        if not group.fixed:
+            inside |= inside_bodies(scenario, group, particles.position)
+    keep = ~inside | (particles.motion != FREE)
+    if keep.all():
+        return particles
+    return ParticleSet(**{name: values[keep] for name, values in vars(particles).items()})
+
+
+def _body_names(scenario: Scenario) -> list[str]:
+    """Bodies first, a file's own body names in place of the name of the file's body."""
+    names = [each for name in scenario.body for each in scenario.names_of_bodies(name)]
+    return list(dict.fromkeys([*names, *scenario.inflow]))
+
+
+def _check_size(bodies: Mapping[str, Body[Any]]) -> None:
+    """Refuse what cannot be held, before anything is allocated."""
+    counts = {name: body.count() for name, body in bodies.items()}
+    total, free = sum(counts.values()), available_bytes()
+    if total > MAX_PARTICLES or total * BYTES_PER_PARTICLE > free:
+        largest = max(counts, key=lambda name: counts[name])
+        raise ResourceError(
+            f"the scenario asks for {total:.3g} particles ({counts[largest]:.3g} of them in "
+            f"body.{largest}), about {total * BYTES_PER_PARTICLE / 2**30:.3g} GiB; at most "
+            f"{min(MAX_PARTICLES, free / BYTES_PER_PARTICLE):.3g} fit: increase dp"
+        )

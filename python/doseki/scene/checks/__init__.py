@@ -1,0 +1,1 @@
+"""Checks of what a scene is made of, and warnings about it."""

@@ -1,0 +1,149 @@
+"""Bodies that start inside one another or inside walls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from ...scenario.model import Scenario
+from ..groups import Group, matrices
+from ..shapes import Ball, Convex
+
+
+class _Ball(NamedTuple):
+    name: str
+    fixed: bool
+    centre: np.ndarray  # (n, dim)
+    radius: float
+
+
+class _Block(NamedTuple):
+    name: str
+    fixed: bool
+    centre: np.ndarray  # (dim,)
+    normal: np.ndarray  # (m, dim)
+    offset: np.ndarray  # (m,) of the planes, normal.x <= offset inside
+    corners: np.ndarray  # (faces, dim, dim)
+    reach: float
+
+
+def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
+    """Raise UserError where a body that moves overlaps another by more than contacts may."""
+    balls = [ball for group in groups for ball in _balls(group)]
+    blocks = [block for group in groups for block in _blocks(group, scenario.dim)]
+    allowed = scenario.contact.overlap
+    for name, other, overlap, size in _overlaps(balls, blocks):
+        if overlap > allowed * size and not _is_held_by(scenario, name, other):
+            whom = "another of its own" if name == other else other
+            raise scenario.where.error(
+                ("body", name),
+                f"body.{name}: a body of it overlaps {whom} by {overlap:.3g} m at the start; "
+                f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m",
+            )
+
+
+def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
+    """Whether a body is clamped and may therefore lie in what holds it."""
+    body, holder = scenario.body.get(name), scenario.body.get(other)
+    clamped = body is not None and body.given("clamped") is not None
+    return clamped and holder is not None and holder.fixed
+
+
+Overlap = tuple[str, str, float, float]  # of a body that moves, with, by m, its size in m
+
+
+def _overlaps(balls: list[_Ball], blocks: list[_Block]) -> Iterator[Overlap]:
+    for k, one in enumerate(balls):
+        for other in balls[k:]:
+            if not (one.fixed and other.fixed):
+                yield from _of_balls(one, other)
+        for block in blocks:
+            if not (one.fixed and block.fixed):
+                yield from _of_ball_and_block(one, block)
+    for first, second in combinations(blocks, 2):
+        apart = float(np.linalg.norm(first.centre - second.centre)) > first.reach + second.reach
+        if not (apart or (first.fixed and second.fixed)):
+            moving, other_name = (second, first.name) if first.fixed else (first, second.name)
+            size = min(block.reach for block in (first, second) if not block.fixed)
+            yield moving.name, other_name, _common_width(first, second), 2 * size
+
+
+def _balls(group: Group) -> Iterator[_Ball]:
+    for k, shape in enumerate(group.shapes):
+        if isinstance(shape, Ball):
+            centre = group.centre[group.shape == k]
+            if len(centre):
+                yield _Ball(group.name, group.fixed, centre, shape.radius)
+
+
+def _blocks(group: Group, dim: int) -> Iterator[_Block]:
+    for k, turned in enumerate(matrices(group.orientation, dim)):
+        shape = group.shapes[group.shape[k]]
+        if isinstance(shape, Convex):
+            centre, (normal, distance) = group.centre[k], shape.planes
+            normal = normal @ turned.T
+            corners = shape.vertices[shape.faces] @ turned.T + centre
+            offset = distance + normal @ centre
+            yield _Block(group.name, group.fixed, centre, normal, offset, corners, shape.reach)
+
+
+def _of_balls(one: _Ball, other: _Ball) -> Iterator[Overlap]:
+    """The worst overlap of two sets of balls."""
+    from scipy.spatial import cKDTree
+
+    reach = one.radius + other.radius
+    if one is other:
+        pairs = cKDTree(one.centre).query_pairs(reach, output_type="ndarray")
+        gap = np.linalg.norm(one.centre[pairs[:, 0]] - one.centre[pairs[:, 1]], axis=1)
+        worst = reach - gap.min(initial=np.inf)
+    else:
+        worst = reach - cKDTree(other.centre).query(one.centre)[0].min()
+    moving, still = (other, one) if one.fixed else (one, other)
+    yield moving.name, still.name, float(worst), 2 * moving.radius
+
+
+def _of_ball_and_block(ball: _Ball, block: _Block) -> Iterator[Overlap]:
+    beyond = (ball.centre @ block.normal.T - block.offset).max(axis=1)
+    near = beyond < ball.radius
+    if near.any():
+        distance = np.where(
+            beyond[near] > 0, _distance(ball.centre[near], block.corners), beyond[near]
+        )
+        worst = float(ball.radius - distance.min())
+        if ball.fixed:
+            yield block.name, ball.name, worst, 2 * block.reach
+        else:
+            yield ball.name, block.name, worst, 2 * ball.radius
+
+
+def _distance(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Distance (n,) of points to the nearest of the segments or triangles (m, dim, dim)."""
+    if points.shape[1] == 2:
+        start, side = faces[:, 0], faces[:, 1] - faces[:, 0]
+        along = ((points[:, None] - start) * side).sum(axis=2) / (side**2).sum(axis=1)
+        nearest = start + np.clip(along, 0, 1)[..., None] * side
+        return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
+    from trimesh.triangles import closest_point
+
+    distances = [
+        np.linalg.norm(closest_point(np.tile(face, (len(points), 1, 1)), points) - points, axis=1)
+        for face in faces
+    ]
+    return np.min(distances, axis=0)
+
+
+def _common_width(one: _Block, other: _Block) -> float:
+    """Diameter of the largest ball that lies in both, m; below zero where they are apart."""
+    from scipy.optimize import linprog
+
+    normal = np.concatenate([one.normal, other.normal])
+    offset = np.concatenate(
+        [one.offset - one.normal @ one.centre, other.offset - other.normal @ one.centre]
+    )
+    rows = np.column_stack([normal, np.ones(len(normal))])
+    aim = np.append(np.zeros(normal.shape[1]), -1.0)
+    found = linprog(aim, A_ub=rows, b_ub=offset, bounds=(None, None))
+    return 2 * float(-found.fun)

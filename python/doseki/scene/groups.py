@@ -1,0 +1,118 @@
+"""Groups of rigid or deformable bodies: where they stand, their particles, what lies inside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scenario.kinematics import ELASTIC, FIXED, SINGLE, Kinematics
+from ..scenario.model import Scenario
+from .periodic import nearest_image, periods, wrapped
+from .shapes import Particles, Shape
+
+UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True)
+class Group:
+    """The n bodies of one table [body.NAME]."""
+
+    name: str
+    shapes: list[Shape]
+    shape: np.ndarray  # (n,) index into shapes
+    centre: np.ndarray  # (n, dim), m
+    orientation: np.ndarray  # (n, 4) quaternion w, x, y, z
+    material: str
+    kinematics: Kinematics
+
+    def __len__(self) -> int:
+        return len(self.centre)
+
+    @property
+    def fixed(self) -> bool:
+        """Whether they do not move, or only as is prescribed."""
+        return self.kinematics is FIXED
+
+    @property
+    def single(self) -> bool:
+        """Whether each is one particle."""
+        return self.kinematics is SINGLE
+
+    @property
+    def elastic(self) -> bool:
+        """Whether they are deformable."""
+        return self.kinematics is ELASTIC
+
+    @property
+    def measures(self) -> tuple[np.ndarray, np.ndarray]:
+        """Area, m2, or volume, m3, (n,) of each body, and what of it fluid cannot enter."""
+        true = np.array([shape.measure for shape in self.shapes])
+        wet = np.array([shape.wet_measure for shape in self.shapes])
+        return true[self.shape], wet[self.shape]
+
+
+def quaternion_of(degrees: float, dim: int, axis: np.ndarray | None) -> np.ndarray:
+    """The quaternion (4,) of a rotation; the axes are those of lattices.rotation_matrix."""
+    half = 0.5 * np.radians(degrees)
+    about = np.array([0.0, 0.0, 1.0] if dim == 2 else [0.0, -1.0, 0.0])
+    if axis is not None:
+        about = axis / np.linalg.norm(axis)
+    return np.array([np.cos(half), *(np.sin(half) * about)])
+
+
+def matrices(orientation: np.ndarray, dim: int) -> np.ndarray:
+    """Rotation matrices (n, dim, dim) of quaternions (n, 4)."""
+    w, x, y, z = orientation.T
+    full = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    return np.moveaxis(full, 2, 0)[:, :dim, :dim]
+
+
+def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.ndarray]:
+    """Particles of all bodies of a group where they stand, and the body of each within it."""
+    parts: list[Particles] = []
+    owners: list[np.ndarray] = []
+    turns = matrices(group.orientation, dim)
+    for k, shape in enumerate(group.shapes):
+        own = _own_particles(group, shape, spacing)
+        which = np.flatnonzero(group.shape == k)
+        turned = np.einsum("nab,pb->npa", turns[which], own.position)
+        normal = np.einsum("nab,pb->npa", turns[which], own.normal)
+        position = (group.centre[which][:, None, :] + turned).reshape(-1, dim)
+        depth = np.tile(own.depth, len(which))
+        parts.append(Particles(position, normal.reshape(-1, dim), depth))
+        owners.append(np.repeat(which, len(own.depth)))
+    owner = np.concatenate(owners)
+    order = np.argsort(owner, kind="stable")
+    joined = [np.concatenate(arrays)[order] for arrays in zip(*parts, strict=True)]
+    return Particles(*joined), owner[order]
+
+
+def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
+    """The particles of one body in its frame."""
+    if group.single:
+        return shape.single()
+    return shape.elastic_particles(spacing) if group.elastic else shape.particles(spacing)
+
+
+def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:
+    """Whether each position (N, dim) lies inside a body of the group."""
+    from scipy.spatial import cKDTree
+
+    inside = np.zeros(len(position), bool)
+    if not len(position):
+        return inside
+    period = periods(scenario)
+    tree = cKDTree(wrapped(scenario, position), boxsize=period)
+    for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
+        shape = group.shapes[group.shape[k]]
+        near = np.array(tree.query_ball_point(group.centre[k], shape.reach), dtype=np.int64)
+        offset = nearest_image(position[near] - group.centre[k], period)
+        inside[near[shape.contains(offset @ turned)]] = True
+    return inside

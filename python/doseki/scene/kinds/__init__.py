@@ -1,0 +1,1 @@
+"""Bodies by their shapes: what each makes of its table [body.NAME]."""

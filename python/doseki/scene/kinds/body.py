@@ -1,0 +1,117 @@
+"""A table [body.NAME], ready to be turned into particles or into bodies that move as a whole."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from ...errors import UserError
+from ...record.particles import ParticleSet
+from ...scenario.model import Scenario
+from ...scenario.tables.body import BodyTable
+from ...scenario.values.expressions import ExpressionError, evaluate_at, is_expression
+from ..bodies import ElasticBody
+from ..groups import Group
+from ..shapes import Particles
+
+T = TypeVar("T", bound=BodyTable)
+
+
+class Body(Generic[T]):
+    """One table [body.NAME] of a scenario.
+
+    Shapes override what is theirs.  Every method raises UserError, which names the table, where
+    its values allow no body.
+    """
+
+    def __init__(self, scenario: Scenario, name: str, table: T) -> None:
+        self.scenario, self.name, self.table = scenario, name, table
+        self.dim = scenario.dim
+        self.kinematics = scenario.kinematics_of(name)
+
+    @property
+    def spacing(self) -> float:
+        """Distance between its particles, m."""
+        return self.table.given("dp") or self.scenario.dp
+
+    @property
+    def is_of_bodies(self) -> bool:
+        """Whether its particles are those of rigid or deformable bodies, moving or fixed."""
+        return self.kinematics.is_whole or self.table.is_solid
+
+    @property
+    def is_clamped(self) -> bool:
+        """Whether points of it are held in place."""
+        return self.table.given("clamped") is not None
+
+    @property
+    def spin(self) -> np.ndarray:
+        """Angular velocity (3,) at the start, rad/s."""
+        given = self.table.given("spin")
+        if given is None:
+            return np.zeros(3)
+        return np.array([0.0, 0.0, given]) if np.ndim(given) == 0 else np.asarray(given, float)
+
+    def error(self, text: str, key: str | None = None) -> UserError:
+        """An error about the table, or about one of its keys; `text` follows the table's name."""
+        keys = ("body", self.name) if key is None else ("body", self.name, key)
+        return self.scenario.where.error(keys, f"body.{self.name}{text}")
+
+    def values_at(self, key: str, entry: float | str, position: np.ndarray) -> np.ndarray:
+        """A number, or an expression of the position, at each of the positions (N, dim)."""
+        if not is_expression(entry):
+            return np.full(len(position), float(entry))
+        try:
+            return evaluate_at(str(entry), self.scenario.constants, position)
+        except ExpressionError as error:
+            raise self.error(f".{key}: {error}", key) from None
+
+    def velocity_at(self, position: np.ndarray) -> np.ndarray:
+        """Initial velocities (N, dim), m/s: numbers, or expressions of the position."""
+        velocity = np.zeros_like(position)
+        for axis, entry in enumerate(self.table.given("velocity") or []):
+            velocity[:, axis] = self.values_at("velocity", entry, position)
+        return velocity
+
+    def count(self) -> float:
+        """How many particles it will have, or nearly; the size of a box may exceed any integer."""
+        raise NotImplementedError
+
+    def particles(self, names: list[str]) -> ParticleSet:
+        """Its particles, where they are no parts of bodies; `names` are those of all bodies."""
+        raise NotImplementedError
+
+    def group(self) -> Group:
+        """The bodies that it is, where `is_of_bodies`."""
+        raise NotImplementedError
+
+    def particles_of_bodies(
+        self, group: Group, names: list[str], position: np.ndarray, owner: np.ndarray
+    ) -> ParticleSet:
+        """The particles of its bodies, where `is_of_bodies`.
+
+        `position` (N, dim), m; `owner` (N,) is the body of each within the group.
+        """
+        raise NotImplementedError
+
+    def elastic_bodies(
+        self, group: Group, placed: Particles, owner: np.ndarray, first: int
+    ) -> list[ElasticBody]:
+        """Its deformable bodies, whose particles are numbered from `first`."""
+        raise NotImplementedError
+
+    def contact_shape(self) -> Group | None:
+        """The one body that those which touch it meet, where it is fixed and its shape is whole."""
+        return None
+
+    def sides(self, thickness: float) -> list[Group]:
+        """Walls that hold it while it settles."""
+        return []
+
+    def wall(self, position: np.ndarray, particles: ParticleSet) -> tuple[np.ndarray, np.ndarray]:
+        """Normals (N, dim) into the fluid and depths (N,) below the surface, m, of a fixed body.
+
+        `position` are its particles, among all the `particles` of the scene.
+        """
+        raise self.error(": a wall of points needs its normal = [...] into the fluid")

@@ -1,0 +1,77 @@
+"""Boxes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...record.particles import ParticleSet
+from ...scenario.tables.bodies import Box
+from ..groups import Group
+from ..lattices import box_counts, box_lattice
+from ..shapes import box_shape
+from ..wetting import covered_share
+from .box_walls import BoxWalls
+from .lattice import Lattice
+
+
+class BoxBody(Lattice[Box]):
+    """A box, whole or filled row by row up to a number of particles."""
+
+    @property
+    def counts(self) -> np.ndarray:
+        """Particles along each side, as whole floats."""
+        return box_counts(self.table.min, self.table.max, self.spacing)
+
+    def count(self) -> float:
+        """See Body."""
+        if self.kinematics.is_whole:
+            return float(np.prod(self.table.max - self.table.min)) / self.spacing**self.dim
+        full = float(np.prod(self.counts))
+        return min(full, self.table.count or full)
+
+    def lattice(self) -> tuple[np.ndarray, np.ndarray]:
+        """See Lattice."""
+        counts, low, high = self.counts, self.table.min, self.table.max
+        if not (counts >= 1).all():
+            raise self.error(
+                f": the box from {low.tolist()} to {high.tolist()} is less than "
+                f"one particle thick (dp = {self.spacing:g} m)",
+                "max",
+            )
+        full, count = int(np.prod(counts)), self.table.count
+        if count is not None and count > full:
+            raise self.error(f".count = {count}: the box holds only {full} particles", "count")
+        return box_lattice(low, counts, self.spacing, count or full), low
+
+    def missing_density(self, n: int) -> np.ndarray:
+        """See Shaped: of a box that is to be wetted, the share of what will lie on its top."""
+        wetted_by = self.table.wetted_by
+        if wetted_by is None:
+            return super().missing_density(n)
+        upright = box_lattice(self.table.min, self.counts, self.spacing, n)
+        depth = self.table.max[-1] - upright[:, -1]
+        share = covered_share(depth, self.spacing, self.scenario.support, self.dim)
+        return self.scenario.materials[wetted_by].rho0 * share
+
+    def group(self) -> Group:
+        """See Body."""
+        low, high = self.table.min, self.table.max
+        if not np.all(high > low):
+            raise self.error(": every entry of min must be below that of max", "max")
+        centre = self.turned(0.5 * (low + high)[None, :], low)[0]
+        return self.single_group(box_shape(high - low), centre, self.orientation)
+
+    def contact_shape(self) -> Group | None:
+        """See Body."""
+        whole = self.table.fixed and self.table.where is None and not self.table.count
+        return self.group() if whole else None
+
+    def shape_wall(
+        self, position: np.ndarray, particles: ParticleSet
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """See Shaped: a slab faces what moves, a block faces outwards."""
+        walls = BoxWalls(self.scenario, self.table, self.rotation, particles)
+        axis = walls.thin_axis
+        if axis is not None:
+            return self.plane_wall(position, walls.side_normal(axis))
+        return walls.nearest_face(position)

@@ -1,0 +1,86 @@
+"""The faces of a fixed box that fluid meets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...record.particles import FIXED, ParticleSet
+from ...scenario.model import Scenario
+from ...scenario.tables.bodies import Box
+
+SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab with one wet face
+
+
+@dataclass(frozen=True)
+class BoxWalls:
+    """A fixed box, turned by a matrix (dim, dim), among all particles of a scene."""
+
+    scenario: Scenario
+    box: Box
+    matrix: np.ndarray
+    particles: ParticleSet
+
+    @property
+    def thin_axis(self) -> int | None:
+        """The axis across which the box is a slab; None for a block."""
+        thickness = (self.box.max - self.box.min) / self.scenario.dp
+        thin = np.flatnonzero(thickness < SLAB + 0.5)
+        return int(thin[0]) if len(thin) == 1 else None
+
+    def side_normal(self, axis: int) -> np.ndarray:
+        """Unit normal of that side of a slab on which what moves lies."""
+        normal = np.zeros(self.scenario.dim)
+        normal[axis] = self._side(axis)
+        return self.matrix @ normal
+
+    def _side(self, axis: int) -> float:
+        """+1 if what moves lies on the upper side of the slab, else -1."""
+        middle = 0.5 * (self.box.min[axis] + self.box.max[axis])
+        seen = np.array([self._upright(x) for x in self._movers()])
+        return 1.0 if len(seen) == 0 or seen[:, axis].mean() >= middle else -1.0
+
+    def _movers(self) -> Iterator[np.ndarray]:
+        """The middle of what moves, and where it enters; without any, the middle of everything."""
+        free = self.particles.position[self.particles.motion != FIXED]
+        if len(free):
+            yield free.mean(axis=0)
+        gravity = self.scenario.gravity
+        down = gravity / max(float(np.linalg.norm(gravity)), 1e-300)
+        for inflow in self.scenario.inflow.values():
+            yield inflow.position - 1e-3 * inflow.height * down
+        if not len(free) and not self.scenario.inflow:
+            yield self.particles.position.mean(axis=0)
+
+    def nearest_face(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normal and depth at each position below the nearest face that no wall covers."""
+        dim = self.scenario.dim
+        upright = self._upright(position)
+        faces = [(a, s) for a in range(dim) for s in (-1.0, 1.0) if not self._is_covered(a, s)]
+        faces = faces or [(dim - 1, 1.0)]
+        low, high = self.box.min, self.box.max
+        gaps = np.stack(
+            [high[a] - upright[:, a] if s > 0 else upright[:, a] - low[a] for a, s in faces], axis=1
+        )
+        nearest = gaps.argmin(axis=1)
+        normals = np.array([s * self.matrix[:, a] for a, s in faces])
+        return normals[nearest], gaps[np.arange(len(gaps)), nearest]
+
+    def _is_covered(self, axis: int, side: float) -> bool:
+        """Whether other walls lie against the middle of a face."""
+        centre = 0.5 * (self.box.min + self.box.max)
+        centre[axis] = (self.box.max if side > 0 else self.box.min)[axis]
+        centre[axis] += 0.5 * side * self.scenario.dp
+        centre = self._pivot + self.matrix @ (centre - self._pivot)
+        fixed = self.particles.position[self.particles.motion == FIXED]
+        return bool((np.abs(fixed - centre).max(axis=1) < 0.76 * self.scenario.dp).any())
+
+    def _upright(self, position: np.ndarray) -> np.ndarray:
+        """Positions as they would be in the box before its rotation."""
+        return (position - self._pivot) @ self.matrix + self._pivot
+
+    @property
+    def _pivot(self) -> np.ndarray:
+        return self.box.min if self.box.pivot is None else self.box.pivot

@@ -1,0 +1,167 @@
+"""What bodies of every shape have in common: particles at rest, and walls."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from ...record.particles import BOUND, FIXED, FREE, ParticleSet
+from ...scenario.tables.body import ShapedBody
+from ..bodies import ElasticBody
+from ..groups import UPRIGHT, Group
+from ..periodic import wrapped
+from ..shapes import Particles, Shape
+from .body import Body
+
+S = TypeVar("S", bound=ShapedBody)
+
+
+class Shaped(Body[S], Generic[S]):
+    """A body with a shape."""
+
+    @property
+    def rho0(self) -> float:
+        """Density of its material at rest, kg/m3."""
+        return self.scenario.materials[self.table.material].rho0
+
+    def fill(self) -> tuple[np.ndarray, float]:
+        """Positions (N, dim) of particles that are no parts of bodies, and the mass of each."""
+        raise NotImplementedError
+
+    def missing_density(self, n: int) -> np.ndarray:
+        """Density (N,) that what is yet to cover the body will add to that of its particles."""
+        return np.zeros(n)
+
+    def particles(self, names: list[str]) -> ParticleSet:
+        """Its particles at reference density, or at that of the initial pressure."""
+        position, mass = self.fill()
+        n = len(position)
+        masses, rest = np.full(n, mass), np.full(n, self.rho0)
+        compressed = 1 + self._compression(position)
+        return ParticleSet(
+            position=position,
+            velocity=self.velocity_at(position),
+            mass=masses * compressed,
+            density=rest * compressed - self.missing_density(n),
+            smoothing_length=self.scenario.smoothing_length(masses, rest),
+            motion=np.full(n, FIXED if self.table.fixed else FREE, np.int32),
+            **self._indices(names, n),
+        )
+
+    def _indices(self, names: list[str], n: int) -> dict[str, np.ndarray]:
+        """What names n particles of the body."""
+        material = self.scenario.material_names.index(self.table.material)
+        return {
+            "material": np.full(n, material, np.int32),
+            "body": np.full(n, names.index(self.name), np.int32),
+            "id": np.arange(n, dtype=np.int64),
+        }
+
+    def _compression(self, position: np.ndarray) -> np.ndarray:
+        """rho/rho0 - 1 of the initial pressure, p = c^2 (rho - rho0) with the c of the run."""
+        if self.table.pressure is None:
+            return np.zeros(len(position))
+        pressure = self.values_at("pressure", self.table.pressure, position)
+        scaled = self.scenario.materials[self.table.material].scaled(self.scenario.xi)
+        stiffness = scaled.rho0 * scaled.speedsound**2  # Pa
+        if (pressure <= -stiffness).any():
+            raise self.error(
+                f".pressure: {pressure.min():.4g} Pa is more tension than "
+                f"rho0 c^2 = {stiffness:.4g} Pa allows",
+                "pressure",
+            )
+        return pressure / stiffness
+
+    def single_group(
+        self, shape: Shape, centre: np.ndarray, orientation: np.ndarray = UPRIGHT
+    ) -> Group:
+        """A body of one piece."""
+        return Group(
+            self.name,
+            [shape],
+            np.zeros(1, np.int32),
+            centre[None, :],
+            orientation[None, :],
+            self.table.material,
+            self.kinematics,
+        )
+
+    def particles_of_bodies(
+        self, group: Group, names: list[str], position: np.ndarray, owner: np.ndarray
+    ) -> ParticleSet:
+        """The particles of its bodies, which share the mass of each equally.
+
+        `position` (N, dim), m; `owner` (N,) is the body of each within the group.
+        """
+        n = len(owner)
+        measure, wet = group.measures
+        arm = position - group.centre[owner]
+        turning = np.cross(self.spin, np.pad(arm, ((0, 0), (0, 3 - self.dim))))[:, : self.dim]
+        moved_by = position if group.elastic else group.centre[owner]
+        return ParticleSet(
+            position=wrapped(self.scenario, position),
+            velocity=self.velocity_at(moved_by) + turning,
+            mass=(self.rho0 * measure / np.bincount(owner, minlength=len(group)))[owner],
+            density=self.rho0 * (measure / wet)[owner],
+            smoothing_length=np.full(n, self.scenario.eta * self.scenario.dp),
+            motion=np.full(n, FIXED if group.fixed else BOUND, np.int32),
+            **self._indices(names, n),
+        )
+
+    def elastic_bodies(
+        self, group: Group, placed: Particles, owner: np.ndarray, first: int
+    ) -> list[ElasticBody]:
+        """Its deformable bodies, whose particles are numbered from `first`."""
+        clamped = np.zeros(len(owner), bool)
+        if self.table.clamped is not None:
+            clamped = self.values_at("clamped", self.table.clamped, placed.position) > 0
+        made = []
+        for k in range(len(group)):
+            own = np.flatnonzero(owner == k)
+            volume = group.shapes[group.shape[k]].measure / len(own)
+            spacing = volume ** (1 / self.dim)
+            surface = placed.depth[own] < spacing
+            made.append(
+                ElasticBody(self.name, group.material, first + own, spacing, clamped[own], surface)
+            )
+        return made
+
+    def wall(self, position: np.ndarray, particles: ParticleSet) -> tuple[np.ndarray, np.ndarray]:
+        """See Body: along the given normal, by the gradient of `where`, or from the shape."""
+        given = self.table.normal
+        if given is not None:
+            return self.plane_wall(position, given / np.linalg.norm(given))
+        if self.table.given("where") is not None:
+            return self._carved_wall(position)
+        return self.shape_wall(position, particles)
+
+    def shape_wall(
+        self, position: np.ndarray, particles: ParticleSet
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Normal and depth at each position as the shape has them."""
+        return super().wall(position, particles)
+
+    def plane_wall(self, position: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A plane wall: its surface is half a spacing beyond the foremost particles."""
+        along = position @ normal
+        surface = along.max() + 0.5 * self.spacing
+        return np.tile(normal, (len(position), 1)), surface - along
+
+    def _carved_wall(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A surface where the body's `where` is zero: its gradient points into the wall."""
+        step = 1e-3 * self.scenario.dp
+        entry = self.table.given("where")
+
+        def inside(x: np.ndarray) -> np.ndarray:
+            return self.values_at("where", entry, x)
+
+        gradient = np.stack(
+            [
+                (inside(position + shift) - inside(position - shift)) / (2 * step)
+                for shift in step * np.eye(self.dim)
+            ],
+            axis=1,
+        )
+        slope = np.maximum(np.linalg.norm(gradient, axis=1), 1e-300)
+        return -gradient / slope[:, None], inside(position) / slope

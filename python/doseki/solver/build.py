@@ -1,0 +1,193 @@
+"""A simulation of the compiled core, made from a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from ..compiled import available_instruction_sets, load_core
+from ..scenario.materials import Material, equation_of_state
+from ..scenario.model import Scenario
+from ..scenario.schemes import RESOLVED
+from ..scenario.tables.body import BodyTable
+from ..scene.build import build_scene
+from ..scene.inflow_sections import InflowSection, build_inflows
+from ..scene.wall_normals import wall_geometry
+from ..util.finding import Finding
+from .protocol import CoreSimulation, Table
+from .rigid_bodies import add_bodies
+from .settling import settled
+from .wall_motions import wall_motions
+
+__all__ = ["available_instruction_sets", "build_simulation", "load_core"]
+
+# Margin of the first lists of a run that chooses its own.
+FIRST_SKIN = 0.05
+# Of contacts while grains settle: restitution and steps at most.
+CALM, CALM_STEPS = 0.2, 12
+STRENGTH = ("shear_modulus", "yield_strength", "cohesion", "friction_angle")
+
+
+def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
+    """The parameters of the scheme, as the core reads them."""
+    names = "attraction eta alpha cflnumber cfl_force fixed_limits_dt balsara sym_grad".split()
+    names += ["tension", "h_mode"]
+    axes = "xyz"[: scenario.dim]
+    zeros = [0.0] * scenario.dim
+    low, high = scenario.domain_min, scenario.domain_max
+    flow: dict[str, Any] = {}
+    if scenario.scheme == RESOLVED:
+        flow = {"flow": _flow_options(scenario, body_names), "contact": _contact_options(scenario)}
+    return (
+        flow
+        | {name: getattr(scenario, name) for name in names}
+        | {
+            "gravity": list(scenario.gravity),
+            "skin": FIRST_SKIN if scenario.skin == "auto" else scenario.skin,
+            "auto_skin": scenario.skin == "auto",
+            "periodic": [axis in scenario.periodic for axis in axes],
+            "domain_min": zeros if low is None else list(low),
+            "domain_max": zeros if high is None else list(high),
+        }
+    )
+
+
+def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
+    """What only the resolved scheme has."""
+    names = "dp kernel viscosity shifting turbulence smagorinsky".split()
+    return {name: getattr(scenario, name) for name in names} | {
+        "walls": [_wall_condition(scenario.body.get(name)) for name in body_names]
+    }
+
+
+def _contact_options(scenario: Scenario) -> dict[str, Any]:
+    """How bodies touch; the speed to expect is a tenth of the sound speed of the run."""
+    options = scenario.contact.model_dump()
+    if options["speed"] is None:
+        options["speed"] = 0.1 * scenario.xi * scenario.min_sound_speed
+    return options
+
+
+def _wall_condition(body: BodyTable | None) -> dict[str, Any]:
+    wall = (body.given("wall") if body is not None else None) or "no_slip"
+    ks = body.given("ks") if body is not None and wall == "rough" else 0.0
+    return {"no_slip": wall == "no_slip", "ks": ks}
+
+
+def core_material(material: Material, xi: float, eos: str) -> dict[str, Any]:
+    """A material as the core reads it, scaled by xi but for what contacts have."""
+    table = material.scaled(xi).table() | {"eos": eos}
+    table["young_modulus"], table["poisson_ratio"] = material.elasticity
+    return table
+
+
+def core_materials(scenario: Scenario) -> list[dict[str, Any]]:
+    """Materials in the order of their indices, scaled by xi; no strength where none is evolved."""
+    tables = []
+    eos = equation_of_state(scenario.scheme, scenario.eos)
+    moving = _moving_materials(scenario)
+    for name in scenario.material_names:
+        table = core_material(scenario.materials[name], scenario.xi, eos)
+        if not scenario.strength or name not in moving:
+            table |= dict.fromkeys(STRENGTH, 0.0)
+        tables.append(table)
+    return tables
+
+
+def _moving_materials(scenario: Scenario) -> set[str]:
+    """Materials of what can move: fixed particles have no deviatoric stress."""
+    moving = {inflow.material for inflow in scenario.inflow.values()}
+    for name, body in scenario.body.items():
+        table = scenario.particle_tables.get(name)
+        if table is not None:
+            moving |= set(table.material_names)
+        elif not body.fixed and body.material is not None:
+            moving.add(body.material)
+    return moving
+
+
+def _inflow_table(section: InflowSection) -> dict[str, Any]:
+    return {
+        "layer": [list(row) for row in section.rows],
+        "direction": list(section.direction),
+        **{
+            name: getattr(section, name)
+            for name in "spacing jitter mass density smoothing_length".split()
+        },
+        **{name: getattr(section, name).tolist() for name in "times speeds distances".split()},
+        "buffer_layers": int(section.buffer_layers),
+        "material": int(section.material),
+        "body": int(section.body),
+    }
+
+
+def _new_simulation(
+    scenario: Scenario, isa: str | None, materials: Sequence[Table], options: Table
+) -> CoreSimulation:
+    kind = scenario.scheme, scenario.dim, scenario.precision
+    return cast(CoreSimulation, load_core(isa).Simulation(*kind, materials, options))
+
+
+def _dry_simulation(
+    scenario: Scenario, body_names: list[str], isa: str | None = None
+) -> CoreSimulation:
+    """For grains that settle: where they come to rest is wanted, not how they bounce before."""
+    materials, options = core_materials(scenario), core_options(scenario, body_names)
+    calm = [table | {"restitution": min(CALM, table["restitution"])} for table in materials]
+    options["contact"] |= {"steps": min(CALM_STEPS, options["contact"]["steps"])}
+    return _new_simulation(scenario, isa, calm, options)
+
+
+def empty_simulation(
+    scenario: Scenario, body_names: list[str], isa: str | None = None
+) -> CoreSimulation:
+    """A core simulation of `scenario` without particles, to be filled or restored."""
+    materials, options = core_materials(scenario), core_options(scenario, body_names)
+    simulation = _new_simulation(scenario, isa, materials, options)
+    for section in build_inflows(scenario, body_names):
+        simulation.add_inflow(_inflow_table(section))
+    for outflow in scenario.outflow.values():
+        simulation.add_outflow(list(outflow.min), list(outflow.max))
+    for motion in wall_motions(scenario, body_names):
+        simulation.move_body(motion)
+    return simulation
+
+
+class Filled(NamedTuple):
+    """A simulation that is yet to be started, the names of its bodies, and warnings about it."""
+
+    simulation: CoreSimulation
+    body_names: list[str]
+    warnings: list[Finding]
+
+
+def filled_simulation(scenario: Scenario, isa: str | None = None) -> Filled:
+    """A core simulation of `scenario` with its particles and bodies."""
+    make = partial(_dry_simulation, isa=isa)
+    scene = build_scene(scenario, partial(settled, make=make))
+    particles, body_names = scene.particles, scene.names
+    build_inflows(scenario, body_names, particles)  # for its checks against the particles
+    simulation = empty_simulation(scenario, body_names, isa)
+    simulation.add_particles(
+        **{name: np.ascontiguousarray(v) for name, v in vars(particles).items()}
+    )
+    if scenario.scheme == RESOLVED:
+        normal, depth = wall_geometry(scenario, particles, body_names)
+        bodies = scene.bodies
+        normal[bodies.shaped] = bodies.normal[bodies.shaped]
+        depth[bodies.shaped] = bodies.depth[bodies.shaped]
+        simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
+        add_bodies(simulation, scenario, bodies, body_names)
+    return Filled(simulation, body_names, scene.warnings)
+
+
+def build_simulation(
+    scenario: Scenario, isa: str | None = None
+) -> tuple[CoreSimulation, list[str]]:
+    """A started core simulation of `scenario`, and the names of its bodies."""
+    simulation, body_names, _ = filled_simulation(scenario, isa)
+    simulation.start()
+    return simulation, body_names

@@ -1,0 +1,39 @@
+"""The deformable bodies of a run, as the core reads them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..scenario.materials import ELASTIC_DEFAULTS
+from ..scenario.model import Scenario
+from ..scene.bodies import ElasticBody
+from .protocol import CoreSimulation
+
+
+def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
+    """The argument of the core's add_elastic_body."""
+    table = scenario.body[body.name]
+    material = scenario.materials[body.material]
+    modulus, ratio = material.elasticity
+    given = {key: table.given(key) for key in ELASTIC_DEFAULTS}
+    chosen = ELASTIC_DEFAULTS | {key: value for key, value in given.items() if value is not None}
+    return chosen | {
+        "material": scenario.material_names.index(body.material),
+        "rho0": material.rho0,
+        "young_modulus": modulus,
+        "poisson_ratio": ratio,
+        "spacing": body.spacing,
+        "particles": np.ascontiguousarray(body.members, np.int32),
+        "clamped": np.ascontiguousarray(body.clamped, np.uint8),
+        "surface": np.ascontiguousarray(body.surface, np.uint8),
+    }
+
+
+def add_elastic_bodies(
+    simulation: CoreSimulation, scenario: Scenario, bodies: list[ElasticBody]
+) -> None:
+    """Hand deformable bodies over to the core, after the particles and their normals."""
+    for body in bodies:
+        simulation.add_elastic_body(elastic_table(scenario, body))

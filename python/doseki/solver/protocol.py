@@ -1,0 +1,275 @@
+"""What Python calls on a simulation, whether it runs in one process or on many ranks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Columns = dict[str, np.ndarray]  # arrays of one length by name
+Arrays = Mapping[str, np.ndarray]  # the same as an argument
+Table = Mapping[str, object]  # an argument whose keys and values the core checks
+
+
+class Rates(TypedDict):
+    """Rates of change of the particles, in the order of their ids."""
+
+    acceleration: Floats  # (N, dim) m/s2
+    density_rate: Floats  # (N,) kg/m3/s
+    deviatoric_stress_rate: Floats  # (N, 3, 3) Pa/s
+    balsara: Floats  # (N,) the switch of the artificial viscosity; 0 in the resolved scheme
+    timestep: float  # s, that the next step may take
+    av_power: float  # W, dissipated by the artificial viscosity; 2-D: W/m
+
+
+class Totals(TypedDict):
+    """Sums over the particles; in 2-D per metre of thickness."""
+
+    mass: float  # kg, of free particles
+    momentum: list[float]  # kg m/s, dim numbers
+    kinetic_energy: float  # J, with that of bodies
+    bulk_energy: float  # J
+    shear_energy: float  # J
+    av_dissipation: float  # J, by the artificial viscosity since the start
+    mass_initial: float  # kg
+    mass_asked: float  # kg, that inflows should have brought
+    mass_entered: float  # kg
+    mass_left: float  # kg
+    count: list[int]  # free particles of each material
+
+
+class Grains(TypedDict):
+    """The rigid bodies, in the order in which they were added."""
+
+    centre: Floats  # (n, dim) m
+    velocity: Floats  # (n, dim) m/s
+    spin: Floats  # (n, 3) rad/s
+    orientation: Floats  # (n, 4) quaternions w, x, y, z
+    flow_force: Floats  # (n, dim) N; 2-D: N/m
+    contact_force: Floats  # (n, dim) N; 2-D: N/m
+    mass: Floats  # (n,) kg; 2-D: kg/m
+    radius: Floats  # (n,) m, of the circumscribed ball
+    contacts: NDArray[np.int32]  # (n,) bodies that it touches
+    overlap: Floats  # (n,) largest, over the diameter
+    body: NDArray[np.int32]  # (n,) index of the named body
+    material: NDArray[np.int32]  # (n,)
+    fixed: NDArray[np.bool_]  # (n,)
+    removed: NDArray[np.bool_]  # (n,) has left the run
+    worst_overlap: float  # of any contact since the start, over the diameter
+
+
+class ForceTerms(TypedDict):
+    """What acts on one particle; both empty for one that does not move freely."""
+
+    acceleration: dict[str, Floats]  # (dim,) m/s2 by term; they add up to the acceleration
+    timestep: dict[str, float]  # s by condition; the particle allows the smallest
+
+
+class SimulationView(Protocol):
+    """A simulation at one moment."""
+
+    def __len__(self) -> int:
+        """Number of particles."""
+        ...
+
+    @property
+    def bytes_per_particle(self) -> float:
+        """Memory of state, records and lists."""
+        ...
+
+    def state(self) -> Columns:
+        """Fields of the particles in the order of their ids; record.fields lists them."""
+        ...
+
+    def rates(self) -> Rates:
+        """Rates of change as the last step left them."""
+        ...
+
+
+class Simulation(SimulationView, Protocol):
+    """A simulation that has its particles; on several ranks, all call each method together."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        ...
+
+    @property
+    def timestep(self) -> float:
+        """That of the last step, s."""
+        ...
+
+    @property
+    def steps(self) -> int:
+        """Steps done."""
+        ...
+
+    @property
+    def rebuilds(self) -> int:
+        """How often neighbour lists were built."""
+        ...
+
+    @property
+    def updates(self) -> int:
+        """Particles stepped, summed over the steps."""
+        ...
+
+    @property
+    def skin(self) -> float:
+        """Margin of the neighbour lists over the smallest support radius, as a fraction of it."""
+        ...
+
+    @property
+    def entries_per_particle(self) -> float:
+        """Entries of the neighbour lists."""
+        ...
+
+    @property
+    def has_bodies(self) -> bool:
+        """Whether bodies move on their own."""
+        ...
+
+    @property
+    def failure(self) -> tuple[str, int]:
+        """Kind, and id of the particle, of the failure of the last call; "" and -1 without one."""
+        ...
+
+    def start(self) -> None:
+        """Build lists and take the first rates; call once.
+
+        Raises the core's PhysicsFailure, as advance does.
+        """
+        ...
+
+    def advance(self, limit: float, pause: float, max_steps: int) -> None:
+        """Step until `limit`, s, which is met exactly, or return early at the first step at or
+        past `pause`, s, or after `max_steps` steps.
+        """
+        ...
+
+    def sample(self, low: Sequence[float], high: Sequence[float]) -> Columns:
+        """What gauges read of the particles in a box, m, in the order of their ids."""
+        ...
+
+    def grains(self) -> Grains:
+        """The rigid bodies."""
+        ...
+
+    def totals(self) -> Totals:
+        """Sums over the particles."""
+        ...
+
+    def force_terms(self, particle: int) -> ForceTerms:
+        """Terms of the momentum equation of the particle of this id, Eqs. (12) or (27), and the
+        conditions on its timestep, Eqs. (18) or (41), as last evaluated.
+        """
+        ...
+
+    def neighbour_counts(self) -> Columns:
+        """`id` of the particles in order, and `count` of others within support of each."""
+        ...
+
+    def checkpoint(self) -> Columns:
+        """The whole state as arrays in storage order; on several ranks the part of this one."""
+        ...
+
+    def restore(self, arrays: Arrays) -> bool:
+        """Go on from what checkpoint() gave; false where that changes the order of sums.
+
+        Raises ValueError for the state of another simulation.
+        """
+        ...
+
+    def time_phases(self, on: bool) -> None:
+        """Start timing the phases of steps from zero, or stop."""
+        ...
+
+    def phase_seconds(self) -> dict[str, float]:
+        """Wall time of each phase of a step since time_phases(True), s."""
+        ...
+
+    def interacting_pairs(self) -> float:
+        """Ordered pairs of different particles within support; fixed-fixed ones not counted."""
+        ...
+
+    def bare_pair_rate(self, seconds: float) -> float:
+        """Such pairs per second of one thread over clusters that stay in cache, timed for about
+        `seconds` s.  Raises ValueError where the scheme has none.
+        """
+        ...
+
+
+class CoreSimulation(Simulation, Protocol):
+    """A simulation of the compiled core, to be filled and started."""
+
+    def add_particles(
+        self,
+        *,
+        position: Floats,
+        velocity: Floats,
+        mass: Floats,
+        density: Floats,
+        smoothing_length: Floats,
+        material: NDArray[np.int32],
+        body: NDArray[np.int32],
+        motion: NDArray[np.int32],
+        id: NDArray[np.int64],  # noqa: A002 (the name of the field)
+    ) -> None:
+        """Add particles; see record.particles.ParticleSet.  Raises ValueError for arrays of
+        unequal length.
+        """
+        ...
+
+    def set_walls(self, *, normal: Floats, depth: Floats) -> None:
+        """Normals (N, dim) into the fluid and depths (N,), m, of wall particles."""
+        ...
+
+    def add_shapes(self, shapes: Sequence[Table]) -> None:
+        """Balls {radius} or convex shapes {vertices, faces, samples}."""
+        ...
+
+    def add_rigid_bodies(self, bodies: Arrays) -> None:
+        """Rigid bodies that name a shape by its index."""
+        ...
+
+    def bind_points(self, body: NDArray[np.int32]) -> None:
+        """Index of its rigid body for each particle, or -1; after set_walls."""
+        ...
+
+    def add_elastic_body(self, body: Table) -> None:
+        """A deformable body of particles that were added; after set_walls."""
+        ...
+
+    def add_inflow(self, inflow: Table) -> None:
+        """A section through which particles enter."""
+        ...
+
+    def add_outflow(self, low: Sequence[float], high: Sequence[float]) -> None:
+        """A box, m, in which particles leave."""
+        ...
+
+    def move_body(self, motion: Table) -> None:
+        """A prescribed motion of a fixed body."""
+        ...
+
+    def join(self, transport: object) -> None:
+        """Become one of several ranks, which a parallel.transport.Transport joins."""
+        ...
+
+    def restore_shared(self, arrays: Arrays) -> None:
+        """restore() of a state that all ranks have read and that is to be divided among them."""
+        ...
+
+    def shares(self) -> dict[str, float]:
+        """What this rank has spent on balance, migrate, halo, wait, in `total` and of that `busy`
+        with its own steps, s; bytes_sent and messages_sent; its particles and ghosts.
+        """
+        ...
+
+    @property
+    def particle_arrays(self) -> list[str]:
+        """Names of the arrays of a checkpoint that have one row for each particle."""
+        ...

@@ -1,0 +1,68 @@
+"""The rigid bodies of a run, as the core reads them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..record.fields import GRAIN_FIELDS
+from ..scenario.model import Scenario
+from ..scene.bodies import Bodies
+from ..scene.groups import Group
+from .elastic_bodies import add_elastic_bodies
+from .protocol import CoreSimulation, Simulation
+
+
+def rigid_tables(
+    scenario: Scenario, bodies: Bodies, names: list[str]
+) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """The arguments of the core's add_shapes and add_rigid_bodies."""
+    shapes: list[dict[str, Any]] = []
+    columns: dict[str, list[np.ndarray]] = {}
+    for group in bodies.groups:
+        for key, values in _columns(scenario, group, names, len(shapes)).items():
+            columns.setdefault(key, []).append(values)
+        shapes += [shape.table(scenario.dp) for shape in group.shapes]
+    table = {key: np.ascontiguousarray(np.concatenate(v)) for key, v in columns.items()}
+    return shapes, table | {"velocity": bodies.velocity, "spin": bodies.spin}
+
+
+def _columns(
+    scenario: Scenario, group: Group, names: list[str], first_shape: int
+) -> dict[str, np.ndarray]:
+    n, rho0 = len(group), scenario.materials[group.material].rho0
+    mass = rho0 * group.measures[0]
+    gyration = np.array([shape.inertia for shape in group.shapes])[group.shape]
+    return {
+        "shape": (first_shape + group.shape).astype(np.int32),
+        "centre": group.centre,
+        "orientation": group.orientation,
+        "mass": mass,
+        "inertia": mass[:, None, None] * gyration,
+        "material": np.full(n, scenario.material_names.index(group.material), np.int32),
+        "body": np.full(n, names.index(group.name), np.int32),
+        "fixed": np.full(n, group.fixed),
+    }
+
+
+def add_bodies(
+    simulation: CoreSimulation, scenario: Scenario, bodies: Bodies, names: list[str]
+) -> None:
+    """Hand bodies over to the core, after the particles; nothing where nothing moves."""
+    if len(bodies):
+        shapes, table = rigid_tables(scenario, bodies, names)
+        simulation.add_shapes(shapes)
+        simulation.add_rigid_bodies(table)
+        simulation.bind_points(np.ascontiguousarray(bodies.grain, np.int32))
+    add_elastic_bodies(simulation, scenario, bodies.elastic)
+
+
+def grain_table(simulation: Simulation) -> dict[str, np.ndarray]:
+    """The bodies that move as fields.GRAIN_FIELDS has them; empty where there are none."""
+    table = {key: np.asarray(values) for key, values in simulation.grains().items()}
+    moves = ~table["fixed"]
+    if not moves.any():
+        return {}
+    table |= {"position": table["centre"], "diameter": 2 * table["radius"]}
+    return {field.key: table[field.key][moves] for field in GRAIN_FIELDS}

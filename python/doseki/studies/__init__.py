@@ -1,0 +1,1 @@
+"""Several runs side by side: the flume in both schemes, sensitivity to a parameter."""

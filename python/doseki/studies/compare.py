@@ -1,0 +1,206 @@
+"""`doseki compare flume`: the paper's scheme and the resolved one side by side, on one page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..errors import UserError
+from ..figures.census import draw_classes, draw_speed_histogram
+from ..figures.kinds.series import draw_curves
+from ..figures.kinds.snapshot import Panels, draw_panels
+from ..figures.layout import chart_grid
+from ..measure.views import before_flow, named_window, with_flow
+from ..record.reader import Run, load
+from ..record.writer import jsonable
+from ..run.runner import RunOptions, run_scenario
+from ..scenario.load import load_scenario
+from ..scenario.schemes import RESOLVED, UETA2022
+from ..util.files import clear_errors, write_whole, write_whole_text
+from ..util.spelling import suggestion
+from ..validate.judging import PASS, Row
+from .flume_criteria import CRITERIA, LOAD, OUTLET, SPEED, FlumeRun, measure_flume, verdicts
+
+COMPARISONS = ("flume",)
+SCHEMES = (UETA2022, RESOLVED)
+NOT_HERE = (
+    "Not measured here: change with resolution, sound speed and xi (`doseki trust flume --vary xi`,"
+    " `--set dp=...`), and contact, drag and numerical viscosity by themselves (`doseki validate`)."
+)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Both runs measured and judged."""
+
+    flumes: tuple[FlumeRun, ...]
+    rows: tuple[list[Row], ...]
+
+    def text(self) -> str:
+        """The table of verdicts, Markdown."""
+        heads = ["the experiment", "taken to agree"]
+        for flume in self.flumes:
+            heads += [flume.scheme, ""]
+        lines = [_line(heads), _line(["---"] * len(heads))]
+        for criterion, *found in zip(CRITERIA, *self.rows, strict=True):
+            unit = f" ({criterion.unit})" if criterion.unit else ""
+            cells = [f"{criterion.quantity}{unit}: {criterion.reason}", str(criterion.bands[0])]
+            for row in found:
+                cells += [f"{row.value.number:.3g}", "met" if row.verdict == PASS else "**missed**"]
+            lines.append(_line(cells))
+        return "\n".join(lines)
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def check_name(name: str) -> None:
+    """Raise UserError for a comparison that there is not."""
+    if name not in COMPARISONS:
+        known = suggestion(name, COMPARISONS)
+        raise UserError(f"{name!r} cannot be compared; there is: {', '.join(COMPARISONS)}{known}")
+
+
+def run_both(
+    name: str,
+    settings: Sequence[str],
+    directory: Path,
+    options: RunOptions,
+    tell: Callable[[str], None],
+) -> list[Path]:
+    """Run the scenario in both schemes into DIR/SCHEME; nothing is run where one has a mistake."""
+    scenarios = [load_scenario(name, [*settings, f"scheme={scheme}"]) for scheme in SCHEMES]
+    folders = [directory / scheme for scheme in SCHEMES]
+    with clear_errors(directory):
+        directory.mkdir(parents=True, exist_ok=True)
+    for scheme, scenario, folder in zip(SCHEMES, scenarios, folders, strict=True):
+        tell(f"{name}: {scheme}")
+        run_scenario(scenario, folder, options)
+    return folders
+
+
+def compare_runs(folders: Sequence[Path], directory: Path) -> Comparison:
+    """Measure two runs, one of each scheme, and write the page into `directory`.
+
+    Leaves comparison.md, comparison.json and pictures.  Raises UserError where the runs are not one
+    of each scheme, or not of the flume.
+    """
+    runs = sorted((load(folder) for folder in folders), key=lambda run: SCHEMES.index(_scheme(run)))
+    found = [_scheme(run) for run in runs]
+    if found != list(SCHEMES):
+        raise UserError(f"need one run of each scheme, {' and '.join(SCHEMES)}; not {found}")
+    flumes = tuple(measure_flume(run) for run in runs)
+    comparison = Comparison(flumes, tuple(verdicts(flume) for flume in flumes))
+    with clear_errors(directory):
+        directory.mkdir(parents=True, exist_ok=True)
+    pictures = {"water": _water_figure(flumes), "passed": _passed_figure(flumes)}
+    for flume in flumes:
+        pictures |= {f"{flume.scheme}-{key}": f for key, f in _figures(flume).items()}
+    for key, figure in pictures.items():
+        path = directory / f"{key}.png"
+        write_whole(path, partial(figure.savefig, format="png"))
+    write_whole_text(directory / "comparison.md", _page(comparison))
+    write_whole_text(directory / "comparison.json", json.dumps(_table(comparison), indent=1) + "\n")
+    return comparison
+
+
+def _scheme(run: Run) -> str:
+    return run.scenario.get("scheme", UETA2022)
+
+
+def _table(comparison: Comparison) -> object:
+    flumes = zip(comparison.flumes, comparison.rows, strict=True)
+    return jsonable(
+        {
+            flume.scheme: {
+                "run": str(flume.run.directory),
+                "arrival": flume.arrival,
+                "rows": [row.table() for row in rows],
+                "sample_mean": [flume.speeds.sample_means.mean(), flume.speeds.sample_means.std()]
+                if len(flume.speeds.speeds)
+                else None,
+            }
+            for flume, rows in flumes
+        }
+    )
+
+
+FIGURES = {
+    "fig5": "Fig. 5: speed of the grains near the slope end, while water runs there",
+    "fig6": "Fig. 6: slope end before the flow",
+    "fig7": "Fig. 7: slope end with the flow",
+    "fig8": "Fig. 8: debris load at the start, in the middle and at the end",
+    "classes": "Classes of grains",
+}
+
+
+def _figures(flume: FlumeRun) -> dict[str, Figure]:
+    """The figures of the paper for one run."""
+    run = flume.run
+    outlet, debris = named_window(run, OUTLET), named_window(run, LOAD)
+    before, during = run[before_flow(run, outlet)], run[with_flow(run, outlet)]
+    spread = [run[0], run[len(run) // 2], run[-1]]
+    both = Panels(outlet, ["material", "velocity_x"], flume.scheme)
+    return {
+        "fig5": draw_speed_histogram(flume.speeds, f"{flume.scheme}: slope end"),
+        "fig6": draw_panels(run, [before], both),
+        "fig7": draw_panels(run, [during], both),
+        "fig8": draw_panels(run, spread, Panels(debris, ["material"], flume.scheme)),
+        "classes": draw_classes(flume.census),
+    }
+
+
+def _water_figure(flumes: Sequence[FlumeRun]) -> Figure:
+    figure, grid = chart_grid(1, 1, (7.0, 3.0), "Mean velocity of the water at the slope end")
+    for flume in flumes:
+        draw_curves(grid[0, 0], flume.flow.times, {flume.scheme: flume.water})
+    grid[0, 0].axhspan(*_band(SPEED), alpha=0.15, color="black")
+    grid[0, 0].set(xlabel="time (s)", ylabel="m/s; grey: measured")
+    return figure
+
+
+def _passed_figure(flumes: Sequence[FlumeRun]) -> Figure:
+    figure, grid = chart_grid(1, 1, (7.0, 3.0), "Share of the load past the outlet")
+    for flume in flumes:
+        share = flume.census.passed(0.0) / flume.census.load_mass
+        draw_curves(grid[0, 0], flume.census.times, {flume.scheme: share})
+    grid[0, 0].set(xlabel="time (s)", ylabel="share", ylim=(0, 1.02))
+    return figure
+
+
+def _band(quantity: str) -> tuple[float, float]:
+    bands = (c.bands[0] for c in CRITERIA if c.quantity == quantity)
+    band = next(band for band in bands if band is not None)
+    return band.low, band.high
+
+
+def _page(comparison: Comparison) -> str:
+    parts = ["# The flume of the paper in both schemes", comparison.text(), NOT_HERE]
+    parts += ["![water](water.png)", "![passed](passed.png)"]
+    for key, caption in FIGURES.items():
+        parts.append(f"## {caption}")
+        parts += [f"![{f.scheme}]({f.scheme}-{key}.png)" for f in comparison.flumes]
+    for flume in comparison.flumes:
+        parts.append(f"{flume.scheme}: {_about(flume)}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _about(flume: FlumeRun) -> str:
+    scenario, speeds = flume.run.scenario, flume.speeds
+    text = (
+        f"dp = {scenario['dp']:.4g} m, {len(np.unique(flume.census.table['id']))} grains, to "
+        f"{flume.census.times[-1]:g} s; water in the window from {flume.arrival:.3g} s on"
+    )
+    if len(speeds.speeds):
+        text += (
+            f"; grains there: mean {speeds.speeds.mean():.3g} m/s, means of {speeds.size} random "
+            f"grains {speeds.sample_means.mean():.3g} +- {speeds.sample_means.std():.2g} m/s"
+        )
+    return text + "."

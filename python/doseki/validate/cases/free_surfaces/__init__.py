@@ -1,0 +1,1 @@
+"""Dam breaks, drops and tanks at rest."""

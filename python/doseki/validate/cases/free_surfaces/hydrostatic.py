@@ -1,0 +1,128 @@
+"""Water at rest in a tank, upright and on a slope of 20 degrees."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ...case import Case, Control, Criterion, Curve, Outcome, Value, at_most, between, small
+from ...estimators import kinetic_energy, rms
+from ...running import Running, State, moving
+
+SAMPLES = 20  # of the second half of the run
+
+
+def depth_below_surface(run: Running, state: State) -> np.ndarray:
+    """Of each particle, along gravity, m."""
+    g, x = run.scenario.gravity, state["position"]
+    middle = np.array([run.constant("width") / 2, run.constant("column_height")])
+    return (x - middle) @ g / np.linalg.norm(g)
+
+
+def surface_rise(run: Running, before: State, after: State) -> float:
+    """Twice the rise of the centre of mass, in dp: what the surface does where none is lost."""
+    depths = [
+        np.average(depth_below_surface(run, state), weights=state["mass"])
+        for state in (before, after)
+    ]
+    return float(2 * (depths[0] - depths[1]) / run.scenario.dp)
+
+
+def at_rest(name: str) -> Callable[..., Outcome]:
+    """The run of a tank by the name of its scenario."""
+
+    def run_tank(particles: float, *overrides: str) -> Outcome:
+        run = Running(name, f"particles={particles:g}", *overrides)
+        before = moving(run.state())
+        times = run.scenario.time_max * np.linspace(0.5, 1, SAMPLES)
+        energy = [kinetic_energy(moving(state)) for state in run.sampled(times)]
+        return measured(run, before, moving(run.state()), float(np.mean(energy)))
+
+    return run_tank
+
+
+def measured(run: Running, before: State, after: State, energy: float) -> Outcome:
+    """Pressure and surface at the end, and the mean kinetic energy, scaled with rho g H."""
+    height, rho = run.constant("column_height"), 1000.0
+    scale = rho * float(np.linalg.norm(run.scenario.gravity)) * height
+    depth, pressure = depth_below_surface(run, after), after["pressure"]
+    exact = scale * depth / height
+    gradient = np.polyfit(depth, pressure, 1)[0] * height / scale
+    area = float(np.sum(before["mass"])) / rho
+    return Outcome(
+        {
+            "L2(p) / rho g H": Value(rms(pressure - exact) / scale),
+            "dp/dz / rho g": Value(float(gradient), 1.0),
+            "KE / rho g H2": Value(energy / (scale * area)),
+            "surface rise": Value(surface_rise(run, before, after)),
+        },
+        [Curve("", pressure / scale, -depth / height, points=True)],
+        [Curve("rho g z", np.array([0.0, 1.0]), np.array([0.0, -1.0]))],
+    )
+
+
+BREATHES = "the column breathes: vertical oscillations of a per cent in pressure are hardly damped"
+CRITERIA = (
+    Criterion(
+        "L2(p) / rho g H",
+        (at_most(0.02), at_most(0.01), at_most(0.01)),
+        "1 % at 50 particles over the depth, and first order from there to the coarser one",
+        order=1.0,
+        short=BREATHES,
+    ),
+    Criterion(
+        "dp/dz / rho g",
+        (between(0.98, 1.02), between(0.99, 1.01), between(0.99, 1.01)),
+        "a bed that carries the water's weight; other weakly compressible codes reach 0.82",
+        short=BREATHES,
+    ),
+    Criterion(
+        "KE / rho g H2",
+        (at_most(1e-5),),
+        "per area of water, over the second half of the run: it "
+        "rests; 1e-5 is a speed of 0.4 % of sqrt(g H)",
+        short=BREATHES,
+    ),
+    Criterion("surface rise", (small(0.3),), "volume is kept: a third of a row at most", unit="dp"),
+)
+AXES = ("p / rho g H", "height under the surface / H")
+
+
+def case(name: str, title: str, control: Control) -> Case:
+    """A tank at rest."""
+    return Case(
+        name=name,
+        title=title,
+        across="H/dp",
+        resolutions=(25, 50, 100),
+        run=at_rest(name),
+        criteria=CRITERIA,
+        axes=AXES,
+        controls=(control,),
+    )
+
+
+LESS_TILTED = f"gravity=[{-9.81 * math.sin(math.radians(10))}, -9.66]"
+
+CASES = (
+    case(
+        "hydrostatic",
+        "Water at rest in a tank",
+        Control(
+            "water a tenth too heavy",
+            "dp/dz / rho g",
+            lambda n: at_rest("hydrostatic")(n, "material.water.rho0=1100"),
+        ),
+    ),
+    case(
+        "hydrostatic-slope",
+        "Water at rest in a tank on a slope of 20 degrees",
+        Control(
+            "a slope of 10 degrees under the same water",
+            "KE / rho g H2",
+            lambda n: at_rest("hydrostatic-slope")(n, LESS_TILTED),
+        ),
+    ),
+)

@@ -1,0 +1,1 @@
+"""Grains as bodies, dry and in water."""

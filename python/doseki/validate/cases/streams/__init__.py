@@ -1,0 +1,1 @@
+"""Flows along walls: films, channels, other laws of viscosity."""

@@ -1,0 +1,1 @@
+"""Periodic flows without walls: sound, shear, vortices."""

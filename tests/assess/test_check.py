@@ -1,0 +1,195 @@
+"""`doseki check`: what it counts, what it warns of, and how good its estimates are."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import doseki
+from doseki.assess.preflight import brief_check, check_scenario
+from doseki.assess.warnings import thorough_findings
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation, filled_simulation
+
+SCENARIO = """\
+schema = 1
+dim = 2
+dp = 0.01
+time_max = 0.05
+time_out = 0.01
+xi = {xi}
+slope = 0
+
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0, "= -{layers}*dp"]
+max = [0.5, 0]
+
+[body.water]
+shape = "box"
+material = "water"
+min = [0.1, {bottom}]
+max = [0.3, {top}]
+"""
+
+
+@pytest.fixture
+def doubts(tmp_path):
+    """The findings about a body of water over a floor."""
+
+    def find(xi=0.05, layers=3, bottom=0.0, top=0.12, more=""):
+        file = tmp_path / "case.toml"
+        file.write_text(SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top) + more)
+        scenario = load_scenario(file)
+        simulation, *about = filled_simulation(scenario)
+        simulation.start()
+        return [str(doubt) for doubt in thorough_findings(scenario, simulation.state(), *about)]
+
+    return find
+
+
+def test_a_good_set_up_raises_no_doubt(doubts):
+    assert doubts() == []
+
+
+GAUGE = """
+[gauge.far]
+kind = "pressure"
+position = [0.2, 3]
+"""
+PISTON = """
+[body.piston]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0.4, 0]
+max = [0.43, 0.1]
+motion = { velocity = [-12, 5] }
+"""
+ROUGH = """
+[inflow.i]
+material = "water"
+rate = 0.01
+width = 0.1
+position = [0.01, 0]
+direction = [1, 0]
+depth = 0.2
+ks = 0.15
+duration = 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"top": 0.05}, ["water: 5 particles over its depth", "dp = 0.005 would do"]),
+        ({"layers": 2}, ["floor: a wall of 2 layers", "make it 3 layers (0.03 m) thick"]),
+        ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.01"]),
+        ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
+        ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),
+        ({"bottom": -0.012, "top": 0.12}, ["overlaps"]),
+        ({"more": GAUGE}, ["gauge.far.position = [0.2, 3.0] m lies outside everything"]),
+        ({"more": PISTON}, ["speeds up to 13.1 m/s are Mach"]),
+        ({"more": ROUGH}, ["inflow.i.ks = 0.15 m is larger than the depth of the flow, 0.12 m"]),
+    ],
+)
+def test_a_doubtful_set_up_is_named_with_its_remedy(doubts, changes, words):
+    told = " ".join(doubts(**changes))
+    for word in words:
+        assert word in told
+
+
+def test_report_has_all_that_is_promised():
+    told = check_scenario(load_scenario("flume"), threads=1)
+    for word in (
+        "particles",
+        "most particles",
+        "memory",
+        "disk",
+        "steps",
+        "wall time",
+        "per grain",
+        "depth of water",
+        "Mach number",
+        "1.1 particles across a grain",
+    ):
+        assert word in told
+    assert "926 basalt" in told
+
+
+def test_brief_form_takes_no_step():
+    scenario = load_scenario("flume")
+    simulation, names = build_simulation(scenario)
+    lines = brief_check(scenario, simulation, names)
+    assert lines[0].startswith("3,082 particles")
+    assert simulation.steps == 0
+
+
+MEASURE = """
+import json, sys
+from doseki.solver.build import build_simulation, load_core
+from doseki.assess.cost import estimate
+from doseki.scenario.load import load_scenario
+load_core().set_threads(1)
+scenario = load_scenario(sys.argv[1], sys.argv[2:])
+print(json.dumps(vars(estimate(scenario, *build_simulation(scenario)))))
+"""
+RUN = """
+import json, sys
+from doseki.run.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
+summary = run_scenario(load_scenario(sys.argv[1], sys.argv[3:]), sys.argv[2], RunOptions(threads=1))
+from pathlib import Path
+# Not getrusage: its peak is also that of the process that this one was forked from.
+status = Path("/proc/self/status").read_text().splitlines()
+peak = next(line for line in status if line.startswith("VmHWM"))
+print(json.dumps({
+    "steps": summary["step"], "most_particles": summary["n_particles"],
+    "seconds": summary["wall_seconds"], "memory": 1024 * int(peak.split()[1]),
+}))
+"""
+
+
+def in_own_process(program: str, *arguments: object) -> dict[str, float]:
+    paths = os.pathsep.join(
+        [str(Path(doseki.__file__).parents[1]), os.environ.get("PYTHONPATH", "")]
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | {"PYTHONPATH": paths},
+    )
+    return json.loads(done.stdout)
+
+
+@pytest.mark.minutes
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("collision", []),
+        ("dambreak", ["time_max=0.3"]),
+        ("film", ["time_max=1"]),
+        ("flume", ["time_max=0.15"]),
+        ("flume-strength", ["time_max=0.15"]),
+        ("hang", []),
+        ("shear-wave", []),
+    ],
+)
+def test_estimates_are_within_30_percent(name, settings, tmp_path):
+    """Wall time is printed only: it also depends on what else the machine does."""
+    expected = in_own_process(MEASURE, name, *settings)
+    taken = in_own_process(RUN, name, tmp_path / "run", *settings)
+    taken["disk"] = sum(f.stat().st_size for f in (tmp_path / "run").rglob("*") if f.is_file())
+    for quantity, value in taken.items():
+        print(f"{name:15s} {quantity:15s} {expected[quantity]:.4g} expected, {value:.4g} taken")
+    for quantity in ("steps", "most_particles", "memory", "disk"):
+        assert expected[quantity] == pytest.approx(taken[quantity], rel=0.3), quantity

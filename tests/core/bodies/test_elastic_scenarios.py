@@ -1,0 +1,189 @@
+"""Elastic bodies of a scenario: among water, walls and each other, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doseki.errors import UserError
+from doseki.record.particles import BOUND
+from doseki.scenario.load import load_scenario
+from doseki.scene.build import build_scene
+from doseki.solver.build import build_simulation, empty_simulation
+
+TOP = """
+schema = 1
+dim = 2
+dp = 0.02
+scheme = "resolved"
+speed_max = 2
+time_max = 1
+time_out = 1
+gravity = [0, 0]
+
+[material.rubber]
+law = "solid"
+rho0 = 1000
+speedsound = 50
+young_modulus = 1e6
+poisson_ratio = 0.3
+"""
+PLATE = """
+[body.plate]
+shape = "box"
+material = "rubber"
+kinematics = "elastic"
+min = [0, 0]
+max = [0.6, 0.1]
+"""
+DISC = """
+[body.{name}]
+shape = "disc"
+material = "rubber"
+kinematics = "elastic"
+centre = [{x}, 0]
+radius = 0.1
+velocity = [{speed}, 0]
+"""
+DROP = """
+[body.water]
+shape = "box"
+material = "water"
+min = [0.2, 0.12]
+max = [0.4, 0.3]
+velocity = [0, -1]
+"""
+
+
+@pytest.fixture
+def load(tmp_path: Path):
+    """Loads a scenario of these tables."""
+
+    def scenario(tables, top=TOP, *overrides):
+        path = tmp_path / "case.toml"
+        path.write_text(top + tables, encoding="utf-8")
+        return load_scenario(str(path), overrides)
+
+    return scenario
+
+
+def run_to(simulation, time):
+    """The state at a time."""
+    simulation.advance(limit=time, pause=time, max_steps=10**9)
+    return simulation.state()
+
+
+def momentum(state):
+    """Of everything."""
+    return state["mass"] @ state["velocity"]
+
+
+def test_its_particles_are_bound_and_have_their_stress(core, load):
+    scenario = load(PLATE + 'clamped = "= 0.1 - x"\nvelocity = [0, "= 2*max(0, x - 0.1)"]\n')
+    simulation, _ = build_simulation(scenario)
+    before = simulation.state()
+    assert (before["motion"] == BOUND).all()
+    assert (before["grain"] == -1).all()
+    assert before["mass"].sum() == pytest.approx(1000 * 0.06)
+    held = before["position"][:, 0] < 0.1
+    assert (before["velocity"][held] == 0).all()
+    after = run_to(simulation, 0.02)
+    assert (after["position"][held] == before["position"][held]).all()
+    assert after["position"][~held, 1].mean() > before["position"][~held, 1].mean() + 0.005
+    upper = after["stress"][(before["position"][:, 1] > 0.08) & ~held]
+    lower = after["stress"][(before["position"][:, 1] < 0.02) & ~held]
+    assert upper[:, 0, 0].mean() < -1e3 < 1e3 < lower[:, 0, 0].mean()  # bent upwards
+    stress = after["stress"][~held]
+    assert np.allclose(stress, stress.transpose(0, 2, 1))
+    # Plane strain: nothing moves across, so the stress there follows from the others.
+    trace = stress[:, 0, 0] + stress[:, 1, 1]
+    assert np.allclose(stress[:, 2, 2], 0.3 * trace, rtol=0.05, atol=0.02 * np.abs(trace).max())
+    totals = simulation.totals()
+    assert totals["shear_energy"] > 0
+    assert totals["kinetic_energy"] == pytest.approx(
+        0.5 * float(after["mass"] @ (after["velocity"] ** 2).sum(1))
+    )
+
+
+def test_two_discs_push_each_other(core, load):
+    tables = DISC.format(name="a", x=-0.101, speed=0.5) + DISC.format(name="b", x=0.101, speed=-0.5)
+    simulation, names = build_simulation(load(tables))
+    before = simulation.state()
+    after = run_to(simulation, 0.05)
+    left = after["body"] == names.index("a")
+    assert after["velocity"][left, 0].mean() == pytest.approx(-0.5, rel=0.1)
+    assert np.abs(momentum(after) - momentum(before)).max() < 1e-11
+
+
+def test_a_disc_bounces_off_a_wall_and_does_not_stick(core, load):
+    wall = """
+    [body.wall]
+    shape = "box"
+    material = "aluminium"
+    fixed = true
+    min = [0.101, -0.2]
+    max = [0.181, 0.2]
+    """
+    simulation, names = build_simulation(load(DISC.format(name="a", x=0, speed=0.5) + wall))
+    after = run_to(simulation, 0.06)
+    of_disc = after["body"] == names.index("a")
+    assert after["velocity"][of_disc, 0].mean() < -0.4
+
+
+def test_water_pushes_a_plate_as_the_plate_pushes_it(core, load):
+    simulation, names = build_simulation(load(PLATE + DROP, TOP, "shifting=false"))
+    before = simulation.state()
+    plate = before["body"] == names.index("plate")
+    after = run_to(simulation, 1e-4)  # while the water flows evenly: later its own sums lose 1e-8
+    given = momentum({key: after[key][plate] for key in ("mass", "velocity")})
+    assert given[1] < -1e-4 * np.abs(momentum(before)[1])
+    assert np.abs(momentum(after) - momentum(before)).max() < 1e-14 * np.abs(momentum(before)[1])
+
+
+def test_a_restored_run_goes_on_with_the_same_bits(core, load):
+    tables = PLATE + 'clamped = "= 0.1 - x"\nspin = 1.0\n' + DROP
+    scenario = load(tables)
+    simulation, names = build_simulation(scenario)
+    run_to(simulation, 0.01)
+    saved = simulation.checkpoint()
+    other = empty_simulation(scenario, names)
+    assert other.restore(saved)
+    for key, values in run_to(simulation, 0.02).items():
+        assert np.array_equal(values, other_state(other)[key]), key
+
+
+def other_state(simulation):
+    """The state of the restored run at the same time."""
+    return run_to(simulation, 0.02)
+
+
+def test_a_thin_body_is_a_warning_or_an_error(load):
+    thin = PLATE.replace("0.1]", "0.06]")
+    doubts = [str(doubt) for doubt in build_scene(load(thin)).warnings]
+    assert any("plate: 3 particles across an elastic body" in doubt for doubt in doubts)
+    with pytest.raises(UserError, match=r"body\.plate: 1 particles across an elastic body"):
+        build_simulation(load(PLATE.replace("0.1]", "0.02]")))
+
+
+@pytest.mark.parametrize("line", ['clamped = "= x"', "damping = 0.1", "hourglass = 0.1"])
+def test_keys_of_elastic_bodies_are_theirs_alone(load, line):
+    with pytest.raises(UserError, match="only kinematics"):
+        load(PLATE.replace('"elastic"', '"rigid"') + line)
+
+
+def test_a_clamped_body_may_lie_in_what_holds_it(core, load):
+    holder = """
+    [body.holder]
+    shape = "box"
+    material = "aluminium"
+    fixed = true
+    min = [-0.1, -0.1]
+    max = [0.1, 0.2]
+    """
+    with pytest.raises(UserError, match="overlaps holder"):
+        build_simulation(load(PLATE + holder))
+    simulation, _ = build_simulation(load(PLATE + 'clamped = "= 0.1 - x"\n' + holder))
+    before = simulation.state()["position"]
+    assert np.abs(run_to(simulation, 0.01)["position"] - before).max() < 1e-12

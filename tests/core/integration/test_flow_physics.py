@@ -1,0 +1,131 @@
+"""What the resolved scheme conserves, and what it must not notice."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ..flows import DROP, FILM, advance
+
+G = 9.8
+WALLS = pytest.mark.parametrize("wall", ["no_slip", "free_slip", "rough"])
+
+
+def gravity_of(dim):
+    """Gravity on a slope of 20 degrees, and straight down."""
+    slope = np.zeros(dim)
+    slope[0], slope[-1] = -G * np.sin(np.radians(20)), -G * np.cos(np.radians(20))
+    return slope
+
+
+def down(dim):
+    """The setting of a scenario's gravity along the last axis."""
+    return f"gravity={[0] * (dim - 1) + [-G]}"
+
+
+def forces(simulation, gravity):
+    """Sums of m a - m g of the fluid and of the forces on walls, and the size of what is summed."""
+    state, acceleration = simulation.state(), simulation.rates()["acceleration"]
+    free, mass = state["motion"] == 0, state["mass"][:, None]
+    of_fluid = (mass * (acceleration - gravity))[free]
+    return of_fluid.sum(axis=0), state["force"][~free].sum(axis=0), np.abs(of_fluid).sum()
+
+
+@WALLS
+@pytest.mark.parametrize("steps", [0, 30])
+def test_what_the_fluid_loses_the_walls_get(core, flows, dim, wall, steps):
+    """Every pair is balanced. Shifting alone is not, so it is off."""
+    settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01", "shifting=false"]
+    film = advance(flows(FILM.format(dim=dim), *settings), steps)
+    fluid, walls, size = forces(film, gravity_of(dim))
+    assert np.abs(walls).max() > 1e-4 * size
+    np.testing.assert_allclose(fluid + walls, 0, atol=1e-14 * size)
+
+
+@WALLS
+def test_water_at_rest_and_walls_are_in_balance_at_any_depth(core, flows, wall):
+    """Also where only differences of pressure act while it flows: the first evaluation has none."""
+    settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01", "body.film.velocity=[0, 0]"]
+    settings += ["body.film.max=[0.2, 0.15]", "body.film.pressure== 3000*(0.15 - y)"]
+    fluid, walls, size = forces(flows(FILM.format(dim=2), *settings), gravity_of(2))
+    assert np.abs(walls).max() > 1e-4 * size
+    np.testing.assert_allclose(fluid + walls, 0, atol=1e-14 * size)
+
+
+def test_the_friction_of_a_rough_bed_depends_on_its_roughness(core, flows, dim):
+    drag = []
+    for ks in (0.001, 0.01):
+        settings = ["body.bed.wall=rough", f"body.bed.ks={ks}", "body.film.jitter=0"]
+        settings += [f"body.film.velocity={[-1.0] + [0.0] * (dim - 1)}"]
+        drag.append(forces(flows(FILM.format(dim=dim), *settings), gravity_of(dim))[1][0])
+    assert drag[1] < drag[0] < 0
+
+
+def test_momentum_of_a_small_drop_is_conserved(core, flows, dim):
+    """All of it is near the surface, so that nothing acts that belongs inside a flow."""
+    velocity = ["= -3*y + 5*x", *[0.1] * (dim - 2), "= 3*x"]
+    settings = [f"body.drop.velocity={velocity}", "body.drop.radius=0.025", "body.drop.jitter=0.2"]
+    drop = flows(DROP.format(dim=dim), *settings, "shifting=false")
+    before, mass = np.array(drop.totals()["momentum"]), drop.totals()["mass"]
+    advance(drop, 40)
+    fluid, _, size = forces(drop, 0.0)
+    assert size > mass
+    np.testing.assert_allclose(fluid, 0, atol=1e-14 * size)
+    np.testing.assert_allclose(drop.totals()["momentum"], before, rtol=0, atol=1e-13 * mass)
+
+
+def test_a_drop_falls_with_g_and_keeps_its_shape(core, flows, dim):
+    drop = flows(DROP.format(dim=dim), down(dim))
+    before, time = drop.state()["position"], 0.15
+    drop.advance(limit=time, pause=time, max_steps=10**6)
+    state = drop.state()
+    x, v = state["position"], state["velocity"]
+    fall = np.zeros(dim)
+    fall[-1] = -0.5 * G * time**2
+    np.testing.assert_allclose(x.mean(axis=0) - before.mean(axis=0), fall, atol=1e-12)
+    np.testing.assert_allclose(v.mean(axis=0), 2 * fall / time, atol=1e-12)
+    assert np.abs(x - before - fall).max() < 0.25 * 0.01
+    assert np.abs(v - 2 * fall / time).max() < 0.01
+
+
+def moving_drop(flows, dim, speed):
+    """A turning, stretched drop on its way. Viscosity limits its steps, whatever its speed."""
+    along = "z" if dim == 3 else "y"
+    velocity = [f"= {speed} - 4*{along} + 2*x", *["= -2*y"] * (dim - 2), f"= {2 * speed} + 4*x"]
+    settings = [
+        f"body.drop.velocity={velocity}",
+        "material.water.nu=0.5",
+        "material.water.law=fluid",
+    ]
+    return flows(DROP.format(dim=dim), *settings)
+
+
+def test_nothing_depends_on_the_speed_of_the_frame(core, flows, dim):
+    speed = 8.0
+    still, moving = (moving_drop(flows, dim, u) for u in (0.0, speed))
+    frame = np.array([speed] + [0.0] * (dim - 2) + [2 * speed])
+    for steps in (0, 30):
+        ours, theirs = (advance(drop, steps) for drop in (still, moving))
+        assert theirs.time == pytest.approx(ours.time, rel=1e-9)
+        one, other = ours.state(), theirs.state()
+        x = other["position"] - frame * ours.time
+        np.testing.assert_allclose(x, one["position"], atol=1e-12)
+        np.testing.assert_allclose(other["velocity"] - frame, one["velocity"], atol=1e-9)
+        np.testing.assert_allclose(other["density"], one["density"], rtol=1e-10)
+        a, b = (drop.rates()["acceleration"] for drop in (ours, theirs))
+        np.testing.assert_allclose(b, a, atol=1e-9 * np.abs(a).max())
+
+
+@WALLS
+def test_a_bed_that_goes_with_the_water_is_a_bed_at_rest(core, flows, wall):
+    """Forces depend on velocities relative to the wall."""
+    settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01"]
+    velocity = 'body.film.velocity=["= {} + sin(60*x)", "= 0.3*cos(90*x)"]'
+    still = flows(FILM.format(dim=2), *settings, velocity.format(0))
+    belt = "[body.bed.motion]\nvelocity = [2.5, 0]\nstop = 1\n"
+    moving = flows(FILM.format(dim=2) + belt, *settings, velocity.format(2.5))
+    for name in ("acceleration", "density_rate"):
+        expected = still.rates()[name]
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(moving.rates()[name], expected, atol=1e-11 * scale)
+    np.testing.assert_allclose(moving.state()["force"], still.state()["force"], atol=1e-9)

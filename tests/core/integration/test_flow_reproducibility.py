@@ -1,0 +1,87 @@
+"""What a run of the resolved scheme must not depend on: threads, interruptions, instruction set."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ..flows import CHANNEL, FILM, advance, assert_same_bits
+from ..instruction_sets import INSTRUCTION_SETS
+
+STEPS = 120
+
+
+def result(simulation):
+    """State, rates and totals as one mapping."""
+    return simulation.state() | simulation.rates() | {"totals": simulation.totals()}
+
+
+def channel(flows, *settings, **options):
+    """Water that enters over a rough bed: lists are renewed, particles appear and leave."""
+    return flows(CHANNEL, *settings, **options)
+
+
+@pytest.mark.parametrize(
+    ("text", "dp"), [(CHANNEL, 0.004), (FILM.format(dim=3), 0.0075)], ids=["channel", "film in 3-D"]
+)
+def test_threads_change_no_bit(core, flows, text, dp):
+    results = []
+    for threads in (1, 2, 4):
+        core.set_threads(threads)
+        simulation = advance(flows(text, f"dp={dp}"), STEPS // 2)
+        assert len(simulation) > 2048  # below, some loops stay on one thread
+        results.append(result(simulation))
+    for other in results[1:]:
+        assert_same_bits(results[0], other)
+
+
+@pytest.mark.parametrize("steps", [0, 1, STEPS])
+def test_a_restored_run_goes_on_with_the_same_bits(core, flows, steps):
+    straight = advance(channel(flows), steps)
+    again = flows.empty(CHANNEL)
+    assert again.restore(straight.checkpoint())
+    assert_same_bits(straight.checkpoint(), again.checkpoint())
+    for simulation in (straight, again):
+        advance(simulation, STEPS)
+    assert straight.rebuilds > 2
+    assert straight.totals()["mass_entered"] > 0
+    assert straight.steps == again.steps == steps + STEPS
+    assert_same_bits(result(straight), result(again))
+    assert_same_bits(straight.checkpoint(), again.checkpoint())
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("isa", INSTRUCTION_SETS)
+@pytest.mark.isa
+def test_instruction_set_changes_only_rounding(core, flows, isa, dim):
+    """Sums in another order: 1e-9 of its scale in every field after some tens of steps."""
+    text = FILM.format(dim=dim)
+    expected, state = (
+        advance(flows(text, isa=kind), STEPS // 3).state() for kind in ("scalar", isa)
+    )
+    for name, scale in (("position", 0.01), ("velocity", 1.0), ("density", 1000.0)):
+        np.testing.assert_allclose(state[name], expected[name], rtol=0, atol=1e-9 * scale)
+    force = np.abs(expected["force"]).max()
+    np.testing.assert_allclose(state["force"], expected["force"], rtol=0, atol=1e-8 * force)
+
+
+@pytest.mark.parametrize("skin", [0.0, 0.3])
+def test_margin_of_the_lists_changes_only_rounding(core, flows, skin):
+    expected, state = (
+        advance(flows(FILM.format(dim=2), f"skin={margin}"), STEPS // 3).state()
+        for margin in (0.1, skin)
+    )
+    np.testing.assert_allclose(state["position"], expected["position"], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(state["velocity"], expected["velocity"], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("kernel", ["wendland_c2", "wendland_c6"])
+def test_a_film_runs_in_3d(core, flows, kernel):
+    """It keeps its depth and its mass, and gravity draws it down the slope."""
+    settings = ["body.film.velocity=[0, 0, 0]", "body.bed.wall=free_slip", f'kernel="{kernel}"']
+    film = advance(flows(FILM.format(dim=3), *settings), 200)
+    state = film.state()
+    free = state["motion"] == 0
+    assert state["velocity"][free, 0].mean() < -0.5 * 9.8 * np.sin(np.radians(20)) * film.time
+    assert 0.02 < state["position"][free, 2].max() < 0.05
+    np.testing.assert_allclose(state["density"][free], 1000, rtol=0.02)

@@ -1,0 +1,415 @@
+"""The resolved scheme written as plainly as possible: every pair is visited, nothing is clever.
+
+An oracle for the core on small sets of particles. It shares no code with it. Arrays of pairs have
+the particle i on their first axis, its neighbour on the second; r_ij = x_i - x_j and
+grad_i W = F r_ij.
+"Fluid" are the particles that move, "wall" the fixed ones. Gradients of pressure and velocity, the
+measure of the surface and the liveliness enter with the values of the evaluation before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+FIXED = 1
+KAPPA = 0.4
+SUPPORT = {"wendland_c2": 2.0, "wendland_c6": 2.5}
+SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surface
+LEAST_CONCENTRATION = 0.6
+LEAST_BETA = 0.05  # of the Riemann dissipation
+RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
+LEAST_DENSITY = 0.98  # rho0
+AT_REST = 5e-4  # rms |L| h/c
+LEAST_FILLED = 0.05  # of a rough wall's kernel
+SHIFT_STRENGTH, SHIFT_MOST = 40.0, 5.0
+SHIFT_FASTEST = 0.05  # over the sound speed
+
+
+@dataclass(frozen=True)
+class FlowOptions:
+    """Parameters of the scheme, with the names and the defaults of a scenario."""
+
+    dp: float
+    eta: float = 1.3
+    kernel: str = "wendland_c2"
+    viscosity: str = "morris"
+    eos: str = "linear"
+    turbulence: str = "none"
+    smagorinsky: float = 0.12
+    shifting: bool = True
+    cflnumber: float = 0.3
+    cfl_force: float = 0.25
+    walls: Sequence[Mapping[str, Any]] = ({"no_slip": True, "ks": 0.0},)
+    period: np.ndarray = field(default_factory=lambda: np.full(3, np.inf))
+
+
+def kernel(name: str, r: np.ndarray, R: float, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """W in 1/m^dim and F = W'/r in 1/m^(dim+2), both zero beyond R."""
+    q = np.minimum(r / R, 1)
+    if name == "wendland_c2":
+        scale = {2: 7 / np.pi, 3: 21 / (2 * np.pi)}[dim] / R**dim
+        return scale * (1 - q) ** 4 * (1 + 4 * q), -20 * scale / R**2 * (1 - q) ** 3
+    scale = {2: 78 / (7 * np.pi), 3: 1365 / (64 * np.pi)}[dim] / R**dim
+    W = scale * (1 - q) ** 8 * (1 + 8 * q + 25 * q**2 + 32 * q**3)
+    return W, -22 * scale / R**2 * (1 - q) ** 7 * (1 + 7 * q + 16 * q**2)
+
+
+def lattice_sums(name: str, dp: float, R: float, dim: int) -> tuple[float, float]:
+    """Sum of V W and of -V F x^2 over a lattice: 1 and 1 for an integral."""
+    axis = dp * np.arange(-4, 5)
+    x = np.array(list(product(axis, repeat=dim)))
+    W, F = kernel(name, np.linalg.norm(x, axis=1), R, dim)
+    return dp**dim * W.sum(), -(dp**dim) * (F * x[:, 0] ** 2).sum()
+
+
+def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Scalar product along the last axis."""
+    return (u * v).sum(axis=-1)
+
+
+def unit_or_zero(v: np.ndarray) -> np.ndarray:
+    """Direction of each vector; zero for a vector of zero."""
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    return v / np.where(length > 0, length, 1)
+
+
+def tangential(v: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """The vectors without their parts along `direction` (of any length)."""
+    n = unit_or_zero(direction)
+    return v - dot(v, n)[..., None] * n
+
+
+class Pairs:
+    """Geometry of the pairs of fluid particles with others: r_ij, r, W and F (corrected)."""
+
+    def __init__(self, x_i: np.ndarray, x_j: np.ndarray, options: FlowOptions) -> None:
+        dim = x_i.shape[1]
+        box = options.period[:dim]
+        self.r_ij = x_i[:, None] - x_j[None, :]
+        image = np.round(self.r_ij / box)
+        self.r_ij -= image * np.where(np.isfinite(box), box, 0)
+        self.r = np.linalg.norm(self.r_ij, axis=-1)
+        R = SUPPORT[options.kernel] * options.eta * options.dp
+        self.W, F = kernel(options.kernel, self.r, R, dim)
+        self.F = F / lattice_sums(options.kernel, options.dp, R, dim)[1]
+        self.safe_r = np.where(self.r > 0, self.r, 1)  # a particle with itself adds nothing
+
+
+class FlowReference:
+    """The right-hand side of the resolved scheme for a set of particles.
+
+    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth` of its walls;
+    `materials` are mappings with law, rho0, speedsound, nu and, where they are not newtonian,
+    rheology and its parameters. All smoothing lengths are eta dp, all
+    fixed particles have no acceleration.
+    """
+
+    def __init__(
+        self,
+        particles: Any,
+        materials: Sequence[Mapping[str, Any]],
+        gravity: Sequence[float],
+        options: FlowOptions,
+    ) -> None:
+        self.options, self.gravity = options, np.asarray(gravity, float)
+        self.dim = particles.position.shape[1]
+        self.h = options.eta * options.dp
+        self.R = SUPPORT[options.kernel] * self.h
+        self.c = max(m["speedsound"] for m in materials if m["law"] == "fluid")
+        self._take_fluid(particles, materials)
+        self._take_walls(particles)
+        self.ff = Pairs(self.x, self.x, options)
+        self.fw = Pairs(self.x, self.x_w, options)
+        n = len(self.x)
+        self.pressure_gradient = np.zeros((n, self.dim))
+        self.L = np.zeros((n, self.dim, self.dim))
+        self.surface = np.zeros(n)
+        self.strain = self.liveliness = 0.0
+
+    def _take_fluid(self, particles: Any, materials: Sequence[Mapping[str, Any]]) -> None:
+        self.fluid = particles.motion != FIXED
+        self.x, self.v = particles.position[self.fluid], particles.velocity[self.fluid]
+        self.rho, self.mass = particles.density[self.fluid], particles.mass[self.fluid]
+        of = [materials[k] for k in particles.material[self.fluid]]
+        self.materials = of
+        self.harmonic = any(m.get("rheology") == "herschel_bulkley" for m in materials)
+        self.mean_pressure: np.ndarray | None = None
+        self.rho0, self.c0, self.nu = (
+            np.array([m[key] for m in of]) for key in ("rho0", "speedsound", "nu")
+        )
+        self.volume, self.rest_volume = self.mass / self.rho, self.mass / self.rho0
+
+    def _take_walls(self, particles: Any) -> None:
+        walls = ~self.fluid
+        self.x_w, self.v_w = particles.position[walls], particles.velocity[walls]
+        self.normal, self.depth = particles.normal[walls], particles.depth[walls]
+        condition = [self.options.walls[k] for k in particles.body[walls]]
+        self.stick = np.array([float(c["no_slip"]) for c in condition])
+        self.ks = np.array([c["ks"] for c in condition])
+        self.V_w = self.options.dp**self.dim
+        self.g_normal = np.maximum(0, -dot(self.gravity, self.normal))
+
+    def start(self) -> FlowReference:
+        """What the core does before its first step: two evaluations."""
+        self.evaluate()
+        self.evaluate()
+        return self
+
+    def evaluate(self) -> None:
+        """Rates from the state and from what the evaluation before has left."""
+        self.p = self._pressure(self.surface)
+        if self.mean_pressure is None:
+            self.mean_pressure = self.p
+        self.mu = self._molecular_viscosity() + self.rho * self._eddy_viscosity()
+        contact = self._contact()
+        self._wall_pass(contact)
+        self._fluid_pass(contact)
+
+    def _pressure(self, surface: np.ndarray) -> np.ndarray:
+        """Linear or Tait's law; no tension on a free surface."""
+        e, stiffness = self.rho / self.rho0, self.rho0 * self.c0**2
+        p = stiffness * (e - 1) if self.options.eos == "linear" else stiffness / 7 * (e**7 - 1)
+        return np.where(surface > SURFACE, np.maximum(p, 0), p)
+
+    # Viscosity
+
+    def _strain_rate(self) -> np.ndarray:
+        """sqrt(2 D:D)."""
+        D = 0.5 * (self.L + self.L.transpose(0, 2, 1))
+        return np.sqrt(2 * (D**2).sum(axis=(1, 2)))
+
+    def _molecular_viscosity(self) -> np.ndarray:
+        """rho nu, or the stress of a rheology over the rate of strain."""
+        mu = self.rho * self.nu
+        for i, (m, rate) in enumerate(zip(self.materials, self._strain_rate(), strict=True)):
+            if m.get("rheology") == "herschel_bulkley":
+                rate = max(rate, 1e-9)
+                stress = m["yield_stress"] * -np.expm1(-m["regularisation"] * rate)
+                stress += m["consistency"] * rate ** m["flow_index"]
+                mu[i] = min(stress / rate, m["viscosity_max"])
+            elif m.get("rheology") == "mu_i":
+                p, rate = max(self.mean_pressure[i], 1e-300), max(rate, 1e-9)
+                inertial = rate * m["grain_diameter"] / np.sqrt(p / m["grain_density"])
+                growth = (m["mu_2"] - m["mu_s"]) / (m["inertial_number"] / inertial + 1)
+                mu[i] = min((m["mu_s"] + growth) * p / rate, m["viscosity_max"])
+        return mu
+
+    def _eddy_viscosity(self) -> np.ndarray:
+        """Square of the mixing length times sqrt(2 D:D)."""
+        if self.options.turbulence == "none":
+            return np.zeros(len(self.x))
+        least = self.options.smagorinsky * self.options.dp
+        mixing = self.options.turbulence == "mixing_length"
+        length = self._mixing_length(least) if mixing else least
+        return length**2 * self._strain_rate()
+
+    def _mixing_length(self, least: float) -> np.ndarray:
+        """kappa z sqrt(1 - z/d) with bed and depth of the column of plan in which a particle is.
+
+        Columns are about 4 dp wide; whole ones fill a period.  Only what faces upwards is a bed.
+        """
+        period = self.options.period[: self.dim - 1]
+        whole = np.maximum(np.floor(period / (4 * self.options.dp)), 1)
+        bounded = np.where(np.isfinite(period), period, 0)
+        width = np.where(bounded > 0, bounded / whole, 4 * self.options.dp)
+        column, of_wall = (np.floor(x[:, :-1] / width) for x in (self.x, self.x_w))
+        length = np.full(len(self.x), least)
+        for i, key in enumerate(column):
+            here = (column == key).all(axis=1)
+            bed = (of_wall == key).all(axis=1) & (self.normal[:, -1] >= 0.5)
+            top = (self.x_w[:, -1] + self.depth)[bed]
+            top = top[top < self.x[here, -1].mean()]
+            if len(top):
+                d = self.volume[here].sum() / width.prod()
+                z = np.clip(self.x[i, -1] - top.max(), 0, d)
+                length[i] = max(least, KAPPA * z * np.sqrt(1 - z / d))
+        return length
+
+    # Walls
+
+    def _contact(self) -> dict[str, np.ndarray]:
+        """What a fluid particle i and a wall particle w make of each other."""
+        pairs, dp = self.fw, self.options.dp
+        in_front = dot(pairs.r_ij, self.normal[None]) > self.depth
+        n = np.where(in_front[..., None], self.normal, pairs.r_ij / pairs.safe_r[..., None])
+        g_normal = np.where(in_front, self.g_normal, 0)
+        r_n, v = dot(pairs.r_ij, n), self.v[:, None] - self.v_w[None]
+        approach = -dot(v, n)
+        # Pressure of the wall over that of i: gravity across it, the fluid's gradient along it.
+        gradient = self.pressure_gradient[:, None]
+        along = pairs.r_ij - r_n[..., None] * n
+        excess = self.rho[:, None] * g_normal * r_n - dot(gradient, along)
+        extra = self._dissipation(2 * approach, self.rho[:, None])
+        p = self.p[:, None] + 0.5 * excess + extra
+        factor = self.stick * (1 + self.depth / np.maximum(r_n - self.depth, dp / 4))
+        sliding = v + approach[..., None] * n
+        mu = (self.mu[:, None] * factor)[..., None]
+        scale = -2 * self.V_w * pairs.F
+        return {
+            "force": scale[..., None] * (p[..., None] * pairs.r_ij - mu * sliding),
+            "excess": excess,
+            "height": r_n - self.depth,
+            "v_dot_r": -2 * approach * r_n,
+            "jump": factor[..., None] * sliding - 2 * approach[..., None] * n,
+            "power": scale * (mu[..., 0] * dot(sliding, v) + extra * approach * r_n),
+        }
+
+    def _dissipation(self, approach: np.ndarray, rho: np.ndarray) -> np.ndarray:
+        """What the Riemann solver adds to the mean pressure."""
+        beta = np.minimum(np.maximum(3 * approach / self.c, LEAST_BETA), 1)
+        return 0.5 * beta * rho * self.c * approach
+
+    def _wall_pass(self, contact: Mapping[str, np.ndarray]) -> None:
+        """Force, pressure and friction of the walls; `traction` is what rough ones hand back."""
+        share = self.volume[:, None] * self.fw.W
+        weight = share.sum(axis=0)
+        filled = np.where(weight > 0, weight, 1)
+        self.wall_force = -(self.volume[:, None, None] * contact["force"]).sum(axis=0)
+        p_w = self.p[:, None] + contact["excess"]
+        self.wall_pressure = np.where(weight > 0, (share * p_w).sum(axis=0) / filled, 0)
+        u = (share[..., None] * self.v[:, None]).sum(axis=0) / filled[:, None] - self.v_w
+        u = tangential(u, self.normal)
+        dp, ks = self.options.dp, np.where(self.ks > 0, self.ks, 1)
+        rough = (self.ks > 0) & (self.depth < dp) & (weight > LEAST_FILLED)
+        z = np.maximum((share * contact["height"]).sum(axis=0) / filled, ks / 30)
+        rho = (share * self.rho[:, None]).sum(axis=0) / filled
+        friction = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * dp ** (self.dim - 1)
+        drag = (rough * friction * np.linalg.norm(u, axis=1))[:, None] * u
+        self.wall_force += drag
+        self.traction = -drag / filled[:, None]
+
+    # Fluid
+
+    def _fluid_pass(self, contact: Mapping[str, np.ndarray]) -> None:
+        self.share_of_walls = (self.V_w * self.fw.W).sum(axis=1)
+        self._take_gradients(contact)
+        self._measure_surface()
+        force, rate, power = self._pair_sums()
+        force += contact["force"].sum(axis=1) + (self.fw.W[..., None] * self.traction).sum(axis=1)
+        rate += (self.V_w * self.fw.F * contact["v_dot_r"]).sum(axis=1)
+        power += contact["power"].sum(axis=1)
+        self.power = (self.volume * power).sum()
+        self.acceleration = force / self.rho[:, None] + self.gravity
+        self.density_rate = self.rho * rate
+        self._add_pressure_difference()
+        if self.options.shifting:
+            self._add_shift()
+        self._relax_density()
+        self._set_timestep()
+        self.strain = np.sqrt((self.L**2).sum() / len(self.x))
+        self.liveliness = np.clip(self.h * self.strain / (AT_REST * self.c) - 1, 0, 1)
+        self.surface = self.measure
+
+    def _pair_sums(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Force over volume, density rate over density and power over volume, of fluid pairs."""
+        pairs, VF = self.ff, self.volume[None] * self.ff.F
+        v = self.v[:, None] - self.v[None]
+        v_r, rho = dot(v, pairs.r_ij), self._mean(self.rho)
+        D = 0.5 * (self.old_L + self.old_L.transpose(0, 2, 1))
+        smooth = np.einsum("ijab,ija,ijb->ij", self._mean(D), pairs.r_ij, pairs.r_ij)
+        extra = self._dissipation((smooth - v_r) / pairs.safe_r, rho)
+        p = self._mean(self.p) + extra
+        mu = self._mean(self.mu)
+        if self.harmonic:
+            mu = self.mu[:, None] * self.mu[None] / mu
+        viscous = mu[..., None] * self._viscous_direction(v, v_r)
+        force = -2 * (VF[..., None] * (p[..., None] * pairs.r_ij - viscous)).sum(axis=1)
+        jump = self.p[:, None] - self.p[None]
+        jump = jump - dot(self._mean(self.old_gradient), pairs.r_ij)
+        rate = (VF * (v_r + jump * pairs.r / (rho * self.c))).sum(axis=1)
+        return force, rate, (VF * (extra * v_r - dot(viscous, v))).sum(axis=1)
+
+    def _mean(self, a: np.ndarray) -> np.ndarray:
+        return 0.5 * (a[:, None] + a[None])
+
+    def _viscous_direction(self, v: np.ndarray, v_r: np.ndarray) -> np.ndarray:
+        if self.options.viscosity == "morris":
+            return v
+        along = (self.dim + 2) * v_r / self.ff.safe_r**2
+        return along[..., None] * self.ff.r_ij
+
+    def _take_gradients(self, contact: Mapping[str, np.ndarray]) -> None:
+        """Corrected gradients of pressure and velocity, and the plain one of concentration."""
+        VF_f, VF_w = self.volume[None] * self.ff.F, self.V_w * self.fw.F
+        r_f, r_w = self.ff.r_ij, self.fw.r_ij
+        moment = -np.einsum("ij,ija,ijb->iab", VF_f, r_f, r_f)
+        moment -= np.einsum("ij,ija,ijb->iab", VF_w, r_w, r_w)
+        spans = np.linalg.det(moment) > 0.05
+        inverse = np.zeros_like(moment)
+        inverse[spans] = np.linalg.inv(moment[spans])
+        p_ij, v_ij = self.p[:, None] - self.p[None], self.v[:, None] - self.v[None]
+        plain = -np.einsum("ij,ij,ija->ia", VF_f, p_ij, r_f)
+        plain += np.einsum("ij,ij,ija->ia", VF_w, contact["excess"], r_w)
+        L = -np.einsum("ij,ija,ijb->iab", VF_f, v_ij, r_f)
+        L -= np.einsum("ij,ija,ijb->iab", VF_w, contact["jump"], r_w)
+        self.old_gradient, self.old_L = self.pressure_gradient, self.L
+        self.plain_gradient, self.plain_L = plain, L
+        self.pressure_gradient = np.einsum("iab,ib->ia", inverse, plain)
+        self.L = np.einsum("ibc,iac->iab", inverse, L)
+        self.concentration_gradient = np.einsum("ij,ija->ia", VF_f, r_f)
+        self.concentration_gradient += np.einsum("ij,ija->ia", VF_w, r_w)
+
+    def _measure_surface(self) -> None:
+        """Measure of the free surface, and how full the fluid is regardless of it."""
+        full, _ = lattice_sums(self.options.kernel, self.options.dp, self.R, self.dim)
+        C = ((self.rest_volume[None] * self.ff.W).sum(axis=1) + self.share_of_walls) / full
+        slope = self.R * np.linalg.norm(self.concentration_gradient, axis=1)
+        spray = C < LEAST_CONCENTRATION
+        x = np.where(spray, ALONE, np.minimum(slope / np.where(spray, 1, C), ALONE))
+        a, b = (0.045, 0.047) if self.options.kernel == "wendland_c6" else (0.053, 0.086)
+        self.filling = np.where((x < EDGE) & ~spray, C * (1 + a * x + b * x**2), 1)
+        self.measure = x
+        self.nearby = np.where(self.ff.F < 0, self.surface[None], 0).max(axis=1)
+
+    def _add_pressure_difference(self) -> None:
+        """Away from walls and surface, while it flows, gradients are the corrected ones."""
+        self.inside = (self.share_of_walls == 0) & (self.nearby < SURFACE)
+        push = 2 * self.p[:, None] * self.concentration_gradient
+        push += self.plain_gradient - self.pressure_gradient
+        share = self.liveliness * self.inside
+        self.acceleration += (share / self.rho)[:, None] * push
+        trace = np.einsum("iaa->i", self.plain_L - self.L)
+        self.density_rate += share * self.rho * trace
+
+    def _add_shift(self) -> None:
+        """What moving relative to the fluid does to velocity and density."""
+        norm = np.sqrt((self.L**2).sum(axis=(1, 2)))
+        rate = np.maximum(norm, self.strain)
+        slope = np.linalg.norm(self.concentration_gradient, axis=1)
+        speed = np.minimum(SHIFT_STRENGTH * self.h * slope, SHIFT_MOST) * self.h * rate
+        shift = -speed[:, None] * unit_or_zero(self.concentration_gradient)
+        surface_gradient = np.einsum(
+            "ij,ij,ija->ia",
+            self.volume[None] * self.ff.F,
+            self.surface[None] - self.surface[:, None],
+            self.ff.r_ij,
+        )
+        near_surface = (self.nearby > SURFACE)[:, None]
+        shift = np.where(near_surface, tangential(shift, surface_gradient), shift)
+        speed = np.linalg.norm(shift, axis=1)[:, None]
+        shift = shift * np.minimum(1, SHIFT_FASTEST * self.c / np.maximum(speed, 1e-300))
+        self.shift = np.where((self.measure < SURFACE)[:, None], shift, 0)
+        self.acceleration += np.einsum("iab,ib->ia", self.L, self.shift)
+        self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2
+
+    def _relax_density(self) -> None:
+        live = self.liveliness
+        memory = (live * RELAXATION + (1 - live) * RELAXATION_AT_REST) * self.h / self.c
+        self.density_rate += (self.filling * self.rho0 - self.rho) / memory
+        void = self.rho < LEAST_DENSITY * self.rho0
+        self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
+
+    def _set_timestep(self) -> None:
+        speed = np.linalg.norm(self.v, axis=1)
+        force = np.linalg.norm(self.acceleration, axis=1)
+        limits = [
+            self.options.cflnumber * self.h / (self.c + speed),
+            self.options.cfl_force * np.sqrt(self.h / force),
+            self.h**2 * self.rho / (8 * np.maximum(self.mu, 1e-300)),
+        ]
+        self.timestep = np.min(limits)

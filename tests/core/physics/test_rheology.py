@@ -1,0 +1,86 @@
+"""Viscosities that depend on the rate of strain, against their closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+RATES = np.array([0.0, 1e-12, 1e-5, 1e-3, 0.1, 1.0, 30.0, 1e4])
+LOTS = 1e12  # Pa s: no limit
+
+
+RHO = 1000.0  # kg/m3
+
+
+def slurry(point, rate, *parameters):
+    """Viscosity of Herschel and Bulkley's law, which no pressure changes."""
+    return point("herschel_bulkley", rate, 0.0, RHO, *parameters)[0]
+
+
+def test_newton_s_law_has_the_viscosity_rho_nu(point):
+    np.testing.assert_allclose(point("newtonian", RATES, 5.0, RHO, 2e-3)[0], 2.0, rtol=1e-15)
+
+
+def test_newton_and_power_law(point):
+    rate = RATES[2:]
+    newton = slurry(point, rate, 0.0, 3.0, 1.0, 1.0, LOTS)
+    np.testing.assert_allclose(newton, 3, rtol=1e-14)
+    for n in (0.4, 1.5):
+        stress = rate * slurry(point, rate, 0.0, 3.0, n, 1.0, LOTS)
+        np.testing.assert_allclose(stress, 3 * rate**n, rtol=1e-12)
+
+
+def test_bingham_stress(point):
+    """tau = tau_y (1 - exp(-m rate)) + K rate: tau_y + K rate for m rate >> 1."""
+    rate = RATES[2:]
+    stress = rate * slurry(point, rate, 20.0, 3.0, 1.0, 100.0, LOTS)
+    np.testing.assert_allclose(stress, -20 * np.expm1(-100 * rate) + 3 * rate, rtol=1e-6)
+    np.testing.assert_allclose(stress[-3:], 20 + 3 * rate[-3:], rtol=1e-12)
+
+
+@pytest.mark.parametrize("n", [0.5, 1.0, 2.0])
+def test_viscosity_at_rest_is_finite_and_limited(point, n):
+    eta = slurry(point, RATES, 20.0, 3.0, n, 100.0, 1500.0)
+    assert np.all((eta > 0) & (eta <= 1500))
+    at_rest = {0.5: 1500.0, 1.0: 1500.0, 2.0: 1500.0}[n]
+    assert eta[0] == at_rest
+    assert slurry(point, 0.0, 20.0, 3.0, 1.0, 100.0, LOTS)[0] == pytest.approx(2003)
+
+
+BEADS = (0.382, 0.643, 0.279, 5e-4, 2500.0)  # mu_s, mu_2, I_0, d, rho_s
+
+
+def beads(point, rate, p, limit):
+    """Viscosity of glass beads, which the density of their mixture does not change."""
+    return point("mu_i", rate, p, RHO, *BEADS, limit)[0]
+
+
+def mu_of(inertial):
+    """mu(I) of glass beads."""
+    return BEADS[0] + (BEADS[1] - BEADS[0]) / (BEADS[2] / inertial + 1)
+
+
+@pytest.mark.parametrize("p", [3.0, 200.0])
+def test_friction_is_mu_of_i(point, p):
+    rate = RATES[3:]
+    friction = rate * beads(point, rate, p, LOTS) / p
+    np.testing.assert_allclose(friction, mu_of(rate * 5e-4 / np.sqrt(p / 2500)), rtol=1e-12)
+    assert friction[0] == pytest.approx(0.382, abs=1e-3)
+    assert beads(point, 1e9, p, LOTS)[0] * 1e9 / p == pytest.approx(0.643, rel=1e-3)
+
+
+def test_without_pressure_there_is_no_friction(point):
+    assert not beads(point, RATES, -5.0, LOTS).any()
+    assert not beads(point, RATES, 0.0, LOTS).any()
+
+
+def test_friction_at_rest_is_limited(point):
+    assert beads(point, 0.0, 200.0, 40.0)[0] == 40
+
+
+def test_mean_viscosities_of_a_pair(point):
+    mean, harmonic = point(
+        "pair_viscosity", np.array([1.0, 3.0, 0.0, 1e6]), np.array([3.0, 1, 0, 1])
+    )
+    np.testing.assert_allclose(mean, [2, 2, 0, 500000.5])
+    np.testing.assert_allclose(harmonic, [1.5, 1.5, 0, 2e6 / 1000001], atol=1e-20)

@@ -1,0 +1,239 @@
+"""Pictures: every particle where it belongs, in its colour, in a file of a readable shape."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from matplotlib import colors, image
+from matplotlib.collections import EllipseCollection
+from matplotlib.figure import Figure
+from PIL import Image
+
+from doseki.errors import UserError
+from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
+from doseki.figures.dots import dots, extent_of
+from doseki.figures.kinds.histogram import SpeedHistogram, draw_speed_row
+from doseki.figures.kinds.snapshot import Panels, draw_panels
+from doseki.figures.movie import make_movie
+from doseki.figures.plot import figures, plot_run
+from doseki.figures.raster import EMPTY, coloured, splat
+from doseki.measure.census import draw_speeds
+from doseki.measure.quantities import quantity
+from doseki.measure.views import View, named_window, whole_space
+from doseki.record.quantities import quantity_label
+from doseki.record.reader import load
+
+
+def test_splat_paints_discs_at_their_places_and_later_over_earlier():
+    points = np.array([[0.5, 0.5], [2.5, 1.5], [2.5, 1.5]])
+    shown = splat(points, np.array([0.1, 0.1, 1.0]), (0.0, 4.0, 0.0, 2.0), 4)
+    assert shown.tolist() == [[EMPTY, 2, 2, 2], [0, EMPTY, 2, EMPTY]]
+
+
+def test_splat_leaves_out_what_is_outside():
+    points = np.array([[-0.5, 0.5], [4.5, 0.5], [0.5, 2.5], [0.5, -0.5]])
+    assert np.all(splat(points, np.full(4, 0.1), (0.0, 4.0, 0.0, 2.0), 4) == EMPTY)
+
+
+def test_coloured_gives_background_to_empty_pixels():
+    picture = coloured(np.array([[EMPTY, 0]]), np.array([[1, 2, 3]], np.uint8), (9, 9, 9))
+    assert picture.tolist() == [[[9, 9, 9], [1, 2, 3]]]
+
+
+def test_dots_have_the_area_of_the_particles_or_the_radius_of_their_support(two_grains):
+    snapshot = load(two_grains)[0]
+    grain, support = (dots(snapshot, whole_space(2), size) for size in ("grain", "support"))
+    assert np.allclose(np.pi * grain.radius**2, snapshot["mass"] / snapshot["density"])
+    assert np.allclose(support.radius, 2.5 * snapshot["smoothing_length"])
+
+
+def test_extent_of_a_window_is_the_window_and_of_all_space_holds_the_circles(
+    flow_folder, two_grains
+):
+    run = load(flow_folder)
+    assert extent_of([run[0]], named_window(run, "end")) == (0.0, 1.0, -0.1, 0.3)
+    left, right, bottom, top = extent_of([load(two_grains)[0]], whole_space(2), "support")
+    assert left < -1.3 < 1.3 < right
+    assert bottom < -0.3 < 0.3 < top
+
+
+def test_a_stray_particle_does_not_shrink_the_picture(tmp_path, record_run, plain_state):
+    cloud = np.random.default_rng(0).uniform(size=(5000, 2))
+    position = np.vstack([cloud, [[100.0, 0.5]]])
+    state = plain_state(position, np.zeros((5001, 2)), np.zeros(5001, int))
+    record_run(tmp_path / "run", times=(0.0,), state_at=lambda _time: state)
+    extent = extent_of([load(tmp_path / "run")[0]], whole_space(2))
+    assert 1.0 < extent[1] < 1.5
+
+
+def test_materials_have_the_colours_of_the_paper(flow_folder):
+    run = load(flow_folder)
+    snapshot = run[-1]
+    rgba = colouring(run, [snapshot], "material", whole_space(2)).rgba(snapshot)
+    wanted = {"water": FLUID_COLOURS[0], "basalt": SOLID_COLOURS[0], "aluminium": FIXED_COLOUR}
+    for name, colour in wanted.items():
+        assert np.all(rgba[snapshot["material"] == name] == colors.to_rgba(colour))
+
+
+def test_fixed_particles_are_black_even_where_others_of_their_material_move(
+    tmp_path, record_run, plain_state
+):
+    state = plain_state(np.eye(2), np.zeros((2, 2)), np.array([1, 1]))
+    state["motion"] = np.array([0, 1], np.int32)
+    record_run(tmp_path / "run", times=(0.0,), state_at=lambda _time: state)
+    run = load(tmp_path / "run")
+    colours = colouring(run, [run[0]], "material", whole_space(2))
+    wanted = [SOLID_COLOURS[0], FIXED_COLOUR]
+    assert np.allclose(colours.rgba(run[0]), [colors.to_rgba(colour) for colour in wanted])
+    labels = [label for label, _ in colours.legend_entries()]
+    assert labels == ["basalt", "basalt (fixed)"]
+
+
+def test_colour_scale_spans_the_particles_that_move(flow_folder):
+    run = load(flow_folder)
+    scale = colouring(run, [run[-1]], "velocity_x", whole_space(2))
+    labels = [label for label, _ in scale.legend_entries()]
+    assert (labels[0], labels[-1]) == ("-1", "-0.5")
+    assert scale.heading == "velocity x (m/s)"
+
+
+def test_quantities_by_name(run_folder):
+    snapshot = load(run_folder)[0]
+    assert np.array_equal(quantity(snapshot, "velocity_y"), snapshot["velocity"][:, 1])
+    assert np.array_equal(quantity(snapshot, "stress_xy"), snapshot["stress"][:, 0, 1])
+    assert np.allclose(quantity(snapshot, "speed") ** 2, (snapshot["velocity"] ** 2).sum(axis=1))
+    assert quantity_label("stress_xy") == "stress xy (Pa)"
+    with pytest.raises(UserError, match="did you mean velocity_x"):
+        quantity(snapshot, "velocityx")
+    with pytest.raises(UserError, match="velocity_z"):
+        quantity(snapshot, "velocity_z")
+
+
+def test_snapshot_panels_are_true_to_scale_and_hold_every_particle(two_grains):
+    run = load(two_grains)
+    what = Panels(whole_space(2), ["speed"], sizes=("support", "grain"))
+    figure = draw_panels(run, [run[0], run[-1]], what)
+    figure.canvas.draw()
+    panels = [axes for axes in figure.axes if axes.get_aspect() == 1.0]
+    assert len(panels) == 4
+    for axes in panels:
+        (circles,) = [c for c in axes.collections if isinstance(c, EllipseCollection)]
+        assert len(circles.get_offsets()) == 2
+        wanted = 0.3 if "radius H h" in axes.get_title(loc="left") else 0.1 / np.sqrt(np.pi)
+        assert np.allclose(circles.get_widths(), 2 * wanted)
+        assert np.allclose(circles.get_heights(), 2 * wanted)
+        box = axes.get_window_extent()
+        assert box.width / np.diff(axes.get_xlim()) == pytest.approx(
+            box.height / np.diff(axes.get_ylim())
+        )
+
+
+def test_plot_run_writes_the_figures_of_the_scenario_and_the_general_ones(flow_folder):
+    files = plot_run(flow_folder)
+    names = {"overview", "energy", "mass", "flow", "before", "speeds", "energies"}
+    assert {path.stem for path in files} == names
+    for path in files:
+        height, width, _ = image.imread(path).shape
+        assert 300 < width < 2500
+        assert 150 < height < 3000
+
+
+def test_figures_show_red_grains_black_bed_and_blue_water(flow_folder):
+    plot_run(flow_folder)
+    pixels = np.round(255 * image.imread(flow_folder / "figures/overview.png")[..., :3]).astype(int)
+    for colour in (FLUID_COLOURS[0], SOLID_COLOURS[0], FIXED_COLOUR):
+        wanted = np.round(255 * np.array(colors.to_rgb(colour))).astype(int)
+        assert np.count_nonzero(np.all(np.abs(pixels - wanted) <= 1, axis=2)) > 20
+
+
+def test_a_run_of_few_particles_also_shows_the_support(two_grains, flow_folder):
+    titles = [axes.get_title(loc="left") for axes in dict(figures(load(two_grains)))["pair"].axes]
+    assert any("radius H h" in title for title in titles)
+    titles = [
+        axes.get_title(loc="left") for axes in dict(figures(load(flow_folder)))["before"].axes
+    ]
+    assert not any("radius H h" in title for title in titles)
+
+
+def test_a_figure_of_the_scenario_replaces_the_general_one_of_its_name(two_grains):
+    scenario = two_grains / "scenario.toml"
+    scenario.write_text(scenario.read_text().replace("[figure.pair]", "[figure.overview]"))
+    names = [name for name, _ in figures(load(two_grains))]
+    assert sorted(names) == ["energy", "mass", "overview"]
+
+
+def test_a_run_in_three_dimensions_is_drawn_as_a_slice(tmp_path, record_run):
+    record_run(tmp_path / "run", dim=3)
+    assert [path.stem for path in plot_run(tmp_path / "run")] == [
+        "overview",
+        "energy",
+        "mass",
+        "flow",
+    ]
+
+
+def test_a_run_without_snapshots_cannot_be_drawn(tmp_path, record_run):
+    record_run(tmp_path / "run", times=())
+    with pytest.raises(UserError, match="no snapshot"):
+        plot_run(tmp_path / "run")
+
+
+def test_a_figure_that_was_made_impossible_by_hand_is_named(two_grains):
+    scenario = two_grains / "scenario.toml"
+    scenario.write_text(scenario.read_text().replace('kind = "snapshot"', 'kind = "sculpture"'))
+    with pytest.raises(UserError, match=r"line 9: figure\.pair\.kind = .sculpture"):
+        plot_run(two_grains)
+
+
+@pytest.mark.parametrize(("colour", "window"), [("material", None), ("velocity_x", "end")])
+def test_gif_has_one_frame_per_snapshot(flow_folder, tmp_path, colour, window):
+    run = load(flow_folder)
+    with Image.open(make_movie(run, tmp_path / "m.gif", colour, window)) as movie:
+        assert movie.n_frames == len(run)
+        first = np.asarray(movie.convert("RGB"))
+        movie.seek(len(run) - 1)
+        assert np.any(np.asarray(movie.convert("RGB")) != first)
+
+
+def test_mp4_needs_ffmpeg(flow_folder, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(UserError, match="needs the program ffmpeg"):
+        make_movie(load(flow_folder), tmp_path / "m.mp4")
+    assert not (tmp_path / "m.mp4").exists()
+
+
+def test_movie_refuses_other_endings_and_existing_files(flow_folder, tmp_path):
+    (tmp_path / "m.gif").write_text("mine")
+    with pytest.raises(UserError, match="exists"):
+        make_movie(load(flow_folder), tmp_path / "m.gif")
+    with pytest.raises(UserError, match=r"\.gif or an \.mp4"):
+        make_movie(load(flow_folder), tmp_path / "m.avi")
+
+
+def test_a_speed_that_few_samples_have_can_be_drawn():
+    """Its mean over the samples is above the 95th percentile, which is zero."""
+    speeds = np.r_[np.full(2000, 0.55), 3.05]
+    draw_speed_row(Figure().subplots(1, 2), draw_speeds(speeds), "grains")
+
+
+class OneBody(dict):
+    """A snapshot with a body of three particles, one of them beside the window, and a drop."""
+
+    grains: ClassVar = {"position": np.array([[0.5, 0.0]]), "velocity": np.array([[2.0, 0.0]])}
+
+
+def test_a_body_is_counted_once_and_drops_each():
+    snapshot = OneBody(
+        position=np.array([[0.4, 0.0], [0.6, 0.0], [1.1, 0.0], [0.2, 0.0]]),
+        velocity=np.array([[1.0, 0.0], [3.0, 0.0], [2.0, 0.0], [0.5, 0.0]]),
+        fixed=np.zeros(4, bool),
+        material=np.array(["rock", "rock", "rock", "water"]),
+        grain=np.array([0, 0, 0, -1]),
+    )
+    view = View(np.zeros(2), np.ones(2))
+    assert SpeedHistogram(view, "rock").speeds(snapshot).tolist() == [2.0]
+    assert SpeedHistogram(view).speeds(snapshot).tolist() == [0.5, 2.0]
+    apart = View(np.array([0.55, 0.0]), np.ones(2))
+    assert SpeedHistogram(apart, "rock").speeds(snapshot).tolist() == []

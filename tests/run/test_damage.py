@@ -1,0 +1,128 @@
+"""Damaged checkpoints are found out, and the one before is used, saying so."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+
+from doseki.driver.checkpoint import (
+    Checkpoint,
+    CheckpointFolder,
+    DamagedCheckpointError,
+    Position,
+    from_bytes,
+    to_bytes,
+)
+from doseki.errors import UserError
+from doseki.run.resume import resume_run
+from doseki.run.runner import RunOptions
+
+from .channel import assert_same_record, doseki_command, run_channel
+
+
+def make_checkpoint(step=3):
+    state = {"time": np.array([0.1]), "steps": np.array([step]), "position": np.eye(50, 2)}
+    return Checkpoint(state, Position(2, 2, 17, 0.125, 0.5, 3.5), ["water"], ["sea", "bed"])
+
+
+@pytest.fixture(scope="module")
+def stopped(channel_file, tmp_path_factory):
+    """The folder of a run that was stopped, with two checkpoints."""
+    folder = tmp_path_factory.mktemp("stopped") / "run"
+
+    def stop(now, _dt, _step):
+        if now >= 0.02:
+            (folder / "STOP").touch()
+
+    run_channel(channel_file, folder, progress=stop, checkpoint_every=0.004)
+    return folder
+
+
+@pytest.fixture
+def run(stopped, tmp_path):
+    """A copy of it, to be damaged."""
+    return shutil.copytree(stopped, tmp_path / "run")
+
+
+def truncate(data):
+    return data[: len(data) // 2]
+
+
+def flip(data):
+    middle = len(data) // 2
+    return data[:middle] + bytes([data[middle] ^ 4]) + data[middle + 1 :]
+
+
+def test_a_checkpoint_reads_back_to_the_last_bit():
+    written = make_checkpoint()
+    read = from_bytes(bytes(to_bytes(written)))
+    assert (read.position, read.material_names, read.body_names) == (
+        written.position,
+        ["water"],
+        ["sea", "bed"],
+    )
+    assert (read.time, read.step) == (0.1, 3)
+    for name, values in written.state.items():
+        np.testing.assert_array_equal(read.state[name], values)
+        assert read.state[name].dtype == values.dtype
+
+
+def test_every_flipped_bit_and_every_cut_is_found():
+    data = bytes(to_bytes(make_checkpoint()))
+    random = np.random.default_rng(1)
+    for place in random.integers(0, len(data), 300):
+        broken = bytearray(data)
+        broken[place] ^= 1 << random.integers(8)
+        with pytest.raises(DamagedCheckpointError):
+            from_bytes(bytes(broken))
+    for length in (0, 1, 63, 64, 65, 200, len(data) - 1):
+        with pytest.raises(DamagedCheckpointError):
+            from_bytes(data[:length])
+
+
+@pytest.mark.parametrize("damage", [truncate, flip, lambda _data: b""])
+def test_the_previous_checkpoint_is_used_and_said_so(run, uninterrupted, damage):
+    last = CheckpointFolder(run / "checkpoints").files()[-1]
+    last.write_bytes(damage(last.read_bytes()))
+    _, notes = resume_run(run, (), RunOptions(threads=1))
+    assert len(notes) == 1
+    assert str(last) in notes[0]
+    assert "damaged" in notes[0]
+    assert_same_record(run, uninterrupted)
+
+
+def test_the_command_line_says_so_too(run, uninterrupted):
+    last = CheckpointFolder(run / "checkpoints").files()[-1]
+    last.write_bytes(flip(last.read_bytes()))
+    done = doseki_command("resume", run, "--threads", 1, "--no-figures")
+    assert done.returncode == 0
+    assert f"warning: {last} is damaged" in done.stderr
+    assert_same_record(run, uninterrupted)
+
+
+def test_without_a_whole_checkpoint_nothing_is_touched(run):
+    for file in CheckpointFolder(run / "checkpoints").files():
+        file.write_bytes(truncate(file.read_bytes()))
+    before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
+    with pytest.raises(UserError, match="no whole checkpoint"):
+        resume_run(run)
+    assert {file: file.read_bytes() for file in run.rglob("*") if file.is_file()} == before
+
+
+def test_a_record_with_missing_rows_is_refused(run):
+    history = run / "history.csv"
+    history.write_text("".join(history.read_text().splitlines(keepends=True)[:4]))
+    with pytest.raises(UserError, match="rows have gone"):
+        resume_run(run)
+
+
+def test_a_checkpoint_of_another_run_is_refused(run, tmp_path):
+    run_channel("film", tmp_path / "film", "time_max=0.01")
+    for file in CheckpointFolder(run / "checkpoints").files():
+        file.unlink()
+    for file in CheckpointFolder(tmp_path / "film/checkpoints").files():
+        shutil.copy(file, run / "checkpoints")
+    with pytest.raises(UserError, match="materials are not those"):
+        resume_run(run)

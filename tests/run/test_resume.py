@@ -1,0 +1,175 @@
+"""A resumed run leaves the record of one that was never interrupted, bit for bit."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+
+import pytest
+
+from doseki.driver.checkpoint import CheckpointFolder
+from doseki.errors import UserError
+from doseki.record.reader import load
+from doseki.run.resume import resume_run
+from doseki.run.runner import RunOptions
+
+from .channel import (
+    assert_same_record,
+    channel_text,
+    command,
+    doseki_command,
+    environment,
+    record,
+    run_channel,
+)
+
+INTERRUPTIONS = (0.0101, 0.0207, 0.0209, 0.0455)  # s: before, during and after the inflow
+
+
+def stop_at(directory, time):
+    """A progress function that asks the run in `directory` to stop, from `time` on."""
+    return lambda now, _dt, _step: (directory / "STOP").touch() if now >= time else None
+
+
+def interrupted(file, directory, times=INTERRUPTIONS):
+    """Run, stopping at each of `times` and resuming."""
+    options = {"checkpoint_every": 0.001}
+    summary = run_channel(file, directory, progress=stop_at(directory, times[0]), **options)
+    for time in times[1:]:
+        assert summary["status"] == "stopped"
+        progress = stop_at(directory, time)
+        summary, _ = resume_run(directory, (), RunOptions(1, progress=progress, **options))
+    assert summary["status"] == "stopped"
+    return resume_run(directory, (), RunOptions(threads=1))[0]
+
+
+def test_stop_and_resume(channel_file, uninterrupted, tmp_path):
+    summary = interrupted(channel_file, tmp_path / "run")
+    assert summary["status"] == "done"
+    assert_same_record(tmp_path / "run", uninterrupted)
+    expected = load(uninterrupted).summary
+    for name in ("step", "av_dissipation", "mass_entered", "mass_left", "neighbour_rebuilds"):
+        assert summary[name] == expected[name], name
+
+
+@pytest.mark.minutes
+@pytest.mark.parametrize(
+    ("dim", "precision", "h_mode"),
+    [
+        (2, "float", "constant"),
+        (2, "double", "eq10"),
+        (3, "double", "constant"),
+        (3, "float", "eq10"),
+    ],
+)
+def test_every_mode_resumes_to_the_same_bits(tmp_path, dim, precision, h_mode):
+    (tmp_path / "channel.toml").write_text(channel_text(dim, precision, h_mode))
+    run_channel(tmp_path / "channel.toml", tmp_path / "straight")
+    interrupted(tmp_path / "channel.toml", tmp_path / "run")
+    assert_same_record(tmp_path / "run", tmp_path / "straight")
+
+
+def test_periodic_scenario_resumes_to_the_same_bits(tmp_path):
+    settings = ("time_max=0.2",)
+    run_channel("film", tmp_path / "straight", *settings)
+    progress = stop_at(tmp_path / "run", 0.113)
+    run_channel("film", tmp_path / "run", *settings, progress=progress, checkpoint_every=0.004)
+    resume_run(tmp_path / "run", (), RunOptions(threads=1))
+    assert_same_record(tmp_path / "run", tmp_path / "straight")
+
+
+@pytest.mark.minutes
+def test_threads_may_change_between_the_parts(channel_file, uninterrupted, tmp_path):
+    run_channel(
+        channel_file,
+        tmp_path / "run",
+        threads=2,
+        progress=stop_at(tmp_path / "run", 0.02),
+        checkpoint_every=0.001,
+    )
+    resume_run(tmp_path / "run", (), RunOptions(threads=1))
+    assert_same_record(tmp_path / "run", uninterrupted)
+
+
+@pytest.mark.minutes
+def test_writing_checkpoints_changes_no_bit(channel_file, uninterrupted, tmp_path):
+    run_channel(channel_file, tmp_path / "run", checkpoint_every=1e-4, checkpoint_minutes=0.0)
+    assert_same_record(tmp_path / "run", uninterrupted)
+
+
+def test_the_last_two_checkpoints_are_kept(channel_file, tmp_path):
+    run_channel(channel_file, tmp_path / "run", checkpoint_every=0.01)
+    files = CheckpointFolder(tmp_path / "run/checkpoints").files()
+    assert len(files) == 2
+    assert sorted((tmp_path / "run/checkpoints").iterdir()) == files
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_signals_stop_with_a_checkpoint_and_code_0(channel_file, tmp_path, number):
+    run = subprocess.Popen(
+        command(
+            "run", channel_file, "-o", tmp_path / "run", "--threads", 1, "--set", "time_max=99"
+        ),
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+    )
+    while not (tmp_path / "run/history.csv").exists():
+        assert run.poll() is None
+    run.send_signal(number)
+    assert run.wait(60) == 0
+    assert json.loads((tmp_path / "run/summary.json").read_text())["status"] == "stopped"
+    assert len(CheckpointFolder(tmp_path / "run/checkpoints").files()) == 1
+
+
+def test_resume_on_the_command_line(channel_file, uninterrupted, tmp_path):
+    run_channel(channel_file, tmp_path / "run", progress=stop_at(tmp_path / "run", 0.02))
+    done = doseki_command("resume", tmp_path / "run", "--threads", 1)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "status            done" in done.stdout
+    assert_same_record(tmp_path / "run", uninterrupted)
+
+
+def test_resume_further(channel_file, tmp_path):
+    run_channel(channel_file, tmp_path / "run")
+    resume_run(tmp_path / "run", ["time_max=0.08"], RunOptions(threads=1))
+    run = load(tmp_path / "run")
+    expected = [
+        0,
+        0.007,
+        0.014,
+        0.021,
+        0.028,
+        0.035,
+        0.042,
+        0.049,
+        0.056,
+        0.06,
+        0.063,
+        0.07,
+        0.077,
+        0.08,
+    ]
+    assert run.times == pytest.approx(expected)
+    assert run.scenario["time_max"] == 0.08
+    assert (sorted(run.history["time"]) == run.history["time"]).all()
+
+
+def test_a_finished_run_says_how_to_go_further(uninterrupted):
+    before = record(uninterrupted)
+    with pytest.raises(UserError, match=r"reached time_max.*--set time_max"):
+        resume_run(uninterrupted)
+    assert record(uninterrupted) == before
+
+
+@pytest.mark.parametrize("setting", ["dp=0.02", "time_out=0.001", "xi=0.1", "precision=float"])
+def test_what_the_state_was_made_with_cannot_change(uninterrupted, setting):
+    with pytest.raises(UserError, match="cannot change when a run is resumed"):
+        resume_run(uninterrupted, [setting, "time_max=1"])
+
+
+def test_a_folder_without_checkpoint_is_refused(uninterrupted, tmp_path):
+    (tmp_path / "snapshots").mkdir()
+    (tmp_path / "scenario.toml").write_bytes((uninterrupted / "scenario.toml").read_bytes())
+    with pytest.raises(UserError, match="no whole checkpoint"):
+        resume_run(tmp_path)

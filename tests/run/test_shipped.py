@@ -1,0 +1,103 @@
+"""Every shipped scenario runs a few coarse steps and leaves a record that can be read."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import doseki
+from doseki.run.runner import RunOptions, run_scenario
+from doseki.scenario.load import list_scenarios, load_scenario
+from doseki.scene.build import build_bodies
+from doseki.solver.build import build_simulation
+
+NAMES = [name for name, _, _ in list_scenarios()]
+STEPS = 12
+MOST_PARTICLES = 20_000
+
+# Coarser than shipped, where a 3-D run would have too many particles for a quick test.
+COARSE = {
+    ("flume", 3): 0.025,
+    ("flume-strength", 3): 0.025,
+    ("dambreak", 3): 0.03,
+    ("channel", 3): 0.0075,
+}
+
+
+def coarse_scenario(name, dim, *more):
+    """The scenario in `dim` dimensions, short enough for a few steps."""
+    overrides = [f"dim={dim}", *more]
+    if (name, dim) in COARSE:
+        overrides.append(f"dp={COARSE[name, dim]}")
+    simulation, _ = build_simulation(load_scenario(name, overrides))
+    time = STEPS * simulation.rates()["timestep"]
+    return load_scenario(name, [*overrides, f"time_max={time}", f"time_out={time / 2}"])
+
+
+def run(scenario, folder):
+    """The record of a run on one thread."""
+    run_scenario(scenario, folder, RunOptions(threads=1))
+    return doseki.load(folder)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("name", NAMES)
+def test_runs_and_leaves_a_record(name, dim, tmp_path):
+    scenario = coarse_scenario(name, dim)
+    record = run(scenario, tmp_path / "run")
+    np.testing.assert_allclose(record.times, scenario.time_max * np.array([0, 0.5, 1]), rtol=1e-12)
+    assert record.summary["status"] == "done"
+    assert record.summary["step"] >= STEPS // 2
+    assert record.summary["ledger_residual"] == pytest.approx(0, abs=1e-9)
+    assert record[0]["mass"].size <= MOST_PARTICLES
+    for snapshot in record:
+        check_snapshot(snapshot, scenario)
+    for column in record.history.columns:
+        assert np.isfinite(record.history[column]).all(), column
+    assert (np.diff(record.history["time"]) > 0).all()
+
+
+def check_snapshot(snapshot, scenario):
+    """Fields are finite, of the right shape, and name materials and bodies of the scenario."""
+    n = len(snapshot["id"])
+    shapes = {"position": (n, scenario.dim), "velocity": (n, scenario.dim), "stress": (n, 3, 3)}
+    for field in snapshot:
+        values = snapshot[field]
+        assert values.shape == shapes.get(field, values.shape)
+        assert len(values) == n
+        assert values.dtype.kind in "Ub" or np.isfinite(values).all(), field
+    assert set(snapshot["material"]) <= set(scenario.material_names)
+    assert set(snapshot["body"]) <= {*scenario.body, *scenario.inflow}
+    np.testing.assert_array_equal(snapshot["id"], np.unique(snapshot["id"]))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_effective_scenario_repeats_the_run(name, tmp_path):
+    """What the record keeps as its scenario gives the same particles at the end, bit for bit."""
+    first = run(coarse_scenario(name, 2), tmp_path / "first")
+    again = run(load_scenario(tmp_path / "first" / "scenario.toml"), tmp_path / "again")
+    for field in ("position", "velocity", "density", "material", "motion"):
+        np.testing.assert_array_equal(again[-1][field], first[-1][field])
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "channel"])
+def test_runs_in_single_precision(name, tmp_path):
+    double = run(coarse_scenario(name, 2), tmp_path / "double")
+    single = run(coarse_scenario(name, 2, "precision=float"), tmp_path / "single")
+    scale = np.abs(double[-1]["velocity"]).max()
+    np.testing.assert_allclose(
+        single[-1]["velocity"], double[-1]["velocity"], atol=1e-3 * scale, rtol=0
+    )
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("name", NAMES)
+def test_fixed_bodies_stay(name, dim, tmp_path):
+    scenario = coarse_scenario(name, dim)
+    particles, _ = build_bodies(scenario)
+    fixed = particles.id[particles.motion == 1]
+    snapshot = run(scenario, tmp_path / "run")[-1]
+    kept = np.isin(snapshot["id"], fixed)
+    assert kept.sum() == len(fixed)
+    np.testing.assert_array_equal(snapshot["position"][kept], particles.position[fixed])
+    assert snapshot["fixed"][kept].all()

@@ -1,0 +1,89 @@
+"""Expressions: arithmetic works, nothing else does."""
+
+import contextlib
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from doseki.scenario.values.expressions import (
+    ExpressionError,
+    evaluate,
+    evaluate_at,
+    names_in,
+)
+
+NAMES = {"a": 2, "b": 0.5, "word": "single"}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("= 1 + 2*3", 7),
+        ("= a/b", 4.0),
+        ("=2**0.5", math.sqrt(2)),
+        ("= sqrt(pi)", math.sqrt(math.pi)),
+        ("= round(2.6)", 3),
+        ("= ceil(2.1) - floor(2.9)", 1),
+        ("= max(a, b, 1)", 2),
+        ("= 'one' if a == 2 and not b > 1 else 'many'", "one"),
+        ("= word", "single"),
+        ("= 1 if 0 < a < 3 else 0", 1),
+    ],
+)
+def test_value(text, value):
+    assert evaluate(text, NAMES) == pytest.approx(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("= 1/0", "divides by zero"),
+        ("= c", "unknown name c"),
+        ("= aa", "did you mean a?"),
+        ("= open('x')", "calls open"),
+        ("= (1).real", "Attribute"),
+        ("= [1][0]", "Subscript"),
+        ("= 'x'*1000000000", "arithmetic needs numbers"),
+        ("= f'{a}'", "cannot be evaluated"),
+        ("= lambda: 1", "cannot be evaluated"),
+        ("= 1 +", "not a valid expression"),
+        ("= ", "not a valid expression"),
+        ("= sqrt(-1)", "cannot be evaluated"),
+        ("= " + "1+" * 400 + "1", "500 characters"),
+    ],
+)
+def test_refusal(text, complaint):
+    with pytest.raises(ExpressionError, match=re.escape(complaint)):
+        evaluate(text, NAMES)
+
+
+def test_powers_do_not_grow_into_huge_integers():
+    assert evaluate("= 9**9**9", {}) == math.inf
+
+
+def test_field_of_position():
+    position = np.array([[0.0, 0.0], [1.0, 0.25]])
+    values = evaluate_at("= a*sin(2*pi*y)", NAMES, position)
+    np.testing.assert_allclose(values, [0.0, 2.0])
+    np.testing.assert_array_equal(evaluate_at("= max(x, 0.5)", {}, position), [0.5, 1.0])
+
+
+@pytest.mark.parametrize("text", ["= 1/x", "= z", "= 'word'", "= x.tofile('leak')"])
+def test_field_refusal(text):
+    with pytest.raises(ExpressionError):
+        evaluate_at(text, {}, np.zeros((3, 2)))
+
+
+def test_names_are_found():
+    assert names_in("= a*sin(x) + 1") == {"a", "sin", "x"}
+
+
+@settings(max_examples=50)
+@given(st.text(max_size=30))
+def test_any_text_is_a_value_or_an_expression_error(text):
+    with contextlib.suppress(ExpressionError):
+        evaluate(f"={text}", NAMES)

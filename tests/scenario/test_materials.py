@@ -1,0 +1,94 @@
+"""Strength and rheology of materials: what is refused, and what a stored scenario brings back."""
+
+from __future__ import annotations
+
+import pytest
+
+from doseki.scenario.load import load_scenario
+
+from ..small_scenarios import BLOCK
+
+RESOLVED = 'scheme = "resolved"\nspeed_max = 2'
+MUD = """
+[material.mud]
+based_on = "water"
+rheology = "herschel_bulkley"
+yield_stress = 20
+consistency = 2
+flow_index = 0.5
+regularisation = 100
+viscosity_max = 1e3
+"""
+BEADS = """
+[material.beads]
+based_on = "water"
+rheology = "mu_i"
+mu_s = 0.38
+mu_2 = 0.64
+inertial_number = 0.28
+grain_diameter = 5e-4
+grain_density = 2500
+viscosity_max = 50
+"""
+SAND = """
+[material.sand]
+based_on = "basalt"
+cohesion = 10
+friction_angle = 35
+"""
+
+
+def block_of(name):
+    """BLOCK of another material."""
+    return BLOCK.replace("water", name)
+
+
+@pytest.mark.parametrize(
+    ("tables", "parts"),
+    [
+        (SAND.replace("35", "90"), ["material.sand.friction_angle = 90", "less than 90"]),
+        (SAND.replace("10", "-1"), ["material.sand.cohesion = -1", "at least 0"]),
+        (SAND + "yield_strength = 1e6", ["material.sand", "excludes cohesion and friction_angle"]),
+        (SAND + "rheology = 'mu_i'", ["material.sand", "for fluids; this material is a solid"]),
+        (SAND + "yield_stress = 5", ["material.sand", "yield_stress is for fluids"]),
+        (SAND + "friction_angel = 5", ["material.sand.friction_angel", "friction_angle"]),
+        (MUD + "cohesion = 5", ["material.mud", "cohesion is for solids"]),
+        (MUD + "mu_s = 0.3", ["mu_s is for rheology", '"mu_i"', "herschel_bulkley"]),
+        (MUD.replace("2\n", "0\n"), ["material.mud", "needs consistency, greater than 0"]),
+        (MUD.replace("viscosity_max = 1e3", ""), ["needs viscosity_max, greater than 0"]),
+        (MUD.replace("regularisation = 100", ""), ["needs regularisation, greater than 0"]),
+        (MUD.replace('"herschel_bulkley"', '"bingham"'), ["rheology = 'bingham'", "'mu_i'"]),
+        (MUD.replace('rheology = "herschel_bulkley"', ""), ["yield_stress is for rheology"]),
+        (BEADS.replace("0.64", "0.3"), ["mu_2 = 0.3 must be at least mu_s = 0.38"]),
+        (BEADS.replace("grain_density = 2500", ""), ["needs grain_density, greater than 0"]),
+    ],
+)
+def test_errors(write, error_of, tables, parts):
+    text = error_of(write(top=RESOLVED, tables=BLOCK + tables))
+    assert all(part in text for part in parts), text
+
+
+@pytest.mark.parametrize(("name", "table"), [("mud", MUD)])
+def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of, name, table):
+    text = error_of(write(top="", tables=block_of(name) + table))
+    assert f"material.{name}.rheology" in text
+    assert "newtonian" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "table", "top"),
+    [
+        ("mud", MUD, RESOLVED),
+        ("beads", BEADS, RESOLVED),
+        ("sand", SAND, ""),
+    ],
+)
+def test_a_stored_scenario_has_the_same_material(write, tmp_path, name, table, top):
+    scenario = load_scenario(write(top=top, tables=block_of(name) + table))
+    stored = tmp_path / "stored.toml"
+    stored.write_text(scenario.effective_toml(), encoding="utf-8")
+    again = load_scenario(str(stored))
+    assert again.materials[name] == scenario.materials[name]
+    assert (
+        again.materials[name].scaled(0.1).friction_angle == scenario.materials[name].friction_angle
+    )

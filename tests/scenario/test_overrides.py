@@ -1,0 +1,67 @@
+"""--set reaches top-level keys, parameters and dotted paths, and says what it cannot reach."""
+
+import pytest
+
+from doseki.scenario.load import load_scenario
+
+from ..small_scenarios import BLOCK
+
+PARAMETERS = """
+[parameters]
+length = { value = 2, min = 1, unit = "m" }
+lid = false
+rate = "3 L/s"
+"""
+
+
+def test_each_kind_of_key(write):
+    path = write('xi = "= length/10"', PARAMETERS + BLOCK)
+    scenario = load_scenario(
+        path,
+        [
+            "alpha=0.5",
+            "length=4",
+            "body.block.velocity=[1, 0]",
+            "material.water.rho0=998",
+            "hdp=1.3",
+            "rate=2 L/s",
+            "lid=true",
+            'title="hello"',
+            "time_max==2*time_out",
+        ],
+    )
+    assert (scenario.alpha, scenario.xi, scenario.eta) == (0.5, 0.4, 1.3)
+    assert scenario.body["block"].velocity == [1, 0]
+    assert scenario.materials["water"].rho0 == 998
+    assert scenario.constants["rate"] == "2 L/s"
+    assert scenario.constants["lid"] is True
+    assert (scenario.title, scenario.time_max) == ("hello", 0.2)
+
+
+def test_a_key_replaces_its_rival(write):
+    scenario = load_scenario(write("xi = 0.1\nslope = 20"), ["xi_height=2", "gravity=[0, -1]"])
+    assert scenario.xi == pytest.approx(10 * (2 * 1 * 2) ** 0.5 / 1400)
+    assert scenario.slope is None
+
+
+@pytest.mark.parametrize(
+    ("override", "part"),
+    [
+        ("alpha", "--set alpha: expected key=value"),
+        ("=1", "expected key=value"),
+        ("lenght=3", "--set lenght: not a key of this scenario; did you mean length?"),
+        ("length=long", "--set length: length = 'long' must be a number"),
+        ("length=0", "--set length: parameters.length: 0 is out of range; must be 1 m or more"),
+        ("lid=1", "lid = 1 must be true or false"),
+        ("alpha=-1", "--set alpha: alpha = -1 is out of range"),
+        ("xi=60/3116", 'must be a number, or an expression such as "= 2*dp"'),
+        ("body.blok.velocity=[0, 0]", "no table body.blok; did you mean body.block?"),
+        ("bodi.block.velocity=[0, 0]", "no table bodi; did you mean body?"),
+        ("body.block.velocty=[0, 0]", "body.block.velocty is not a known key; did you mean veloc"),
+        ("body.block=3", "expected body.block.KEY=value"),
+        ("material.watr.rho0=1", "did you mean material.water?"),
+        ("dp=1" + "0" * 400, "--set dp: dp = 1000"),
+    ],
+)
+def test_refusal(write, error_of, override, part):
+    assert part in error_of(write(tables=PARAMETERS + BLOCK), override)

@@ -1,0 +1,197 @@
+"""Normals and depths of walls, as the resolved scheme has them from the shapes of bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.scenario.load import load_scenario
+from doseki.scene.build import build_bodies
+from doseki.scene.wall_normals import wall_geometry
+
+FAST = 'scheme = "resolved"\nspeed_max = 2'
+WATER = """
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [2, 1]
+"""
+
+
+def built(path):
+    """Scenario, particles and names of the bodies: the arguments of wall_geometry."""
+    scenario = load_scenario(path)
+    return scenario, *build_bodies(scenario)
+
+
+def wall(name, low, high, more=""):
+    """The table of a fixed box."""
+    return (
+        f'\n[body.{name}]\nshape = "box"\nmaterial = "basalt"\nfixed = true\n'
+        f"min = {list(low)}\nmax = {list(high)}\n{more}\n"
+    )
+
+
+@pytest.fixture
+def geometry(write):
+    """Positions, normals and depths of the particles of a body."""
+
+    def of(name, tables):
+        scenario, particles, names = built(write(top=FAST, tables=tables))
+        normal, depth = wall_geometry(scenario, particles, names)
+        free = particles.motion == 0
+        assert (normal[free] == 0).all()
+        assert (depth[free] == 0).all()
+        mine = particles.body == names.index(name)
+        return particles.position[mine], normal[mine], depth[mine]
+
+    return of
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "normal", "surface"),
+    [
+        ((0, -0.3), (2, 0), (0, 1), 0.0),  # a floor
+        ((0, 1), (2, 1.3), (0, -1), -1.0),  # a lid
+        ((-0.3, 0), (0, 1.5), (1, 0), 0.0),  # a wall on the left
+        ((2, 0), (2.3, 1.5), (-1, 0), -2.0),  # and on the right
+    ],
+)
+def test_a_slab_faces_the_water(geometry, low, high, normal, surface):
+    x, n, depth = geometry("slab", WATER + wall("slab", low, high))
+    np.testing.assert_array_equal(n, np.broadcast_to(normal, x.shape))
+    np.testing.assert_allclose(depth, surface - x @ np.array(normal), atol=1e-12)
+    assert depth.min() == pytest.approx(0.05)
+    assert depth.max() == pytest.approx(0.25)
+
+
+def test_a_block_faces_outwards_on_every_side(geometry):
+    x, n, depth = geometry("block", WATER + wall("block", (3, 0), (5, 1)))
+    gaps = np.stack([x[:, 0] - 3, 5 - x[:, 0], x[:, 1], 1 - x[:, 1]])
+    np.testing.assert_allclose(depth, gaps.min(axis=0), atol=1e-12)
+    faces = np.array([(-1, 0), (1, 0), (0, -1), (0, 1)], float)
+    chosen = gaps[(faces @ n.T).argmax(axis=0), np.arange(len(x))]
+    np.testing.assert_allclose(chosen, depth, atol=1e-12)
+    assert {tuple(row) for row in n.astype(int)} == {(-1, 0), (1, 0), (0, -1), (0, 1)}
+
+
+def test_a_block_on_a_floor_has_no_face_below(geometry):
+    tables = WATER + wall("floor", (2, -0.3), (6, 0)) + wall("block", (3, 0), (5, 1))
+    x, n, depth = geometry("block", tables)
+    assert (n[:, 1] >= 0).all()
+    gaps = np.stack([x[:, 0] - 3, 5 - x[:, 0], 1 - x[:, 1]])
+    np.testing.assert_allclose(depth, gaps.min(axis=0), atol=1e-12)
+
+
+def test_a_disc_faces_outwards(geometry):
+    disc = (
+        '\n[body.disc]\nshape = "disc"\nmaterial = "basalt"\nfixed = true\n'
+        "centre = [4, 1]\nradius = 0.5\n"
+    )
+    x, n, depth = geometry("disc", WATER + disc)
+    out = x - [4, 1]
+    distance = np.linalg.norm(out, axis=1)
+    np.testing.assert_allclose(depth, 0.5 - distance, atol=1e-12)
+    np.testing.assert_allclose(n * distance[:, None], out, atol=1e-12)
+
+
+@pytest.mark.parametrize("angle", [30, -70])
+def test_a_rotated_slab_faces_along_its_rotated_axis(geometry, angle):
+    floor = wall("floor", (0, -0.3), (2, 0), f"rotate = {angle}\npivot = [0, 0]")
+    x, n, depth = geometry(
+        "floor", WATER.replace("min", f"rotate = {angle}\npivot = [0, 0]\nmin") + floor
+    )
+    turned = np.radians(angle)
+    normal = np.array([-np.sin(turned), np.cos(turned)])
+    np.testing.assert_allclose(n, np.broadcast_to(normal, x.shape), atol=1e-12)
+    np.testing.assert_allclose(depth, -(x @ normal), atol=1e-12)
+
+
+def test_a_rotated_block_faces_along_its_own_sides(geometry):
+    rotation = "rotate = 25\npivot = [3, 0]"
+    x, n, depth = geometry("block", WATER + wall("block", (3, 0), (5, 1), rotation))
+    turned = np.radians(25)
+    along, up = (
+        np.array([np.cos(turned), np.sin(turned)]),
+        np.array([-np.sin(turned), np.cos(turned)]),
+    )
+    own = np.stack([(x - [3, 0]) @ along, (x - [3, 0]) @ up])
+    gaps = np.stack([own[0], 2 - own[0], own[1], 1 - own[1]])
+    np.testing.assert_allclose(depth, gaps.min(axis=0), atol=1e-12)
+    np.testing.assert_allclose(np.abs(np.stack([n @ along, n @ up])).max(axis=0), 1, rtol=1e-12)
+
+
+def test_a_given_normal_counts(geometry):
+    """Its length does not, and the surface lies half a spacing beyond the foremost particles."""
+    x, n, depth = geometry("block", WATER + wall("block", (3, 0), (5, 1), "normal = [0, -3]"))
+    np.testing.assert_allclose(n, np.broadcast_to([0, -1], x.shape))
+    np.testing.assert_allclose(depth, x[:, 1], atol=1e-12)
+
+
+def test_a_slab_of_a_flow_that_enters_faces_the_inflow(geometry):
+    """Before anything has entered there is no water to face."""
+    inflow = """
+[inflow.i]
+material = "water"
+rate = 0.3
+width = 1
+position = [2, 0]
+direction = [-1, 0]
+depth = 0.4
+duration = 1
+"""
+    _, n, _ = geometry("floor", wall("floor", (0, -0.3), (2, 0)) + inflow)
+    assert (n == [0, 1]).all()
+
+
+def test_walls_in_3d(write):
+    """A slab turned about y, and a sphere."""
+    tables = """
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0, 0.5]
+max = [1, 1, 1]
+
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [0, 0, -0.3]
+max = [1, 1, 0]
+rotate = 20
+rotate_axis = [0, 1, 0]
+pivot = [0, 0, 0]
+
+[body.ball]
+shape = "sphere"
+material = "basalt"
+fixed = true
+centre = [3, 0, 0]
+radius = 0.45
+"""
+    path = write(top=FAST, tables=tables)
+    scenario = load_scenario(path, ["dim=3"])
+    particles, names = build_bodies(scenario)
+    normal, depth = wall_geometry(scenario, particles, names)
+    floor, ball = (particles.body == names.index(name) for name in ("floor", "ball"))
+    up = np.array([np.sin(np.radians(20)), 0, np.cos(np.radians(20))])
+    np.testing.assert_allclose(normal[floor], np.broadcast_to(up, (floor.sum(), 3)), atol=1e-12)
+    np.testing.assert_allclose(depth[floor], -(particles.position[floor] @ up), atol=1e-12)
+    out = particles.position[ball] - [3, 0, 0]
+    np.testing.assert_allclose(depth[ball], 0.45 - np.linalg.norm(out, axis=1), atol=1e-12)
+    np.testing.assert_allclose((normal[ball] * out).sum(axis=1), np.linalg.norm(out, axis=1))
+
+
+def test_carved_from_a_box(geometry):
+    """The surface is where `where` vanishes: here a slope of 3 in 4 and a wave."""
+    slope = 'where = "= 1 - 0.75*x - y"'
+    position, normal, depth = geometry("bed", WATER + wall("bed", [0, -1], [1, 1], slope))
+    np.testing.assert_allclose(normal, np.tile([0.6, 0.8], (len(normal), 1)), atol=1e-6)
+    expected = (1 - 0.75 * position[:, 0] - position[:, 1]) / 1.25
+    np.testing.assert_allclose(depth, expected, atol=1e-9)
+    wave = 'where = "= 0.1*sin(3*x) - y"'
+    position, normal, _ = geometry("bed", WATER + wall("bed", [0, -1], [1, 1], wave))
+    tilt = -0.3 * np.cos(3 * position[:, 0])
+    np.testing.assert_allclose(normal[:, 0] / normal[:, 1], tilt, atol=1e-5)
