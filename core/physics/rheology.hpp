@@ -2,6 +2,7 @@
 // How the viscosity of a fluid follows from the way it is sheared.
 
 #include "base/named.hpp"
+#include "physics/rheology/casson.hpp"
 #include "physics/rheology/herschel_bulkley.hpp"
 #include "physics/rheology/mu_i.hpp"
 #include "physics/rheology/newtonian.hpp"
@@ -21,7 +22,7 @@ using OneOfViscosities = std::variant<Laws...>;
 
 /// All laws of viscosity; to add one, write its file and name it here.
 template <class T>
-using Rheology = OneOfViscosities<T, Newtonian<T>, HerschelBulkley<T>, MuI<T>>;
+using Rheology = OneOfViscosities<T, Newtonian<T>, HerschelBulkley<T>, Casson<T>, MuI<T>>;
 
 /// Of the fluid itself, without turbulence [Pa s].
 template <class T>

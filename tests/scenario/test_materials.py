@@ -19,6 +19,15 @@ flow_index = 0.5
 regularisation = 100
 viscosity_max = 1e3
 """
+PAINT = """
+[material.paint]
+based_on = "water"
+rheology = "casson"
+yield_stress = 20
+casson_viscosity = 2
+regularisation = 100
+viscosity_max = 1e3
+"""
 BEADS = """
 [material.beads]
 based_on = "water"
@@ -59,6 +68,14 @@ def block_of(name):
         (MUD.replace("regularisation = 100", ""), ["needs regularisation, greater than 0"]),
         (MUD.replace('"herschel_bulkley"', '"bingham"'), ["rheology = 'bingham'", "'mu_i'"]),
         (MUD.replace('rheology = "herschel_bulkley"', ""), ["yield_stress is for rheology"]),
+        (MUD.replace('rheology = "herschel_bulkley"', ""), ['"herschel_bulkley" or "casson"']),
+        (MUD + "casson_viscosity = 2", ["casson_viscosity is for rheology", '"casson"']),
+        (PAINT + "consistency = 2", ["material.paint", "consistency is for rheology", "herschel"]),
+        (PAINT.replace("casson_viscosity = 2\n", ""), ["needs casson_viscosity, greater than 0"]),
+        (PAINT.replace("regularisation = 100", ""), ["needs regularisation, greater than 0"]),
+        (PAINT.replace("viscosity_max = 1e3", ""), ["needs viscosity_max, greater than 0"]),
+        (PAINT.replace("20", "-1"), ["material.paint.yield_stress = -1", "at least 0"]),
+        (PAINT + "casson_viscocity = 2", ["did you mean casson_viscosity"]),
         (BEADS.replace("0.64", "0.3"), ["mu_2 = 0.3 must be at least mu_s = 0.38"]),
         (BEADS.replace("grain_density = 2500", ""), ["needs grain_density, greater than 0"]),
     ],
@@ -68,7 +85,7 @@ def test_errors(write, error_of, tables, parts):
     assert all(part in text for part in parts), text
 
 
-@pytest.mark.parametrize(("name", "table"), [("mud", MUD)])
+@pytest.mark.parametrize(("name", "table"), [("mud", MUD), ("paint", PAINT)])
 def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of, name, table):
     text = error_of(write(top="", tables=block_of(name) + table))
     assert f"material.{name}.rheology" in text
@@ -79,6 +96,7 @@ def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of, nam
     ("name", "table", "top"),
     [
         ("mud", MUD, RESOLVED),
+        ("paint", PAINT, RESOLVED),
         ("beads", BEADS, RESOLVED),
         ("sand", SAND, ""),
     ],

@@ -6,6 +6,7 @@ import pytest
 from doseki.validate import estimators
 from doseki.validate.cases.free_surfaces.drops import ellipse
 from doseki.validate.cases.grains import dry, wet
+from doseki.validate.cases.streams import not_newtonian
 from doseki.validate.cases.streams.films import KEULEGAN, nusselt_speed
 from doseki.validate.cases.streams.poiseuille import exact_speed
 
@@ -81,6 +82,17 @@ def test_exact_solutions():
     y = np.linspace(0, 1, 11)
     np.testing.assert_allclose(exact_speed(y, 0.0), 0, atol=1e-4)
     np.testing.assert_allclose(exact_speed(y, 1e3), 4 * y * (1 - y), atol=1e-12)
+
+
+def test_casson_s_profile_is_the_integral_of_its_law():
+    """From the wall inwards, sqrt(eta |du/dy|) = sqrt(tau) - sqrt(tau_y), and 0 in the plug."""
+    y = np.linspace(0, 0.5, 20001)
+    excess = np.maximum(np.sqrt(800 * (0.5 - y)) - np.sqrt(100), 0)
+    rate = excess**2 / 40
+    integrated = np.concatenate([[0], np.cumsum((rate[1:] + rate[:-1]) / 2 * np.diff(y))])
+    np.testing.assert_allclose(not_newtonian.casson_speed(y), integrated, atol=1e-8)
+    np.testing.assert_allclose(not_newtonian.casson_speed(1 - y), integrated, atol=1e-8)
+    assert not_newtonian.casson_speed(np.array(0.5)) == pytest.approx(35 / 96)
 
 
 def test_what_lies_apart_is_no_part_of_the_heap():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from ..flows import DROP, FILM, advance
 
@@ -129,3 +130,34 @@ def test_a_bed_that_goes_with_the_water_is_a_bed_at_rest(core, flows, wall):
         scale = np.abs(expected).max()
         np.testing.assert_allclose(moving.rates()[name], expected, atol=1e-11 * scale)
     np.testing.assert_allclose(moving.state()["force"], still.state()["force"], atol=1e-9)
+
+
+PAINT = """
+[material.paint]
+based_on = "water"
+rheology = "casson"
+yield_stress = 50
+casson_viscosity = 1
+regularisation = 10
+viscosity_max = 5
+"""
+
+
+def swirled(flows, velocity, text):
+    """(positions, velocities) of a drop that swirls, 20 steps after the start."""
+    drop = flows(text, f"body.drop.velocity={velocity}", "body.drop.radius=0.055")
+    state = advance(drop, 20).state()
+    return state["position"], state["velocity"]
+
+
+def test_a_drop_that_yields_does_not_notice_a_quarter_turn(core, flows):
+    water = DROP.format(dim=2)
+    paint = water.replace('"water"', '"paint"') + PAINT
+    x, v = swirled(flows, ["= 0.4*sin(40*y)", "= 0.2*sin(60*x)"], paint)
+    x_turned, v_turned = swirled(flows, ["= -0.2*sin(60*y)", "= -0.4*sin(40*x)"], paint)
+    turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+    away, same = cKDTree(x_turned).query(x @ turn.T)
+    assert away.max() < 1e-12
+    np.testing.assert_allclose(v_turned[same], v @ turn.T, atol=1e-11)
+    _, without = swirled(flows, ["= 0.4*sin(40*y)", "= 0.2*sin(60*x)"], water)
+    assert np.abs(without - v).max() > 1e-3

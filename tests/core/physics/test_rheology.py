@@ -47,6 +47,50 @@ def test_viscosity_at_rest_is_finite_and_limited(point, n):
     assert slurry(point, 0.0, 20.0, 3.0, 1.0, 100.0, LOTS)[0] == pytest.approx(2003)
 
 
+def casson_stress(point, rate, *parameters):
+    """Stress of Casson's law, which no pressure changes."""
+    return rate * point("casson", rate, 0.0, RHO, *parameters)[0]
+
+
+def test_roots_of_casson_s_stresses_add(point):
+    """sqrt(tau) = sqrt(tau_y) (1 - exp(-sqrt(m rate))) + sqrt(eta rate)."""
+    rate = RATES[2:]
+    root = np.sqrt(casson_stress(point, rate, 20.0, 3.0, 100.0, LOTS))
+    smooth = -np.sqrt(20) * np.expm1(-np.sqrt(100 * rate))
+    np.testing.assert_allclose(root, smooth + np.sqrt(3 * rate), rtol=1e-9)
+    np.testing.assert_allclose(root[-2:], np.sqrt(20) + np.sqrt(3 * rate[-2:]), rtol=1e-12)
+
+
+def test_casson_s_liquid_is_newtonian_without_a_yield_stress_and_at_large_rates(point):
+    rate = RATES[2:]
+    np.testing.assert_allclose(
+        casson_stress(point, rate, 0.0, 3.0, 9.0, LOTS), 3 * rate, rtol=1e-14
+    )
+    stress = casson_stress(point, 1e12, 20.0, 3.0, 100.0, LOTS)[0]
+    assert stress == pytest.approx(3e12, rel=1e-5)
+
+
+def test_casson_s_yield_stress_is_what_is_left_at_small_rates(point):
+    """The law without its regularisation, m -> infinity."""
+    rate = np.array([1e-9, 1e-6])
+    stress = casson_stress(point, rate, 20.0, 3.0, 1e15, 1e15)
+    np.testing.assert_allclose(stress, (np.sqrt(20) + np.sqrt(3 * rate)) ** 2, rtol=1e-12)
+    assert stress[0] == pytest.approx(20, rel=3e-5)
+
+
+def test_casson_s_stress_grows_with_the_rate(point):
+    rate = np.geomspace(1e-9, 1e6, 400)
+    for limit in (1500.0, LOTS):
+        stress = casson_stress(point, rate, 20.0, 3.0, 100.0, limit)
+        assert np.all(np.diff(stress) > 0)
+
+
+def test_casson_s_viscosity_at_rest(point):
+    at_rest = (np.sqrt(20 * 100) + np.sqrt(3)) ** 2
+    assert point("casson", 0.0, 0.0, RHO, 20.0, 3.0, 100.0, LOTS)[0] == pytest.approx(at_rest)
+    assert point("casson", 0.0, 0.0, RHO, 20.0, 3.0, 100.0, 1500.0)[0] == 1500
+
+
 BEADS = (0.382, 0.643, 0.279, 5e-4, 2500.0)  # mu_s, mu_2, I_0, d, rho_s
 
 

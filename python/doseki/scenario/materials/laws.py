@@ -69,6 +69,18 @@ RHEOLOGIES = _table(
         schemes=(RESOLVED,),
     ),
     Law(
+        "casson",
+        "yield stress and a viscosity that falls, eq. 66",
+        parameters=(
+            _YIELD_STRESS,
+            _fluid("casson_viscosity", "Pa s", "Casson viscosity"),
+            _REGULARISATION,
+            _VISCOSITY_MAX,
+        ),
+        needed=("casson_viscosity", "regularisation", "viscosity_max"),
+        schemes=(RESOLVED,),
+    ),
+    Law(
         "mu_i",
         "friction of dense grains, eq. 65",
         parameters=(

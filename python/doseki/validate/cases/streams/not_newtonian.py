@@ -1,8 +1,9 @@
-"""Liquids that yield: Bingham's plastic between plates, and grains with the friction mu(I)."""
+"""Liquids that yield: Bingham's and Casson's between plates, and grains with the friction mu(I)."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,8 +14,9 @@ from ...running import Running, moving
 G = 9.81
 PROFILE, PLUG = "L2(u)", "speed of the plug"
 SURFACE, CREEP = "speed at the surface", "creep at 20 degrees"
-STRESS_AT_WALL, VISCOSITY, HALF = 400.0, 100.0, 0.5  # Pa, Pa s, m: those of bingham.toml
-YIELD_STRESS = 160.0
+STRESS_AT_WALL, HALF = 400.0, 0.5  # Pa, m: those of bingham.toml and casson.toml
+VISCOSITY, YIELD_STRESS = 100.0, 160.0  # Pa s, Pa: those of bingham.toml
+CASSON_VISCOSITY, CASSON_YIELD_STRESS = 40.0, 100.0  # those of casson.toml
 DEPTH, BEAD, PACKING, DENSITY = 0.02, 1e-3, 0.6, 2500.0  # those of chute.toml
 MU_S, MU_2, I_0 = 0.382, 0.643, 0.279
 VISCOSITY_MAX = 50.0  # Pa s
@@ -28,22 +30,37 @@ def bingham_speed(y: np.ndarray) -> np.ndarray:
     return (slope / 2 * (HALF**2 - s**2) - YIELD_STRESS * (HALF - s)) / VISCOSITY
 
 
-def plates(particles: float, *overrides: str) -> Outcome:
-    """The profile at the end and the mean speed of the inner half of the plug."""
-    run = Running("bingham", f"particles={particles:g}", *overrides)
-    state = moving(run.advance(run.scenario.time_max))
-    y, u = state["position"][:, 1], state["velocity"][:, 0]
-    exact = bingham_speed(y)
-    inner = np.abs(y - HALF) < 0.1
-    line = np.linspace(0, 1, 201)
-    return Outcome(
-        {
-            PROFILE: Value(rms(u - exact) / rms(exact)),
-            PLUG: Value(float(u[inner].mean()), float(bingham_speed(np.array(HALF)))),
-        },
-        [Curve("", u, y, points=True)],
-        [Curve("exact", bingham_speed(line), line)],
-    )
+def casson_speed(y: np.ndarray) -> np.ndarray:
+    """u(y) of Casson's fluid between plates at 0 and 1 m, eq. (67)."""
+    plug = HALF * CASSON_YIELD_STRESS / STRESS_AT_WALL
+    s = np.maximum(np.abs(y - HALF), plug)
+    sheared = (HALF**2 - s**2) / 2 - 4 / 3 * np.sqrt(plug) * (HALF**1.5 - s**1.5)
+    return STRESS_AT_WALL / HALF / CASSON_VISCOSITY * (sheared + plug * (HALF - s))
+
+
+def between_plates(
+    name: str, exact_speed: Callable[[np.ndarray], np.ndarray]
+) -> Callable[..., Outcome]:
+    """The run of plates by the name of its scenario and its exact profile."""
+
+    def plates(particles: float, *overrides: str) -> Outcome:
+        """The profile at the end and the mean speed of the inner part of the plug."""
+        run = Running(name, f"particles={particles:g}", *overrides)
+        state = moving(run.advance(run.scenario.time_max))
+        y, u = state["position"][:, 1], state["velocity"][:, 0]
+        exact = exact_speed(y)
+        inner = np.abs(y - HALF) < 0.1
+        line = np.linspace(0, 1, 201)
+        return Outcome(
+            {
+                PROFILE: Value(rms(u - exact) / rms(exact)),
+                PLUG: Value(float(u[inner].mean()), float(exact_speed(np.array(HALF)))),
+            },
+            [Curve("", u, y, points=True)],
+            [Curve("exact", exact_speed(line), line)],
+        )
+
+    return plates
 
 
 def chute_speed(z: np.ndarray, angle: float = 24.0) -> np.ndarray:
@@ -84,22 +101,49 @@ def chute(particles: float, *overrides: str) -> Outcome:
     )
 
 
-BINGHAM = Case(
-    name="bingham",
-    title="Bingham's plastic between two plates",
-    across="d/dp",
-    resolutions=(10, 20, 40),
-    run=plates,
-    criteria=(
-        Criterion(
-            PROFILE,
-            (at_most(0.08), at_most(0.04), at_most(0.02)),
-            "twice the newtonian bands: a kink at the edge of the plug, and its regularisation",
+BINGHAM_RUN = between_plates("bingham", bingham_speed)
+CASSON_RUN = between_plates("casson", casson_speed)
+AS_BINGHAM = (
+    "material.water.rheology=herschel_bulkley",
+    "material.water.casson_viscosity=0",
+    f"material.water.consistency={CASSON_VISCOSITY}",
+)
+
+
+def plug_flow(
+    name: str, title: str, run: Callable[..., Outcome], control: Control, reason: str
+) -> Case:
+    """A liquid with a yield stress between plates."""
+    return Case(
+        name=name,
+        title=title,
+        across="d/dp",
+        resolutions=(10, 20, 40),
+        run=run,
+        criteria=(
+            Criterion(PROFILE, (at_most(0.08), at_most(0.04), at_most(0.02)), reason),
+            Criterion(
+                PLUG, (within(0.08), within(0.04), within(0.02)), "as for the profile", "m/s"
+            ),
         ),
-        Criterion(PLUG, (within(0.08), within(0.04), within(0.02)), "as for the profile", "m/s"),
-    ),
-    axes=("u (m/s)", "y (m)"),
-    controls=(Control("no yield stress", PLUG, lambda n: plates(n, "yield_stress=0")),),
+        axes=("u (m/s)", "y (m)"),
+        controls=(control,),
+    )
+
+
+BINGHAM = plug_flow(
+    "bingham",
+    "Bingham's plastic between two plates",
+    BINGHAM_RUN,
+    Control("no yield stress", PLUG, lambda n: BINGHAM_RUN(n, "yield_stress=0")),
+    "twice the newtonian bands: a kink at the edge of the plug, and its regularisation",
+)
+CASSON = plug_flow(
+    "casson",
+    "Casson's fluid between two plates",
+    CASSON_RUN,
+    Control("Bingham's plastic of the same numbers", PLUG, lambda n: CASSON_RUN(n, *AS_BINGHAM)),
+    "those of Bingham's plastic; viscosity_max adds 0.3 %",
 )
 CHUTE = Case(
     name="granular-chute",
@@ -130,4 +174,4 @@ CHUTE = Case(
         ),
     ),
 )
-CASES = (BINGHAM, CHUTE)
+CASES = (BINGHAM, CASSON, CHUTE)
