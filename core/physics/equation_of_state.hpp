@@ -4,6 +4,7 @@
 #include "base/named.hpp"
 #include "physics/equation_of_state/birch_murnaghan.hpp"
 #include "physics/equation_of_state/linear.hpp"
+#include "physics/equation_of_state/stiffened_gas.hpp"
 #include "physics/equation_of_state/tait.hpp"
 
 namespace doseki {
@@ -20,7 +21,7 @@ using OneOfEquations = std::variant<Laws...>;
 
 /// All equations of state; to add one, write its file and name it here.
 template <class T>
-using EquationOfState = OneOfEquations<T, Linear<T>, Tait<T>, BirchMurnaghan<T>>;
+using EquationOfState = OneOfEquations<T, Linear<T>, Tait<T>, StiffenedGas<T>, BirchMurnaghan<T>>;
 
 template <class T>
 DOSEKI_FN ThermodynamicState<T> thermodynamic_state(const EquationOfState<T>& eos, const T& rho) {

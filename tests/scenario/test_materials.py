@@ -39,6 +39,11 @@ grain_diameter = 5e-4
 grain_density = 2500
 viscosity_max = 50
 """
+GAS = """
+[material.oil]
+based_on = "water"
+gamma = 3
+"""
 SAND = """
 [material.sand]
 based_on = "basalt"
@@ -85,6 +90,31 @@ def test_errors(write, error_of, tables, parts):
     assert all(part in text for part in parts), text
 
 
+STIFFENED = RESOLVED + '\neos = "stiffened_gas"'
+
+
+@pytest.mark.parametrize(
+    ("top", "tables", "parts"),
+    [
+        (RESOLVED, GAS, ["material.oil", 'gamma is for eos = "stiffened_gas"', '"linear"']),
+        (STIFFENED, GAS.replace("3", "1"), ["material.oil.gamma = 1", "greater than 1"]),
+        (STIFFENED, GAS.replace("3", "1e3"), ["material.oil.gamma = 1000", "at most 100"]),
+        (STIFFENED, GAS.replace("water", "basalt"), ["gamma is for fluids"]),
+        (STIFFENED, GAS.replace("gamma", "gama"), ["material.oil.gama", "did you mean gamma"]),
+        ('eos = "stiffened_gas"', "", ["the scheme ueta2022 has birch_murnaghan alone"]),
+    ],
+)
+def test_errors_of_equations_of_state(write, error_of, top, tables, parts):
+    text = error_of(write(top=top, tables=BLOCK + tables))
+    assert all(part in text for part in parts), text
+
+
+def test_liquids_of_a_run_may_differ_in_gamma(write):
+    scenario = load_scenario(write(top=STIFFENED, tables=BLOCK + GAS))
+    gammas = {name: scenario.materials[name].of_laws["gamma"] for name in ("water", "oil")}
+    assert gammas == {"water": 4.4, "oil": 3.0}
+
+
 @pytest.mark.parametrize(("name", "table"), [("mud", MUD), ("paint", PAINT)])
 def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of, name, table):
     text = error_of(write(top="", tables=block_of(name) + table))
@@ -98,6 +128,7 @@ def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of, nam
         ("mud", MUD, RESOLVED),
         ("paint", PAINT, RESOLVED),
         ("beads", BEADS, RESOLVED),
+        ("oil", GAS, STIFFENED),
         ("sand", SAND, ""),
     ],
 )

@@ -161,3 +161,17 @@ def test_a_drop_that_yields_does_not_notice_a_quarter_turn(core, flows):
     np.testing.assert_allclose(v_turned[same], v @ turn.T, atol=1e-11)
     _, without = swirled(flows, ["= 0.4*sin(40*y)", "= 0.2*sin(60*x)"], water)
     assert np.abs(without - v).max() > 1e-3
+
+
+def test_a_stiffened_gas_at_rest_carries_its_weight(core, flows):
+    depth, c, gamma = 0.15, 10.0, 3.0
+    settings = ["eos=stiffened_gas", f"material.water.gamma={gamma}", "speed_max=1", down(2)]
+    settings += ["body.film.velocity=[0, 0]", f"body.film.max=[0.2, {depth}]"]
+    settings += ["body.film.jitter=0", f"body.film.pressure== {1000 * G}*({depth} - y)"]
+    state = advance(flows(FILM.format(dim=2), *settings), 300).state()
+    water = state["motion"] == 0
+    y, p = state["position"][water, 1], state["pressure"][water]
+    law = 1000 * c**2 / gamma * ((state["density"][water] / 1000) ** gamma - 1)
+    np.testing.assert_allclose(p[p > 0], law[p > 0], rtol=1e-10)
+    np.testing.assert_allclose(p, 1000 * G * (depth - y), atol=0.03 * 1000 * G * depth)
+    assert np.abs(state["velocity"][water]).max() < 0.02 * np.sqrt(G * depth)

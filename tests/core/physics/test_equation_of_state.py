@@ -12,9 +12,12 @@ MATERIAL = pytest.mark.parametrize(
     ("rho0", "c0"), [(1000.0, 1400.0), (2750.0, 60.0)], ids=["water", "reduced-basalt"]
 )
 
-# Each law with the defaults of its own parameters.
+# Each law with the defaults of its own parameters, and one law with others.
 LAWS = [(name, *(p.default for p in law.parameters)) for name, law in EQUATIONS_OF_STATE.items()]
-LAW = pytest.mark.parametrize("law", LAWS, ids=str)
+GAMMAS = (1.4, 3.0, 12.0)
+LAW = pytest.mark.parametrize(
+    "law", [*LAWS, *(("stiffened_gas", gamma) for gamma in GAMMAS)], ids=str
+)
 
 
 def state_of(point, law, rho, rho0, c0):
@@ -44,6 +47,32 @@ def test_pressures_of_the_resolved_scheme(point, rho0, c0):
     np.testing.assert_allclose(p, rho0 * c0**2 * (e - 1), rtol=1e-13)
     p, _, _ = point("tait", e * rho0, rho0, c0)
     np.testing.assert_allclose(p, rho0 * c0**2 / 7 * (e**7 - 1), rtol=1e-12)
+
+
+@pytest.mark.parametrize("gamma", GAMMAS)
+@MATERIAL
+def test_definition_of_a_stiffened_gas(point, gamma, rho0, c0):
+    """c^2 = gamma (p + p_inf)/rho, and p = (gamma - 1) rho u - gamma p_inf of the internal energy.
+
+    That is the bulk energy and what the gas has at rest under no pressure.
+    """
+    rho = rho0 * np.linspace(0.8, 1.5, 29)
+    p_inf = rho0 * c0**2 / gamma
+    p, c, u = point("stiffened_gas", rho, rho0, c0, gamma)
+    np.testing.assert_allclose(c**2, gamma * (p + p_inf) / rho, rtol=1e-12)
+    at_rest = gamma * p_inf / (gamma - 1) / rho0
+    scale = gamma * p_inf / (gamma - 1)
+    np.testing.assert_allclose(
+        p, (gamma - 1) * rho * (u + at_rest) - gamma * p_inf, atol=1e-13 * scale
+    )
+
+
+@MATERIAL
+def test_tait_s_equation_is_a_stiffened_gas(point, rho0, c0):
+    rho = rho0 * np.linspace(0.65, 1.5, 86)
+    ours, tait = point("stiffened_gas", rho, rho0, c0, 7.0), point("tait", rho, rho0, c0)
+    for values, expected, scale in zip(ours, tait, (rho0 * c0**2, c0, c0**2), strict=True):
+        np.testing.assert_allclose(values, expected, rtol=1e-14, atol=1e-15 * scale)
 
 
 @LAW

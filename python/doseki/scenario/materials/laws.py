@@ -97,11 +97,22 @@ RHEOLOGIES = _table(
     ),
 )
 
+# Of water with p_inf = 6e8 Pa (Saurel & Abgrall, J. Comput. Phys. 150, 1999): c0 = 1625 m/s.
+_GAMMA = MaterialParameter(
+    "gamma", "", "exponent of the isentrope", above=1.0, most=100.0, default=4.4, law="fluid"
+)
+
 # How pressure follows from density: `eos` of a scenario.
 EQUATIONS_OF_STATE = _table(
     Law("birch_murnaghan", "Birch and Murnaghan's, eq. 8", schemes=(UETA2022,)),
     Law("linear", "pressure in proportion to compression, eq. 26", schemes=(RESOLVED,)),
     Law("tait", "Tait's with the exponent 7 of water, eq. 26", schemes=(RESOLVED,)),
+    Law(
+        "stiffened_gas",
+        "isentrope of a stiffened gas, Tait's with an exponent gamma, eq. 68",
+        parameters=(_GAMMA,),
+        schemes=(RESOLVED,),
+    ),
 )
 
 # How the stress of a deformable body follows from its deformation: `elastic_law` of a body.
