@@ -71,6 +71,10 @@ kinematics = "elastic"
 min = [0.05, 0.11]
 max = [0.15, 0.15]
 velocity = [0, -1]
+
+[gauge.stones]
+kind = "mass_centre"
+bodies = ["stone", "pebble"]
 """
 BODIES = ("stone", "pebble", "plate")
 
@@ -127,3 +131,11 @@ def test_energy_and_mass_count_each_body_once(tank):
     one, two = tank["1"].history, tank["2"].history
     for name in ("mass", "kinetic_energy", "shear_energy", "momentum_y"):
         np.testing.assert_allclose(two[name], one[name], rtol=1e-5, atol=1e-8, err_msg=name)
+
+
+def test_a_centre_of_mass_counts_each_body_once(tank):
+    one, two = (tank[name].gauges["stones"] for name in ("1", "2"))
+    assert len(one["time"]) == 4
+    for name in one:
+        np.testing.assert_allclose(two[name], one[name], rtol=1e-5, atol=1e-8, err_msg=name)
+    np.testing.assert_allclose(one["mass"], 2 * 2750 * np.pi * 0.03**2)

@@ -8,6 +8,7 @@ from ..table import Kinds
 from .discharge import Discharge
 from .force import ForceGauge
 from .gauge import Gauge
+from .mass_centre import MassCentre
 from .pressure import PressureGauge
 from .surface_height import SurfaceHeight
 from .velocity_profile import VelocityProfile
@@ -20,6 +21,7 @@ GAUGES = Kinds.by_word(
     PressureGauge,
     Discharge,
     ForceGauge,
+    MassCentre,
 )
 
 if TYPE_CHECKING:
