@@ -9,6 +9,7 @@ from matplotlib.figure import Figure as Picture
 
 from ...record.reader import Run
 from ...scenario.tables.figure import (
+    DepthFigure,
     Figure,
     GaugeFigure,
     HistogramFigure,
@@ -19,11 +20,13 @@ from .gauge import draw_gauge
 from .histogram import draw_histogram
 from .series import draw_series
 from .snapshot import draw_snapshots
+from .xt import draw_depth
 
 DRAWN_BY: dict[type[Figure], Callable[[Run, str, Any], Picture]] = {
     SnapshotFigure: draw_snapshots,
     HistogramFigure: draw_histogram,
     SeriesFigure: draw_series,
+    DepthFigure: draw_depth,
     GaugeFigure: draw_gauge,
 }
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import AfterValidator, Field, ValidationInfo
+import numpy as np
+from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from ...errors import UserError
 from ...record.quantities import check_quantity
@@ -13,10 +14,12 @@ from ...util.spelling import suggestion
 from ..gauges.gauge import Gauge
 from ..table import Kinds, Part
 from ..values.types import (
+    Direction,
     GaugeName,
     OptionalMaterialName,
     OptionalWindowName,
     Positive,
+    Vector,
     dimension,
 )
 
@@ -110,6 +113,25 @@ class GaugeFigure(Figure):
             yield "times", f": {self.gauge} is no profile; its curves show all times"
 
 
+class DepthFigure(Figure):
+    """The depth of the flow along a line, over time: an x-t diagram."""
+
+    kind: Literal["xt"]
+    start: Vector = Field(description="where the line begins on the bed, m")
+    end: Vector = Field(description="where the line ends, m")
+    direction: Direction | None = Field(None, description="upwards; default: against gravity")
+    material: OptionalMaterialName = Field(
+        None, description="depth of this material; default: of all that moves"
+    )
+    count: int = Field(100, gt=0, le=10_000, description="points, at (k + 1/2) length/count")
+
+    @model_validator(mode="after")
+    def _has_length(self) -> DepthFigure:
+        if np.array_equal(self.start, self.end):
+            raise ValueError("start and end are the same point")
+        return self
+
+
 FIGURES = Kinds.by_word(
     "kind",
     Figure,
@@ -117,6 +139,7 @@ FIGURES = Kinds.by_word(
     HistogramFigure,
     SeriesFigure,
     GaugeFigure,
+    DepthFigure,
 )
 
 if TYPE_CHECKING:
