@@ -20,7 +20,7 @@ RATE, SURFACE = "q", "speed at the surface"
 SPEED, THICKNESS = "mean speed", "thickness"
 GAIN = "gain of speed / g sin(20 degrees) t"
 KEULEGAN = math.sqrt(ALONG * DEPTH) * (6.25 + 5.75 * math.log10(DEPTH / 0.01))
-STEADY, SAMPLES = 0.6, 100  # share of the rough run before it is averaged; samples of the run
+STEADY, SAMPLE = 3.0, 0.05  # s: when the rough film is steady; how often it is looked at
 
 
 def profile(state: State, label: str = "") -> Curve:
@@ -67,15 +67,15 @@ def nusselt_speed(y: T) -> T:
 
 
 def rough(particles: float, *overrides: str) -> Outcome:
-    """The film over a rough bed, averaged over the last part of the run."""
+    """The film over a rough bed, averaged from when it is steady."""
     run = Running("rough-film", f"particles={particles:g}", *overrides)
-    times = np.linspace(0, run.scenario.time_max, SAMPLES + 1)
+    times = np.linspace(0, run.scenario.time_max, round(run.scenario.time_max / SAMPLE) + 1)
     speed, thickness = [], []
     for state in run.sampled(times):
         film = moving(state)
         speed.append(-mean_velocity(film))
         thickness.append(2 * np.average(film["position"][:, 1], weights=film["mass"]))
-    late = times >= STEADY * times[-1]
+    late = times > STEADY
     return Outcome(
         {
             SPEED: Value(float(np.mean(np.array(speed)[late])), KEULEGAN),
@@ -146,13 +146,17 @@ ROUGH = Case(
             unit="m/s",
         ),
         Criterion(
-            THICKNESS, (within(0.05),), "twice the height of the centre of mass: no swelling",
+            THICKNESS,
+            (within(0.07), within(0.03), within(0.03)),
+            "twice the height of the centre of mass: no swelling. The film is chaotic: runs that "
+            "differ by rounding scatter by 0.32 % about +5.2 % at 4 across, where its surface is "
+            "as rough as a particle, and by 0.04 % about +0.9 % at 8",
             unit="m",
         ),
     ),
     axes=("time (s)", "mean speed (m/s)"),
     controls=(
-        Control("without turbulence", SPEED, lambda n: rough(n, "turbulence=none")),
+        Control("without turbulence", SPEED, lambda n: rough(n, "turbulence=none", "time_max=5")),
         Control("the printed scheme", SPEED, printed),
     ),
 )  # fmt: skip
