@@ -1,6 +1,7 @@
 // Bodies in three dimensions, compiled once for all schemes.
 
 #include "bodies/bodies.hpp"
+#include "bodies/deformable/advance.hpp"
 
 namespace doseki {
 

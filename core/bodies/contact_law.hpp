@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bodies/rotation.hpp"
+#include "model/contact_properties.hpp"
 #include "model/options.hpp"
 #include "physics/contact.hpp"
 

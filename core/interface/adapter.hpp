@@ -15,15 +15,6 @@
 
 namespace doseki {
 
-/// Of schemes that offer it, in a header that their unit includes.
-template <class Scheme, class Lists>
-double bare_rate(const Scheme& scheme, const Lists& lists, double seconds) {
-    if constexpr (requires { bare_pair_rate(scheme, lists, seconds); })
-        return bare_pair_rate(scheme, lists, seconds);
-    else
-        throw std::invalid_argument("the scheme has no bare rate");
-}
-
 template <class SchemeOf>
 class Adapter final : public AnySimulation {
     using Sim = Simulation<SchemeOf>;
@@ -234,7 +225,10 @@ public:
         return PairCounter(sim_.scheme(), sim_.neighbours()).interacting_pairs();
     }
     double bare_pair_rate(double seconds) const override {
-        return bare_rate(sim_.scheme(), sim_.neighbours(), seconds);
+        if constexpr (requires { sim_.scheme().bare_pair_rate(sim_.neighbours(), seconds); })
+            return sim_.scheme().bare_pair_rate(sim_.neighbours(), seconds);
+        else
+            throw std::invalid_argument("the scheme has no bare rate");
     }
 
 private:

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "interface/reader.hpp"
+#include "model/material_laws.hpp"
 
 namespace doseki {
 namespace {
@@ -13,7 +14,9 @@ Material read_material(const NamedValues& table, const std::string& place) {
     read("name", m.name);
     read("law", choice<Law>(m.law, {{"fluid", Law::fluid}, {"solid", Law::solid}}));
     read("rho0", m.rho0), read("speedsound", m.c0);
-    read.law("eos", m.eos), read.law("rheology", m.rheology);
+    MaterialLaws laws{};
+    read.law("eos", laws.eos), read.law("rheology", laws.rheology);
+    m.laws = std::make_shared<const MaterialLaws>(laws);
     read("shear_modulus", m.shear_modulus), read("yield_strength", m.yield_strength);
     read("cohesion", m.cohesion), read("friction_angle", m.friction_angle);
     m.friction_angle *= std::numbers::pi / 180.0;

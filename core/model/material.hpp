@@ -1,13 +1,14 @@
 #pragma once
+#include <memory>
 #include <string>
 
-#include "physics/contact.hpp"
-#include "physics/equation_of_state.hpp"
-#include "physics/rheology.hpp"
+#include "model/contact_properties.hpp"
 
 namespace doseki {
 
 enum class Law { fluid, solid };
+
+struct MaterialLaws;  // model/material_laws.hpp
 
 /// Parameters of one material, already scaled by xi (Eq. 19): c0 -> xi c0, mu -> xi^2 mu.
 struct Material {
@@ -15,9 +16,8 @@ struct Material {
     Law law;
     double rho0;  // [kg/m^3]
     double c0;    // [m/s]
-    EquationOfState<double> eos;
-    // Of fluids.
-    Rheology<double> rheology;
+    /// Apart, so that only what evaluates a law is compiled anew when one changes.
+    std::shared_ptr<const MaterialLaws> laws;
     // Of solids; no yield strength, cohesion or friction angle: never yields.
     double shear_modulus;   // [Pa]; 0 = no strength
     double yield_strength;  // von Mises [Pa]

@@ -18,6 +18,9 @@ public:
           moving_words_(static_cast<std::uint32_t>(moving_words)),
           fixed_words_(static_cast<std::uint32_t>(fixed_words)) {}
 
+    /// The same without fixed neighbours.
+    ClusterList without_fixed() const { return {begin_, moving_words_, 0}; }
+
     bool empty() const { return words() == 0; }
     std::size_t words() const { return std::size_t{moving_words_} + fixed_words_; }
 

@@ -12,14 +12,6 @@
 
 namespace doseki {
 
-/// The sums of a fluid particle without what walls add.
-template <class Kernel, int D>
-struct UnwalledFluidTerm : FluidTerm<Kernel, D> {
-    template <class T>
-    DOSEKI_FN void add_fixed(FluidAccumulators<T, D>&, const Pair<T, D>&, const FluidPoint<T, D>&,
-                             const WallPoint<T, D>&) const {}
-};
-
 /// What the sums over fluid particles read.
 template <int D, class Backend>
 struct FluidPass {
@@ -28,17 +20,16 @@ struct FluidPass {
     FlowRecords<D> records;
     const ResolvedModel<D>& model;
 
-    /// The sums that a term has for particle p.
-    template <class Term>
-    FluidAccumulators<double, D> sums_of(std::size_t p, const Term& term) const {
+    /// The sums of particle p over these records, with the walls of its list or without.
+    template <class Kernel>
+    FluidAccumulators<double, D> sums_of(std::size_t p, const FlowRecords<D>& given,
+                                         bool walls) const {
         const std::size_t cluster = p / static_cast<std::size_t>(Backend::width);
+        const ClusterList all = lists.clusters()[cluster], list = walls ? all : all.without_fixed();
         FluidAccumulators<double, D> found{};
-        Backend::sum_pairs(lists,
-                           {lists.clusters().subspan(cluster, 1),
-                            records.motion,
-                            frame,
-                            {.first_cluster = cluster}},
-                           term, [&](std::size_t q, const FluidAccumulators<double, D>& sums) {
+        Backend::sum_pairs(lists, {{&list, 1}, records.motion, frame, {.first_cluster = cluster}},
+                           FluidTerm<Kernel, D>{given, model.constants},
+                           [&](std::size_t q, const FluidAccumulators<double, D>& sums) {
                                if (q == p) found = sums;
                            });
         return found;
@@ -53,10 +44,9 @@ struct FluidPass {
         FlowRecords<D> without_viscosity = records;
         without_viscosity.fluid_fields = inviscid;
 
-        const auto all = sums_of(p, FluidTerm<Kernel, D>{records, model.constants});
-        const auto fluid = sums_of(p, UnwalledFluidTerm<Kernel, D>{{records, model.constants}});
-        const auto pressure =
-            sums_of(p, UnwalledFluidTerm<Kernel, D>{{without_viscosity, model.constants}});
+        const auto all = sums_of<Kernel>(p, records, true);
+        const auto fluid = sums_of<Kernel>(p, records, false);
+        const auto pressure = sums_of<Kernel>(p, without_viscosity, false);
         const double over_rho = 1.0 / records.fluid_fields[p].rho;
         ForceTerms<D> terms;
         terms.acceleration = {

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <vector>
 
-#include "model/fault.hpp"
 #include "model/material.hpp"
+#include "model/material_laws.hpp"
 #include "model/options.hpp"
 #include "physics/free_surface.hpp"
 #include "physics/kernel.hpp"
@@ -32,7 +31,7 @@ struct ResolvedModel {
         : materials(std::move(given)), options(opts) {
         for (const Material& material : materials) {
             if (material.law == Law::fluid) constants.c = std::max(constants.c, material.c0);
-            constants.harmonic |= has_yield_stress(material.rheology);
+            constants.harmonic |= has_yield_stress(material.laws->rheology);
         }
         const FlowOptions& flow = options.flow;
         constants.dp = flow.dp;
@@ -70,28 +69,6 @@ struct ResolvedModel {
         const double l = flow.turbulence == Turbulence::mixing_length ? state.mixing_length[p]
                                                                       : flow.smagorinsky * flow.dp;
         return l * l * strain_rate(state.velocity_gradient[p]);
-    }
-};
-
-/// What a cluster adds to the totals of an evaluation, reduced in the order of clusters.
-struct FlowSummary {
-    double timestep = std::numeric_limits<double>::max();
-    double power = 0.0, strain = 0.0;  // dissipated [W]; sum of |L|^2
-    Fault fault;
-    std::int64_t limiting = -1;
-};
-
-/// How lively the fluid as a whole is, from the evaluation before.
-struct FlowActivity {
-    /// Root mean square of |L| h/c below which a fluid counts as at rest.
-    static constexpr double at_rest = 5e-4;
-
-    double strain = 0.0;             // root mean square of |L| [1/s]
-    double interior_blending = 0.0;  // 0: at rest, pairs conserve momentum; 1: corrected gradients
-
-    void update(double mean_square_strain, double h, double c) {
-        strain = std::sqrt(mean_square_strain);
-        interior_blending = std::clamp(h * strain / (at_rest * c) - 1.0, 0.0, 1.0);
     }
 };
 

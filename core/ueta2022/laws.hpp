@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "model/material.hpp"
+#include "model/material_laws.hpp"
 #include "model/options.hpp"
 #include "model/particles.hpp"
-#include "physics/equation_of_state.hpp"
 #include "physics/viscosity.hpp"
 #include "physics/yield.hpp"
 
@@ -27,7 +27,7 @@ YieldSurface<double> yield_surface(const Material& material) {
 /// rule on tension.
 inline ThermodynamicState<double> equation_of_state(const Material& material, double rho,
                                                     Motion motion, Tension tension) {
-    auto state = thermodynamic_state(material.eos, rho);
+    auto state = thermodynamic_state(material.laws->eos, rho);
     const bool clamped = motion == Motion::fixed || tension == Tension::clamp_all ||
                          (tension == Tension::clamp_fluid && material.law == Law::fluid);
     if (clamped) state.pressure = max(0.0, state.pressure);

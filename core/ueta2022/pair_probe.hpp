@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pairs/pair_counter.hpp"
+#include "ueta2022/interactions.hpp"
 #include "ueta2022/right_hand_side.hpp"
 
 namespace doseki {
@@ -105,11 +106,9 @@ private:
     PairCounter<Scheme> counter_;
 };
 
-/// Such pairs per second, found by the scheme that they are of.
 template <int D, class real, class Backend>
-double bare_pair_rate(const Ueta2022<D, real, Backend>& scheme,
-                      const typename Backend::template Lists<D>& lists, double seconds) {
-    return PairProbe(scheme, lists).bare_rate(seconds);
+double Ueta2022<D, real, Backend>::bare_pair_rate(const Lists& lists, double seconds) const {
+    return PairProbe(*this, lists).bare_rate(seconds);
 }
 
 }  // namespace doseki

@@ -1,30 +1,30 @@
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/phase_timer.hpp"
-#include "base/poison.hpp"
 #include "model/fault.hpp"
+#include "model/force_terms.hpp"
 #include "model/material.hpp"
 #include "model/options.hpp"
-#include "model/particles.hpp"
 #include "pairs/cpu.hpp"
-#include "physics/stress.hpp"
-#include "physics/timestep.hpp"
+#include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
-#include "ueta2022/force_terms.hpp"
-#include "ueta2022/interactions.hpp"
-#include "ueta2022/laws.hpp"
+#include "ueta2022/records.hpp"
 #include "ueta2022/state.hpp"
 
 namespace doseki {
 
+template <int D>
+struct Ueta2022Model;
+
 /// Right-hand side of the scheme of Ueta et al. (2022): rates of density, stress and velocity of
-/// all particles, from two sums over pairs.
+/// all particles, from two sums over pairs. How it is evaluated is in ueta2022/evaluate.hpp, which
+/// a unit of its own compiles: who steps a run need not see the physics.
 template <int D, class real, class BackendOf = Cpu<real>>
 class Ueta2022 {
 public:
@@ -36,71 +36,22 @@ public:
     /// Nothing that a sum reads was left by the one before.
     static constexpr int first_evaluations = 1;
 
-    Ueta2022(std::vector<Material> materials, const Options<D>& options)
-        : materials_(std::move(materials)), options_(options) {
-        for (const Material& material : materials_) {
-            surfaces_.push_back(yield_surface<D>(material));
-            yields_ |= std::isfinite(surfaces_.back().k);
-        }
-    }
+    Ueta2022(std::vector<Material> materials, const Options<D>& options);
 
     /// Fills the rates of `particles`, whose density, stress and velocity are half a step behind:
     /// the values predicted with the old rates over `half_dt` are what enters the sums. Sets
     /// timestep() and dissipated_power(). `new_lists`: they were built since the last call. Where
     /// they were not, a particle of the bed that nothing comes near has the rates it had: none.
     void evaluate(State& particles, const Lists& lists, Halo<D>& halo, double half_dt,
-                  bool new_lists) {
-        const bool poisoned = is_poisoned_run();
-        skip_empty_ = !new_lists && !poisoned;
-        if (poisoned) poison<real>(motion_);
-        pack_motion(particles, halo, half_dt);
-        if (new_lists && !halo.alone()) agree_on_h(particles, halo.ranks);
-        stress_.resize(particles.size() + halo.ghosts());
-        summary_.assign(lists.clusters().size(), {});
-        if (poisoned) poison<real>(stress_), poison<double>(particles.acceleration);
-        halo.start({halo_column(motion_)});
-        sum_velocity_gradient(particles, lists, halo, half_dt);
-        halo.start({halo_column(stress_)});
-        sum_momentum(particles, lists, halo);
-        reduce_summaries();
-        if (poisoned) find_survivor(particles);
-        fault_ = traced_to_its_source(fault_, particles, materials_);
-        agree(halo.ranks, timestep_, limiting_, fault_);
-    }
+                  bool new_lists);
 
     /// Eq. (63) for every particle, once a step is complete.
-    void end_step(State& particles) const {
-        if (!yields_ || !particles.has_strength) return;
-        Backend::for_each_particle(particles.size(), [&](std::size_t p) {
-            const YieldSurface<double>& surface =
-                surfaces_[static_cast<std::size_t>(particles.tag[p].material)];
-            if (particles.is_free(p) && std::isfinite(surface.k))
-                particles.deviatoric_stress[p] =
-                    return_map(particles.deviatoric_stress[p],
-                               equation_of_state(particles, p).pressure, surface);
-        });
-    }
+    void end_step(State& particles) const;
 
     /// What acts on particle p, as last evaluated. All ranks call it; p is -1 on those that do not
     /// have the particle, which get nothing.
     ForceTerms<D> force_terms(const State& particles, const Lists& lists, Halo<D>& halo,
-                              std::int64_t p) const {
-        Field<StressRecord<real, D>> pressure = stress_;
-        Backend::for_each_particle(particles.size(), [&](std::size_t q) {
-            const double rho = static_cast<double>(stress_[q].rho);
-            const Sym<double, D> stress = stress_over_rho_squared(
-                equation_of_state(particles.tag[q], rho).pressure, Deviator<double, D>{}, rho);
-            for (int k = 0; k < Sym<real, D>::size; ++k)
-                pressure[q].stress.element[k] = static_cast<real>(stress.element[k]);
-        });
-        halo.start({halo_column(pressure)});
-        halo.finish();
-        if (p < 0 || !particles.is_free(static_cast<std::size_t>(p))) return {};
-        const MomentumPass<D, real, Backend> pass{lists, motion_, frame_, options_};
-        const auto k = static_cast<std::size_t>(p);
-        return doseki::force_terms<D, real, Backend>(pass, stress_, pressure, k,
-                                                     particles.smoothing_length[k]);
-    }
+                              std::int64_t p) const;
 
     /// All particles are in the first pass, moving ones in the second.
     static WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) {
@@ -108,19 +59,11 @@ public:
         return {seconds.second / words.moving + fixed, fixed};
     }
 
-    static constexpr double kernel_support() { return WendlandC6<D>::support; }
+    double kernel_support() const;
     /// Pressure, sound speed and energy of a particle.
-    ThermodynamicState<double> equation_of_state(const State& particles, std::size_t p) const {
-        return equation_of_state(particles.tag[p], particles.density[p]);
-    }
+    ThermodynamicState<double> equation_of_state(const State& particles, std::size_t p) const;
     /// Elastic energy of a particle in shear [J], 2-D: [J/m].
-    double shear_energy(const State& particles, std::size_t p) const {
-        const Material& material = materials_[particles.tag[p].material];
-        if (!particles.has_strength || !(material.shear_modulus > 0.0)) return 0.0;
-        return particles.mass[p] * doseki::shear_energy(particles.deviatoric_stress[p],
-                                                        material.shear_modulus,
-                                                        particles.density[p]);
-    }
+    double shear_energy(const State& particles, std::size_t p) const;
     double timestep() const { return timestep_; }
     /// By artificial viscosity, of the particles of this rank [W], 2-D: [W/m].
     double dissipated_power() const { return av_power_; }
@@ -129,32 +72,21 @@ public:
     const Fault& fault() const { return fault_; }
     /// The particle that allows the shortest timestep, or -1.
     std::int64_t limiting_particle() const { return limiting_; }
-    const std::vector<Material>& materials() const { return materials_; }
+    const std::vector<Material>& materials() const;
     std::span<const MotionRecord<real, D>> motion_records() const { return motion_; }
     std::span<const StressRecord<real, D>> stress_records() const { return stress_; }
     const CoordinateFrame<real, D>& frame() const { return frame_; }
-    const Options<D>& options() const { return options_; }
+    const Options<D>& options() const;
     /// Balsara's switch of a particle, as last summed.
     double balsara(std::size_t p) const { return static_cast<double>(stress_[p].balsara); }
 
     /// Deviatoric part of the stress of particle p: S of a solid, tau of a fluid (as last summed).
-    Deviator<double, D> deviator(const State& particles, std::size_t p) const {
-        Deviator<double, D> tau = particles.stress(p);
-        const Tag& tag = particles.tag[p];
-        if (materials_[tag.material].law == Law::solid || tag.motion != Motion::free ||
-            stress_.size() <= p)
-            return tau;
-        const StressRecord<real, D>& record = stress_[p];
-        const double rho = static_cast<double>(record.rho);
-        const auto eos = equation_of_state(tag, rho);
-        for (int a = 0; a < D; ++a)
-            for (int b = a; b < D; ++b)
-                if (a < 2 || b < 2)
-                    tau.element[Deviator<double, D>::index(a, b)] =
-                        rho * rho * static_cast<double>(record.stress(a, b)) +
-                        (a == b ? eos.pressure : 0.0);
-        return tau;
-    }
+    Deviator<double, D> deviator(const State& particles, std::size_t p) const;
+
+    /// Pairs per second of one thread in both sums over a few clusters that stay in cache, for
+    /// `seconds` of processor time: for the bench.
+    double bare_pair_rate(const Lists& lists, double seconds) const;
+
     /// Stress records are kept from step to step where nothing is near (see compute).
     template <class Archive>
     void serialise(Archive& archive) {
@@ -177,13 +109,6 @@ private:
         std::int64_t limiting = -1;
     };
 
-    /// With the tension cut of what yields, Eq. (62).
-    ThermodynamicState<double> equation_of_state(const Tag& tag, double rho) const {
-        auto state =
-            doseki::equation_of_state(materials_[tag.material], rho, tag.motion, options_.tension);
-        state.pressure = tension_cut(surfaces_[tag.material], state.pressure);
-        return state;
-    }
     void pack_motion(State& particles, const Halo<D>& halo, double half_dt);
     void agree_on_h(const State& particles, const Ranks& ranks);
     void update_particle(State& particles, std::size_t p, Mat<double, D> L, double half_dt);
@@ -192,24 +117,11 @@ private:
     void reduce_summaries();
     void find_survivor(State& particles);
 
-    /// Sums over the clusters, those without ghosts in their lists while the ghosts' records come.
     template <class Term, class Epilogue>
     void sum_pairs(Phase phase, const Lists& lists, std::span<const ClusterList> clusters,
-                   Halo<D>& halo, const Term& term, const Epilogue& epilogue) {
-        PhaseTimer* const sampled = phase == Phase::pass_1 ? &phases_ : nullptr;
-        while_ghosts_come(halo, lists, clusters, Backend::width,
-                          [&](std::span<const ClusterList> part, std::size_t first) {
-                              const auto timing = phases_.measure(phase);
-                              Backend::sum_pairs(
-                                  lists, {part, motion_, frame_, {skip_empty_, first, sampled}},
-                                  term, epilogue);
-                          });
-    }
+                   Halo<D>& halo, const Term& term, const Epilogue& epilogue);
 
-    std::vector<Material> materials_;
-    std::vector<YieldSurface<double>> surfaces_;  // by material
-    bool yields_ = false;                         // any of them
-    Options<D> options_;
+    std::shared_ptr<const Ueta2022Model<D>> model_;
     bool equal_h_ = true;
     bool skip_empty_ = false;
     CoordinateFrame<real, D> frame_;
@@ -222,163 +134,5 @@ private:
     Fault fault_;
     std::int64_t limiting_ = -1;
 };
-
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::pack_motion(State& particles, const Halo<D>& halo,
-                                             double half_dt) {
-    const auto timing = phases_.measure(Phase::pack);
-    const std::size_t n = particles.size();
-    motion_.resize(n + halo.ghosts());
-    if constexpr (std::is_same_v<real, float>) {
-        std::array<double, 2 * D> far;  // -low, high
-        far.fill(-std::numeric_limits<double>::max());
-        for (const auto& x : particles.position)
-            for (int a = 0; a < D; ++a)
-                far[a] = max(far[a], -x[a]), far[D + a] = max(far[D + a], x[a]);
-        halo.ranks.largest(far);
-        Vec<double, D> low, high;
-        for (int a = 0; a < D; ++a) low[a] = -far[a], high[a] = far[D + a];
-        frame_ = CoordinateFrame<real, D>::covering(low, high);
-    }
-    const double h0 = n > 0 ? particles.smoothing_length[0] : 0.0;
-    const bool equal = Backend::reduce(n, true, std::logical_and{}, [&](std::size_t p) {
-        MotionRecord<real, D>& record = motion_[p];
-        for (int a = 0; a < D; ++a) {
-            record.x[a] = frame_.coordinate(particles.position[p][a], a);
-            record.v[a] = static_cast<real>(particles.velocity[p][a] +
-                                            half_dt * particles.acceleration[p][a]);
-        }
-        const double rho = particles.density[p] + half_dt * particles.density_rate[p];
-        double& h = particles.smoothing_length[p];
-        if (options_.h_mode == SmoothingLengthMode::eq10)
-            h = smoothing_length<D>(options_.eta, particles.mass[p], rho,
-                                    materials_[particles.tag[p].material].rho0);
-        record.mass = static_cast<real>(particles.mass[p]);
-        record.inverse_support = static_cast<real>(1.0 / (WendlandC6<D>::support * h));
-        return h == h0;
-    });
-    if (halo.alone()) equal_h_ = options_.h_mode == SmoothingLengthMode::constant && equal;
-}
-
-/// Whether h is the same on all ranks, which it is for as long as no particle comes.
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::agree_on_h(const State& particles, const Ranks& ranks) {
-    std::array<double, 2> far{-std::numeric_limits<double>::max(),
-                              -std::numeric_limits<double>::max()};
-    for (const double h : particles.smoothing_length) far = {max(far[0], h), max(far[1], -h)};
-    ranks.largest(far);
-    equal_h_ = options_.h_mode == SmoothingLengthMode::constant && far[0] == -far[1];
-}
-
-/// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::update_particle(State& particles, std::size_t p, Mat<double, D> L,
-                                                 double half_dt) {
-    const Tag& tag = particles.tag[p];
-    const Material& material = materials_[tag.material];
-    const double rho = particles.density[p] + half_dt * particles.density_rate[p];
-    for (double& element : L.element) element /= rho;
-
-    const auto eos = equation_of_state(tag, rho);
-    summary_[p / Backend::width].fault.note_density(rho, material.rho0, p);
-    Deviator<double, D> stress{}, rate{};
-    if (tag.motion == Motion::free) {
-        if (material.law == Law::fluid) {
-            const ShearState<double> state{strain_rate(L), eos.pressure, rho};
-            stress = viscous_stress(L, viscosity(material.rheology, state));
-        } else if (material.shear_modulus > 0.0) {
-            stress = particles.deviatoric_stress[p];
-            add_scaled(stress, half_dt, particles.deviatoric_stress_rate[p]);
-            if (yields_) stress = return_map(stress, eos.pressure, surfaces_[tag.material]);
-            rate = elastic_stress_rate(L, stress, material.shear_modulus);
-        }
-    }
-    particles.density_rate[p] = density_rate(material, tag.motion, rho, L);
-    if (particles.has_strength) particles.deviatoric_stress_rate[p] = rate;
-
-    const auto scaled = stress_over_rho_squared(eos.pressure, stress, rho);
-    StressRecord<real, D>& record = stress_[p];
-    for (int k = 0; k < Sym<real, D>::size; ++k)
-        record.stress.element[k] = static_cast<real>(scaled.element[k]);
-    record.rho = static_cast<real>(rho);
-    record.c = static_cast<real>(eos.sound_speed);
-    record.balsara = static_cast<real>(
-        options_.balsara ? balsara_switch(L, eos.sound_speed, particles.smoothing_length[p]) : 1.0);
-}
-
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::sum_velocity_gradient(State& particles, const Lists& lists,
-                                                       Halo<D>& halo, double half_dt) {
-    auto update = [&](std::size_t p, const Mat<double, D>& gradient) {
-        update_particle(particles, p, gradient, half_dt);
-    };
-    const std::span<const MotionRecord<real, D>> motion(motion_);
-    auto sum = [&](const auto& term) {
-        sum_pairs(Phase::pass_1, lists, lists.clusters(), halo, term, update);
-    };
-    if (options_.sym_grad && !equal_h_)
-        sum(VelocityGradientTerm<GradientOf::mean_h, real, D>{motion});
-    else
-        sum(VelocityGradientTerm<GradientOf::own_h, real, D>{motion});
-}
-
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::sum_momentum(State& particles, const Lists& lists, Halo<D>& halo) {
-    constexpr std::size_t width = Backend::width;
-    const auto clusters = lists.clusters().first((lists.moving() + width - 1) / width);
-    std::fill(particles.acceleration.begin() + static_cast<std::ptrdiff_t>(lists.moving()),
-              particles.acceleration.end(), Vec<double, D>{});
-
-    auto accelerate = [&](std::size_t p, const MomentumAccumulators<double, D>& sums) {
-        if (!particles.is_free(p)) {
-            particles.acceleration[p] = {};
-            return;
-        }
-        const Vec<double, D> a = sums.acceleration + options_.gravity;
-        particles.acceleration[p] = a;
-        const double v_sig = max(sums.max_v_sig, 2.0 * static_cast<double>(stress_[p].c));
-        ClusterSummary& summary = summary_[p / width];
-        summary.av_power += particles.mass[p] * sums.av_power;
-        const double dt = doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
-                                           options_.cflnumber, options_.cfl_force);
-        if (dt < summary.timestep)
-            summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
-        summary.fault.note_right_hand_side(dot(a, a) + particles.density_rate[p], p);
-    };
-    const std::span<const MotionRecord<real, D>> motion(motion_);
-    const std::span<const StressRecord<real, D>> stress(stress_);
-    const MomentumOptions<real> constants{static_cast<real>(options_.alpha),
-                                          options_.fixed_limits_dt};
-    auto sum = [&](const auto& term) {
-        sum_pairs(Phase::pass_2, lists, clusters, halo, term, accelerate);
-    };
-    if (equal_h_)
-        sum(MomentumTerm<GradientOf::own_h, real, D>{motion, stress, constants});
-    else
-        sum(MomentumTerm<GradientOf::mean_h, real, D>{motion, stress, constants});
-}
-
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::reduce_summaries() {
-    timestep_ = std::numeric_limits<double>::max();
-    av_power_ = 0.0;
-    fault_ = {}, limiting_ = -1;
-    for (const ClusterSummary& summary : summary_) {
-        if (summary.timestep < timestep_)
-            timestep_ = summary.timestep, limiting_ = summary.limiting;
-        av_power_ += summary.av_power;
-        fault_.merge(summary.fault);
-    }
-}
-
-/// In float, coordinates are whole numbers, which may look like NaN: only double motion is looked
-/// at.
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::find_survivor(State& particles) {
-    const std::int64_t motion = std::is_same_v<real, double> ? survivor<real>(motion_) : -1;
-    for (const std::int64_t p :
-         {motion, survivor<real>(stress_), survivor<double>(particles.acceleration)})
-        if (p >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(p));
-}
 
 }  // namespace doseki

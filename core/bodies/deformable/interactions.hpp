@@ -4,33 +4,13 @@
 
 #include <span>
 
-#include "pairs/records.hpp"
+#include "bodies/deformable/records.hpp"
 #include "pairs/rows.hpp"
 #include "physics/hourglass.hpp"
 #include "physics/kernel.hpp"
 #include "physics/velocity_gradient.hpp"
 
 namespace doseki {
-
-/// What the sums need of a point beside its place at rest: W of them, or one in memory.
-template <class T, int D>
-struct ElasticFields {
-    Vec<T, D> x;          // where it is now
-    T volume;             // at rest [m^D]
-    T kappa, kappa_rate;  // stiffness [Pa] and damping [Pa s] of the springs
-    Mat<T, D> Q;          // see less_springs
-
-    template <class F, class... Self>
-    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.x...), f(self.volume...), f(self.kappa...), f(self.kappa_rate...), f(self.Q...);
-    }
-};
-
-template <int D>
-using ElasticRecord = ElasticFields<double, D>;
-
-template <class T, int D>
-struct ElasticPoint : MotionPoint<T, D>, ElasticFields<T, D> {};
 
 /// Common to both terms: no point of a solid is fixed to the pair loop, clamped ones included.
 template <int D>

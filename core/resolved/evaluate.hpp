@@ -1,0 +1,241 @@
+#pragma once
+// How the resolved scheme evaluates its right-hand side.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/poison.hpp"
+#include "resolved/flow_depth.hpp"
+#include "resolved/fluid_epilogue.hpp"
+#include "resolved/force_terms.hpp"
+#include "resolved/interactions.hpp"
+#include "resolved/model.hpp"
+#include "resolved/right_hand_side.hpp"
+#include "resolved/wall_epilogue.hpp"
+
+namespace doseki {
+
+template <int D, class Backend>
+Resolved<D, Backend>::Resolved(std::vector<Material> materials, const Options<D>& options)
+    : model_(std::make_shared<const ResolvedModel<D>>(std::move(materials), options)) {}
+
+template <int D, class Backend>
+void Resolved<D, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt,
+                                    bool new_lists) {
+    fluid_count_ = lists.moving();
+    if (new_lists && model_->options.flow.turbulence == Turbulence::mixing_length)
+        set_mixing_lengths(state, lists, halo.ranks);
+    pack(state, halo, half_dt);
+    if (model_->options.flow.wide_kernel)
+        sum_all<WendlandC6<D>>(state, lists, halo);
+    else
+        sum_all<WendlandC2<D>>(state, lists, halo);
+    reduce_summaries(halo.ranks);
+    const std::int64_t left = is_poisoned_run() ? survivor<double>(state.acceleration) : -1;
+    if (left >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(left));
+    fault_ = traced_to_its_source(fault_, state, model_->materials);
+    agree(halo.ranks, timestep_, limiting_, fault_);
+}
+
+template <int D, class Backend>
+FlowRecords<D> Resolved<D, Backend>::records(const State& state) const {
+    const std::size_t count = state.size();
+    const double inverse_support =
+        1.0 / (kernel_support() * (count > 0 ? state.smoothing_length[0] : 1.0));
+    return {motion_,
+            fluid_,
+            wall_,
+            static_cast<std::uint32_t>(fluid_count_),
+            static_cast<std::uint32_t>(count),
+            inverse_support};
+}
+
+/// In columns of about four spacings, such that whole ones fill a period.
+template <int D, class Backend>
+void Resolved<D, Backend>::set_mixing_lengths(State& state, const Lists& lists,
+                                              const Ranks& ranks) {
+    const FlowOptions& flow = model_->options.flow;
+    Vec<double, D - 1> width;
+    for (int a = 0; a < D - 1; ++a) {
+        double period = 0.0;
+        for (const auto& shift : lists.image_shifts()) period = std::max(period, shift[a]);
+        const double columns = std::max(1.0, std::floor(period / (4.0 * flow.dp)));
+        width[a] = period > 0.0 ? period / columns : 4.0 * flow.dp;
+    }
+    const FlowDepth<D> depth(state, fluid_count_, width, ranks);
+    const double min_length = flow.smagorinsky * flow.dp;
+    Backend::for_each_particle(fluid_count_, [&](std::size_t p) {
+        state.mixing_length[p] = depth.mixing_length(state.position[p], min_length);
+    });
+}
+
+/// Fills the records with what the state will be after `half_dt`.
+template <int D, class Backend>
+void Resolved<D, Backend>::pack(State& state, const Halo<D>& halo, double half_dt) {
+    const auto timing = phases_.measure(Phase::pack);
+    const std::size_t n = state.size(), ghosts = halo.ghosts(), moving = halo.moving_ghosts();
+    motion_.resize(n + ghosts), wall_.resize(n - fluid_count_ + ghosts);
+    fluid_.resize(moving > 0 ? n + moving : fluid_count_);
+    summary_.assign((n + Backend::width - 1) / Backend::width, {});
+    if (is_poisoned_run()) poison<double>(motion_), poison<double>(fluid_), poison<double>(wall_);
+    Backend::for_each_particle(n, [&](std::size_t p) {
+        MotionRecord<double, D>& record = motion_[p];
+        const bool wall = p >= fluid_count_;
+        record.x = state.position[p].component;
+        for (int a = 0; a < D; ++a)
+            record.v[a] = state.velocity[p][a] + (wall ? 0.0 : half_dt * state.acceleration[p][a]);
+        record.mass = state.mass[p];
+        record.inverse_support = 1.0 / (kernel_support() * state.smoothing_length[p]);
+        if (wall)
+            pack_wall(state, p);
+        else
+            pack_fluid(state, p, half_dt);
+    });
+}
+
+template <int D, class Backend>
+void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_dt) {
+    FluidRecord<D>& record = fluid_[p];
+    const Material& material = model_->material(state.tag[p]);
+    const Mat<double, D>& L = state.velocity_gradient[p];
+    const double rho = state.density[p] + half_dt * state.density_rate[p];
+    record.rho = rho;
+    record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
+    record.surface = state.surface[p];
+    record.p = model_->without_surface_tension(pressure(material.laws->eos, rho), record.surface);
+    update_mean_pressure(state, p, 2.0 * half_dt);
+    const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
+    record.mu =
+        viscosity(material.laws->rheology, sheared) + rho * model_->eddy_viscosity(state, p);
+    for (int a = 0; a < D; ++a)
+        for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
+    record.pressure_gradient = state.pressure_gradient[p];
+}
+
+template <int D, class Backend>
+void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
+    WallRecord<D>& record = wall_[p - fluid_count_];
+    const Vec<double, D>& normal = state.wall.normal[p];
+    record.normal = normal;
+    record.traction = {};
+    record.volume = state.is_bound(p) ? state.mass[p] / state.density[p] : model_->spacing_power[D];
+    record.depth = state.wall.depth[p];
+    record.g_normal = std::max(0.0, dot(state.acceleration[p] - model_->options.gravity, normal));
+    record.no_slip = model_->wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
+}
+
+/// Friction between grains takes the mean over the relaxation time of the density: sound that runs
+/// to and fro is no load on a contact. What never had a pressure takes the first it gets.
+template <int D, class Backend>
+void Resolved<D, Backend>::update_mean_pressure(State& state, std::size_t p, double dt) {
+    double& mean = state.mean_pressure[p];
+    const double share =
+        dt * model_->constants.c / (density_relaxation * state.smoothing_length[p]);
+    mean = mean == 0.0 ? fluid_[p].p : mean + std::min(share, 1.0) * (fluid_[p].p - mean);
+}
+
+/// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their
+/// beds, come.
+template <int D, class Backend>
+template <class Kernel>
+void Resolved<D, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo) {
+    const std::size_t first_ghost_wall = fluid_count_;
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
+                halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
+    const FlowRecords<D> records = this->records(state);
+    const bool has_fluid = fluid_count_ + halo.moving_ghosts() > 0,
+               has_walls = records.count > records.fluid_count && has_fluid;
+    if (!has_fluid) std::fill(state.wall.force.begin(), state.wall.force.end(), Vec<double, D>{});
+    const bool rough = model_->has_rough_walls();
+    if (rough || halo.alone()) {
+        halo.finish();
+        if (has_walls) sum_walls<Kernel>(state, lists, records);
+        if (rough)
+            halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed,
+                                    first_ghost_wall)});
+        sum_fluid<Kernel>(state, lists, halo, records);
+    } else {
+        sum_fluid<Kernel>(state, lists, halo, records);
+        if (has_walls) sum_walls<Kernel>(state, lists, records);
+    }
+}
+
+template <int D, class Backend>
+template <class Kernel>
+void Resolved<D, Backend>::sum_walls(State& state, const Lists& lists,
+                                     const FlowRecords<D>& records) {
+    const auto timing = phases_.measure(Phase::pass_1);
+    const std::size_t first = fluid_count_ / Backend::width;
+    Backend::sum_pairs(lists,
+                       {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},
+                       WallTerm<Kernel, D>{records, model_->constants},
+                       WallEpilogue<D>(*model_, wall_, fluid_count_, state));
+}
+
+template <int D, class Backend>
+template <class Kernel>
+void Resolved<D, Backend>::sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
+                                     const FlowRecords<D>& records) {
+    const FluidTerm<Kernel, D> term{records, model_->constants};
+    const FluidEpilogue<D> epilogue(*model_, activity_, fluid_, fluid_count_, summary_, state);
+    const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
+    while_ghosts_come(halo, lists, lists.clusters().first(clusters), Backend::width,
+                      [&](std::span<const ClusterList> part, std::size_t first) {
+                          const auto timing = phases_.measure(Phase::pass_2);
+                          Backend::sum_pairs(lists,
+                                             {part, motion_, frame_, {.first_cluster = first}},
+                                             term, epilogue);
+                      });
+}
+
+template <int D, class Backend>
+void Resolved<D, Backend>::reduce_summaries(const Ranks& ranks) {
+    // What enters next may be the first fluid there is.
+    const Options<D>& options = model_->options;
+    const double c = model_->constants.c;
+    timestep_ = options.cflnumber * options.eta * options.flow.dp / c;
+    power_ = 0.0;
+    fault_ = {}, limiting_ = -1;
+    std::array<double, 2> total{0.0, static_cast<double>(fluid_count_)};  // of |L|^2, of particles
+    for (const FlowSummary& summary : summary_) {
+        if (summary.timestep < timestep_)
+            timestep_ = summary.timestep, limiting_ = summary.limiting;
+        power_ += summary.power;
+        total[0] += summary.strain;
+        fault_.merge(summary.fault);
+    }
+    ranks.sum(total);
+    if (total[1] > 0.0) activity_.update(total[0] / total[1], options.eta * options.flow.dp, c);
+}
+
+template <int D, class Backend>
+ForceTerms<D> Resolved<D, Backend>::force_terms(const State& state, const Lists& lists, Halo<D>&,
+                                                std::int64_t p) const {
+    if (p < 0 || !state.is_free(static_cast<std::size_t>(p)) ||
+        static_cast<std::size_t>(p) >= fluid_count_)
+        return {};
+    const FluidPass<D, Backend> pass{lists, frame_, records(state), *model_};
+    return doseki::force_terms<D, Backend>(pass, state, static_cast<std::size_t>(p));
+}
+
+template <int D, class Backend>
+ThermodynamicState<double> Resolved<D, Backend>::equation_of_state(const State& state,
+                                                                   std::size_t p) const {
+    if (state.is_wall(p)) return {state.wall.pressure[p], model_->constants.c, 0.0};
+    const Material& material = model_->material(state.tag[p]);
+    const auto at = thermodynamic_state(material.laws->eos, state.density[p]);
+    return {model_->without_surface_tension(at.pressure, state.surface[p]), material.c0,
+            at.bulk_energy};
+}
+
+template <int D, class Backend>
+double Resolved<D, Backend>::kernel_support() const {
+    return model_->kernel_support();
+}
+
+template <int D, class Backend>
+const std::vector<Material>& Resolved<D, Backend>::materials() const {
+    return model_->materials;
+}
+
+}  // namespace doseki
