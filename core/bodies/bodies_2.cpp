@@ -1,12 +1,10 @@
 // Bodies in two dimensions, compiled once for all schemes.
 
 #include "bodies/bodies.hpp"
-#include "bodies/deformable/advance.hpp"
+#include "bodies/contact_forces.hpp"
 
 namespace doseki {
 
-template class TotalLagrangian<2>;
-template class DeformableBodies<2>;
 template class RigidBodies<2>;
 template class RigidParticles<2>;
 template class Contacts<2>;

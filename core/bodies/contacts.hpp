@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
 #include "bodies/contact_law.hpp"
@@ -75,89 +74,6 @@ private:
     double timestep_ = std::numeric_limits<double>::infinity();
     double max_overlap_ = 0.0;
 };
-
-template <int D>
-void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
-    std::unordered_map<std::uint64_t, ContactSprings> stretched;
-    for (std::size_t k = 0; k < pairs_.size(); ++k)
-        if (contacts_[k].overlap > 0.0) stretched[key(pairs_[k])] = springs_[k];
-    pairs_.clear();
-    find_ball_pairs(bodies.points, domain_, margin, pairs_);
-    find_convex_pairs(bodies, domain_, margin, pairs_);
-    springs_.assign(pairs_.size(), {});
-    for (std::size_t k = 0; k < pairs_.size(); ++k)
-        if (const auto found = stretched.find(key(pairs_[k])); found != stretched.end())
-            springs_[k] = found->second;
-    restore(bodies);
-}
-
-template <int D>
-void Contacts<D>::restore(const ContactBodies<D>& bodies) {
-    contacts_.clear();
-    timestep_ = std::numeric_limits<double>::infinity();
-    for (const ContactPair& pair : pairs_) {
-        contacts_.push_back(contact_of(bodies, pair));
-        timestep_ = std::min(timestep_, contacts_.back().law.timestep(laws_.speed()));
-    }
-}
-
-template <int D>
-auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const
-    -> Contact {
-    const ContactPoints<D>& points = bodies.points;
-    const ContactSide a = points.side(pair.first());
-    if (pair.with_convex()) {
-        const ConvexBody<D>& convex = bodies.convex[pair.convex()];
-        return {points.body[pair.first()], convex.body, laws_.between(a, convex.side()), 0.0};
-    }
-    return {points.body[pair.first()], points.body[pair.second()],
-            laws_.between(a, points.side(pair.second())), 0.0};
-}
-
-template <int D>
-void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        const ContactPair& pair = pairs_[k];
-        Contact& contact = contacts_[k];
-        const auto overlap =
-            pair.with_convex()
-                ? overlap_of(bodies.points, pair.first(), bodies.convex[pair.convex()], domain_)
-                : overlap_of(bodies.points, pair.first(), pair.second(), domain_);
-        if (overlap) {
-            contact.overlap = overlap->depth;
-            max_overlap_ = std::max(max_overlap_, overlap->depth / contact.law.diameter);
-            push_apart(bodies, k, *overlap, dt);
-        } else if (contact.overlap > 0.0) {
-            contact.overlap = 0.0, springs_[k] = {};
-        }
-    }
-}
-
-template <int D>
-void Contacts<D>::push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
-                             double dt) {
-    ContactPoints<D>& points = bodies.points;
-    const ContactPair& pair = pairs_[k];
-    const std::size_t a = pair.first();
-    ConvexBody<D>* convex = pair.with_convex() ? &bodies.convex[pair.convex()] : nullptr;
-    const std::size_t b = convex ? 0 : pair.second();
-    const Vec3 spin_a = points.spin[a], spin_b = convex ? convex->spin : points.spin[b];
-    const Vec<double, D> v_a = points.velocity[a] + turning_velocity(spin_a, overlap.lever_a);
-    const Vec<double, D> v_b = (convex ? convex->velocity : points.velocity[b]) +
-                               turning_velocity(spin_b, overlap.lever_b);
-    const ContactAction on_a =
-        contacts_[k].law.act(springs_[k], overlap.depth, in_space(overlap.normal),
-                             {in_space(v_a - v_b), spin_a - spin_b}, dt);
-    auto push = [&](auto& force, auto& torque, const Vec<double, D>& lever, double sign) {
-        force = force + sign * in_run<D>(on_a.force);
-        torque = torque + sign * (cross(in_space(lever), on_a.force) + on_a.moment);
-    };
-    push(points.force[a], points.torque[a], overlap.lever_a, 1.0);
-    if (convex)
-        push(convex->force, convex->torque, overlap.lever_b, -1.0);
-    else
-        push(points.force[b], points.torque[b], overlap.lever_b, -1.0);
-}
 
 // Compiled once: bodies_2.cpp, bodies_3.cpp.
 extern template class Contacts<2>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bodies/deformable/elastic_law.hpp"
 #include "interface/reader.hpp"
 
 namespace doseki {
@@ -32,8 +33,9 @@ DeformableBody read_elastic_body(const NamedValues& table, const std::vector<con
     read("spacing", body.spacing), read("hourglass", body.hourglass), read("damping", body.damping);
     for (const char* key : others) read.allow(key);
     read.finish();
-    body.law = alternative<Hyperelastic<double>>(law);
-    with_value(body.law, [&](auto& known) { known.lame = Lame<double>::of(modulus, ratio); });
+    auto chosen = alternative<Hyperelastic<double>>(law);
+    with_value(chosen, [&](auto& known) { known.lame = Lame<double>::of(modulus, ratio); });
+    body.law = std::make_shared<const ElasticLaw>(chosen);
     return body;
 }
 

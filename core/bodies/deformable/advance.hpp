@@ -1,12 +1,14 @@
 #pragma once
-// How deformable bodies are stepped.
+// How deformable bodies are stepped, by themselves and among others.
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/deformable/interactions.hpp"
 #include "bodies/deformable/power_iteration.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
 #include "pairs/loop.hpp"
+#include "physics/hyperelastic/strain.hpp"
 
 namespace doseki {
 
@@ -46,7 +48,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     for (std::size_t p = 0; p < size(); ++p) {
         const DeformableBody& body = body_of(p);
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
-        const double stiffness = body.hourglass * body.lame().mu,
+        const double stiffness = body.hourglass * body.shear_modulus(),
                      viscosity = body.hourglass * body.viscosity();
         solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}};
     }
@@ -206,6 +208,99 @@ double TotalLagrangian<D>::kinetic_energy() const {
     double sum = 0.0;
     for (std::size_t p = 0; p < size(); ++p) sum += 0.5 * mass(p) * dot(v[p], v[p]);
     return sum;
+}
+
+template <int D>
+void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& gravity) {
+    if (empty()) return;
+    solids_.start(gravity);
+    auto sorted = [this](const auto& by_number) {
+        auto result = by_number;
+        for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
+        return result;
+    };
+    normal_ = sorted(normal_), surface_ = sorted(surface_);
+    flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (has(particles, p))
+            particles.set_point(p, BodyKind::deformable, solids_.slot(particles.point(p)));
+}
+
+template <int D>
+void DeformableBodies<D>::add_to(ContactPoints<D>& points, std::int32_t first_body) {
+    first_contact_point_ = points.size();
+    touching_.clear();
+    for (std::size_t k = 0; k < solids_.size(); ++k) {
+        if (!surface_[k]) continue;
+        const double radius = 0.5 * solids_.body_of(k).spacing;
+        const std::int32_t body = solids_.body(k);
+        points.add(first_body + body,
+                   {material_[static_cast<std::size_t>(body)], radius, solids_.mass(k),
+                    2.0 * radius, solids_.clamped(k), true, false});
+        touching_.push_back(k);
+    }
+}
+
+template <int D>
+void DeformableBodies<D>::end_step(double dt, double memory) {
+    const double share = std::min(1.0, dt / memory);
+    for (std::size_t k = 0; k < solids_.size(); ++k) {
+        if (solids_.clamped(k)) continue;
+        const Vec<double, D> mean =
+            (1.0 / dt) * (solids_.v[k] - before_[k]) + (1.0 / solids_.mass(k)) * flow_force_[k];
+        acceleration_[k] = acceleration_[k] + share * (mean - acceleration_[k]);
+    }
+}
+
+template <int D>
+void DeformableBodies<D>::show(ContactPoints<D>& points) const {
+    for (std::size_t t = 0; t < touching_.size(); ++t) {
+        const std::size_t c = first_contact_point_ + t;
+        points.position[c] = solids_.x[touching_[t]], points.velocity[c] = solids_.v[touching_[t]];
+        points.force[c] = {}, points.torque[c] = {};
+    }
+}
+
+template <int D>
+void DeformableBodies<D>::collect(const ContactPoints<D>& points) {
+    for (std::size_t t = 0; t < touching_.size(); ++t)
+        solids_.load[touching_[t]] = points.force[first_contact_point_ + t];
+}
+
+/// Normals turn as surfaces do, with F^-T.
+template <int D>
+double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) const {
+    std::vector<double> gone(particles.size(), 0.0);
+    for_each_point(particles, [&](std::size_t p, std::size_t k) {
+        const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
+        gone[p] = dot(step, step);
+        particles.position[p] = particles.position[p] + step;
+        const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
+        const double length = std::sqrt(dot(n, n));
+        particles.wall.normal[p] = length > 0.0 ? (1.0 / length) * n : n;
+        particles.acceleration[p] = acceleration_[k];
+    });
+    return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));
+}
+
+template <int D>
+void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
+    for_each_point(particles, [&](std::size_t p, std::size_t k) {
+        particles.velocity[p] = solids_.clamped(k)
+                                    ? Vec<double, D>{}
+                                    : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
+    });
+}
+
+template <int D>
+void DeformableBodies<D>::stress(const Particles<D>& particles, std::size_t p, double* out) const {
+    const std::size_t k = particles.point(p);
+    const Mat<double, D>& F = solids_.deformation(k);
+    const Sym<double, D> sigma = cauchy_stress(solids_.stress(k), F);
+    std::fill_n(out, 9, 0.0);
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) out[3 * a + b] = sigma(std::min(a, b), std::max(a, b));
+    if constexpr (D == 2) out[8] = solids_.body_of(k).stress_across(F);
 }
 
 }  // namespace doseki

@@ -20,7 +20,7 @@ struct ElasticTerm;
 /// apart. Forces are the gradient of a discrete energy, so that without damping position Verlet
 /// keeps energy as well as momentum and angular momentum. Points are stored in the order of their
 /// sort at rest; `slot` finds them. How they are stepped is in deformable/advance.hpp, which
-/// bodies_2.cpp and bodies_3.cpp compile.
+/// deformable_2.cpp and deformable_3.cpp compile.
 template <int D>
 class TotalLagrangian {
 public:
@@ -149,7 +149,7 @@ private:
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
 };
 
-// Compiled once: bodies_2.cpp, bodies_3.cpp.
+// Compiled once: deformable_2.cpp, deformable_3.cpp.
 extern template class TotalLagrangian<2>;
 extern template class TotalLagrangian<3>;
 

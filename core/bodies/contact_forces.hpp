@@ -1,0 +1,188 @@
+#pragma once
+// Forces of contacts, which bodies_2.cpp and bodies_3.cpp compile.
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unordered_map>
+
+#include "bodies/contacts.hpp"
+#include "physics/contact.hpp"
+
+namespace doseki {
+
+/// A spring along the surface turns with it.
+inline Vec3 turned_with(const Vec3& n, const ContactSprings& springs, int first) {
+    Vec3 stretch;
+    for (int c = 0; c < 3; ++c) stretch[c] = springs[first + c];
+    const double before = norm(stretch);
+    stretch = stretch - dot(stretch, n) * n;
+    const double after = norm(stretch);
+    return after > 0.0 ? (before / after) * stretch : stretch;
+}
+
+inline double ContactLaw::timestep(double speed) const {
+    const CollisionEstimate collision = hertz ? hertz_collision(stiffness, curvature(), mass, speed)
+                                              : linear_collision(stiffness, mass, speed);
+    return collision.time / steps;
+}
+
+inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, const Vec3& n,
+                                     const RelativeMotion& motion, double dt) const {
+    const double approach = dot(motion.velocity, n);
+    const NormalSpring spring =
+        hertz ? hertz_spring(stiffness, curvature(), overlap) : linear_spring(stiffness, overlap);
+    const double damping = contact_damping(hertz, zeta, spring.stiffness, mass);
+    const double normal = normal_force(spring, damping, approach);
+    const double along = tangential * spring.stiffness, dashpot = tangential * damping;
+    Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
+    ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,
+                                        friction * normal) -
+                             normal * n,
+                         {}};
+    if (radius > 0.0 && rolling > 0.0)
+        result.moment = radius * cross(n, sliding_spring(rolled, radius * cross(motion.spin, n), dt,
+                                                         along, dashpot, rolling * normal));
+    for (int c = 0; c < 3; ++c) springs[c] = slid[c], springs[3 + c] = rolled[c];
+    return result;
+}
+
+template <int D>
+ContactLaws<D>::ContactLaws(const ContactOptions& options, std::vector<ContactProperties> materials)
+    : options_(options), materials_(std::move(materials)) {
+    for (const ContactProperties& a : materials_)
+        for (const ContactProperties& b : materials_)
+            damping_.push_back(damping_ratio(0.5 * (a.restitution + b.restitution), hertz()));
+}
+
+template <int D>
+ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto first = static_cast<std::size_t>(a.material),
+               second = static_cast<std::size_t>(b.material);
+    const ContactProperties &u = materials_[first], &v = materials_[second];
+    const bool penalty = a.deformable || b.deformable;
+    ContactLaw law{};
+    law.hertz = hertz() && !penalty;
+    law.mass = !a.fixed && !b.fixed ? a.mass * b.mass / (a.mass + b.mass)
+               : a.fixed            ? b.mass
+                                    : a.mass;
+    law.diameter = std::min(a.fixed ? infinite : a.diameter, b.fixed ? infinite : b.diameter);
+    law.radius = b.flat ? a.radius : a.radius * b.radius / (a.radius + b.radius);
+    law.zeta = damping_[first * materials_.size() + second];
+    law.friction = 0.5 * (u.friction + v.friction);
+    law.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
+    law.steps = penalty ? penalty_steps : options_.steps;
+    if (penalty) {
+        const double spacing = 2.0 * (b.flat ? a.radius : std::min(a.radius, b.radius));
+        law.stiffness = penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : 1.0);
+        law.zeta = law.rolling = 0.0;
+    } else
+        law.stiffness = stiffness(law, u, v);
+    // Linear: equal times of both springs for balls. Hertz: Mindlin's 4 G*/E*.
+    const double nu = 0.5 * (u.poisson_ratio + v.poisson_ratio);
+    law.tangential = hertz() ? 2.0 * (1.0 - nu) / (2.0 - nu) : 2.0 / 7.0;
+    return law;
+}
+
+/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
+template <int D>
+double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
+                                 const ContactProperties& b) const {
+    const double radius = law.curvature();
+    const double v = options_.speed, overlap = options_.overlap * law.diameter;
+    const double soft_k = law.mass * v * v / (overlap * overlap);
+    const double soft_E =
+        15.0 / 16.0 * law.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));
+    if (options_.softened) return hertz() ? soft_E : soft_k;
+    const double E = contact_modulus(a, b);
+    if (hertz()) return E;
+    if constexpr (D == 2) return 0.25 * std::numbers::pi * E;  // of a line contact, per length
+    const double same = hertz_collision(E, radius, law.mass, v).overlap;
+    return law.mass * v * v / (same * same);
+}
+
+template <int D>
+void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
+    std::unordered_map<std::uint64_t, ContactSprings> stretched;
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+        if (contacts_[k].overlap > 0.0) stretched[key(pairs_[k])] = springs_[k];
+    pairs_.clear();
+    find_ball_pairs(bodies.points, domain_, margin, pairs_);
+    find_convex_pairs(bodies, domain_, margin, pairs_);
+    springs_.assign(pairs_.size(), {});
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+        if (const auto found = stretched.find(key(pairs_[k])); found != stretched.end())
+            springs_[k] = found->second;
+    restore(bodies);
+}
+
+template <int D>
+void Contacts<D>::restore(const ContactBodies<D>& bodies) {
+    contacts_.clear();
+    timestep_ = std::numeric_limits<double>::infinity();
+    for (const ContactPair& pair : pairs_) {
+        contacts_.push_back(contact_of(bodies, pair));
+        timestep_ = std::min(timestep_, contacts_.back().law.timestep(laws_.speed()));
+    }
+}
+
+template <int D>
+auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const
+    -> Contact {
+    const ContactPoints<D>& points = bodies.points;
+    const ContactSide a = points.side(pair.first());
+    if (pair.with_convex()) {
+        const ConvexBody<D>& convex = bodies.convex[pair.convex()];
+        return {points.body[pair.first()], convex.body, laws_.between(a, convex.side()), 0.0};
+    }
+    return {points.body[pair.first()], points.body[pair.second()],
+            laws_.between(a, points.side(pair.second())), 0.0};
+}
+
+template <int D>
+void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const ContactPair& pair = pairs_[k];
+        Contact& contact = contacts_[k];
+        const auto overlap =
+            pair.with_convex()
+                ? overlap_of(bodies.points, pair.first(), bodies.convex[pair.convex()], domain_)
+                : overlap_of(bodies.points, pair.first(), pair.second(), domain_);
+        if (overlap) {
+            contact.overlap = overlap->depth;
+            max_overlap_ = std::max(max_overlap_, overlap->depth / contact.law.diameter);
+            push_apart(bodies, k, *overlap, dt);
+        } else if (contact.overlap > 0.0) {
+            contact.overlap = 0.0, springs_[k] = {};
+        }
+    }
+}
+
+template <int D>
+void Contacts<D>::push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
+                             double dt) {
+    ContactPoints<D>& points = bodies.points;
+    const ContactPair& pair = pairs_[k];
+    const std::size_t a = pair.first();
+    ConvexBody<D>* convex = pair.with_convex() ? &bodies.convex[pair.convex()] : nullptr;
+    const std::size_t b = convex ? 0 : pair.second();
+    const Vec3 spin_a = points.spin[a], spin_b = convex ? convex->spin : points.spin[b];
+    const Vec<double, D> v_a = points.velocity[a] + turning_velocity(spin_a, overlap.lever_a);
+    const Vec<double, D> v_b = (convex ? convex->velocity : points.velocity[b]) +
+                               turning_velocity(spin_b, overlap.lever_b);
+    const ContactAction on_a =
+        contacts_[k].law.act(springs_[k], overlap.depth, in_space(overlap.normal),
+                             {in_space(v_a - v_b), spin_a - spin_b}, dt);
+    auto push = [&](auto& force, auto& torque, const Vec<double, D>& lever, double sign) {
+        force = force + sign * in_run<D>(on_a.force);
+        torque = torque + sign * (cross(in_space(lever), on_a.force) + on_a.moment);
+    };
+    push(points.force[a], points.torque[a], overlap.lever_a, 1.0);
+    if (convex)
+        push(convex->force, convex->torque, overlap.lever_b, -1.0);
+    else
+        push(points.force[b], points.torque[b], overlap.lever_b, -1.0);
+}
+
+}  // namespace doseki

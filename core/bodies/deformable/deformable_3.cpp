@@ -1,0 +1,10 @@
+// Deformable bodies in three dimensions, compiled once for all schemes.
+
+#include "bodies/deformable/advance.hpp"
+
+namespace doseki {
+
+template class TotalLagrangian<3>;
+template class DeformableBodies<3>;
+
+}  // namespace doseki
