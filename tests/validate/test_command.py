@@ -68,12 +68,6 @@ def test_exit_code_2_for_a_wrong_tier():
     assert exit_code("--tier", "fine") == 2
 
 
-def test_a_skipped_case_says_why(only, make_case, tmp_path, capsys):
-    only(make_case(data=("nowhere.csv",)))
-    assert exit_code("-o", str(tmp_path)) == 0
-    assert "measured data are not here: nowhere.csv" in capsys.readouterr().out
-
-
 def test_a_number_that_is_none_fails_and_is_null(only, make_case, tmp_path, capsys):
     only(make_case(run=lambda _: Outcome({"value": Value(math.nan, 2.0)})))
     assert exit_code("--tier", "full", "-o", str(tmp_path), "--json") == 1

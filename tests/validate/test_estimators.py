@@ -73,6 +73,17 @@ def test_integral():
     assert estimators.integral(t, t, 0, 1) == pytest.approx(0.5)
 
 
+def test_an_integral_goes_to_its_ends_between_samples():
+    """As from sparse samples, so from dense ones of the same broken line."""
+    t = np.array([0.1, 1.0, 3.0])
+    values = np.array([2.0, 4.0, 0.0])
+    dense = np.linspace(0, 3, 3001)
+    assert estimators.integral(t, values, 0.5, 2.0) == pytest.approx(
+        estimators.integral(dense, np.interp(dense, t, values), 0.5, 2.0), rel=1e-6
+    )
+    assert estimators.integral(t, values, 0, 0.1) == pytest.approx(0.2)
+
+
 def test_exact_solutions():
     """Against the values that are published or follow by hand."""
     assert ellipse(100, 0.0076) == pytest.approx((0.51427, 1.94452), abs=1e-5)

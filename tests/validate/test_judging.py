@@ -4,7 +4,7 @@ import math
 
 from doseki.errors import PhysicsError
 from doseki.validate.case import Control, Criterion, Outcome, Value, within
-from doseki.validate.judging import FAIL, PASS, REPORTED, SHORT, SKIPPED, failed, validate_case
+from doseki.validate.judging import FAIL, PASS, REPORTED, SHORT, failed, validate_case
 
 
 def judge(case, tier="full"):
@@ -66,14 +66,6 @@ def test_a_run_that_goes_wrong_fails_with_its_message(make_case):
     assert result.verdict == FAIL
     assert "nan" in result.rows[0].note
     assert not result.outcomes
-
-
-def test_without_its_data_a_case_is_skipped(make_case):
-    result, told = judge(make_case(data=("nowhere/at_all.csv",)))
-    assert result.verdict == SKIPPED
-    assert "nowhere/at_all.csv" in result.rows[0].note
-    assert not told
-    assert not failed([result])
 
 
 def test_what_is_known_to_fall_short_is_not_a_pass(make_case):

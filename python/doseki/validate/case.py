@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -134,7 +134,6 @@ class Case:
     criteria: tuple[Criterion, ...]
     axes: tuple[str, str]  # of the picture
     controls: tuple[Control, ...] = ()
-    data: tuple[str, ...] = field(default=())  # files of measurements, without which it is skipped
 
     def __post_init__(self) -> None:
         levels = len(self.resolutions)

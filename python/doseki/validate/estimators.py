@@ -90,9 +90,10 @@ def loose_share(state: State, reach: float, chunk: int = 500) -> float:
 
 
 def integral(times: np.ndarray, values: np.ndarray, start: float, end: float) -> float:
-    """Of a sampled curve between two times, by trapezia."""
-    inside = (times >= start) & (times <= end)
-    t, v = times[inside], values[inside]
+    """Of a sampled curve between two times, by trapezia; level beyond its ends."""
+    inside = (times > start) & (times < end)
+    t = np.concatenate([[start], times[inside], [end]])
+    v = np.interp(t, times, values)
     return float(np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(t)))
 
 

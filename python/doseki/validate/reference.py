@@ -1,21 +1,14 @@
-"""Measured data, which are not part of the project: they lie beside its folder, or nowhere."""
+"""Numbers of others to compare with: tables in data/, each with its source in its first lines."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[3]
-FOLDER = ROOT.parent / "shared" / "data"  # its README says where each file comes from
+DATA = Path(__file__).resolve().parent / "data"
 
 
-def missing_files(files: Sequence[str]) -> list[str]:
-    """Which of the files are not here."""
-    return [file for file in files if not (FOLDER / file).is_file()]
-
-
-def read_columns(file: str, delimiter: str | None = ",", header: int = 0) -> np.ndarray:
+def read_columns(file: str) -> np.ndarray:
     """The columns of a table of numbers: (columns, rows); lines that begin with # are comments."""
-    return np.loadtxt(FOLDER / file, delimiter=delimiter, skiprows=header, ndmin=2).T
+    return np.loadtxt(DATA / file, delimiter=",", ndmin=2).T

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..record.writer import jsonable
 from ..util.files import write_whole_text
-from .judging import FAIL, SHORT, SKIPPED, Result, Row, failed
+from .judging import FAIL, SHORT, Result, Row, failed
 
 HEADINGS = (
     "case", "quantity", "resolution", "value", "exact or measured", "error", "band", "verdict",
@@ -62,7 +62,7 @@ def _text(number: float | None, form: str) -> str:
 
 
 def summary_line(results: Sequence[Result]) -> str:
-    """How many cases passed, failed and were skipped."""
+    """How many cases passed, failed and fell short."""
     verdicts = [result.verdict for result in results]
     counts = {word: verdicts.count(word) for word in dict.fromkeys(verdicts)}
     return f"{len(results)} cases: " + ", ".join(f"{n} {word}" for word, n in counts.items())
@@ -105,12 +105,12 @@ def markdown(results: Sequence[Result], tier: str, pictures: dict[str, str]) -> 
 
 
 def remarks(results: Sequence[Result]) -> list[str]:
-    """One line for each row that fails or falls short, and for each case that is left out."""
+    """One line for each row that fails or falls short."""
     return [
         f"{row.case}: {row.quantity or 'the run'}: {row.verdict}{': ' * bool(row.note)}{row.note}"
         for result in results
         for row in result.rows
-        if row.verdict in (FAIL, SHORT, SKIPPED)
+        if row.verdict in (FAIL, SHORT)
     ]
 
 

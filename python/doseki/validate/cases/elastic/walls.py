@@ -10,11 +10,7 @@ from ...running import Running
 
 SAG = "sag of the middle"
 MISS_X, MISS_Y, PEAK = "miss of the tip along x", "miss of the tip along y", "farthest along x"
-FOLDER = "antoci_elastic_gate"
-MEASURED = tuple(
-    f"{FOLDER}/ng_2020_elastic_dam_break_{axis}_displacement_antoci_2007_experiment.csv"
-    for axis in "xy"
-)
+MEASURED = ("antoci-2007-x.csv", "antoci-2007-y.csv")
 SETTLED, END, SAMPLE = 0.06, 0.16, 0.005  # s
 
 
@@ -98,6 +94,5 @@ GATE = Case(
     ),
     axes=("time (s)", "displacement of the foot (m)"),
     controls=(Control("four times as stiff", MISS_X, lambda n: gate(n, "young=31.2e6")),),
-    data=MEASURED,
 )
 CASES = (PLATE, GATE)
