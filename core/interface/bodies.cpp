@@ -93,16 +93,16 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const std::vector<const char*> own{"material", "particles", "clamped", "surface"};
+    const std::vector<const char*> own{"material", "particles", "rest",   "position",
+                                       "velocity", "clamped",   "surface"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
     Reader(table, "elastic body")("material", material);
     ColumnReader column(table, "elastic body");
     const auto members = column.numbers<std::int32_t>("particles");
-    const auto clamped = column.numbers<std::uint8_t>("clamped"),
-               surface = column.numbers<std::uint8_t>("surface");
-    bodies.deformable.add(particles, body, material, members, clamped, surface);
+    const auto surface = column.numbers<std::uint8_t>("surface");
+    bodies.deformable.add(particles, body, material, members, solid_points<D>(column), surface);
 }
 
 template <int D>

@@ -5,6 +5,7 @@
 
 #include "bodies/bodies.hpp"
 #include "interface/particles.hpp"
+#include "interface/reader.hpp"
 #include "interface/value.hpp"
 
 namespace doseki {
@@ -13,6 +14,13 @@ namespace doseki {
 /// damping}; `others` are keys that the caller reads itself.
 DeformableBody read_elastic_body(const NamedValues& table, const std::vector<const char*>& others);
 
+/// Columns rest, position, velocity and clamped of the points of a deformable body.
+template <int D>
+SolidPoints<D> solid_points(ColumnReader& column) {
+    return {column.vectors<D>("rest"), column.vectors<D>("position"), column.vectors<D>("velocity"),
+            column.numbers<std::uint8_t>("clamped")};
+}
+
 template <int D>
 struct BodyTables {
     /// Balls {radius}, or convex shapes {vertices, faces, samples}.
@@ -20,8 +28,8 @@ struct BodyTables {
     static void add_rigid(Bodies<D>& bodies, const NamedValues& columns);
     /// `body`: index of its rigid body for each particle, or -1.
     static void bind(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& columns);
-    /// The parameters of read_elastic_body, its `material` and, for each of its `particles`,
-    /// whether it is `clamped` and whether it is on the `surface`.
+    /// The parameters of read_elastic_body, its `material` and, for each of its `particles`, the
+    /// columns of solid_points, places not wrapped, and whether it is on the `surface`.
     static void add_elastic(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& table);
 
     /// The rigid bodies, in the order in which they were added.

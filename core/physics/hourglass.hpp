@@ -25,4 +25,52 @@ DOSEKI_FN Vec<T, D> elastic_pair_force(const Mat<T, D>& Q_i, const Mat<T, D>& Q_
     return (Q_i + Q_j) * R_ij + kappa_sum * r_ij;
 }
 
+/// What the spin of the misfits e_ij = r_ij - F_i R_ij of one point follows from, sums with the
+/// weights of the fit.
+template <class T, int D>
+struct MisfitMoments {
+    Mat<T, D> square{}, rate{};  // sum of e (x) e and of de/dt (x) e
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.square...), f(self.rate...);
+    }
+    DOSEKI_FN void add(const T& weight, const Vec<T, D>& e, const Vec<T, D>& e_rate) {
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b) {
+                square(a, b) += (weight * e[a]) * e[b];
+                rate(a, b) += (weight * e_rate[a]) * e[b];
+            }
+    }
+};
+
+/// Eq. (83a): the skew matrix Omega with sum e x (de/dt - Omega e) = 0, that is Omega C + C Omega =
+/// N - N^T with C = `square`, N = `rate`. Misfits below 1e-10 of a spacing have none: weights are
+/// such that the sum of R (x) R is 1.
+template <int D>
+Mat<double, D> misfit_spin(const MisfitMoments<double, D>& moments) {
+    constexpr double floor = 1e-20;
+    const Mat<double, D>&C = moments.square, &N = moments.rate;
+    Mat<double, D> spin{};
+    if constexpr (D == 2) {
+        spin(1, 0) = (N(1, 0) - N(0, 1)) / (C(0, 0) + C(1, 1) + floor);
+        spin(0, 1) = -spin(1, 0);
+    } else {
+        // The share of the trace keeps misfits that are all parallel from being singular.
+        const double size = C(0, 0) + C(1, 1) + C(2, 2);
+        const Mat<double, 3> inertia = (size * (1.0 + 1e-13) + floor) * identity<double, 3>() - C;
+        Vec<double, 3> moment;
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            moment[a] = N(c, b) - N(b, c);
+        }
+        const Vec<double, 3> about = inverse(inertia, 0.0) * moment;
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            spin(c, b) = about[a], spin(b, c) = -about[a];
+        }
+    }
+    return spin;
+}
+
 }  // namespace doseki

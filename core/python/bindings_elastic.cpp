@@ -17,10 +17,9 @@ public:
     void add(const nb::dict& body, const nb::kwargs& points) {
         const NamedValues columns = to_table(points);
         ColumnReader column(columns, "points");
-        const auto x = column.vectors<D>("position"), v = column.vectors<D>("velocity");
-        const auto clamped = column.numbers<std::uint8_t>("clamped");
+        const SolidPoints<D> solid = solid_points<D>(column);
         column.finish();
-        bodies_.add(read_elastic_body(to_table(body), {}), x, v, clamped);
+        bodies_.add(read_elastic_body(to_table(body), {}), solid);
     }
 
     void start() { bodies_.start(gravity_); }
@@ -76,7 +75,7 @@ void bind(nb::module_& m, const char* name) {
              nb::sig("def add(self, body: doseki.solver.protocol.Table, **points: numpy.ndarray) "
                      "-> None"),
              "Add a body (rho0, young_modulus, poisson_ratio, elastic_law, spacing, hourglass, "
-             "damping) of points (position, velocity, clamped).")
+             "damping) of points (rest, position, velocity, clamped).")
         .def("start", &B::start, unlocked)
         .def("advance", &B::advance, nb::arg("dt"), unlocked)
         .def("set_gravity", &B::set_gravity, nb::arg("g"))

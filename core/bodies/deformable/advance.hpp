@@ -50,7 +50,8 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
         const double stiffness = body.hourglass * body.shear_modulus(),
                      viscosity = body.hourglass * body.viscosity();
-        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}};
+        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}};
+        springs_damp_ |= viscosity > 0.0;
     }
     correct_gradients();
     limit_timestep();
@@ -137,9 +138,21 @@ void TotalLagrangian<D>::update_point(std::size_t p,
     deformation_[p] = sums.place * B;
     const Mat<double, D> rate = sums.velocity * B;
     const Mat<double, D> P = stress(p) + kelvin_voigt(deformation_[p], rate, body.viscosity());
-    const Mat<double, D> elastic =
-        less_springs(P * transposed(B), solid_[p].kappa, deformation_[p]);
-    solid_[p].Q = less_springs(elastic, solid_[p].kappa_rate, rate);
+    solid_[p].Q = less_springs(P * transposed(B), solid_[p].kappa, deformation_[p]);
+    solid_[p].F = deformation_[p], solid_[p].F_rate = rate;
+}
+
+/// The damper sees misfits from a frame that turns with them: rigid motions do no work in it, and
+/// its torque vanishes.
+template <int D>
+void TotalLagrangian<D>::damp_springs() {
+    auto turn = [this](std::size_t p, const MisfitMoments<double, D>& moments) {
+        ElasticRecord<D>& point = solid_[p];
+        const Mat<double, D> spin = misfit_spin(moments);
+        point.Q = less_springs(point.Q, point.kappa_rate, point.F_rate - spin * point.F);
+        point.spin = point.kappa_rate * spin;
+    };
+    sum_over_pairs(MisfitTerm<D>{records()}, turn);
 }
 
 /// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead.
@@ -154,6 +167,7 @@ void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
         update_point(p, sums);
     };
     sum_over_pairs(DeformationTerm<D>{records()}, update);
+    if (springs_damp_) damp_springs();
     sum_over_pairs(InternalForceTerm<D>{records()}, take);
 }
 
@@ -184,6 +198,17 @@ void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     });
     if (!std::isfinite(sum))
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
+}
+
+template <int D>
+std::vector<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
+    std::vector<std::uint32_t> found;
+    neighbours_.clusters()[p / lanes<double>].for_each_moving([&](std::uint32_t entry) {
+        const std::uint32_t j = entry & ListEntry::index_mask;
+        const Vec<double, D> apart = rest_[j] - rest_[p];
+        if (dot(apart, apart) < body_of(p).support() * body_of(p).support()) found.push_back(j);
+    });
+    return found;
 }
 
 template <int D>
@@ -229,7 +254,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
 template <int D>
 void DeformableBodies<D>::add_to(ContactPoints<D>& points, std::int32_t first_body) {
     first_contact_point_ = points.size();
-    touching_.clear();
+    touching_.clear(), patches_.clear();
     for (std::size_t k = 0; k < solids_.size(); ++k) {
         if (!surface_[k]) continue;
         const double radius = 0.5 * solids_.body_of(k).spacing;
@@ -238,6 +263,7 @@ void DeformableBodies<D>::add_to(ContactPoints<D>& points, std::int32_t first_bo
                    {material_[static_cast<std::size_t>(body)], radius, solids_.mass(k),
                     2.0 * radius, solids_.clamped(k), true, false});
         touching_.push_back(k);
+        patches_.emplace_back(solids_.neighbours_of(k));
     }
 }
 
@@ -257,14 +283,21 @@ void DeformableBodies<D>::show(ContactPoints<D>& points) const {
     for (std::size_t t = 0; t < touching_.size(); ++t) {
         const std::size_t c = first_contact_point_ + t;
         points.position[c] = solids_.x[touching_[t]], points.velocity[c] = solids_.v[touching_[t]];
+        points.spin[c] = patches_[t].spin(solids_.x, solids_.v);
         points.force[c] = {}, points.torque[c] = {};
     }
 }
 
+/// The contact acts on the surface, not in the middle of the point: its moment goes to the patch.
 template <int D>
 void DeformableBodies<D>::collect(const ContactPoints<D>& points) {
-    for (std::size_t t = 0; t < touching_.size(); ++t)
-        solids_.load[touching_[t]] = points.force[first_contact_point_ + t];
+    std::fill(solids_.load.begin(), solids_.load.end(), Vec<double, D>{});
+    for (std::size_t t = 0; t < touching_.size(); ++t) {
+        const std::size_t c = first_contact_point_ + t, k = touching_[t];
+        solids_.load[k] = solids_.load[k] + points.force[c];
+        if (norm(points.torque[c]) > 0.0)
+            patches_[t].add_moment(points.torque[c], solids_.x, solids_.load);
+    }
 }
 
 /// Normals turn as surfaces do, with F^-T.

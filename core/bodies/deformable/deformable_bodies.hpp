@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bodies/contact_points.hpp"
+#include "bodies/deformable/patches.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
 #include "bodies/nearest_image.hpp"
 #include "model/particles.hpp"
@@ -18,20 +19,17 @@ class DeformableBodies {
 public:
     bool empty() const { return solids_.size() == 0; }
 
-    /// Makes the particles `members`, where they are now, with the velocities and normals that they
-    /// have, one body.
+    /// Makes the particles `members`, with the normals that they have, the points of one body.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
-             std::span<const std::int32_t> members, std::span<const std::uint8_t> clamped,
+             std::span<const std::int32_t> members, const SolidPoints<D>& points,
              std::span<const std::uint8_t> surface) {
-        std::vector<Vec<double, D>> position, velocity;
         for (std::size_t k = 0; k < members.size(); ++k) {
             const auto p = static_cast<std::size_t>(members[k]);
             particles.set_point(p, BodyKind::deformable, solids_.size() + k);
-            position.push_back(particles.position[p]), velocity.push_back(particles.velocity[p]);
             normal_.push_back(particles.wall.normal[p]);
             surface_.push_back(surface[k]);
         }
-        solids_.add(body, position, velocity, clamped);
+        solids_.add(body, points);
         material_.push_back(material);
     }
 
@@ -112,6 +110,7 @@ private:
     std::vector<std::int32_t> material_;  // by body
     std::vector<Vec<double, D>> flow_force_, acceleration_, before_;
     std::vector<std::size_t> touching_;  // points of the surface
+    std::vector<Patch<D>> patches_;      // around each
     std::size_t first_contact_point_ = 0;
 };
 

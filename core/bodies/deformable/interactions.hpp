@@ -1,5 +1,5 @@
 #pragma once
-// The two sums of elastic solids as terms of the pair loop, which runs over pairs at rest: the
+// The sums of elastic solids as terms of the pair loop, which runs over pairs at rest: the
 // records' coordinates are the reference positions X.
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace doseki {
 
-/// Common to both terms: no point of a solid is fixed to the pair loop, clamped ones included.
+/// Common to all terms: no point of a solid is fixed to the pair loop, clamped ones included.
 template <int D>
 struct ElasticTerm {
     using Real = double;
@@ -65,6 +65,20 @@ struct DeformationTerm : ElasticTerm<D> {
     }
 };
 
+/// What Eq. (83a) needs of the pairs.
+template <int D>
+struct MisfitTerm : ElasticTerm<D> {
+    template <class T>
+    using Accumulators = MisfitMoments<T, D>;
+
+    template <class T>
+    DOSEKI_FN void add(MisfitMoments<T, D>& sums, const Pair<T, D>& pair,
+                       const ElasticPoint<T, D>& i, const ElasticPoint<T, D>& j) const {
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
+        sums.add(-(j.volume * F), i.x - j.x - i.F * pair.r_ij, i.v - j.v - i.F_rate * pair.r_ij);
+    }
+};
+
 /// Eq. (83): force per volume at rest.
 template <int D>
 struct InternalForceTerm : ElasticTerm<D> {
@@ -77,7 +91,9 @@ struct InternalForceTerm : ElasticTerm<D> {
         const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         const Vec<T, D> elastic =
             elastic_pair_force(i.Q, j.Q, i.kappa + j.kappa, pair.r_ij, i.x - j.x);
-        force = force + (j.volume * F) * (elastic + (i.kappa_rate + j.kappa_rate) * (i.v - j.v));
+        const Vec<T, D> damping =
+            (i.kappa_rate + j.kappa_rate) * (i.v - j.v) - (i.spin + j.spin) * (i.x - j.x);
+        force = force + (j.volume * F) * (elastic + damping);
     }
 };
 

@@ -15,6 +15,13 @@ struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
 
+/// The points of a body that is to be: where they are without stress, and how they start.
+template <int D>
+struct SolidPoints {
+    std::vector<Vec<double, D>> rest, position, velocity;
+    std::vector<std::uint8_t> clamped;
+};
+
 /// Deformable bodies in a total-Lagrangian description: pairs are those of the places at rest,
 /// found once. Stress and strain are strictly inside one body, since at rest bodies are set far
 /// apart. Forces are the gradient of a discrete energy, so that without damping position Verlet
@@ -27,15 +34,14 @@ public:
     TotalLagrangian() : neighbours_(Domain<D>{}) {}
 
     /// Clamped points stay where they are. A point's mass is rho0 times spacing^D.
-    void add(const DeformableBody& body, std::span<const Vec<double, D>> position,
-             std::span<const Vec<double, D>> velocity, std::span<const std::uint8_t> clamped) {
+    void add(const DeformableBody& body, const SolidPoints<D>& points) {
         const auto number = static_cast<std::int32_t>(bodies_.size());
-        const Vec<double, D> apart = room_for(body, position);
-        for (std::size_t k = 0; k < position.size(); ++k) {
-            rest_.push_back(position[k] + apart);
-            x.push_back(position[k]);
-            v.push_back(clamped[k] ? Vec<double, D>{} : velocity[k]);
-            body_.push_back(number), clamped_.push_back(clamped[k]);
+        const Vec<double, D> apart = room_for(body, points.rest);
+        for (std::size_t k = 0; k < points.rest.size(); ++k) {
+            rest_.push_back(points.rest[k] + apart);
+            x.push_back(points.position[k]);
+            v.push_back(points.clamped[k] ? Vec<double, D>{} : points.velocity[k]);
+            body_.push_back(number), clamped_.push_back(points.clamped[k]);
         }
         bodies_.push_back(body), apart_.push_back(apart);
     }
@@ -74,6 +80,8 @@ public:
     bool clamped(std::size_t p) const { return clamped_[p] != 0; }
     /// Where the point that was added as number k is stored.
     std::uint32_t slot(std::size_t k) const { return slot_[k]; }
+    /// Points within the support of one at rest, itself among them.
+    std::vector<std::uint32_t> neighbours_of(std::size_t p) const;
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
@@ -131,6 +139,8 @@ private:
                                                 const std::vector<Vec<double, D>>& velocity);
     void update_point(std::size_t p, const DeformationAccumulators<double, D>& sums);
 
+    void damp_springs();
+
     template <class Term, class Epilogue>
     void sum_over_pairs(const Term& term, const Epilogue& epilogue);
     ElasticTerm<D> records() const;
@@ -146,6 +156,7 @@ private:
     Neighbours<D> neighbours_;
     std::vector<MotionRecord<double, D>> motion_;
     std::vector<ElasticRecord<D>> solid_;
+    bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
 };
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-ELASTIC_KEYS = ("clamped", "damping", "elastic_law", "hourglass")
+ELASTIC_KEYS = ("clamped", "damping", "displacement", "elastic_law", "hourglass")
 OF_WHOLE_BODIES = ("kinematics", "spin", "settle")
 
 

@@ -16,6 +16,9 @@ class ElasticBody:
     name: str  # of its table
     material: str
     members: np.ndarray  # (n,) int32, indices of particles
+    rest: np.ndarray  # (n, dim) where they are without stress, m; not wrapped
+    position: np.ndarray  # (n, dim) where they start, m; not wrapped
+    velocity: np.ndarray  # (n, dim) at the start, m/s
     spacing: float  # each particle has spacing^dim of its volume, m
     clamped: np.ndarray  # (n,) bool: does not move
     surface: np.ndarray  # (n,) bool: touches other bodies

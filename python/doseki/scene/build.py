@@ -108,7 +108,8 @@ def _joined(
         placed, owner = particles_of(group, body.spacing, scenario.dim)
         if group.elastic:
             elastic += body.elastic_bodies(group, placed, owner, sum(map(len, sets)))
-        sets.append(body.particles_of_bodies(group, names, placed.position, owner))
+        position = body.displaced(placed.position) if group.elastic else placed.position
+        sets.append(body.particles_of_bodies(group, names, position, owner))
         still = group.fixed or group.elastic
         grain = np.full(len(owner), -1) if still else first[name] + owner
         shaped = np.ones(len(owner), bool)

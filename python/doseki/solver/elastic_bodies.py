@@ -26,6 +26,9 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
         "poisson_ratio": ratio,
         "spacing": body.spacing,
         "particles": np.ascontiguousarray(body.members, np.int32),
+        "rest": np.ascontiguousarray(body.rest),
+        "position": np.ascontiguousarray(body.position),
+        "velocity": np.ascontiguousarray(body.velocity),
         "clamped": np.ascontiguousarray(body.clamped, np.uint8),
         "surface": np.ascontiguousarray(body.surface, np.uint8),
     }

@@ -16,15 +16,21 @@ RUBBER = {"rho0": 1000.0, "young_modulus": 1e6, "poisson_ratio": 0.3}
 
 @pytest.fixture
 def elastic(core: ModuleType) -> Callable[..., Any]:
-    """Makes started bodies of rubber, each (position, velocity) with or without `clamped`."""
+    """Makes started bodies of rubber, each (position, velocity) with or without `clamped`.
 
-    def make(*bodies: tuple[np.ndarray, ...], spacing: float, **material: Any) -> Any:
+    They start at rest places, or by `displacement` (N, dim) from there.
+    """
+
+    def make(
+        *bodies: tuple[np.ndarray, ...], spacing: float, displacement: Any = 0.0, **material: Any
+    ) -> Any:
         dim = bodies[0][0].shape[1]
         made = getattr(core, f"ElasticBodies{dim}")()
         for position, velocity, *rest in bodies:
             clamped = rest[0] if rest else np.zeros(len(position), bool)
             made.add(
                 ELASTIC_DEFAULTS | RUBBER | {"spacing": spacing} | material,
+                rest=np.ascontiguousarray(position - displacement),
                 position=np.ascontiguousarray(position),
                 velocity=np.ascontiguousarray(velocity),
                 clamped=clamped.astype(np.uint8),

@@ -189,10 +189,39 @@ def test_gravity_acts_from_the_start_and_not_on_the_stable_step(core, box):
         g = [0.0] * (dim - 1) + [pull]
         bodies = getattr(core, f"ElasticBodies{dim}")()
         still, free = np.zeros_like(box), np.zeros(len(box), np.uint8)
-        bodies.add(material, position=box, velocity=still, clamped=free)
+        bodies.add(material, rest=box, position=box, velocity=still, clamped=free)
         bodies.set_gravity(g)
         bodies.start()
         steps.append(bodies.timestep)
         expected = np.broadcast_to(g, box.shape)
         np.testing.assert_allclose(bodies.state()["acceleration"], expected, atol=1e-6)
     assert steps[0] == steps[1]
+
+
+def test_a_damper_does_not_see_rigid_motion(elastic, box, random):
+    """A strained body that turns as a whole has the forces that it has without dampers."""
+    strained = 0.1 * DP * random.normal(size=box.shape)
+    position, felt = box + strained, []
+    for turned in (position, box):  # what turns about the places at rest is not rigid
+        forces = []
+        for damping in (0.0, 0.5):
+            points = (position, spinning(turned, 30.0) + 0.3)
+            bodies = elastic(points, spacing=DP, displacement=strained, damping=damping)
+            forces.append(bodies.state()["acceleration"])
+        felt.append(np.abs(forces[1] - forces[0]).max() / np.abs(forces[0]).max())
+    assert felt[0] < 1e-12
+    assert felt[1] > 1e-4
+
+
+def test_dampers_keep_angular_momentum(elastic, box, random):
+    """And only take energy."""
+    strained = 0.05 * DP * random.normal(size=box.shape)
+    velocity = spinning(box, 30.0) + 2.0 * random.normal(size=box.shape)
+    bodies = elastic(
+        (box + strained, velocity), spacing=DP, displacement=strained, damping=0.1, hourglass=1.0
+    )
+    before = bodies.state()
+    bodies.advance(100 * bodies.timestep)
+    after = bodies.state()
+    assert angular_momentum(after) == pytest.approx(angular_momentum(before), rel=1e-13)
+    assert energy(after) < energy(before)

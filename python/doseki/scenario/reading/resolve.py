@@ -25,7 +25,8 @@ from .messages import to_user_error
 # A value may be a choice by the number of dimensions or by the scheme.
 CHOICES = {"dim": {"d2", "d3"}, "scheme": {UETA2022, RESOLVED}}
 WORDS = {"schema", "title", "description"}  # top-level keys that no expression needs
-SPATIAL_KEYS = ("velocity", "pressure", "where", "clamped")  # of a body: may use x, y, z
+# Of a body: may use x, y, z.
+SPATIAL_KEYS = ("velocity", "pressure", "where", "clamped", "displacement")
 
 
 def resolve_table(table: dict[str, Any], where: Where) -> tuple[dict[str, Any], dict[str, Any]]:

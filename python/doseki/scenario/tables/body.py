@@ -83,6 +83,11 @@ class ShapedBody(BodyTable):
     clamped: ScalarField | None = Field(
         None, description="elastic: points do not move where this expression of x, y, z is above 0"
     )
+    displacement: VelocityField | None = Field(
+        None,
+        description="elastic: where points start less where they are without stress, m; "
+        "expressions of x, y, z there",
+    )
     elastic_law: ElasticLaw | None = Field(
         None,
         description=f"elastic: law of stress; default {ELASTIC_DEFAULTS['elastic_law']}",

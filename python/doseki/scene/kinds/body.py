@@ -69,10 +69,18 @@ class Body(Generic[T]):
 
     def velocity_at(self, position: np.ndarray) -> np.ndarray:
         """Initial velocities (N, dim), m/s: numbers, or expressions of the position."""
-        velocity = np.zeros_like(position)
-        for axis, entry in enumerate(self.table.given("velocity") or []):
-            velocity[:, axis] = self.values_at("velocity", entry, position)
-        return velocity
+        return self._vectors_at("velocity", position)
+
+    def displaced(self, rest: np.ndarray) -> np.ndarray:
+        """Where points of an elastic body start (N, dim), m, that are at `rest` without stress."""
+        return rest + self._vectors_at("displacement", rest)
+
+    def _vectors_at(self, key: str, position: np.ndarray) -> np.ndarray:
+        """A vector of numbers or expressions at each of the positions; zero where none is given."""
+        vectors = np.zeros_like(position)
+        for axis, entry in enumerate(self.table.given(key) or []):
+            vectors[:, axis] = self.values_at(key, entry, position)
+        return vectors
 
     def count(self) -> float:
         """How many particles it will have, or nearly; the size of a box may exceed any integer."""

@@ -43,7 +43,7 @@ class DiscBody(Lattice[Disc]):
     def group(self) -> Group:
         """See Body."""
         centre = self.turned(self.table.centre[None, :], self.table.centre)[0]
-        return self.single_group(Ball(self.table.radius, self.dim), centre)
+        return self.single_group(Ball(self.table.radius, self.dim), centre, self.orientation)
 
     def contact_shape(self) -> Group | None:
         """See Body."""

@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import UserError
 from ...scenario.kinematics import FIXED, SINGLE
 from ...scenario.tables.bodies import Grains
-from ..groups import UPRIGHT, Group
+from ..groups import Group
 from ..lattices import rotated
 from ..packing import PackingError, pack, solid_fraction
 from ..periodic import periods
@@ -50,9 +50,9 @@ class GrainsBody(Turned[Grains]):
             raise self._too_dense(len(kind), fraction, error.reached) from None
         centre = self.turned(centre, table.min)
         shapes: list[Shape] = [Ball(0.5 * d, self.dim, table.wetted) for d in diameters]
-        upright = np.tile(UPRIGHT, (len(kind), 1))
+        turned = np.tile(self.orientation, (len(kind), 1))
         which, material = kind.astype(np.int32), table.material
-        return Group(self.name, shapes, which, centre, upright, material, self.kinematics)
+        return Group(self.name, shapes, which, centre, turned, material, self.kinematics)
 
     def _too_many(self, count: int, requested: float, needed: float) -> UserError:
         return self.error(

@@ -96,12 +96,9 @@ class Shaped(Body[S], Generic[S]):
         """
         n = len(owner)
         measure, wet = group.measures
-        arm = position - group.centre[owner]
-        turning = np.cross(self.spin, np.pad(arm, ((0, 0), (0, 3 - self.dim))))[:, : self.dim]
-        moved_by = position if group.elastic else group.centre[owner]
         return ParticleSet(
             position=wrapped(self.scenario, position),
-            velocity=self.velocity_at(moved_by) + turning,
+            velocity=self._velocities(group, position, owner),
             mass=(self.rho0 * measure / np.bincount(owner, minlength=len(group)))[owner],
             density=self.rho0 * (measure / wet)[owner],
             smoothing_length=np.full(n, self.scenario.eta * self.scenario.dp),
@@ -109,13 +106,22 @@ class Shaped(Body[S], Generic[S]):
             **self._indices(names, n),
         )
 
+    def _velocities(self, group: Group, position: np.ndarray, owner: np.ndarray) -> np.ndarray:
+        """Velocities (N, dim), m/s, of the particles of its bodies."""
+        arm = position - group.centre[owner]
+        turning = np.cross(self.spin, np.pad(arm, ((0, 0), (0, 3 - self.dim))))[:, : self.dim]
+        moved_by = position if group.elastic else group.centre[owner]
+        return self.velocity_at(moved_by) + turning
+
     def elastic_bodies(
         self, group: Group, placed: Particles, owner: np.ndarray, first: int
     ) -> list[ElasticBody]:
-        """Its deformable bodies, whose particles are numbered from `first`."""
+        """See Body."""
         clamped = np.zeros(len(owner), bool)
         if self.table.clamped is not None:
             clamped = self.values_at("clamped", self.table.clamped, placed.position) > 0
+        moved = self.displaced(placed.position)
+        velocity = self._velocities(group, moved, owner)
         made = []
         for k in range(len(group)):
             own = np.flatnonzero(owner == k)
@@ -123,7 +129,17 @@ class Shaped(Body[S], Generic[S]):
             spacing = volume ** (1 / self.dim)
             surface = placed.depth[own] < spacing
             made.append(
-                ElasticBody(self.name, group.material, first + own, spacing, clamped[own], surface)
+                ElasticBody(
+                    self.name,
+                    group.material,
+                    first + own,
+                    placed.position[own],
+                    moved[own],
+                    velocity[own],
+                    spacing,
+                    clamped[own],
+                    surface,
+                )
             )
         return made
 
