@@ -23,7 +23,7 @@ ENERGIES = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
 def energy_check(run: Run, seen: Seen) -> Check:
     """Kinetic + elastic + dissipated energy against start + work of gravity."""
     name = "energy balance"
-    why = _incomplete(run, seen, name) or _wrapped(run.scenario) or _driven_by_walls(run, seen)
+    why = incomplete(run, seen, name) or loses_sight(run.scenario) or works_on(run, seen)
     if not why and BOUND in seen.motions:
         why = "what contacts of bodies take is not recorded"
     if why:
@@ -61,7 +61,7 @@ def _energy_remedy(scenario: Mapping[str, Any]) -> str:
     return f"lower cflnumber (now {scenario.get('cflnumber', 0.1):g}) and cfl_force by half"
 
 
-def _driven_by_walls(run: Run, seen: Seen) -> str:
+def works_on(run: Run, seen: Seen) -> str:
     """What walls do that no energy is recorded of; empty if nothing."""
     if seen.walls_go:
         return "the work of walls that move is not recorded"
@@ -74,9 +74,11 @@ def _driven_by_walls(run: Run, seen: Seen) -> str:
 def momentum_check(run: Run, seen: Seen) -> Check:
     """Momentum against that of the start and the impulse of gravity, m g t."""
     name = "momentum"
-    why = _incomplete(run, seen, name)
+    why = incomplete(run, seen, name)
     if not why and seen.motions - {FREE, BOUND}:
         why = "walls take part: not checked"
+    if not why and is_clamped(run):
+        why = "clamped points take part: not checked"
     if why:
         return unknown(name, MOMENTUM, why)
     resolved = is_resolved(run.scenario)
@@ -97,6 +99,12 @@ def momentum_check(run: Run, seen: Seen) -> Check:
     return judged(name, value, limits, counted, remedy, drift=drift, scale=scale)
 
 
+def is_clamped(run: Run) -> bool:
+    """Whether points of a body are held in place."""
+    bodies = run.scenario.get("body", {}).values()
+    return any("clamped" in body and body.get("enabled", True) for body in bodies)
+
+
 def _materials(run: Run) -> dict[str, Any]:
     return run.scenario.get("material", {})
 
@@ -105,7 +113,7 @@ def _used(run: Run, materials: Mapping[str, Material]) -> list[Material]:
     return [materials[name] for name in run[-1].material_names]
 
 
-def _incomplete(run: Run, seen: Seen, name: str) -> str:
+def incomplete(run: Run, seen: Seen, name: str) -> str:
     """Why the record does not hold all that a balance needs; empty if it does."""
     history = run.history
     if not len(history) or len(history["time"]) < 2 or len(seen.potential) < 2:
@@ -122,7 +130,7 @@ def _incomplete(run: Run, seen: Seen, name: str) -> str:
     return ""
 
 
-def _wrapped(scenario: Mapping[str, Any]) -> str:
+def loses_sight(scenario: Mapping[str, Any]) -> str:
     """Why the work of gravity cannot be told from positions; empty if it can."""
     axes = zip("xyz", gravity_of(scenario), strict=False)
     if any(g and axis in scenario.get("periodic", []) for axis, g in axes):

@@ -13,6 +13,7 @@ from ...scenario.schemes import UETA2022
 from ...util.files import write_whole_text
 from .balances import energy_check, momentum_check
 from .checks import contact_check, density_check, depth_check, mach_check, overlap_check
+from .deformable import deformable_checks
 from .snapshots import look
 from .verdicts import BAD, DOUBTFUL, GOOD, NOT_AVAILABLE, Check, overall
 
@@ -29,6 +30,7 @@ def trust_checks(run: Run) -> list[Check]:
         momentum_check(run, seen),
         depth_check(run, seen),
         contact_check(seen, xi),
+        *deformable_checks(run, seen),
         *([overlap_check(run, seen)] if seen.overlap else []),
     ]
 

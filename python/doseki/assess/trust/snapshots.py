@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...measure.numbers import speed
-from ...record.particles import FIXED, FREE
+from ...record.particles import BOUND, FIXED, FREE
 from ...record.reader import Run, Snapshot
 from ...scenario.materials import Material, complete_materials
 from ...scenario.schemes import RESOLVED, UETA2022
@@ -30,6 +30,11 @@ class Seen:
     potential: list[float] = field(default_factory=list)  # J (2-D: J/m), -m g.x of free particles
     motions: set[int] = field(default_factory=set)
     overlap: list[float] = field(default_factory=list)  # largest of contacts, over the diameter
+    # Of deformable bodies alone: kinetic and potential energy, J (2-D: J/m); angular momentum about
+    # the centre of mass, (3,), kg m2/s (2-D: kg m/s), and what it would be if all went around.
+    body_energy: list[float] = field(default_factory=list)
+    angular_momentum: list[np.ndarray] = field(default_factory=list)
+    angular_scale: list[float] = field(default_factory=list)
     walls_go: bool = False  # whether a fixed particle has a velocity
 
 
@@ -46,6 +51,8 @@ def look(run: Run) -> Seen:
         seen.walls_go |= bool(np.any(snapshot["velocity"][snapshot["motion"] == FIXED]))
         gravity = np.array(gravity_of(run.scenario))
         along = snapshot["position"][free] @ gravity
+        if is_of_deformable_bodies(snapshot):
+            _look_at_deformable(seen, snapshot, gravity)
         seen.potential.append(float(-(snapshot["mass"][free] @ along)))
         if free.any():
             _look_at_free(seen, run.scenario, snapshot, free, materials)
@@ -73,6 +80,26 @@ def _look_at_free(
         volume = snapshot["mass"][free][fluid] / _of(names[fluid], materials, "rho0")
         position = snapshot["position"][free][fluid]
         seen.depth.append(flow_depth(position, volume, scenario["dp"]))
+
+
+def is_of_deformable_bodies(snapshot: Snapshot) -> bool:
+    """Whether nothing moves in a snapshot but deformable bodies."""
+    moves = snapshot["motion"] != FIXED
+    return bool(np.all(snapshot["motion"][moves] == BOUND)) and not len(snapshot.grains)
+
+
+def _look_at_deformable(seen: Seen, snapshot: Snapshot, gravity: np.ndarray) -> None:
+    bound = snapshot["motion"] == BOUND
+    mass, x, v = (snapshot[key][bound] for key in ("mass", "position", "velocity"))
+    energy = 0.5 * mass @ (v**2).sum(axis=1) - mass @ (x @ gravity)
+    seen.body_energy.append(float(energy))
+    total = mass.sum() or 1.0
+    arm, own = x - mass @ x / total, v - mass @ v / total
+    arm, own = (np.pad(of, ((0, 0), (0, 3 - of.shape[1]))) for of in (arm, own))
+    seen.angular_momentum.append(mass @ np.cross(arm, own))
+    seen.angular_scale.append(
+        float(mass @ (np.linalg.norm(arm, axis=1) * np.linalg.norm(own, axis=1)))
+    )
 
 
 def _look_at_grains(
