@@ -86,12 +86,14 @@ class Ball:
     def elastic_particles(self, dp: float) -> Particles:
         """A disc as rings of 6, 12, 18 ... particles around one, a hexagonal lattice that is bent.
 
-        Neighbours lie alike everywhere, and any two such discs meet point to point along x.
+        Any two such discs meet point to point along x. Balls of the diameter of a particle in the
+        outermost ring touch the circle from inside.
         """
         if self.dim == 3:
             return self.particles(dp)
         number = max(1, round(self.radius / dp))
-        step = self.radius / (number + 0.5)
+        share = self.measure / (3 * number * (number + 1) + 1)  # area of each
+        step = (self.radius - 0.5 * np.sqrt(share)) / number
         angles = [2 * np.pi * np.arange(6 * k) / (6 * k) for k in range(1, number + 1)]
         rings = [
             k * step * np.stack([np.cos(angle), np.sin(angle)], axis=1)

@@ -244,6 +244,15 @@ def test_an_oblique_impact_keeps_both_momenta(core, load, symmetry, friction):
     assert (turn > 0.6) == (friction > 0)
 
 
+@pytest.mark.parametrize("dp", [0.06, 0.02, 0.005])
+def test_a_disc_is_as_large_as_it_is_given(load, dp):
+    scene = build_scene(load(DISC.format(name="a", x=0, speed=0), TOP, f"dp={dp}"))
+    (body,) = scene.bodies.elastic
+    reach = np.linalg.norm(body.rest[body.surface], axis=1) + 0.5 * body.spacing
+    np.testing.assert_allclose(reach, 0.1, rtol=1e-12)
+    assert len(body.rest) * body.spacing**2 == pytest.approx(np.pi * 0.1**2, rel=1e-12)
+
+
 def test_rotate_turns_the_points_of_a_disc(load):
     disc = DISC.format(name="a", x=0, speed=0)
     upright, turned = (build_scene(load(disc + f"rotate = {angle}\n")) for angle in (0, 17))
