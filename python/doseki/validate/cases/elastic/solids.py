@@ -311,7 +311,11 @@ BRAZILIAN = Case(
     ),
     axes=("x / R", "tension pi R / P"),
     controls=(
-        Control("not at rest yet", TENSION, lambda n: squeezed(n, "body.disc.damping=0.02")),
+        Control(
+            "shut at once, it rings",
+            TENSION,
+            lambda n: squeezed(n, "body.disc.damping=0.02", "closing=0.0005"),
+        ),
     ),
 )
 TURNED = Case(
