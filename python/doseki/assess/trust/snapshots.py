@@ -22,7 +22,8 @@ COLUMN = 4  # spacings, width of the columns in which depths are measured
 class Seen:
     """What the snapshots of a run show, one entry for each that has such particles."""
 
-    mach: list[float] = field(default_factory=list)
+    mach_highest: list[float] = field(default_factory=list)
+    mach_most: list[float] = field(default_factory=list)  # its 99th percentile
     density_highest: list[float] = field(default_factory=list)  # |rho/rho0 - 1|
     density_most: list[float] = field(default_factory=list)  # its 99th percentile
     depth: list[float] = field(default_factory=list)  # particles
@@ -69,7 +70,9 @@ def _look_at_free(
 ) -> None:
     names = snapshot["material"][free]
     sound = scenario.get("xi", 1.0) * _of(names, materials, "speedsound")
-    seen.mach.append(float(np.max(speed(snapshot["velocity"][free]) / sound)))
+    mach = speed(snapshot["velocity"][free]) / sound
+    seen.mach_highest.append(float(mach.max()))
+    seen.mach_most.append(float(np.quantile(mach, 0.99, method="higher")))
     fluid = _is_fluid(names, materials)
     strain = snapshot["density"][free] / _of(names, materials, "rho0") - 1
     clamped = _clamped(scenario, fluid, snapshot["pressure"][free])
