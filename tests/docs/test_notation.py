@@ -29,9 +29,9 @@ def rows():
 
 @pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.key)
 def test_every_field_has_its_row(rows, field):
-    assert [field.doc, field.unit, f"`{field.key}`", f"`{field.file_name}`"] in [
-        row[1:] for row in rows
-    ]
+    in_3d, in_2d = field.unit_in(3), field.unit_in(2)
+    unit = in_3d if in_2d == in_3d else f"{in_3d}; 2-D: {in_2d}"
+    assert [field.doc, unit, f"`{field.key}`", f"`{field.file_name}`"] in [row[1:] for row in rows]
 
 
 @pytest.mark.parametrize("parameter", MATERIAL_PARAMETERS, ids=lambda parameter: parameter.name)

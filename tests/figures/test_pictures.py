@@ -104,7 +104,9 @@ def test_quantities_by_name(run_folder):
     assert np.array_equal(quantity(snapshot, "velocity_y"), snapshot["velocity"][:, 1])
     assert np.array_equal(quantity(snapshot, "stress_xy"), snapshot["stress"][:, 0, 1])
     assert np.allclose(quantity(snapshot, "speed") ** 2, (snapshot["velocity"] ** 2).sum(axis=1))
-    assert quantity_label("stress_xy") == "stress xy (Pa)"
+    assert quantity_label("stress_xy", 2) == "stress xy (Pa)"
+    assert quantity_label("mass", 3) == "mass (kg)"
+    assert quantity_label("mass", 2) == "mass (kg/m)"
     with pytest.raises(UserError, match="did you mean velocity_x"):
         quantity(snapshot, "velocityx")
     with pytest.raises(UserError, match="velocity_z"):
@@ -221,6 +223,7 @@ def test_a_speed_that_few_samples_have_can_be_drawn():
 class OneBody(dict):
     """A snapshot with a body of three particles, one of them beside the window, and a drop."""
 
+    dim = 2
     grains: ClassVar = {"position": np.array([[0.5, 0.0]]), "velocity": np.array([[2.0, 0.0]])}
 
 
@@ -237,3 +240,5 @@ def test_a_body_is_counted_once_and_drops_each():
     assert SpeedHistogram(view).speeds(snapshot).tolist() == [0.5, 2.0]
     apart = View(np.array([0.55, 0.0]), np.ones(2))
     assert SpeedHistogram(apart, "rock").speeds(snapshot).tolist() == []
+    between_its_particles = View(np.array([0.45, 0.0]), np.array([0.55, 1.0]))
+    assert SpeedHistogram(between_its_particles, "rock").speeds(snapshot).tolist() == [2.0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 from doseki.cli.main import main
 from doseki.errors import UserError
+from doseki.figures.census_output import census_lines
 from doseki.measure.census import (
     CARRIED,
     CLASSES,
@@ -180,6 +182,29 @@ def test_passed_mass_counts_what_has_left_the_run():
     np.testing.assert_array_equal(made_census().passed(1.5), [0, 0, 0])
 
 
+def test_passed_grains_come_from_either_side_where_nothing_says_the_direction():
+    """One grain goes from 1 m to -0.2 m, on level ground without an inflow."""
+    census = replace(made_census(), direction=0)
+    np.testing.assert_array_equal(census.passed(0.0), [0, 1, 1])
+    assert census.passed_count(0.0) == 1
+
+
+@pytest.mark.parametrize(
+    ("direction", "told"),
+    [
+        (-1, "passed x = 0 m towards -x at the end: 1 grain, 0.01 % of the load"),
+        (0, "passed x = 0 m either way at the end: 1 grain, 0.01 % of the load"),
+    ],
+)
+def test_one_grain_of_ten_thousand_is_told(direction, told):
+    census = replace(made_census(), direction=direction)
+    census.table["mass"][[1, 3, 4]] = 9999.0
+    drawn = draw_speeds(np.ones(3))
+    lines = census_lines(census, drawn, "everywhere", [0.0])
+    assert lines[-1] == told
+    assert "carried 0.01 %" in lines[1]
+
+
 def test_rows_by_window_and_time():
     census = made_census()
     view = View(np.array([-1.0, -1.0]), np.array([1.5, 1.0]))
@@ -242,7 +267,7 @@ def test_the_command_writes_tables_and_figures(flow_folder, capsys):
     assert done.value.code == 0
     told = capsys.readouterr().out
     assert "3 grains at 13 times" in told
-    assert "passed x = 0.5 m at the end" in told
+    assert "passed x = 0.5 m towards -x at the end: " in told
     folder = flow_folder / "census"
     with (folder / "grains.csv").open() as file:
         rows = list(csv.DictReader(file))

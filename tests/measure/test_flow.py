@@ -7,10 +7,18 @@ import math
 import numpy as np
 import pytest
 
+from doseki.assess.summary import summary_text
 from doseki.errors import UserError
 from doseki.measure import views
 from doseki.measure.flow import measure_flow
+from doseki.record.fields import GRAIN_FIELDS
+from doseki.record.particles import BOUND
 from doseki.record.reader import load
+from doseki.record.writer import Recorder
+
+from ..synthetic_runs import BODIES, FLOW_TABLES, MATERIALS, SCENARIO
+
+BODIES_SCENARIO = SCENARIO.format(dim=2, zeros="") + FLOW_TABLES
 
 
 def test_front_moves_down_the_slope_at_one_metre_a_second(flow_folder):
@@ -34,6 +42,78 @@ def test_window_weighs_the_grains_and_counts_those_that_passed(flow_folder):
     assert end.grain_count[-1] == 0
     assert end.passed_mass[0] == 0.0
     assert end.passed_mass[-1] == 3.0
+
+
+@pytest.fixture
+def bodies_run(tmp_path, plain_state):
+    """A run of two bodies of six particles and 7 kg each, at 1 m/s; the second crosses x = 0."""
+    recorder = Recorder(tmp_path / "bodies", BODIES_SCENARIO, MATERIALS, BODIES, 2)
+    for time in (0.0, 1.0):
+        centre = np.array([[0.75, 0.1], [0.25 - 0.5 * time, 0.1]])
+        points = (centre[:, None, :] + 0.01 * np.arange(6)[:, None]).reshape(-1, 2)
+        position = np.concatenate([points, [[0.5, 0.1]]])
+        state = plain_state(position, np.zeros_like(position), np.r_[np.ones(12, int), 0])
+        state["motion"][:12] = BOUND
+        state["grain"][:12] = np.repeat([0, 1], 6)
+        table = {
+            field.key: np.zeros({"vector": (2, 2), "rows": (2, 3), "scalar": 2}[field.shape])
+            for field in GRAIN_FIELDS
+        }
+        table |= {"position": centre, "velocity": np.array([[0.6, 0.8]] * 2)}
+        table |= {"mass": np.full(2, 7.0), "diameter": np.full(2, 0.06)}
+        recorder.snapshot(state, time=time, step=1, dt=0.1, grains=table)
+    return load(recorder.directory)
+
+
+def test_windows_count_bodies_and_not_their_particles(bodies_run):
+    end = measure_flow(bodies_run).windows["end"]
+    assert end.grain_count == [2, 1]
+    assert end.grain_mass == [14.0, 7.0]
+    assert end.grain_speed == pytest.approx([1.0, 1.0])
+    assert end.passed_mass == [0.0, 7.0]
+    assert end.fluid_count == [1, 1]
+
+
+def test_the_summary_says_how_many_grains_there_are(bodies_run):
+    lines = [line for line in summary_text(bodies_run).splitlines() if "window end" in line]
+    assert "; 2 grains, mean speed 1 m/s" in lines[0]
+
+
+INFLOW = """
+[inflow.{name}]
+material = "water"
+rate = {rate}
+width = 1
+position = [0, 0]
+direction = {direction}
+depth = 0.1
+duration = 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("gravity", "inflows", "expected"),
+    [
+        ("[-1.0, -9.0]", [(1, "[1, 0]")], -1),
+        ("[0.0, -9.8]", [(1, "[-1, 0]")], -1),
+        ("[1e-16, -9.8]", [(1, "[-1, 0]")], -1),  # as sin(pi) makes it
+        ("[0.0, -9.8]", [(1, "[-2, 0]"), (3, "[0.5, 0.5]")], 1),
+        ("[0.0, -9.8]", [(1, "[-2, 0]"), (1, "[1, 0]")], 0),
+        ("[0.0, -9.8]", [], 0),
+        ("[0.0, 0.0]", [], 0),
+    ],
+)
+def test_the_flow_runs_as_gravity_or_else_the_inflows_say(
+    tmp_path, record_run, gravity, inflows, expected
+):
+    tables = "".join(
+        INFLOW.format(name=f"i{k}", rate=rate, direction=direction)
+        for k, (rate, direction) in enumerate(inflows)
+    )
+    record_run(tmp_path / "run", tables=tables)
+    text = tmp_path / "run" / "scenario.toml"
+    text.write_text(text.read_text().replace("[-1.0, -9.0]", gravity))
+    assert views.flow_direction(load(tmp_path / "run")) == expected
 
 
 def test_a_run_without_fluid_has_no_flow(two_grains):

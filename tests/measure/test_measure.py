@@ -87,6 +87,16 @@ def test_passed_mass_counts_each_particle_once_and_those_removed():
     assert passed.update(np.array([-0.5]), mass[:1], ids[:1]) == 11.0
 
 
+def test_without_a_direction_mass_passes_from_either_side_and_must_be_seen_there():
+    passed = measure.PassedMass(section=0.0, direction=0)
+    ids, mass = np.array([1, 2, 3]), np.array([1.0, 10.0, 100.0])
+    assert passed.update(np.array([1.0, -1.0, -1.0]), mass, ids) == 0.0
+    assert passed.update(np.array([-1.0, -2.0]), mass[:2], ids[:2]) == 1.0  # 3 is gone: who knows
+    assert passed.update(np.array([-1.0, 2.0]), mass[:2], ids[:2]) == 11.0
+    assert passed.update(np.array([1.0, -2.0]), mass[:2], ids[:2]) == 11.0  # and back again
+    assert passed.count == 2
+
+
 def test_passed_mass_is_exactly_zero_while_nothing_passes():
     mass = np.random.default_rng(0).uniform(size=1000)
     assert measure.PassedMass(0.0, -1).update(np.ones(1000), mass, np.arange(1000)) == 0.0

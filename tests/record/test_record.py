@@ -13,15 +13,23 @@ import numpy as np
 import pytest
 
 from doseki.errors import ResourceError, UserError
-from doseki.record.fields import FIELDS
+from doseki.record.fields import FIELDS, GRAIN_FIELDS
 from doseki.record.folder import RunFolder
 from doseki.record.reader import load
 from doseki.record.writer import Recorder
 from doseki.util.files import write_whole
 
+from ..synthetic_runs import random_state
+
 
 def start(directory: Path, **options: bool) -> Recorder:
     return Recorder(directory, "schema = 1\n", ["water"], ["sea"], 2, **options)
+
+
+def one_grain(dim):
+    """The table of one body at rest in the origin."""
+    rows = {"vector": (1, dim), "rows": (1, 3), "scalar": (1,)}
+    return {field.key: np.zeros(rows[field.shape]) for field in GRAIN_FIELDS}
 
 
 def test_folder_of_a_run_has_the_promised_files(run_folder):
@@ -42,9 +50,18 @@ def test_every_field_is_in_the_file_under_its_name_and_unit(run_folder):
         root = file["VTKHDF"]
         assert root["Points"].attrs["units"] == "m"
         for field in FIELDS[1:]:
-            assert root["PointData"][field.file_name].attrs.get("units", "") == field.unit
+            assert root["PointData"][field.file_name].attrs.get("units", "") == field.unit_in(2)
         assert root["PointData/Stress"].shape == (20, 6)
         assert root["FieldData/Time"][0] == 1.0
+
+
+@pytest.mark.parametrize(("dim", "unit"), [(2, "kg/m"), (3, "kg")])
+def test_mass_is_per_metre_in_2d(tmp_path, record_run, dim, unit):
+    recorder, _ = record_run(tmp_path / "run", dim=dim)
+    file = recorder.snapshot(random_state(3, dim), time=9.0, step=1, dt=0.1, grains=one_grain(dim))
+    with h5py.File(file) as stored:
+        assert stored["VTKHDF/PointData/Mass"].attrs["units"] == unit
+        assert stored["Grains/Mass"].attrs["units"] == unit
 
 
 def test_points_and_velocities_of_a_2d_run_have_z_zero(run_folder):
@@ -153,7 +170,7 @@ FILL_THE_DISK = """
 import resource, sys
 import numpy as np
 from doseki.errors import ResourceError
-from doseki.record.fields import FIELDS
+from doseki.record.fields import FIELDS, GRAIN_FIELDS
 from doseki.record.writer import Recorder
 
 recorder = Recorder(sys.argv[1], "schema = 1\\n", ["water"], ["sea"], 2)

@@ -11,6 +11,7 @@ from ..measure.flow import Flow, WindowFlow, measure_flow
 from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
+from ..record.units import unit_in
 from .trust.report import trust_lines
 
 WIDTH = 18  # of the column of names
@@ -82,7 +83,7 @@ def _ledger(run: Run) -> Iterator[str]:
     if not all(name in said for name in names):
         return
     initial, entered, left, inside = (said[name] for name in names)
-    unit = "kg/m" if run.scenario["dim"] == 2 else "kg"
+    unit = unit_in("kg", run.scenario["dim"])
     residual = initial + entered - left - inside
     yield _line("mass", f"{initial:.6g} {unit} initial + {entered:.6g} entered")
     yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..measure.census import CLASSES, Census, SpeedDraws
+from ..record.units import unit_in
 from .kinds.histogram import draw_speed_row
 from .kinds.series import draw_curves
 from .layout import chart_grid
@@ -42,7 +43,7 @@ def draw_passed(census: Census, sections: Sequence[float], dim: int) -> Figure:
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Grains that have passed")
     curves = {f"x = {section:g} m": census.passed(section) for section in sections}
     draw_curves(grid[0, 0], census.times, curves)
-    unit = "kg/m" if dim == 2 else "kg"
+    unit = unit_in("kg", dim)
     grid[0, 0].set(xlabel="time (s)", ylabel=f"passed ({unit} of {census.load_mass:.4g})")
     return figure
 

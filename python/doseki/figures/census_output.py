@@ -71,7 +71,7 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
     where = f"window {name}" if name else "everywhere"
     _write_figures(folder, run, census, drawn, where, outline, options.sections)
     files = f"In {folder}: {', '.join(tables)} (.csv, census.h5), figures"
-    return [*_told(census, drawn, where, options.sections), files]
+    return [*census_lines(census, drawn, where, options.sections), files]
 
 
 def _outline(census: Census, known: Mapping[str, View]) -> np.ndarray | None:
@@ -154,10 +154,12 @@ def _write_figures(
         write_whole(folder / f"{name}.png", partial(figure.savefig, format="png"))
 
 
-def _told(census: Census, drawn: SpeedDraws, where: str, sections: Sequence[float]) -> list[str]:
+def census_lines(
+    census: Census, drawn: SpeedDraws, where: str, sections: Sequence[float]
+) -> list[str]:
     """The census in a few lines."""
     shares = census_shares(census)
-    greatest = ", ".join(f"{name} {100 * share.max():.0f} %" for name, share in shares.items())
+    greatest = ", ".join(f"{name} {_percent(share.max())}" for name, share in shares.items())
     lines = [f"{len(np.unique(census.table['id']))} grains at {len(census.times)} times"]
     lines.append(f"most of the load at once: {greatest}")
     if len(drawn.speeds):
@@ -167,10 +169,17 @@ def _told(census: Census, drawn: SpeedDraws, where: str, sections: Sequence[floa
         )
     else:
         lines.append(f"{where}: no grain in this range of time")
+    way = {-1: "towards -x", 0: "either way", 1: "towards +x"}[census.direction]
     for section in sections:
-        share = census.passed(section)[-1] / census.load_mass
-        lines.append(f"passed x = {section:g} m at the end: {100 * share:.1f} % of the load")
+        count, share = census.passed_count(section), census.passed(section)[-1] / census.load_mass
+        told = f"{count} grain{'' if count == 1 else 's'}, {_percent(share)} of the load"
+        lines.append(f"passed x = {section:g} m {way} at the end: {told}")
     return lines
+
+
+def _percent(share: float) -> str:
+    """Three digits, so that 0 % is nothing at all."""
+    return f"{100 * share:.3g} %"
 
 
 def census_shares(census: Census) -> dict[str, np.ndarray]:

@@ -71,7 +71,7 @@ class ScaleColours:
     def __init__(self, snapshots: Sequence[Snapshot], name: str, view: View) -> None:
         """The scale spans what the particles that can move have in `view`."""
         self._name = name
-        self.heading = quantity_label(name)
+        self.heading = quantity_label(name, snapshots[0].dim)
         values = [quantity(s, name)[select(s, view)] for s in snapshots]
         self._limits = _limits(np.concatenate(values))
         self._norm = colors.Normalize(*self._limits)

@@ -7,14 +7,15 @@ from matplotlib.figure import Figure
 
 from ..measure.flow import Flow
 from ..record.reader import Run
+from ..record.units import unit_in
 from .kinds.series import draw_curves
 from .layout import chart_grid
 
-MEASURES = (  # attribute of WindowFlow, what it is, its unit (3-D, 2-D)
-    ("fluid_velocity", "mean velocity x of the fluid", "m/s", "m/s"),
-    ("grain_speed", "mean speed of grains", "m/s", "m/s"),
-    ("grain_mass", "mass of grains", "kg", "kg/m"),
-    ("passed_mass", "grains passed", "kg", "kg/m"),
+MEASURES = (  # attribute of WindowFlow, what it is, its unit in 3-D
+    ("fluid_velocity", "mean velocity x of the fluid", "m/s"),
+    ("grain_speed", "mean speed of grains", "m/s"),
+    ("grain_mass", "mass of grains", "kg"),
+    ("passed_mass", "grains passed", "kg"),
 )
 
 
@@ -32,9 +33,9 @@ def draw_flow(run: Run, flow: Flow) -> Figure:
 def _window_panels(run: Run, flow: Flow) -> dict[str, dict[str, np.ndarray]]:
     """Curves of every window (so that each has one colour throughout) by the label of the axis."""
     panels = {}
-    for attribute, meaning, unit, unit_in_2d in MEASURES:
+    for attribute, meaning, unit in MEASURES:
         curves = {name: np.array(getattr(w, attribute)) for name, w in flow.windows.items()}
         if any(np.any(np.isfinite(curve)) for curve in curves.values()):
-            label = f"{meaning} ({unit_in_2d if run.scenario['dim'] == 2 else unit})"
+            label = f"{meaning} ({unit_in(unit, run.scenario['dim'])})"
             panels[label] = curves
     return panels

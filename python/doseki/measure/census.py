@@ -176,6 +176,7 @@ class Census:
 
     `table` has time, id, position (N, dim), velocity (N, dim), spin (N, 3), contacts, diameter,
     mass and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water, m.
+    `direction` is that of the flow along the first axis, +1 or -1; 0 where nothing says it.
     """
 
     times: np.ndarray
@@ -205,9 +206,17 @@ class Census:
 
     def passed(self, section: float) -> np.ndarray:
         """Mass (T,) that has crossed x = `section` by each time, kg (2-D: kg/m)."""
+        return self._pass(section)[0]
+
+    def passed_count(self, section: float) -> int:
+        """Number of grains that have crossed x = `section` by the end."""
+        return self._pass(section)[1]
+
+    def _pass(self, section: float) -> tuple[np.ndarray, int]:
         passed = measure.PassedMass(section, self.direction)
         x, mass, ids = self.table["position"][:, 0], self.table["mass"], self.table["id"]
-        return np.array([passed.update(x[s], mass[s], ids[s]) for s in self._slices()])
+        masses = [passed.update(x[s], mass[s], ids[s]) for s in self._slices()]
+        return np.array(masses), passed.count
 
     def _slices(self) -> Iterator[slice]:
         starts = np.searchsorted(self.table["time"], self.times)
@@ -235,7 +244,8 @@ def take_census(run: Run) -> Census:
                 for k, x in zip(grains.id.tolist(), grains.position, strict=True)
             ]
         ).reshape(-1, snapshot.dim)
-        kinds, front = classify(grains, start, surroundings_of(snapshot, fluids), direction)
+        around = surroundings_of(snapshot, fluids)
+        kinds, front = classify(grains, start, around, direction or 1)
         parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | {"kind": kinds})
         fronts.append(front)
     if not first:

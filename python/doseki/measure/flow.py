@@ -10,6 +10,7 @@ import numpy as np
 
 from ..record.reader import Run, Snapshot
 from . import numbers as measure
+from .census import Grains, grains_of
 from .views import View, flow_direction, fluid_names, select, whole_space, windows
 
 
@@ -23,7 +24,7 @@ class WindowFlow:
     grain_count: list[int] = field(default_factory=list)
     grain_speed: list[float] = field(default_factory=list)  # mean, m/s
     grain_mass: list[float] = field(default_factory=list)  # kg (2-D: kg/m)
-    passed_mass: list[float] = field(default_factory=list)  # grains beyond its downstream end, kg
+    passed_mass: list[float] = field(default_factory=list)  # beyond its downstream end, kg (kg/m)
 
     def arrival(self, times: np.ndarray) -> float:
         """Time of the first snapshot with fluid in the window, s; nan if there is none."""
@@ -43,8 +44,8 @@ class Flow:
 def measure_flow(run: Run) -> Flow | None:
     """Measure every snapshot; None where no fluid is in the run.
 
-    Fluid is every material with the law "fluid", grains are all others; fixed particles are
-    neither.
+    Fluid is every material with the law "fluid"; grains are those of the census, so that a body
+    of many particles is one.
     """
     fluids = fluid_names(run)
     everywhere = whole_space(run.scenario["dim"])
@@ -54,40 +55,39 @@ def measure_flow(run: Run) -> Flow | None:
     front = []
     for snapshot in run:
         is_fluid = select(snapshot, everywhere, fluids)
-        front.append(measure.front(snapshot["position"][is_fluid, 0], direction))
+        front.append(measure.front(snapshot["position"][is_fluid, 0], direction or 1))
+        grains = grains_of(snapshot, fluids)
         for name, entry in seen.items():
-            _look(entry, snapshot, is_fluid)
-            entry.passed_mass.append(_passed(passed[name], snapshot, is_fluid))
+            _look(entry, snapshot, is_fluid, grains)
+            entry.passed_mass.append(_passed(passed[name], grains))
     if not np.any(np.isfinite(front)):
         return None
     return Flow(run.times, np.array(front), seen)
 
 
-def _look(entry: WindowFlow, snapshot: Snapshot, is_fluid: np.ndarray) -> None:
-    """Append what the window of `entry` shows in one snapshot."""
-    inside = select(snapshot, entry.view)
-    fluid, grain = inside & is_fluid, inside & ~is_fluid
+def _look(entry: WindowFlow, snapshot: Snapshot, is_fluid: np.ndarray, grains: Grains) -> None:
+    """Append what the window of `entry` shows in one snapshot: grains by their centres."""
+    fluid = select(snapshot, entry.view) & is_fluid
+    grain = entry.view.contains(grains.position)
     velocity, mass = snapshot["velocity"], snapshot["mass"]
     entry.fluid_count.append(int(np.count_nonzero(fluid)))
     entry.fluid_velocity.append(float(measure.mean_velocity(velocity[fluid], mass[fluid])[0]))
     entry.grain_count.append(int(np.count_nonzero(grain)))
-    entry.grain_speed.append(_mean(measure.speed(velocity[grain])))
-    entry.grain_mass.append(float(mass[grain].sum()))
+    entry.grain_speed.append(_mean(grains.speed[grain]))
+    entry.grain_mass.append(float(grains.mass[grain].sum()))
 
 
 def _section(view: View, direction: int) -> measure.PassedMass | None:
     """The section at the downstream end of a window that lies along the first axis."""
-    end = view.upper[0] if direction > 0 else view.lower[0]
+    end = view.lower[0] if direction < 0 else view.upper[0]
     along = view.rotate == 0 and math.isfinite(end)
     return measure.PassedMass(float(end), direction) if along else None
 
 
-def _passed(section: measure.PassedMass | None, snapshot: Snapshot, is_fluid: np.ndarray) -> float:
+def _passed(section: measure.PassedMass | None, grains: Grains) -> float:
     if section is None:
         return math.nan
-    grain = ~is_fluid & ~snapshot["fixed"]
-    x = snapshot["position"][grain, 0]
-    return section.update(x, snapshot["mass"][grain], snapshot["id"][grain])
+    return section.update(grains.position[:, 0], grains.mass, grains.id)
 
 
 def _mean(values: Iterable[float]) -> float:

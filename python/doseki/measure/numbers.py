@@ -87,19 +87,33 @@ class PassedMass:
 
     A particle that has been seen upstream counts as passed once it is not there any more: it is
     downstream, or an outflow has removed it.  It stays so where it falls back below the section.
+    Where the direction of the flow is unknown a particle may come from either side; one that is
+    removed does not count, since nothing says where.
     """
 
-    def __init__(self, section: float, direction: float) -> None:
-        """The section x = `section`, m; the flow runs along `direction` (+1 or -1)."""
+    def __init__(self, section: float, direction: int) -> None:
+        """The section x = `section`, m; the flow runs along `direction`: +1, -1, or 0: unknown."""
         self._section = section
-        self._direction = direction
-        self._upstream: dict[int, float] = {}  # mass by id
+        # For each way in which it may be crossed: mass by id of what has still to do so.
+        self._upstream: dict[int, dict[int, float]] = {
+            way: {} for way in ([direction] if direction else [-1, 1])
+        }
         self._passed: dict[int, float] = {}
 
+    @property
+    def count(self) -> int:
+        """How many particles have passed so far."""
+        return len(self._passed)
+
     def update(self, x: np.ndarray, mass: np.ndarray, ids: np.ndarray) -> float:
-        """Take one snapshot of the material in question; returns the mass passed so far, kg."""
-        upstream = self._direction * (x - self._section) < 0
-        there = dict(zip(ids[upstream].tolist(), mass[upstream].tolist(), strict=True))
-        self._passed |= {id_: m for id_, m in self._upstream.items() if id_ not in there}
-        self._upstream = {id_: m for id_, m in there.items() if id_ not in self._passed}
+        """Take one snapshot of what counts; returns the mass passed so far, kg (2-D: kg/m)."""
+        seen = dict(zip(ids.tolist(), mass.tolist(), strict=True))
+        for way, waiting in self._upstream.items():
+            there = set(ids[way * (x - self._section) < 0].tolist())
+            can_vanish = len(self._upstream) == 1
+            gone = {
+                i: m for i, m in waiting.items() if i not in there and (can_vanish or i in seen)
+            }
+            self._passed |= gone
+            self._upstream[way] = {i: seen[i] for i in there if i not in self._passed}
         return math.fsum(self._passed.values())

@@ -14,6 +14,7 @@ from ..record.reader import Run, Snapshot
 from ..scenario.materials import complete_materials
 from ..scenario.reading.messages import to_user_error
 from ..scenario.table import Kinds, Part
+from ..scenario.tables.inflow import Inflow
 from ..scenario.tables.region import Window
 from ..scenario.tables.sections import SECTIONS
 from ..scenario.values.toml_source import Where, read_toml
@@ -22,6 +23,7 @@ from . import numbers as measure
 
 T = TypeVar("T", bound=Part)
 
+LEVEL = 1e-9  # slope, or balance of inflows, that rounding makes
 FLOW_SHARE = 0.5  # of the most fluid that a window ever holds
 
 
@@ -97,9 +99,17 @@ def tilt(run: Run) -> float:
 
 
 def flow_direction(run: Run) -> int:
-    """+1 or -1: the way along the first axis that gravity, or else nothing, drives a flow."""
-    gravity = run.scenario.get("gravity", [0.0])
-    return -1 if gravity[0] < 0 else 1
+    """+1 or -1: the way along the first axis that a flow takes; 0 where the scenario does not say.
+
+    Gravity says it; on level ground the inflows do, each as far as its discharge goes.
+    """
+    gravity = np.array(run.scenario.get("gravity", [0.0]))
+    if abs(gravity[0]) > LEVEL * np.linalg.norm(gravity):
+        return int(np.sign(gravity[0]))
+    inflows = tables(run, "inflow", Inflow).values()
+    along = [t.peak_rate * t.direction[0] / np.linalg.norm(t.direction) for t in inflows]
+    fluxes = np.abs(along).sum()
+    return int(np.sign(sum(along))) if abs(sum(along)) > LEVEL * fluxes else 0
 
 
 def select(snapshot: Snapshot, view: View, materials: set[str] | None = None) -> np.ndarray:

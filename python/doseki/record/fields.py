@@ -6,13 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .units import unit_in
+
 SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # XX YY ZZ XY YZ XZ, as VTK has it
 SHAPES = ("scalar", "vector", "symmetric", "rows")
 
 
 @dataclass(frozen=True)
 class ParticleField:
-    """One field: its name in Python and in files, its symbol, unit, shape and meaning.
+    """One field: its name in Python and in files, its symbol, unit (3-D), shape and meaning.
 
     A "vector" is (N, dim) in Python and (N, 3) in files (z = 0 in 2-D); a "symmetric" tensor is
     (N, 3, 3) in Python and (N, 6) in files, in the order of SYMMETRIC; "rows" are alike in both.
@@ -26,6 +28,10 @@ class ParticleField:
     doc: str
     dtype: str = "float64"
     absent: int | None = None  # the value where a state or an older file has none
+
+    def unit_in(self, dim: int) -> str:
+        """Its unit in a run of `dim` dimensions."""
+        return unit_in(self.unit, dim)
 
     def encode(self, values: np.ndarray) -> np.ndarray:
         """The array as it stands in a file, from the array as it stands in Python."""

@@ -33,8 +33,9 @@ def check_quantity(name: str, dim: int) -> None:
         raise UserError(f"colour {name!r} is not something to draw{suggestion(name, names)}")
 
 
-def quantity_label(name: str) -> str:
-    """Name and unit in plain text, for a colour bar."""
+def quantity_label(name: str, dim: int) -> str:
+    """Name and unit in plain text, for a colour bar of a run of `dim` dimensions."""
     key = "velocity" if name == "speed" else name
     field = FIELD_BY_KEY.get(key) or FIELD_BY_KEY[key.rpartition("_")[0]]
-    return f"{name.replace('_', ' ')} ({field.unit})" if field.unit else name
+    unit = field.unit_in(dim)
+    return f"{name.replace('_', ' ')} ({unit})" if unit else name

@@ -51,11 +51,13 @@ def write(
         _write_cells(root, len(state["position"]))
         root.create_group("PointData")
         for field in FIELDS:
-            _write_array(root, _location(field), field.encode(_values(state, field)), field.unit)
+            values, unit = field.encode(_values(state, field)), field.unit_in(header.dim)
+            _write_array(root, _location(field), values, unit)
         if grains:
             table = file.create_group("Grains")
             for field in GRAIN_FIELDS:
-                _write_array(table, field.file_name, field.encode(grains[field.key]), field.unit)
+                values, unit = field.encode(grains[field.key]), field.unit_in(header.dim)
+                _write_array(table, field.file_name, values, unit)
     path.write_bytes(image.getbuffer())
 
 

@@ -28,7 +28,7 @@ class Rates(TypedDict):
 class Totals(TypedDict):
     """Sums over the particles; in 2-D per metre of thickness."""
 
-    mass: float  # kg, of free particles
+    mass: float  # kg, of free particles; this and the rest in 2-D per metre
     momentum: list[float]  # kg m/s, dim numbers
     kinetic_energy: float  # J, with that of bodies
     bulk_energy: float  # J

@@ -15,6 +15,7 @@ from ..measure.flow import measure_flow
 from ..measure.numbers import mean_velocity, speed
 from ..record.particles import BOUND, FREE
 from ..record.reader import Run, Snapshot, load
+from ..record.units import unit_in
 from ..run.runner import RunOptions, run_scenario
 from ..scenario.load import load_scenario
 from ..scenario.model import Scenario
@@ -74,12 +75,14 @@ def measured(run: Run) -> Measured:
     history = {column: values[-1] for column, values in run.history.items()}
     energies = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
     energy = sum(history[name] for name in energies)
-    found: Measured = {name: (history[name], "J", energy) for name in energies}
+    dim = run.scenario["dim"]
+    found: Measured = {name: (history[name], unit_in("J", dim), energy) for name in energies}
     momentum = math.sqrt(2 * history["mass"] * history["kinetic_energy"])
-    for axis in "xyz"[: run.scenario["dim"]]:
-        found[f"momentum_{axis}"] = (history[f"momentum_{axis}"], "kg m/s", momentum)
+    for axis in "xyz"[:dim]:
+        own = history[f"momentum_{axis}"]
+        found[f"momentum_{axis}"] = (own, unit_in("kg m/s", dim), momentum)
     mass = history["mass_initial"] + history["mass_entered"]
-    found["mass_left"] = (history["mass_left"], "kg", mass)
+    found["mass_left"] = (history["mass_left"], unit_in("kg", dim), mass)
     return found | _of_materials(run) | _of_flow(run)
 
 
@@ -123,7 +126,11 @@ def _of_flow(run: Run) -> Measured:
         arrival = entry.arrival(flow.times)
         found[f"window {name}: arrival"] = (arrival, "s", arrival)
         passed = entry.passed_mass[-1]
-        found[f"window {name}: grains passed"] = (passed, "kg", passed)
+        found[f"window {name}: grains passed"] = (
+            passed,
+            unit_in("kg", run.scenario["dim"]),
+            passed,
+        )
     return found
 
 

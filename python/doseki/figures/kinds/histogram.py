@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from ...measure import numbers as measure
 from ...measure.census import SpeedDraws, draw_speeds
-from ...measure.views import View, named_window, select
+from ...measure.views import View, named_window, select, whole_space
 from ...record.reader import Run, Snapshot
 from ...scenario.tables.figure import HistogramFigure
 from ..layout import chart_grid, time_text
@@ -30,15 +30,19 @@ class SpeedHistogram:
     sample: int = 30
     title: str = ""
 
+    @property
+    def _materials(self) -> set[str] | None:
+        return None if self.material is None else {self.material}
+
     def speeds(self, snapshot: Snapshot) -> np.ndarray:
         """Speeds of what is counted, m/s: particles, or the bodies that they are parts of."""
-        materials = None if self.material is None else {self.material}
-        chosen = select(snapshot, self.view, materials)
+        chosen = select(snapshot, self.view, self._materials)
         if not (bodies := snapshot.grains):
             return measure.speed(snapshot["velocity"][chosen])
         grain = snapshot["grain"]
         single = snapshot["velocity"][chosen & (grain < 0)]
-        whole = np.unique(grain[chosen & (grain >= 0)])
+        anywhere = select(snapshot, whole_space(snapshot.dim), self._materials)
+        whole = np.unique(grain[anywhere & (grain >= 0)])
         whole = whole[self.view.contains(bodies["position"][whole])]
         return measure.speed(np.concatenate([single, bodies["velocity"][whole]]))
 

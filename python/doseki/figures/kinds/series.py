@@ -10,18 +10,19 @@ from matplotlib.figure import Figure
 
 from ...errors import UserError
 from ...record.reader import Run
+from ...record.units import unit_in
 from ...scenario.tables.figure import SeriesFigure
 from ...util.spelling import suggestion
 from ..layout import chart_grid
 
 ENERGIES = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
 MASSES = ("mass_asked", "mass_entered", "mass_inside", "mass_left")
-KINDS = {  # part of a column's name: what it measures, unit, unit in 2-D
-    "energy": ("energy", "J", "J/m"),
-    "dissipation": ("energy", "J", "J/m"),
-    "mass": ("mass", "kg", "kg/m"),
-    "momentum": ("momentum", "kg m/s", "kg/s"),
-    "dt": ("time step", "s", "s"),
+KINDS = {  # part of a column's name: what it measures, unit in 3-D
+    "energy": ("energy", "J"),
+    "dissipation": ("energy", "J"),
+    "mass": ("mass", "kg"),
+    "momentum": ("momentum", "kg m/s"),
+    "dt": ("time step", "s"),
 }
 STYLES = ("-", "--", "-.", ":")  # curves that lie on each other can still be told apart
 
@@ -63,5 +64,5 @@ def axis_label(columns: Sequence[str], dim: int) -> str:
     kind = kinds.pop() if len(kinds) == 1 else None
     if kind is None:
         return ""
-    name, unit, unit_in_2d = kind
-    return f"{name} ({unit_in_2d if dim == 2 else unit})"
+    name, unit = kind
+    return f"{name} ({unit_in(unit, dim)})"

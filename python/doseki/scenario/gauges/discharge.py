@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
+from ...record.units import unit_in
 from ..values.directions import section_axes
 from ..values.types import Direction, Length
 from .gauge import FlowGauge, Rows, Sampled, Setting
@@ -30,8 +31,8 @@ class Discharge(FlowGauge):
 
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
-        units = ("m2/s", "kg/s/m") if dim == 2 else ("m3/s", "kg/s")
-        return {"time": "s", "discharge": units[0], "mass_rate": units[1]}
+        units = {"time": "s", "discharge": "m3/s", "mass_rate": "kg/s"}
+        return {name: unit_in(unit, dim) for name, unit in units.items()}
 
     def read(self, run: Sampled, setting: Setting) -> Rows:
         """The time, and volume and mass that go through the section per second."""

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from ...record.particles import FIXED
+from ...record.units import unit_in
 from ..schemes import UETA2022
 from ..values.types import BodyNames, Vector
 from .gauge import Gauge, Rows, Sampled, Setting
@@ -24,7 +25,7 @@ class ForceGauge(Gauge):
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
         axes = "xyz"[:dim]
-        force, moment = ("N/m", "N") if dim == 2 else ("N", "N m")
+        force, moment = unit_in("N", dim), unit_in("N m", dim)
         moments = ["moment"] if dim == 2 else [f"moment_{axis}" for axis in axes]
         return (
             {"time": "s"}

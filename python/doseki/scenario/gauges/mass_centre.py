@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from ...record.particles import DRIVEN, FIXED
+from ...record.units import unit_in
 from ..values.types import OptionalMaterialName, RefersTo
 from .gauge import Gauge, Rows, Sampled, Setting
 
@@ -29,7 +30,7 @@ class MassCentre(Gauge):
         """Name and unit of each column of its file."""
         axes = "xyz"[:dim]
         position, velocity = dict.fromkeys(axes, "m"), {f"velocity_{axis}": "m/s" for axis in axes}
-        return {"time": "s", "mass": "kg/m" if dim == 2 else "kg"} | position | velocity
+        return {"time": "s", "mass": unit_in("kg", dim)} | position | velocity
 
     def curves(self, dim: int) -> list[str]:
         """The columns that a figure draws where none are named."""

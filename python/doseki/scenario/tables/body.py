@@ -142,7 +142,9 @@ class LatticeBody(TurnedBody):
         "count",
     )
 
-    mass_per_particle: Positive | None = Field(None, description="kg; default rho0 dp^dim")
+    mass_per_particle: Positive | None = Field(
+        None, description="kg (2-D: kg/m); default rho0 dp^dim"
+    )
     jitter: float = Field(
         0.0, ge=0, le=0.5, description="random displacement along each axis, in spacings"
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...record.particles import ParticleSet
+from ...record.units import unit_in
 from ...scenario.model import Scenario
 from ...scenario.schemes import SUPPORT
 from ...scenario.values.types import LARGEST, SMALLEST
@@ -28,8 +29,9 @@ def _check_spacing(scenario: Scenario, particles: ParticleSet, names: list[str])
         body = names[particles.body[first]]
         raise scenario.where.error(
             ("body", body),
-            f"body.{body}: a mass of {particles.mass[first]:g} kg at {particles.density[first]:g} "
-            f"kg/m3 is {spacing[first]:g} m across; allowed: {SMALLEST:g} to {LARGEST:g} m",
+            f"body.{body}: a mass of {particles.mass[first]:g} {unit_in('kg', scenario.dim)} at "
+            f"{particles.density[first]:g} kg/m3 is {spacing[first]:g} m across; allowed: "
+            f"{SMALLEST:g} to {LARGEST:g} m",
         )
 
 
