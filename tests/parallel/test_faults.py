@@ -119,7 +119,7 @@ def test_a_rank_that_is_killed_ends_the_run_and_fewer_go_on(endless, command, tm
     assert not (folder / "summary.json").exists()
 
     checkpoint = max(folder.glob("checkpoints/*.h5"))
-    time_max = from_bytes(checkpoint.read_bytes()).state["time"].item() + 0.0005
+    time_max = from_bytes(checkpoint.read_bytes(), checkpoint).state["time"].item() + 0.0005
     done = command(1, "resume", folder, *CASE[:3], "--set", f"time_max={time_max}")
     assert done.returncode == 0, done.stderr
     assert doseki.load(folder).summary["status"] == "done"

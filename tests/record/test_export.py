@@ -50,6 +50,30 @@ def test_collection_gives_files_and_times(run_folder):
     assert all((collection.parent / entry.get("file")).is_file() for entry in entries)
 
 
+@pytest.mark.parametrize("inside", [True, False])
+def test_export_goes_through_no_link(run_folder, tmp_path, inside):
+    """A link in the run's folder, or one that is named, leads to an empty folder elsewhere."""
+    outside, link = tmp_path / "outside", (run_folder / "vtu" if inside else tmp_path / "link")
+    outside.mkdir()
+    link.symlink_to(outside)
+    with pytest.raises(UserError, match="symbolic link"):
+        export_vtu(load(run_folder), None if inside else link)
+    assert not any(outside.iterdir())
+
+
+def test_a_refused_export_leaves_nothing_in_the_way(run_folder):
+    last = run_folder / "snapshots/000002.vtkhdf"
+    before, whole = sorted(run_folder.iterdir()), last.read_bytes()
+    run = load(run_folder)
+    assert len(run) == 3
+    last.write_bytes(b"damaged")
+    with pytest.raises(UserError, match="000002"):
+        export_vtu(run)
+    assert sorted(run_folder.iterdir()) == before
+    last.write_bytes(whole)
+    assert export_vtu(load(run_folder)).is_file()
+
+
 def test_export_never_overwrites(run_folder, tmp_path):
     (tmp_path / "there").mkdir()
     (tmp_path / "there/000000.vtu").write_text("mine")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,10 +22,15 @@ from doseki.run.runner import RunOptions
 
 from .channel import assert_same_record, doseki_command, run_channel
 
+HERE = Path("000000000003.h5")
+
 
 def make_checkpoint(step=3):
-    state = {"time": np.array([0.1]), "steps": np.array([step]), "position": np.eye(50, 2)}
-    return Checkpoint(state, Position(2, 2, 17, 0.125, 0.5, 3.5), ["water"], ["sea", "bed"])
+    state = {"time": np.array([0.1]), "steps": np.array([step]), "lanes": np.array([4])}
+    state["position"] = np.eye(50, 2)
+    return Checkpoint(
+        state, Position(2, 2, 17, {"depth": 3}, 0.125, 0.5, 3.5), ["water"], ["sea", "bed"]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +63,7 @@ def flip(data):
 
 def test_a_checkpoint_reads_back_to_the_last_bit():
     written = make_checkpoint()
-    read = from_bytes(bytes(to_bytes(written)))
+    read = from_bytes(bytes(to_bytes(written)), HERE)
     assert (read.position, read.material_names, read.body_names) == (
         written.position,
         ["water"],
@@ -76,10 +82,10 @@ def test_every_flipped_bit_and_every_cut_is_found():
         broken = bytearray(data)
         broken[place] ^= 1 << random.integers(8)
         with pytest.raises(DamagedCheckpointError):
-            from_bytes(bytes(broken))
+            from_bytes(bytes(broken), HERE)
     for length in (0, 1, 63, 64, 65, 200, len(data) - 1):
         with pytest.raises(DamagedCheckpointError):
-            from_bytes(data[:length])
+            from_bytes(data[:length], HERE)
 
 
 @pytest.mark.parametrize("damage", [truncate, flip, lambda _data: b""])

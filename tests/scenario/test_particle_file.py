@@ -123,7 +123,7 @@ def test_files_that_are_neither(write, tmp_path, error_of):
     [
         ({"y": np.zeros(4)}, "the columns differ in length"),
         ({"y": np.zeros((3, 2))}, 'column "y" must have one dimension, not 2'),
-        ({"y": np.zeros(3, complex)}, 'column "y" must hold numbers or strings'),
+        ({"y": np.zeros(3, complex)}, '"y" must hold numbers or strings'),
         ({"material": [1, 2, 3]}, 'column "material" must hold names, not numbers'),
         ({"body": [0.5, 1, 2]}, "expected a name or a whole number"),
         ({"fixed": [0, 1, 2]}, 'particle 3: column "fixed"'),

@@ -6,31 +6,40 @@ import hashlib
 import io
 import json
 import math
+import re
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 import h5py
 import numpy as np
+from pydantic import Field, TypeAdapter, ValidationError
 
 from ..errors import UserError
 from ..util.files import clear_errors, write_whole
+from ..util.foreign import read_bytes
+from ..util.hdf5 import open_hdf5
 
 VERSION = 2
 KEPT = 2  # files; the older one serves where the newer one is damaged
 DIGEST_BYTES = 64
 
 
+Count = Annotated[int, Field(ge=0, le=2**53)]
+Time = Annotated[float, Field(ge=0)]  # s; infinite: never
+
+
 @dataclass
 class Position:
     """Where a run stands in its record, so that nothing is recorded twice or left out."""
 
-    outputs: int = 0  # intervals of time_out that are done with, the start included
-    snapshots: int = 0  # recorded
-    rows: int = 0  # of the history
-    gauge_rows: dict[str, int] = field(default_factory=dict)  # never changed in place
-    next_history: float = 0.0  # s
-    next_checkpoint: float = 0.0  # s
-    wall_seconds: float = 0.0
+    outputs: Count = 0  # intervals of time_out that are done with, the start included
+    snapshots: Count = 0  # recorded
+    rows: Count = 0  # of the history
+    gauge_rows: dict[str, Count] = field(default_factory=dict)  # never changed in place
+    next_history: Time = 0.0
+    next_checkpoint: Time = 0.0
+    wall_seconds: Time = 0.0
 
 
 @dataclass
@@ -62,6 +71,19 @@ class DamagedCheckpointError(Exception):
     """A file that is not, or no longer, a whole checkpoint."""
 
 
+@dataclass
+class Around:
+    """What a checkpoint file says beside the state."""
+
+    version: int
+    position: Position
+    material_names: list[str]
+    body_names: list[str]
+
+
+AROUND: TypeAdapter[Around] = TypeAdapter(Around)
+
+
 def to_bytes(checkpoint: Checkpoint) -> memoryview:
     """The checkpoint as an HDF5 file, then its BLAKE2b digest (HDF5 ignores what follows)."""
     image = io.BytesIO()
@@ -81,22 +103,31 @@ def to_bytes(checkpoint: Checkpoint) -> memoryview:
     return image.getbuffer()
 
 
-def from_bytes(data: bytes) -> Checkpoint:
-    """What `to_bytes` wrote; raises DamagedCheckpointError for anything else.
+def from_bytes(data: bytes, path: Path) -> Checkpoint:
+    """What `to_bytes` wrote, read from `path`; raises DamagedCheckpointError for anything else.
 
-    The digest is looked at before HDF5 sees the data: damaged files can crash it.
+    The digest is looked at before HDF5 sees the data: damaged files can crash it. Whoever makes a
+    digest anew may still mean harm: nothing outside the file is read, and what the arrays hold is
+    checked against the scenario (solver.restoring).
     """
     content, digest = data[:-DIGEST_BYTES], data[-DIGEST_BYTES:]
     if len(data) < 2 * DIGEST_BYTES or hashlib.blake2b(content).digest() != digest:
         raise DamagedCheckpointError("its checksum is wrong")
-    with h5py.File(io.BytesIO(content), "r") as file:
-        said = json.loads(file.attrs["doseki"])
-        if said["version"] != VERSION:
-            raise DamagedCheckpointError(f"it has format {said['version']}, expected {VERSION}")
-        state = {name: dataset[...] for name, dataset in file.items()}
-    return Checkpoint(
-        state, Position(**said["position"]), said["material_names"], said["body_names"]
-    )
+    with open_hdf5(path, content) as file:
+        said = json.loads(file.attribute("/", "doseki"))
+        if said.get("version") != VERSION:
+            raise DamagedCheckpointError(f"it has format {said.get('version')}, expected {VERSION}")
+        try:
+            around = AROUND.validate_python(said)
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = ".".join(map(str, first["loc"]))
+            raise file.error(place, f"is wrong: {first['msg']}") from None
+        state = {name: file.numbers(name) for name in file.names()}
+    for name in ("time", "steps", "lanes"):
+        if name not in state or state[name].shape != (1,):
+            raise UserError(f'{path}: "{name}" is missing, or not one number')
+    return Checkpoint(state, around.position, around.material_names, around.body_names)
 
 
 class CheckpointFolder:
@@ -107,7 +138,9 @@ class CheckpointFolder:
 
     def files(self) -> list[Path]:
         """The checkpoints, in order of steps."""
-        return sorted(self.path.glob("[0-9]*.h5"))
+        files = self.path.glob("*.h5")
+        found = [file for file in files if re.fullmatch(r"\d{12,18}", file.stem)]
+        return sorted(found, key=lambda file: int(file.stem))
 
     def write(self, checkpoint: Checkpoint) -> Path:
         """Put a checkpoint safely on the disk, then drop those that are too old.
@@ -132,11 +165,12 @@ class CheckpointFolder:
         notes: list[str] = []
         for file in reversed(self.files()):
             try:
-                checkpoint = from_bytes(file.read_bytes())
+                checkpoint = from_bytes(read_bytes(file), file)
                 if checkpoint.time <= until:
                     return checkpoint, notes
-            except (DamagedCheckpointError, OSError) as error:
-                notes.append(f"{file} is damaged ({error}); using the one before it")
+            except (DamagedCheckpointError, UserError) as error:
+                said = str(error).removeprefix(f"{file}: ")
+                notes.append(f"{file} is damaged ({said}); using the one before it")
         found = f": {notes[0]}" if notes else ""
         raise UserError(f"{self.path}: no whole checkpoint to go on from{found}; run it again")
 

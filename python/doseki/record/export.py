@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import sys
 from collections.abc import Iterable
 from functools import partial
@@ -15,6 +17,7 @@ from ..util.files import clear_errors, write_whole, write_whole_text
 from .fields import FIELDS
 from .reader import Run, Snapshot
 
+COLLECTION = "run.pvd"
 VTK_VERTEX = 1
 VTK_TYPES = {"float64": "Float64", "int32": "Int32", "int64": "Int64", "uint8": "UInt8"}
 BYTE_ORDER = {"little": "LittleEndian", "big": "BigEndian"}[sys.byteorder]
@@ -23,22 +26,33 @@ BYTE_ORDER = {"little": "LittleEndian", "big": "BigEndian"}[sys.byteorder]
 def export_vtu(run: Run, out: str | Path | None = None) -> Path:
     """Write one .vtu for each snapshot and a .pvd with their times; returns the .pvd.
 
-    They go to the folder `out` (default: DIR/vtu), which must not exist or be empty, or UserError
-    is raised.
+    They go to the folder `out` (default: DIR/vtu), which must not exist or be empty, and no link,
+    or UserError is raised. It is there once it is whole.
     """
     folder = Path(out) if out is not None else run.directory / "vtu"
     with clear_errors(folder):
+        if folder.is_symlink():
+            raise UserError(f"{folder}: is a symbolic link; nothing is written through it")
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise UserError(f"{folder}: exists and is not empty; give another folder")
-        folder.mkdir(parents=True, exist_ok=True)
+        unfinished = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+        unfinished.mkdir(parents=True)
+    try:
+        _write_all(run, unfinished)
+        with clear_errors(folder):
+            unfinished.replace(folder)
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)
+    return folder / COLLECTION
+
+
+def _write_all(run: Run, folder: Path) -> None:
     entries = []
     for snapshot in run:
         file = folder / f"{snapshot.path.stem}.vtu"
         write_whole(file, partial(_write_vtu, snapshot))
         entries.append(f'<DataSet timestep="{snapshot.time!r}" file="{file.name}"/>')
-    collection = folder / "run.pvd"
-    write_whole_text(collection, _pvd(entries))
-    return collection
+    write_whole_text(folder / COLLECTION, _pvd(entries))
 
 
 def _pvd(entries: Iterable[str]) -> str:

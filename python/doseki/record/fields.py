@@ -27,11 +27,17 @@ class ParticleField:
     shape: str
     doc: str
     dtype: str = "float64"
+    width: int = 1  # of "rows"
     absent: int | None = None  # the value where a state or an older file has none
 
     def unit_in(self, dim: int) -> str:
         """Its unit in a run of `dim` dimensions."""
         return unit_in(self.unit, dim)
+
+    @property
+    def columns(self) -> tuple[int, ...]:
+        """The shape of one row in a file."""
+        return {"vector": (3,), "symmetric": (6,), "rows": (self.width,)}.get(self.shape, ())
 
     def encode(self, values: np.ndarray) -> np.ndarray:
         """The array as it stands in a file, from the array as it stands in Python."""
@@ -76,7 +82,9 @@ FIELDS = (
         "int32",
     ),
     ParticleField("id", "Id", "", "", "scalar", "number that stays with the particle", "int64"),
-    ParticleField("grain", "Grain", "", "", "scalar", "index of its grain, or -1", "int32", -1),
+    ParticleField(
+        "grain", "Grain", "", "", "scalar", "index of its grain, or -1", "int32", absent=-1
+    ),
 )
 
 FIELD_BY_KEY = {field.key: field for field in FIELDS}
@@ -85,8 +93,10 @@ FIELD_BY_KEY = {field.key: field for field in FIELDS}
 GRAIN_FIELDS = (
     ParticleField("position", "Position", "", "m", "vector", "centre of mass"),
     ParticleField("velocity", "Velocity", "", "m/s", "vector", "of the centre of mass"),
-    ParticleField("spin", "Spin", "", "rad/s", "rows", "angular velocity (N, 3)"),
-    ParticleField("orientation", "Orientation", "", "", "rows", "quaternion w, x, y, z (N, 4)"),
+    ParticleField("spin", "Spin", "", "rad/s", "rows", "angular velocity (N, 3)", width=3),
+    ParticleField(
+        "orientation", "Orientation", "", "", "rows", "quaternion w, x, y, z (N, 4)", width=4
+    ),
     ParticleField("diameter", "Diameter", "", "m", "scalar", "of the circumscribed ball"),
     ParticleField("mass", "Mass", "", "kg", "scalar", "mass; in 2-D per metre of thickness"),
     ParticleField("contacts", "Contacts", "", "", "scalar", "number of bodies it touches", "int32"),

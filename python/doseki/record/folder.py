@@ -7,6 +7,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import UserError
+from ..util.foreign import read_text, readable
+
 
 @dataclass(frozen=True)
 class RunFolder:
@@ -123,10 +126,18 @@ def _number(file: Path) -> int:
 
 
 def read_history(path: Path) -> tuple[list[str], list[list[str]]]:
-    """Column names and rows of a history or gauge file, without a last row cut short by a kill."""
-    if not path.is_file():
+    """Column names and rows of a history or gauge file, without a last row cut short by a kill.
+
+    Raises UserError where it is no table.
+    """
+    if not path.exists():
         return [], []
-    text = path.read_text(encoding="utf-8")
+    text = read_text(path)
     whole_lines = text[: text.rfind("\n") + 1].splitlines()
-    rows = list(csv.reader(whole_lines))
+    with readable(path):
+        rows = list(csv.reader(whole_lines))
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(rows[0]):
+            wrong = f"{len(row)} entries; the header has {len(rows[0])}"
+            raise UserError(f"{path}: cannot be read: line {number} has {wrong}")
     return (rows[0], rows[1:]) if rows else ([], [])

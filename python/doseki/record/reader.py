@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
+from ..util.foreign import read_text, readable
 from ..util.spelling import suggestion
 from . import vtkhdf
 from .fields import FIELD_BY_KEY
@@ -72,12 +72,11 @@ class Snapshot(Mapping[str, np.ndarray]):
             raise KeyError(f"{key!r} is not a field of a snapshot{suggestion(key, self)}")
         names = {"material": self.material_names, "body": self.body_names}.get(key)
         stored = self.stored(key)
-        return stored if names is None else np.array(names, dtype=str)[stored]
+        return stored if names is None else self._named(names, stored)
 
     def stored(self, key: str) -> np.ndarray:
         """A field as in the file, where `material` and `body` are indices of their names."""
-        with _readable(self.path):
-            return vtkhdf.read_field(self.path, FIELD_BY_KEY[key], self.dim)
+        return vtkhdf.read_field(self.path, FIELD_BY_KEY[key], self.dim)
 
     @cached_property
     def grains(self) -> dict[str, np.ndarray]:
@@ -85,10 +84,13 @@ class Snapshot(Mapping[str, np.ndarray]):
 
         `body` is an array of names; row k is what the field `grain` of a particle says.
         """
-        with _readable(self.path):
-            table = vtkhdf.read_grains(self.path, self.dim)
-        names = np.array(self.body_names, dtype=str)
-        return table | {"body": names[table["body"]]} if table else {}
+        table = vtkhdf.read_grains(self.path, self.dim)
+        return table | {"body": self._named(self.body_names, table["body"])} if table else {}
+
+    def _named(self, names: Sequence[str], index: np.ndarray) -> np.ndarray:
+        if len(index) and not 0 <= index.min() <= index.max() < len(names):
+            raise UserError(f"{self.path}: an index is outside the {len(names)} names")
+        return np.array(names, dtype=str)[index]
 
 
 class History(Mapping[str, np.ndarray]):
@@ -137,7 +139,7 @@ class Run(Sequence[Snapshot]):
 
     @cached_property
     def _headers(self) -> list[tuple[Path, vtkhdf.Header]]:
-        return [(path, _read_header(path)) for path in self.folder.snapshot_files()]
+        return [(path, vtkhdf.read_header(path)) for path in self.folder.snapshot_files()]
 
     def __len__(self) -> int:
         return len(self._headers)
@@ -170,7 +172,7 @@ class Run(Sequence[Snapshot]):
     @cached_property
     def history(self) -> History:
         """The diagnostics."""
-        with _readable(self.folder.history):
+        with readable(self.folder.history):
             return History(*read_history(self.folder.history))
 
     @cached_property
@@ -178,42 +180,28 @@ class Run(Sequence[Snapshot]):
         """What the gauges read, by their names."""
         records = {}
         for file in sorted(self.folder.gauges.glob("*.csv")):
-            with _readable(file):
+            with readable(file):
                 records[file.stem] = GaugeRecord(*read_history(file))
         return records
 
     @cached_property
     def scenario(self) -> dict[str, Any]:
         """The effective scenario."""
-        with _readable(self.folder.scenario):
-            return tomllib.loads(self.folder.scenario.read_text(encoding="utf-8"))
+        with readable(self.folder.scenario):
+            return tomllib.loads(read_text(self.folder.scenario))
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """What the run came to; empty while it is going on."""
         if not self.folder.summary.is_file():
             return {}
-        with _readable(self.folder.summary):
-            return json.loads(self.folder.summary.read_text(encoding="utf-8"))
+        with readable(self.folder.summary):
+            return json.loads(read_text(self.folder.summary))
 
     @cached_property
     def trust(self) -> dict[str, Any]:
         """How far the run can be trusted (trust.json); empty while it is going on."""
         if not self.folder.trust.is_file():
             return {}
-        with _readable(self.folder.trust):
-            return json.loads(self.folder.trust.read_text(encoding="utf-8"))
-
-
-def _read_header(path: Path) -> vtkhdf.Header:
-    with _readable(path):
-        return vtkhdf.read_header(path)
-
-
-@contextmanager
-def _readable(path: Path) -> Iterator[None]:
-    """Turn whatever a damaged or forbidden file raises into a UserError that names it."""
-    try:
-        yield
-    except (OSError, KeyError, ValueError) as error:
-        raise UserError(f"{path}: cannot be read: {str(error).splitlines()[0]}") from None
+        with readable(self.folder.trust):
+            return json.loads(read_text(self.folder.trust))

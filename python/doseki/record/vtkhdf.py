@@ -11,6 +11,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..util.hdf5 import Hdf5File, open_hdf5
 from .fields import FIELDS, GRAIN_FIELDS, ParticleField
 
 VERSION = (2, 0)  # of the VTKHDF format: PolyData is read by VTK >= 9.3, ParaView >= 5.12
@@ -62,16 +63,18 @@ def write(
 
 
 def read_header(path: Path) -> Header:
-    """Read what `write` stored beside the fields; raises OSError or KeyError for other files."""
-    with h5py.File(path, "r") as file:
-        root = file["VTKHDF"]
+    """Read what `write` stored beside the fields; raises UserError for other files."""
+    with open_hdf5(path) as file:
+        dim = file.attribute("VTKHDF", "Dimension")
+        if dim not in (2, 3):
+            raise file.error("Dimension", f"is {dim}; expected 2 or 3")
         return Header(
-            time=float(root["FieldData/Time"][0]),
-            step=int(root["FieldData/Step"][0]),
-            dt=float(root["FieldData/TimeStep"][0]),
-            dim=int(root.attrs["Dimension"]),
-            material_names=tuple(root.attrs["MaterialNames"]),
-            body_names=tuple(root.attrs["BodyNames"]),
+            time=float(file.number("VTKHDF/FieldData/Time")),
+            step=int(file.number("VTKHDF/FieldData/Step")),
+            dt=float(file.number("VTKHDF/FieldData/TimeStep")),
+            dim=int(dim),
+            material_names=tuple(file.attribute("VTKHDF", "MaterialNames")),
+            body_names=tuple(file.attribute("VTKHDF", "BodyNames")),
         )
 
 
@@ -82,21 +85,30 @@ def _values(state: Mapping[str, np.ndarray], field: ParticleField) -> np.ndarray
 
 
 def read_field(path: Path, field: ParticleField, dim: int) -> np.ndarray:
-    """Read one field, shaped as in Python."""
-    with h5py.File(path, "r") as file:
-        root = file["VTKHDF"]
-        if field.absent is not None and _location(field) not in root:
-            return np.full(len(root["Points"]), field.absent, field.dtype)
-        return field.decode(root[_location(field)][...], dim)
+    """Read one field, shaped as in Python; raises UserError for what `write` does not write."""
+    with open_hdf5(path) as file:
+        name, count = f"VTKHDF/{_location(field)}", len(file.dataset("VTKHDF/Points"))
+        if field.absent is not None and name not in file:
+            return np.full(count, field.absent, field.dtype)
+        return _decoded(file, name, field, count, dim)
 
 
 def read_grains(path: Path, dim: int) -> dict[str, np.ndarray]:
     """The table of bodies that move, by the keys of GRAIN_FIELDS; empty where there are none."""
-    with h5py.File(path, "r") as file:
-        table = file.get("Grains")
-        if table is None:
+    with open_hdf5(path) as file:
+        if "Grains" not in file:
             return {}
-        return {f.key: f.decode(table[f.file_name][...], dim) for f in GRAIN_FIELDS}
+        count = len(file.dataset("Grains/Position"))
+        return {f.key: _decoded(file, f"Grains/{f.file_name}", f, count, dim) for f in GRAIN_FIELDS}
+
+
+def _decoded(file: Hdf5File, name: str, field: ParticleField, count: int, dim: int) -> np.ndarray:
+    """A field of `count` rows, shaped as in Python."""
+    stored = file.numbers(name)
+    if stored.shape != (count, *field.columns) or stored.dtype.kind not in "iu" + field.dtype[0]:
+        rows = " x ".join(map(str, (count, *field.columns)))
+        raise file.error(name, f"must hold {rows} numbers ({field.dtype})")
+    return field.decode(stored, dim)
 
 
 def _location(field: ParticleField) -> str:
@@ -117,7 +129,11 @@ def _write_header(root: h5py.Group, header: Header) -> None:
 
 
 def _write_names(root: h5py.Group, attribute: str, names: Sequence[str]) -> None:
-    root.attrs.create(attribute, list(names), (len(names),), h5py.string_dtype())
+    """Of a fixed length, so that a reader knows beforehand how much memory they take."""
+    encoded = [name.encode() for name in names]
+    longest = max(map(len, encoded), default=0) or 1
+    kind = h5py.string_dtype("utf-8", longest)
+    root.attrs.create(attribute, np.array(encoded, kind), (len(names),), kind)
 
 
 def _write_cells(root: h5py.Group, n: int) -> None:

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
+from ..util.foreign import check_regular_file
 from .particle_files.columns_csv import read_csv_columns
 from .tables.inflow import Inflow
-from .values.toml_source import Where, check_regular_file
+from .values.toml_source import Where
 from .values.types import LARGEST, RATE_UNITS, checked_hydrograph
 
 TIME_UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}

@@ -5,6 +5,7 @@ Discs and spheres (Ball), convex polygons and polyhedra (Convex).  Lengths in m.
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,10 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import UserError
+from ..util.foreign import read_bytes, readable
 from .lattices import ball_measure
 
 GOLDEN = np.pi * (3 - np.sqrt(5))  # angle, rad
 FLAT = 1e-9  # of the size: below, points lie on one line or plane
+LARGEST_STL = 50_000_000  # bytes
 BULGE = 1e-4  # of the size: by which a surface may miss being convex (files hold single precision)
 
 
@@ -295,17 +299,12 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
 
     Raises ShapeError where the file cannot be read, or its surface is not closed or not convex.
     """
-    import trimesh
-
     try:
-        mesh = trimesh.load_mesh(file, file_type="stl")
-    except Exception as error:  # the readers of trimesh raise whatever they meet
-        why = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise ShapeError(f"{file} cannot be read as STL: {why}") from None
-    mesh.merge_vertices()
-    if len(mesh.faces) < 4 or not mesh.is_watertight:
-        raise ShapeError(f"the surface in {file} is not closed")
-    mesh.fix_normals()
+        content = read_bytes(file, LARGEST_STL)
+        with readable(file, " as STL"):
+            mesh = _closed_mesh(file, content)
+    except UserError as error:
+        raise ShapeError(str(error)) from None
     mesh.apply_scale(scale)
     shape, centre = _from_mesh(mesh)
     normal, distance = shape.planes
@@ -315,6 +314,27 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
             f"the surface in {file} is not convex (by {beyond:.3g} m); cut it into convex bodies"
         )
     return shape, centre
+
+
+def _closed_mesh(file: Path, content: bytes) -> Any:
+    import trimesh
+
+    mesh = trimesh.load_mesh(io.BytesIO(content), file_type="stl")
+    if not np.isfinite(mesh.vertices).all():
+        raise UserError(f"{file}: a vertex is not finite")
+    mesh.merge_vertices()
+    if len(mesh.faces) < 4 or not mesh.is_watertight:
+        raise UserError(f"the surface in {file} is not closed")
+    mesh.faces = _outwards(np.array(mesh.vertices), np.array(mesh.faces))
+    return mesh
+
+
+def _outwards(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Triangles of a convex surface with their normals outwards, whichever way they turned."""
+    corners = vertices[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    outward = np.einsum("md,md->m", normal, corners[:, 0] - corners.mean(axis=(0, 1)))
+    return np.where((outward < 0)[:, None], faces[:, ::-1], faces)
 
 
 def _from_mesh(mesh: Any) -> tuple[Convex, np.ndarray]:

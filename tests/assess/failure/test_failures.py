@@ -77,7 +77,8 @@ def assert_stopped_within_one_step(failed):
     """The last good state is that of the step before, whole, and resumable."""
     report, folder = failed.report, failed.run.folder
     assert report["good_state"] is not None
-    checkpoint = from_bytes((folder.checkpoints / report["good_state"]).read_bytes())
+    file = folder.checkpoints / report["good_state"]
+    checkpoint = from_bytes(file.read_bytes(), file)
     assert checkpoint.step == report["step"] == failed.run.summary["step"]
     for name, values in checkpoint.state.items():
         assert np.isfinite(values).all(), name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import TextIO
 import numpy as np
 
 from ...errors import UserError
+from ...util.foreign import open_regular
 
 ROWS_AT_ONCE = 100_000
 MAX_COLUMNS = 64
@@ -22,15 +24,14 @@ def read_csv_columns(path: Path) -> dict[str, np.ndarray]:
 
     Blank lines and lines that begin with # are skipped.  Raises UserError.
     """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            return _read(path, _Lines(file))
-    except UnicodeDecodeError:
-        raise UserError(f"{path}: neither HDF5 nor a CSV text in UTF-8") from None
-    except csv.Error as error:
-        raise UserError(f"{path}: not a CSV file: {error}") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}") from None
+    with open_regular(path) as (file, size):
+        text = io.TextIOWrapper(file if size else io.BytesIO(), "utf-8-sig", newline="")
+        try:
+            return _read(path, _Lines(text))
+        except UnicodeDecodeError:
+            raise UserError(f"{path}: neither HDF5 nor a CSV text in UTF-8") from None
+        except csv.Error as error:
+            raise UserError(f"{path}: not a CSV file: {error}") from None
 
 
 class _Lines:

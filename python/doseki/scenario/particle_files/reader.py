@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import UserError
+from ...util.foreign import check_regular_file
 from ...util.spelling import suggestion
-from ..values.toml_source import check_regular_file
 from ..values.types import LARGEST
 from .columns_csv import read_csv_columns
 from .columns_hdf5 import is_hdf5, read_hdf5_columns

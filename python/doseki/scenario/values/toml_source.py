@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import UserError
+from ...util.foreign import read_text
 
 MAX_BYTES = 16 * 2**20
 MAX_DEPTH = 32
@@ -57,7 +58,7 @@ def _split(path: str) -> list[str]:
 
 def read_toml(path: Path) -> TomlSource:
     """Read one TOML file; raises UserError for anything that is not readable TOML."""
-    text = _read_text(path)
+    text = read_text(path, MAX_BYTES)
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -76,31 +77,6 @@ def _is_deep(table: dict[str, Any]) -> bool:
         inside = [part.values() if isinstance(part, dict) else part for part in level]
         level = [entry for part in inside for entry in part if isinstance(entry, dict | list)]
     return bool(level)
-
-
-def _read_text(path: Path) -> str:
-    check_regular_file(path)
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise UserError(f"{path}: a scenario file may have at most {MAX_BYTES // 2**20} MiB")
-        return path.read_bytes().decode("utf-8")
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise UserError(f"{path}, line {line}: not a text file in UTF-8") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}") from None
-
-
-def check_regular_file(path: Path) -> None:
-    """Raise UserError unless `path` is a file (not absent, a folder, a pipe or a device)."""
-    try:
-        if path.is_file():
-            return
-        kind = "not a regular file" if path.exists() else "no such file"
-        kind = "a folder, not a file" if path.is_dir() else kind
-    except (OSError, ValueError) as error:
-        kind = f"cannot be read: {error}"
-    raise UserError(f"{path}: {kind}")
 
 
 class Where:

@@ -19,8 +19,6 @@ class MeshBody(Turned[Mesh]):
     def group(self) -> Group:
         """See Body."""
         file = file_of(self.scenario.where, self.name, self.table.file)
-        if not file.is_file():
-            raise self.error(f".file: there is no file {file}", "file")
         try:
             shape, centre = mesh_shape(file, self.table.scale)
         except ShapeError as error:

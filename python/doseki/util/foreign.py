@@ -1,0 +1,76 @@
+"""Files of others: only ordinary files are opened, and none is read beyond the size that it has."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from ..errors import DosekiError, UserError
+from .memory import available_bytes
+
+
+@contextmanager
+def readable(path: Path, how: str = "") -> Iterator[None]:
+    """Turn whatever reading a damaged, forbidden or hostile file raises into a UserError."""
+    try:
+        yield
+    except (DosekiError, MemoryError):
+        raise
+    except Exception as error:
+        # Readers of damaged files raise almost anything.
+        said = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        raise UserError(f"{path}: cannot be read{how}: {str(said).splitlines()[0]}") from None
+
+
+def check_regular_file(path: Path) -> None:
+    """Raise UserError unless `path` is a file (not absent, a folder, a pipe or a device)."""
+    try:
+        if path.is_file():
+            return
+        kind = "not a regular file" if path.exists() else "no such file"
+        kind = "a folder, not a file" if path.is_dir() else kind
+    except (OSError, ValueError) as error:
+        kind = f"cannot be read: {error}"
+    raise UserError(f"{path}: {kind}")
+
+
+@contextmanager
+def open_regular(path: Path) -> Iterator[tuple[BinaryIO, int]]:
+    """An ordinary file, open for reading, and its size in bytes; raises UserError for others.
+
+    What the kernel only pretends to be a file (/proc) has no size, and counts as empty.
+    """
+    check_regular_file(path)
+    # Should it have become a pipe since: opening that must not wait for a writer.
+    flags = os.O_RDONLY | os.O_NONBLOCK
+    with readable(path), os.fdopen(os.open(path, flags), "rb") as file:
+        found = os.fstat(file.fileno())
+        if not stat.S_ISREG(found.st_mode):
+            raise UserError(f"{path}: not a regular file")
+        yield file, found.st_size
+
+
+def read_bytes(path: Path, most: int | None = None) -> bytes:
+    """The content of an ordinary file; raises UserError for others and for more than `most` bytes.
+
+    Without `most`, a quarter of the free memory is the limit.
+    """
+    limit = available_bytes() // 4 if most is None else most
+    with open_regular(path) as (file, size):
+        if size > limit:
+            raise UserError(f"{path}: {size} bytes; at most {limit} are read")
+        return file.read(size)
+
+
+def read_text(path: Path, most: int | None = None) -> str:
+    """The same for a text in UTF-8."""
+    data = read_bytes(path, most)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise UserError(f"{path}, line {line}: not a text file in UTF-8") from None
