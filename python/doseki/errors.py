@@ -43,3 +43,12 @@ class ResourceError(DosekiError):
     """The machine ran out of something: memory, disk, threads."""
 
     exit_code = 4
+
+
+class Interrupted(BaseException):
+    """Ctrl-C outside the steps of a run, which end in good order; not for `except Exception`."""
+
+    exit_code = 130  # as shells say
+
+    def __init__(self) -> None:
+        super().__init__("interrupted")

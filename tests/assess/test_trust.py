@@ -12,7 +12,8 @@ from doseki.assess.trust.checks import DEPTH
 from doseki.assess.trust.report import trust_checks
 from doseki.assess.trust.snapshots import closest_pair, flow_depth
 from doseki.assess.trust.verdicts import BAD, DOUBTFUL, GOOD, NOT_AVAILABLE, verdict
-from doseki.cli.main import app, main
+from doseki.cli.app import app
+from doseki.cli.main import main
 from doseki.record.reader import load
 from doseki.record.writer import Recorder
 from doseki.run.runner import RunOptions, run_scenario

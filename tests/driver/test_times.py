@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import time
 
 import pytest
 
-from doseki.driver.schedule import OutputTimes
+from doseki.driver.schedule import CheckpointClock, OutputTimes
 
 
 def walk(times):
@@ -42,3 +43,33 @@ def test_after_any_time_comes_the_next_one():
         planned = number * 0.013
         assert times.after(planned) == (number + 1) * 0.013
         assert times.after(planned + 0.006) == (number + 1) * 0.013
+
+
+def test_checkpoints_by_wall_time_come_after_a_minute_then_at_the_usual_interval(monkeypatch):
+    now = 1000.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    clock, written = CheckpointClock(None, minutes=10.0), []
+    for second in range(1, 1400):
+        now = 1000.0 + second
+        if clock.is_due(simulated=0.0):
+            clock.reset(simulated=0.0)
+            written.append(second)
+    assert written == [60, 660, 1260]
+
+
+def test_shorter_intervals_than_a_minute_stay_as_they_are(monkeypatch):
+    now = 0.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    clock = CheckpointClock(None, minutes=0.5)
+    now = 30.0
+    assert clock.is_due(simulated=0.0)
+
+
+def test_a_run_without_simulated_interval_may_get_one_when_it_is_resumed():
+    before = CheckpointClock(None, minutes=10.0)
+    clock = CheckpointClock(0.5, 10.0, before.next_time)
+    assert not clock.is_due(simulated=0.4)
+    assert clock.is_due(simulated=0.6)
+    clock.reset(simulated=3.2)
+    assert not clock.is_due(simulated=3.4)
+    assert clock.is_due(simulated=3.5)

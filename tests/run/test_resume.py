@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import signal
-import subprocess
-
 import pytest
 
 from doseki.driver.checkpoint import CheckpointFolder
@@ -17,9 +13,7 @@ from doseki.run.runner import RunOptions
 from .channel import (
     assert_same_record,
     channel_text,
-    command,
     doseki_command,
-    environment,
     record,
     run_channel,
 )
@@ -105,28 +99,21 @@ def test_the_last_two_checkpoints_are_kept(channel_file, tmp_path):
     assert sorted((tmp_path / "run/checkpoints").iterdir()) == files
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_signals_stop_with_a_checkpoint_and_code_0(channel_file, tmp_path, number):
-    run = subprocess.Popen(
-        command(
-            "run", channel_file, "-o", tmp_path / "run", "--threads", 1, "--set", "time_max=99"
-        ),
-        env=environment(),
-        stdout=subprocess.DEVNULL,
-    )
-    while not (tmp_path / "run/history.csv").exists():
-        assert run.poll() is None
-    run.send_signal(number)
-    assert run.wait(60) == 0
-    assert json.loads((tmp_path / "run/summary.json").read_text())["status"] == "stopped"
-    assert len(CheckpointFolder(tmp_path / "run/checkpoints").files()) == 1
-
-
 def test_resume_on_the_command_line(channel_file, uninterrupted, tmp_path):
     run_channel(channel_file, tmp_path / "run", progress=stop_at(tmp_path / "run", 0.02))
     done = doseki_command("resume", tmp_path / "run", "--threads", 1)
     assert (done.returncode, done.stderr) == (0, "")
     assert "status            done" in done.stdout
+    assert_same_record(tmp_path / "run", uninterrupted)
+
+
+def test_a_run_that_dies_in_its_first_steps_goes_on(channel_file, uninterrupted, tmp_path):
+    def die(*_moment):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_channel(channel_file, tmp_path / "run", progress=die)
+    resume_run(tmp_path / "run", (), RunOptions(threads=1))
     assert_same_record(tmp_path / "run", uninterrupted)
 
 

@@ -1,91 +1,93 @@
-"""The command line: its options, its commands in the order of --help, its errors."""
+"""Where every command begins and ends: interrupts, errors, exit codes.
+
+Quick to import, so that an interrupt finds an answer from the first moment on; the commands, and
+what they need, come later.
+"""
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
-import traceback
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-import typer
-
-from .. import __version__
-from ..errors import DosekiError, ResourceError
-from .project import bench, list_scenarios, validate
-from .ranks import joined
-from .results import census, export, plot
-from .simulate import check, explain, resume, run
-from .studies import compare, trust
-
-_debug = False  # set by --debug
-
-app = typer.Typer(
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    add_completion=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Debris flows by smoothed particle hydrodynamics: water and rock solved as continua.",
-    epilog="Exit codes: 0 done, 1 a validation case fails, 2 bad input, 3 physics went wrong,"
-    " 4 out of memory or disk. The tests: ./doseki test.",
-)
-
-
-def _version(value: bool) -> None:
-    if value:
-        typer.echo(f"doseki {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def _options(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
-    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")] = False,
-) -> None:
-    """Options that stand before the command."""
-    global _debug
-    _debug = debug
-
-
-COMMANDS: dict[str, Callable[..., None]] = {
-    "run": run,
-    "check": check,
-    "resume": resume,
-    "explain": explain,
-    "trust": trust,
-    "plot": plot,
-    "compare": compare,
-    "census": census,
-    "export": export,
-    "list": list_scenarios,
-    "bench": bench,
-    "validate": validate,
-}
-for name, command in COMMANDS.items():
-    app.command(name)(command)
+from ..errors import DosekiError, Interrupted, ResourceError
 
 
 def main(arguments: list[str] | None = None) -> Any:
     """Entry point: errors become one sentence and an exit code; a traceback only with --debug."""
+    with _leaving_at_once():
+        from .app import app, wants_tracebacks
+        from .ranks import joined
+
     error_stream = sys.stderr
     if _is_silent():
         sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
     try:
-        return app(arguments)
-    except Exception as error:
-        if _debug:
+        with _interruptible():
+            return app(arguments)
+    except (Exception, Interrupted) as error:
+        if wants_tracebacks():
+            import traceback
+
             traceback.print_exc(file=error_stream)
         text, exit_code = _said(error)
         if ranks := joined():
             ranks.fail(text, exit_code, lambda line: print(f"doseki: {line}", file=error_stream))
-        typer.echo(f"doseki: {text}", err=True)
+        print(f"doseki: {text}", file=sys.stderr)
         sys.exit(exit_code)
     finally:
         if ranks := joined():
             ranks.done()
+
+
+@contextmanager
+def _leaving_at_once() -> Iterator[None]:
+    """Ctrl-C ends the process: imports, which this is for, would answer it with a traceback."""
+    with _answering(lambda: _leave(Interrupted())):
+        yield
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Ctrl-C raises Interrupted, so that files and the terminal are left in order.
+
+    The second one ends the process, should the first have come where nothing can be raised.
+    """
+    interrupts: list[Interrupted] = []
+
+    def answer() -> None:
+        if interrupts:
+            _leave(interrupts[0])
+        interrupts.append(Interrupted())
+        raise interrupts[0]
+
+    with _answering(answer):
+        yield
+
+
+@contextmanager
+def _answering(answer: Callable[[], None]) -> Iterator[None]:
+    """Let `answer` answer SIGINT, unless it is ignored, as in the background of a script."""
+    here = threading.current_thread() is threading.main_thread()  # others may not handle signals
+    if not here or signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        yield
+        return
+    old = signal.signal(signal.SIGINT, lambda _number, _frame: answer())
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, old)
+
+
+def _leave(error: Interrupted) -> None:
+    """End the process here and now."""
+    os.write(2, f"doseki: {error}\n".encode())
+    os._exit(error.exit_code)
 
 
 def _is_silent() -> bool:
@@ -95,9 +97,9 @@ def _is_silent() -> bool:
     return launched_rank() > 0
 
 
-def _said(error: Exception) -> tuple[str, int]:
+def _said(error: BaseException) -> tuple[str, int]:
     """An error as a sentence and an exit code."""
-    if isinstance(error, DosekiError):
+    if isinstance(error, DosekiError | Interrupted):
         return str(error), error.exit_code
     if isinstance(error, MemoryError):
         return "out of memory", ResourceError.exit_code

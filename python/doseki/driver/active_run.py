@@ -118,10 +118,11 @@ class ActiveRun:
         names = self.scenario.material_names, self.body_names
         return Checkpoint(self.simulation.checkpoint(), position, *names)
 
-    def write_checkpoint(self, clock: CheckpointClock) -> None:
-        """Put the state safely on the disk."""
-        clock.reset(self.simulation.time)
-        self.position.next_checkpoint = clock.next_time
+    def write_checkpoint(self, clock: CheckpointClock | None = None) -> None:
+        """Put the state safely on the disk, and `clock` forward if it was that which said so."""
+        if clock is not None:
+            clock.reset(self.simulation.time)
+            self.position.next_checkpoint = clock.next_time
         self.recorder.sync()
         self.store(self.checkpoint())
 
@@ -141,12 +142,13 @@ class ActiveRun:
         return min(limit, self.scenario.time_max)
 
     def start(self) -> None:
-        """Take the first rates; record the initial state."""
+        """Take the first rates; record the initial state, and write the first checkpoint."""
         self.simulation.start()
         self.record_snapshot()
         self.record_history()
         for gauge, _ in self.gauges:
             self.record_gauge(gauge)
+        self.write_checkpoint()
 
     def advance(self, clock: CheckpointClock, progress: Progress, stop: StopRequests) -> bool:
         """Steps to the end, or to the first look after a stop request; true if it came to the end.
@@ -197,5 +199,5 @@ class ActiveRun:
             return False
         # The step before may be past saving; the run may go on from the state well before it.
         self.store(copy)
-        self.write_checkpoint(CheckpointClock(None, 0.0))
+        self.write_checkpoint()
         return True

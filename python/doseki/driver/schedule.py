@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import os
 import signal
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 STOP_FILE = "STOP"
 
@@ -42,28 +45,36 @@ class OutputTimes:
 
 
 class CheckpointClock:
-    """Checkpoints every so many simulated seconds, and every so many minutes of wall time."""
+    """Checkpoints every so many simulated seconds, and every so many minutes of wall time.
+
+    The first by wall time comes after a minute: what goes wrong with a run often does so early.
+    """
+
+    FIRST = 60.0  # s of wall time
 
     def __init__(self, every: float | None, minutes: float, next_time: float = 0.0) -> None:
-        """`every`: s of simulated time, or None; `next_time`: of a resumed run, s."""
+        """`every`: s of simulated time, or None; `next_time`: where a resumed run stood, s."""
         self.every = every
         self.seconds = 60.0 * minutes
-        self.next_time = math.inf if every is None else max(next_time, every)
+        self._wait = min(self.FIRST, self.seconds)
+        self.next_time = math.inf
+        if every is not None:
+            self.next_time = max(next_time, every) if math.isfinite(next_time) else every
         self._written = time.monotonic()
 
     def is_due(self, simulated: float) -> bool:
         """Whether a checkpoint is to be written at this simulated time."""
-        return simulated >= self.next_time or time.monotonic() - self._written >= self.seconds
+        return simulated >= self.next_time or time.monotonic() - self._written >= self._wait
 
     def reset(self, simulated: float) -> None:
         """A checkpoint is about to be written."""
-        self._written = time.monotonic()
+        self._written, self._wait = time.monotonic(), self.seconds
         if self.every is not None:
             self.next_time = (math.floor(simulated / self.every + 1e-9) + 1) * self.every
 
 
 class StopRequests:
-    """SIGINT, SIGTERM, or a file STOP in the output folder."""
+    """SIGINT, SIGTERM, SIGHUP, or a file STOP in the output folder."""
 
     def __init__(self, directory: Path) -> None:
         self._file = directory / STOP_FILE
@@ -76,14 +87,34 @@ class StopRequests:
     def listening(self) -> Iterator[None]:
         """Collect signals, so that a run can end at a whole step with its record closed."""
         self._file.unlink(missing_ok=True)
-        numbers = (signal.SIGINT, signal.SIGTERM)
-        try:
-            old = {n: signal.signal(n, lambda k, _frame: self._signals.append(k)) for n in numbers}
-        except ValueError:  # not the main thread: whoever started it handles signals
-            old = {}
+        old = {}
+        # Other threads may not handle signals: whoever started them does.
+        if threading.current_thread() is threading.main_thread():
+            terminals = [stream for stream in (0, 1, 2) if os.isatty(stream)]
+            old = {number: signal.signal(number, self._collect) for number in _answered()}
+            if signal.SIGHUP in old:
+                signal.signal(signal.SIGHUP, lambda *said: self._hang_up(terminals, *said))
         try:
             yield
         finally:
             for number, handler in old.items():
                 signal.signal(number, handler)
             self._file.unlink(missing_ok=True)
+
+    def _collect(self, number: int, _frame: FrameType | None) -> None:
+        self._signals.append(number)
+
+    def _hang_up(self, terminals: list[int], number: int, frame: FrameType | None) -> None:
+        """The terminal may be gone, where writing to it would fail: nobody reads that any more."""
+        for stream in terminals:
+            if not os.isatty(stream):
+                nowhere = os.open(os.devnull, os.O_RDWR)
+                os.dup2(nowhere, stream)
+                os.close(nowhere)
+        self._collect(number, frame)
+
+
+def _answered() -> list[signal.Signals]:
+    """Signals that end a run; SIGHUP only where it is not ignored, as nohup has it."""
+    hangs_up = signal.getsignal(signal.SIGHUP) != signal.SIG_IGN
+    return [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hangs_up else [])]

@@ -16,20 +16,35 @@ from ..errors import UserError
 if TYPE_CHECKING:  # the solver comes with it, which --help must not wait for
     from ..driver.ranks import OneRank
 
-# What launchers tell each process: of MPICH, Intel MPI and MVAPICH; of Open MPI; of srun.
-SIZES = ("PMI_SIZE", "OMPI_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS")
-NUMBERS = ("PMI_RANK", "OMPI_COMM_WORLD_RANK", "PMIX_RANK", "SLURM_PROCID")
+# What launchers tell each process, number of processes and its own: of MPICH, Intel MPI and
+# MVAPICH; of Open MPI; of srun.
+LAUNCHERS = {
+    "PMI_SIZE": ("PMI_RANK",),
+    "OMPI_COMM_WORLD_SIZE": ("OMPI_COMM_WORLD_RANK",),
+    "SLURM_STEP_NUM_TASKS": ("PMIX_RANK", "SLURM_PROCID"),
+}
 MISSING = "several ranks need mpi4py: pip install doseki[mpi]"
 
 
 def launched_size() -> int:
     """How many processes the launcher has started; 1 without one."""
-    return next((int(os.environ[name]) for name in SIZES if name in os.environ), 1)
+    size = _launcher()
+    return 1 if size is None else int(os.environ[size])
 
 
 def launched_rank() -> int:
-    """The number of this process among them."""
-    return next((int(os.environ[name]) for name in NUMBERS if name in os.environ), 0)
+    """The number of this process among them.
+
+    A number without the size that belongs to it is a leftover of an environment, not a launcher's.
+    """
+    size = _launcher()
+    names = () if size is None else LAUNCHERS[size]
+    return next((int(os.environ[name]) for name in names if name in os.environ), 0)
+
+
+def _launcher() -> str | None:
+    """The variable of the launcher that started this process."""
+    return next((size for size in LAUNCHERS if size in os.environ), None)
 
 
 def join_ranks() -> OneRank:

@@ -1,0 +1,67 @@
+"""The command line: its options and its commands, in the order of --help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated
+
+import typer
+
+from .. import __version__
+from .project import bench, list_scenarios, validate
+from .results import census, export, plot
+from .simulate import check, explain, resume, run
+from .studies import compare, trust
+
+_debug = False  # set by --debug
+
+app = typer.Typer(
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="Debris flows by smoothed particle hydrodynamics: water and rock solved as continua.",
+    epilog="Exit codes: 0 done, 1 a validation case fails, 2 bad input, 3 physics went wrong,"
+    " 4 out of memory or disk. The tests: ./doseki test.",
+)
+
+
+def _version(value: bool) -> None:
+    if value:
+        typer.echo(f"doseki {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")] = False,
+) -> None:
+    """Options that stand before the command."""
+    global _debug
+    _debug = debug
+
+
+COMMANDS: dict[str, Callable[..., None]] = {
+    "run": run,
+    "check": check,
+    "resume": resume,
+    "explain": explain,
+    "trust": trust,
+    "plot": plot,
+    "compare": compare,
+    "census": census,
+    "export": export,
+    "list": list_scenarios,
+    "bench": bench,
+    "validate": validate,
+}
+for name, command in COMMANDS.items():
+    app.command(name)(command)
+
+
+def wants_tracebacks() -> bool:
+    """Whether --debug was given."""
+    return _debug
