@@ -133,8 +133,13 @@ public:
     NamedValues grains() const override { return BodyTables<D>::rigid(sim_.bodies); }
 
     NamedValues sample(const Corner& low, const Corner& high) const override {
-        return ParticleTables<D>::sample(
-            sim_.particles, ParticleTables<D>::inside(sim_.particles, low, high), states());
+        const auto order = ParticleTables<D>::inside(sim_.particles, low, high);
+        NamedValues table = ParticleTables<D>::sample(sim_.particles, order, states());
+        if (const auto& wall = sim_.particles.wall; wall.in_use) {
+            table["normal"] = ParticleTables<D>::column(wall.normal, order);
+            table["depth"] = ParticleTables<D>::column(wall.depth, order);
+        }
+        return table;
     }
 
     NamedValues force_terms(std::int64_t id) override {

@@ -50,6 +50,12 @@ interval = 0.0021
 kind = "pressure"
 position = { d2 = [0.07, 0], d3 = [0.07, 0.03, 0] }
 
+[gauge.tap]
+kind = "pressure"
+position = { d2 = [0.05, 0], d3 = [0.05, 0.03, 0] }
+filter_hz = 200
+interval = 0.0021
+
 [figure.depth]
 kind = "gauge"
 gauge = "depth"
@@ -59,7 +65,7 @@ kind = "gauge"
 gauge = "profile"
 columns = ["velocity_x"]
 """
-NAMES = ("depth", "profile", "toe", "weir")
+NAMES = ("depth", "profile", "tap", "toe", "weir")
 
 
 def text(dim=2):
@@ -128,7 +134,7 @@ def test_rows_after_the_checkpoint_are_dropped(case, tmp_path):
 def test_samples_are_at_their_times_exactly(case):
     run = load(case[1])
     assert tuple(run.gauges) == NAMES
-    steps = {"depth": 0.0013, "profile": 0.01, "weir": 0.0021, "toe": 0.007}
+    steps = {"depth": 0.0013, "profile": 0.01, "weir": 0.0021, "toe": 0.007, "tap": 0.0021}
     for name, interval in steps.items():
         times = np.unique(run.gauges[name]["time"])
         expected = np.arange(int(0.06 / interval * (1 + 1e-9)) + 1) * interval

@@ -37,13 +37,10 @@ def test_amplitude_of_a_wave():
     assert estimators.wave_amplitude(wave, 0, 1, 2 * np.pi) == pytest.approx(0.3)
 
 
-def test_crossings_and_first_above():
+def test_crossings():
     t = np.linspace(0, 4, 401)
     zeros = estimators.crossings(t, np.cos(np.pi * t))
     np.testing.assert_allclose(zeros, [0.5, 1.5, 2.5, 3.5], atol=1e-6)
-    assert estimators.first_above(t, t**2, 1.0) == pytest.approx(1.0)
-    assert estimators.first_above(t, t, -1.0) == 0
-    assert np.isnan(estimators.first_above(t, t, 5.0))
 
 
 def test_front_and_level():
@@ -66,22 +63,6 @@ def test_what_is_torn_is_loose():
     assert estimators.loose_share(state(block), 1.6) == 0
     torn = np.concatenate([block, [[100, 0], [102, 0], [104, 5], [90, 90]]])
     assert estimators.loose_share(state(torn), 1.6) == pytest.approx(4 / 604)
-
-
-def test_integral():
-    t = np.linspace(0, 2, 201)
-    assert estimators.integral(t, t, 0, 1) == pytest.approx(0.5)
-
-
-def test_an_integral_goes_to_its_ends_between_samples():
-    """As from sparse samples, so from dense ones of the same broken line."""
-    t = np.array([0.1, 1.0, 3.0])
-    values = np.array([2.0, 4.0, 0.0])
-    dense = np.linspace(0, 3, 3001)
-    assert estimators.integral(t, values, 0.5, 2.0) == pytest.approx(
-        estimators.integral(dense, np.interp(dense, t, values), 0.5, 2.0), rel=1e-6
-    )
-    assert estimators.integral(t, values, 0, 0.1) == pytest.approx(0.2)
 
 
 def test_exact_solutions():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.validate.estimators import first_above, integral
+from doseki.measure.series import first_above, impulse
 from doseki.validate.reference import read_columns
 
 from .reduce_measurements import FOLDER, RECORDS, SHARE, broken_line
@@ -47,8 +47,8 @@ def test_the_reduction_is_finer_than_what_is_compared(record):
     scale, share = SCALES[name]
     for column, curve in zip(columns, curves.T, strict=True):
         assert np.mean(np.abs(np.interp(times, knots, column) - curve)) < share * scale
-        whole = integral(times, curve, 0, 6)
-        assert integral(knots, column, 0, 6) == pytest.approx(whole, rel=IMPULSE)
+        whole = impulse(times, curve, 0, 6)
+        assert impulse(knots, column, 0, 6) == pytest.approx(whole, rel=IMPULSE)
 
 
 @pytest.mark.parametrize("record", PEAKED, indirect=True)

@@ -17,6 +17,7 @@ from .gauges import GaugeReader, build_gauges
 from .ranks import OneRank
 from .rewind import Rewind
 from .schedule import CheckpointClock, OutputTimes, StopRequests
+from .sensors import build_sensors
 
 BURST_SECONDS = 0.2  # wall time between two looks at signals and the progress bar
 FIRST_BURST, LAST_BURST = 1, 1_000_000  # steps
@@ -73,6 +74,7 @@ class ActiveRun:
             (gauge, OutputTimes(gauge.interval, scenario.time_max))
             for gauge in build_gauges(scenario, body_names)
         ]
+        self.sensors = build_sensors([gauge for gauge, _ in self.gauges])
         self._started = time.perf_counter()
 
     @property
@@ -107,14 +109,17 @@ class ActiveRun:
 
     def record_gauge(self, gauge: GaugeReader) -> None:
         """Write a sample."""
-        rows = gauge.read(self.simulation)
+        sensor = self.sensors.get(gauge.name)
+        rows = gauge.read(self.simulation) if sensor is None else [sensor.row()]
         self.recorder.gauge(gauge.name, gauge.header, rows)
         written = self.position.gauge_rows.get(gauge.name, 0) + len(rows)
         self.position.gauge_rows = self.position.gauge_rows | {gauge.name: written}
 
     def checkpoint(self) -> Checkpoint:
         """A copy of the state and of where the run stands."""
-        position = Position(**vars(self.position) | {"wall_seconds": self.wall_seconds})
+        sensors = {name: sensor.state for name, sensor in self.sensors.items()}
+        now = {"wall_seconds": self.wall_seconds, "sensors": sensors}
+        position = Position(**vars(self.position) | now)
         names = self.scenario.material_names, self.body_names
         return Checkpoint(self.simulation.checkpoint(), position, *names)
 
@@ -146,9 +151,18 @@ class ActiveRun:
         self.simulation.start()
         self.record_snapshot()
         self.record_history()
+        self._follow()
         for gauge, _ in self.gauges:
             self.record_gauge(gauge)
         self.write_checkpoint()
+
+    def go_on_from(self, position: Position) -> None:
+        """Stand in the record where a checkpoint did; raises ValueError for one of another run."""
+        self.position = position
+        if set(position.sensors) != set(self.sensors):
+            raise ValueError("the gauges with filter_hz are not those of its checkpoint")
+        for name, sensor in self.sensors.items():
+            sensor.state = position.sensors[name]
 
     def advance(self, clock: CheckpointClock, progress: Progress, stop: StopRequests) -> bool:
         """Steps to the end, or to the first look after a stop request; true if it came to the end.
@@ -177,7 +191,7 @@ class ActiveRun:
         samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
         started, first = time.perf_counter(), simulation.steps
         pause = min(limit, pause, self.position.next_history)
-        simulation.advance(limit=limit, pause=pause, max_steps=steps)
+        self._step(limit, pause, steps)
         rate = (simulation.steps - first) / (time.perf_counter() - started)
         if self.outputs.is_due(simulation.time, self.next_output()):
             self.record_snapshot()
@@ -187,6 +201,21 @@ class ActiveRun:
         if simulation.time >= min(self.position.next_history, self.scenario.time_max):
             self.record_history()
         return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))
+
+    def _step(self, limit: float, pause: float, steps: int) -> None:
+        """Steps of the simulation, of which sensors see each."""
+        if not self.sensors:
+            self.simulation.advance(limit=limit, pause=pause, max_steps=steps)
+            return
+        for _ in range(steps):
+            if self.simulation.time >= min(limit, pause):
+                return
+            self.simulation.advance(limit=limit, pause=pause, max_steps=1)
+            self._follow()
+
+    def _follow(self) -> None:
+        for sensor in self.sensors.values():
+            sensor.follow(self.simulation)
 
     def step_back(self) -> bool:
         """After a failed step, go back to the state before it and put that safely on the disk.

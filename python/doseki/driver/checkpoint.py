@@ -40,6 +40,7 @@ class Position:
     next_history: Time = 0.0
     next_checkpoint: Time = 0.0
     wall_seconds: Time = 0.0
+    sensors: dict[str, list[float]] = field(default_factory=dict)  # state by name of the gauge
 
 
 @dataclass

@@ -100,6 +100,9 @@ def _restored(
     written = position.snapshots, position.rows, position.gauge_rows
     recorder = ranks.recorder(directory, lambda: Recorder.reopen(directory, *written))
     run = ActiveRun(scenario, simulation, recorder, checkpoint.body_names, ranks)
-    run.position = position
+    try:
+        run.go_on_from(position)
+    except ValueError as error:
+        raise UserError(f"{directory}: {error}") from None
     ranks.on_root(lambda: run.checkpoints.drop_later(checkpoint.step))
     return run

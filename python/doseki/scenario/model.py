@@ -99,6 +99,11 @@ class Scenario(ScenarioTable):
         """Smallest unscaled sound speed of the materials that limit the speed of the flow, m/s."""
         return min_sound_speed(self, self.materials, self.material_names)
 
+    @property
+    def acoustic_timestep(self) -> float:
+        """What sound allows a step at most, s (Eqs. 18 and 41)."""
+        return self.cflnumber * self.eta * self.dp / (self.xi * self.min_sound_speed)
+
     def kinematics_of(self, name: str) -> Kinematics:
         """How the particles of [body.NAME] move."""
         body = self.body[name]
@@ -123,6 +128,7 @@ class Scenario(ScenarioTable):
         return Setting(
             dim=self.dim,
             dp=self.dp,
+            timestep=self.acoustic_timestep,
             scheme=self.scheme,
             gravity=self.gravity,
             periodic=tuple("xyz".index(axis) for axis in self.periodic),

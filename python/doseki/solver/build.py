@@ -14,6 +14,7 @@ from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
 from ..scene.build import build_scene
+from ..scene.checks.sensors import sensor_findings
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..scene.wall_normals import wall_geometry
 from ..util.finding import Finding
@@ -181,6 +182,8 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> Filled:
         depth[bodies.shaped] = bodies.depth[bodies.shaped]
         simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
         add_bodies(simulation, scenario, bodies, body_names)
+        of_sensors = list(sensor_findings(scenario, particles, body_names, normal, depth))
+        return Filled(simulation, body_names, [*scene.warnings, *of_sensors])
     return Filled(simulation, body_names, scene.warnings)
 
 

@@ -48,18 +48,6 @@ def crossings(times: np.ndarray, values: np.ndarray) -> np.ndarray:
     return times[k] + share * (times[k + 1] - times[k])
 
 
-def first_above(times: np.ndarray, values: np.ndarray, level: float) -> float:
-    """When a sampled curve first reaches a level, interpolated linearly; nan if it never does."""
-    above = np.flatnonzero(values >= level)
-    if not len(above):
-        return float("nan")
-    k = int(above[0])
-    if k == 0:
-        return float(times[0])
-    share = (level - values[k - 1]) / (values[k] - values[k - 1])
-    return float(times[k - 1] + share * (times[k] - times[k - 1]))
-
-
 def front(state: State, dp: float, axis: int = 0) -> float:
     """Farthest reach of the particles along an axis, half a spacing beyond the last one."""
     return float(state["position"][:, axis].max() + dp / 2)
@@ -87,14 +75,6 @@ def loose_share(state: State, reach: float, chunk: int = 500) -> float:
         near = (np.einsum("ijk,ijk->ij", gaps, gaps) < reach**2).sum(axis=1) - 1
         loose += int((near < 3).sum())
     return loose / len(x)
-
-
-def integral(times: np.ndarray, values: np.ndarray, start: float, end: float) -> float:
-    """Of a sampled curve between two times, by trapezia; level beyond its ends."""
-    inside = (times > start) & (times < end)
-    t = np.concatenate([[start], times[inside], [end]])
-    v = np.interp(t, times, values)
-    return float(np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(t)))
 
 
 def largest_cluster(position: np.ndarray, reach: float) -> np.ndarray:

@@ -102,6 +102,7 @@ def _setting(run: Run, snapshot: Snapshot) -> Setting:
     return Setting(
         dim=scenario["dim"],
         dp=scenario["dp"],
+        timestep=0.0,  # nothing steps any more
         scheme=scenario.get("scheme", ""),
         gravity=_gravity(run),
         periodic=tuple("xyz".index(axis) for axis in scenario.get("periodic", [])),

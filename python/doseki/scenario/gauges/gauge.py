@@ -36,6 +36,7 @@ class Setting:
 
     dim: int
     dp: float  # particle spacing
+    timestep: float  # that no step is longer than
     scheme: str
     gravity: np.ndarray  # (dim,)
     periodic: tuple[int, ...]  # axes
@@ -76,6 +77,11 @@ class Gauge(Part):
     @property
     def place(self) -> np.ndarray | None:
         """The point (dim,) at which it looks, if it is a point."""
+        return None
+
+    @property
+    def bandwidth(self) -> float | None:
+        """Of the low-pass, Hz, that its reading goes through at each step; None: it has none."""
         return None
 
     def columns(self, dim: int) -> dict[str, str]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ....measure.series import first_above, impulse
 from ...case import (
     Case,
     Control,
@@ -19,7 +20,7 @@ from ...case import (
     small,
     within,
 )
-from ...estimators import first_above, front, integral, level, pressure_at, volume
+from ...estimators import front, level, pressure_at, volume
 from ...reference import read_columns
 from ...running import Running, moving
 
@@ -113,13 +114,13 @@ def run_against(particles: float, *overrides: str) -> Outcome:
 
 def _sensor_outcome(times: np.ndarray, pressure: np.ndarray) -> Outcome:
     t, low, median, high = read_columns(BAND)
-    least, middle, most = (integral(t, p, 0, END) for p in (low, median, high))
-    impulse = integral(times, pressure, 0, END)
+    least, middle, most = (impulse(t, p, 0, END) for p in (low, median, high))
+    found = impulse(times, pressure, 0, END)
     expected = first_above(t, median, SHARE * median.max())
     return Outcome(
         {
-            IMPULSE: Value(impulse, middle),
-            PLACE: Value((impulse - least) / (most - least)),
+            IMPULSE: Value(found, middle),
+            PLACE: Value((found - least) / (most - least)),
             ARRIVAL: Value(first_above(times, pressure, SHARE * pressure.max()) - expected),
         },
         [Curve("", times, pressure)],
