@@ -103,4 +103,4 @@ def environment() -> dict[str, str]:
 def doseki_command(*arguments: object, **options: object) -> subprocess.CompletedProcess[str]:
     """Run doseki in a process of its own and wait for it."""
     options = {"capture_output": True, "text": True, "check": False} | options
-    return subprocess.run(command(*arguments), env=environment(), **options)
+    return subprocess.run(command(*arguments), **{"env": environment()} | options)

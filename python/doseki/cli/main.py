@@ -11,11 +11,12 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from ..errors import DosekiError, Interrupted, ResourceError
+from ..errors import Interrupted
+from .exits import drop_output, flushed_output, prepare_output, said
 
 
 def main(arguments: list[str] | None = None) -> Any:
@@ -24,21 +25,25 @@ def main(arguments: list[str] | None = None) -> Any:
         from .app import app, wants_tracebacks
         from .ranks import joined
 
+    prepare_output()
+    os.environ["MPLBACKEND"] = "agg"  # figures go to files, whatever backend is wished for
     error_stream = sys.stderr
-    if _is_silent():
-        sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
     try:
-        with _interruptible():
+        if _is_silent():
+            sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
+        with _interruptible(), flushed_output():
             return app(arguments)
     except (Exception, Interrupted) as error:
         if wants_tracebacks():
             import traceback
 
             traceback.print_exc(file=error_stream)
-        text, exit_code = _said(error)
+        text, exit_code = said(error)
         if ranks := joined():
             ranks.fail(text, exit_code, lambda line: print(f"doseki: {line}", file=error_stream))
-        print(f"doseki: {text}", file=sys.stderr)
+        with suppress(OSError):
+            print(f"doseki: {text}", file=sys.stderr)
+        drop_output()
         sys.exit(exit_code)
     finally:
         if ranks := joined():
@@ -95,16 +100,6 @@ def _is_silent() -> bool:
     from ..parallel.launch import launched_rank
 
     return launched_rank() > 0
-
-
-def _said(error: BaseException) -> tuple[str, int]:
-    """An error as a sentence and an exit code."""
-    if isinstance(error, DosekiError | Interrupted):
-        return str(error), error.exit_code
-    if isinstance(error, MemoryError):
-        return "out of memory", ResourceError.exit_code
-    said = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"a mistake in doseki itself: {said} (--debug shows where)", 1
 
 
 if __name__ == "__main__":

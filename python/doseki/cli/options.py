@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from .numbers import number
+
 ScenarioName = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")
 ]
@@ -17,10 +19,12 @@ Settings = Annotated[
 Threads = Annotated[int | None, typer.Option(min=1, max=4096, help="Threads [all cores].")]
 CheckpointEvery = Annotated[
     float | None,
-    typer.Option(min=1e-12, metavar="SECONDS", help="Simulated time between checkpoints."),
+    typer.Option(
+        parser=number(1e-12), metavar="SECONDS", help="Simulated time between checkpoints."
+    ),
 ]
 CheckpointMinutes = Annotated[
-    float, typer.Option(min=0.0, metavar="M", help="Wall time between checkpoints.")
+    float, typer.Option(parser=number(0.0), metavar="M", help="Wall time between checkpoints.")
 ]
 Ranks = Annotated[
     int | None,

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
+from .numbers import number
 from .options import Directory
 
 
@@ -38,18 +39,28 @@ def census(
         typer.Option(metavar="NAME", help='Of the speeds [the window "outlet", else all].'),
     ] = None,
     start: Annotated[
-        float, typer.Option("--from", metavar="SECONDS", help="Of the speeds.")
+        float, typer.Option("--from", parser=number(), metavar="SECONDS", help="Of the speeds.")
     ] = float("-inf"),
-    end: Annotated[float, typer.Option("--to", metavar="SECONDS", help="Of the speeds.")] = float(
-        "inf"
-    ),
+    end: Annotated[
+        float, typer.Option("--to", parser=number(), metavar="SECONDS", help="Of the speeds.")
+    ] = float("inf"),
     sections: Annotated[
         list[float] | None,
-        typer.Option("--section", metavar="X", help="Where passing is counted, m; repeatable [0]."),
+        typer.Option(
+            "--section",
+            parser=number(),
+            metavar="X",
+            help="Where passing is counted, m; repeatable [0].",
+        ),
     ] = None,
-    sample: Annotated[int, typer.Option(min=1, help="Grains in a random sample.")] = 30,
+    sample: Annotated[
+        int, typer.Option(min=1, max=1_000_000, help="Grains in a random sample.")
+    ] = 30,
     draws: Annotated[int, typer.Option(min=1, max=100_000, help="Number of samples.")] = 2000,
-    bin_width: Annotated[float, typer.Option(min=1e-6, help="Of the histogram, m/s.")] = 0.1,
+    bin_width: Annotated[
+        float,
+        typer.Option(parser=number(1e-6, 1e6), metavar="WIDTH", help="Of the histogram, m/s."),
+    ] = 0.1,
 ) -> None:
     """Take a census of the grains of a run into DIR/census: tables and figures."""
     from ..figures.census_output import CensusOptions, write_census

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .numbers import number
 from .options import (
     AsJson,
     CheckpointEvery,
@@ -102,7 +103,12 @@ def resume(
     settings: Settings = None,
     until: Annotated[
         float,
-        typer.Option("--from", metavar="SECONDS", help="Not from a checkpoint later than this."),
+        typer.Option(
+            "--from",
+            parser=number(),
+            metavar="SECONDS",
+            help="Not from a checkpoint later than this.",
+        ),
     ] = float("inf"),
     threads: Threads = None,
     ranks: Ranks = None,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -29,7 +30,7 @@ MISSING = "several ranks need mpi4py: pip install doseki[mpi]"
 def launched_size() -> int:
     """How many processes the launcher has started; 1 without one."""
     size = _launcher()
-    return 1 if size is None else int(os.environ[size])
+    return 1 if size is None else _told(size, 1)
 
 
 def launched_rank() -> int:
@@ -39,7 +40,18 @@ def launched_rank() -> int:
     """
     size = _launcher()
     names = () if size is None else LAUNCHERS[size]
-    return next((int(os.environ[name]) for name in names if name in os.environ), 0)
+    return next((_told(name, 0) for name in names if name in os.environ), 0)
+
+
+def _told(name: str, lowest: int) -> int:
+    """The number in a variable of the environment; raises UserError where it holds none."""
+    text = os.environ[name]
+    if not re.fullmatch(r"[0-9]{1,7}", text) or int(text) < lowest:
+        raise UserError(
+            f"the environment variable {name} is {text!r}; expected a whole number from {lowest} "
+            "on, as a launcher of MPI sets it"
+        )
+    return int(text)
 
 
 def _launcher() -> str | None:

@@ -23,7 +23,7 @@ LARGEST_STL = 50_000_000  # bytes
 BULGE = 1e-4  # of the size: by which a surface may miss being convex (files hold single precision)
 
 
-class ShapeError(ValueError):
+class ShapeError(UserError):
     """A polygon or a mesh that cannot be a body."""
 
 

@@ -20,15 +20,14 @@ from ..scene.wall_normals import wall_geometry
 from ..util.finding import Finding
 from .protocol import CoreSimulation, Table
 from .rigid_bodies import add_bodies
-from .settling import settled
+from .settling import CALM_STEPS, settled
 from .wall_motions import wall_motions
 
 __all__ = ["available_instruction_sets", "build_simulation", "load_core"]
 
 # Margin of the first lists of a run that chooses its own.
 FIRST_SKIN = 0.05
-# Of contacts while grains settle: restitution and steps at most.
-CALM, CALM_STEPS = 0.2, 12
+CALM = 0.2  # restitution at most while grains settle
 STRENGTH = ("shear_modulus", "yield_strength", "cohesion", "friction_angle")
 
 

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from ..compiled import load_core
+from ..errors import PhysicsError
 from ..record.particles import BOUND
+from ..scenario.checks.effort import contact_steps
 from ..scenario.kinematics import FIXED
 from ..scenario.model import Scenario
 from ..scene.bodies import Bodies
 from ..scene.build import Settled
 from ..scene.groups import Group
+from ..scene.kinds.body import Body
 from ..scene.kinds.registry import body_of
 from ..scene.periodic import wrapped
 from ..util.finding import Finding
@@ -24,6 +29,8 @@ REST = 1e-3
 # Falls from the top of everything to its bottom after which a packing is taken as it is.
 PATIENCE = 10.0
 FOREVER = 10**9  # steps
+MOST_STEPS = 3e8  # of contacts, in which a packing may come to rest
+CALM_STEPS = 12  # in a contact, at most
 
 Make = Callable[[Scenario, list[str]], CoreSimulation]  # a simulation of nothing but its materials
 
@@ -82,10 +89,14 @@ def _at_rest(
     pause, slow = np.sqrt(diameter / gravity), REST * np.sqrt(gravity * diameter)
     settle = body.table.given("settle")
     end = PATIENCE * np.sqrt(2 * (high - low) / gravity) if settle is True else settle
+    _check_effort(scenario, body, diameter, end)
     fastest = np.inf
     while simulation.time < end and (fastest > slow or settle is not True):
         until = min(simulation.time + pause, end)
-        simulation.advance(limit=until, pause=until, max_steps=FOREVER)
+        try:
+            simulation.advance(limit=until, pause=until, max_steps=FOREVER)
+        except load_core().PhysicsFailure as failure:
+            raise PhysicsError(f"body.{group.name}: settling fails: {failure}") from None
         bodies, mine = simulation.grains(), slice(len(group))
         centre, orientation = bodies["centre"][mine], bodies["orientation"][mine]
         group = replace(group, centre=centre, orientation=orientation)
@@ -98,6 +109,18 @@ def _at_rest(
     if settle is True and fastest > slow:
         warnings.append(StillMoving(group.name, end, fastest))
     return replace(group, centre=wrapped(scenario, group.centre)), warnings
+
+
+def _check_effort(scenario: Scenario, body: Body[Any], diameter: float, end: float) -> None:
+    """Refuse to settle what would go on for days without coming to rest."""
+    share = min(1.0, CALM_STEPS / scenario.contact.steps)
+    steps = share * contact_steps(scenario, diameter, end)
+    if not steps <= MOST_STEPS:
+        raise body.error(
+            f".settle: {end:.3g} s of settling would take {steps:.2g} steps, more than "
+            f"{MOST_STEPS:g}: give settle in s, a larger contact.overlap, or a lower contact.speed",
+            "settle",
+        )
 
 
 def _fill(

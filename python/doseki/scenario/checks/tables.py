@@ -6,6 +6,7 @@ from ..materials import EQUATIONS_OF_STATE, RHEOLOGIES, laws_of
 from ..model import Scenario
 from ..schemes import RESOLVED, UETA2022
 from .bodies import check_bodies
+from .effort import check_effort
 from .gauges import check_figures, check_gauges
 from .motions import check_motions
 
@@ -14,6 +15,7 @@ MAX_OUTPUTS = 1e6
 
 def check_scenario(scenario: Scenario) -> None:
     """Raise UserError where tables that are right by themselves do not fit together."""
+    check_effort(scenario)
     _check_outputs(scenario)
     _check_periodic(scenario)
     if scenario.scheme == RESOLVED:

@@ -58,6 +58,11 @@ class Disc(LatticeBody):
         "lattice", description="lattice: particles nearer than radius; single: one with its mass"
     )
 
+    @property
+    def smallest(self) -> float | None:
+        """See BodyTable."""
+        return 2 * self.radius
+
     def kinematics_in(self, scheme: str, law: str | None) -> Kinematics:
         """As of any body; a ball that is one particle moves as one."""
         found = super().kinematics_in(scheme, law)
@@ -117,6 +122,11 @@ class Grains(TurnedBody):
     def described(self) -> str:
         """The keys that make it what it is, for messages."""
         return f"{super().described} with d"
+
+    @property
+    def smallest(self) -> float | None:
+        """See BodyTable."""
+        return min(diameter for diameter, _ in self.rows)
 
     @property
     def rows(self) -> list[list[float]]:

@@ -43,6 +43,11 @@ class BodyTable(Part):
         """How a fixed body moves."""
         return None
 
+    @property
+    def smallest(self) -> float | None:
+        """Diameter of the smallest of the balls that it is made of, m, if it is made of any."""
+        return None
+
     def layers(self, dp: float) -> int | None:
         """Particles of spacing `dp`, m, across its thinnest side, if it has sides."""
         return None

@@ -15,6 +15,11 @@ from ..shapes import Ball, Shape, box_shape
 from .lattice import Turned
 
 PACKING = {2: 0.75, 3: 0.55}  # solid fraction of a box filled with grains
+DENSEST = {
+    2: 0.91,
+    3: 0.74,
+}  # of any arrangement of equal ones (a little over pi/sqrt(12), pi/sqrt(18))
+MOST_GRAINS = 10_000_000
 
 
 class GrainsBody(Turned[Grains]):
@@ -77,13 +82,30 @@ class GrainsBody(Turned[Grains]):
         if table.mass_total is not None:
             slice_width = table.width if self.dim == 2 else 1.0
             total = table.mass_total / slice_width / self.rho0
-        numbers = (table.count or total / mean) * mean * share / measure
+        number = table.count or total / mean
+        self._check_possible(number, number * mean / float(np.prod(self.size)), len(diameters))
+        numbers = number * mean * share / measure
         whole = np.floor(numbers).astype(int)
         missing = round(numbers.sum()) - whole.sum()
         whole[np.argsort(whole - numbers, kind="stable")[:missing]] += 1
         if whole.sum() == 0:
             raise self.error(f": not one grain of d = {diameters.min():g} m fits its mass or box")
         return diameters, np.repeat(np.arange(len(diameters)), whole)
+
+    def _check_possible(self, number: float, fraction: float, sizes: int) -> None:
+        """Refuse what no arrangement of grains can be, before any is looked for.
+
+        Smaller grains may at best fill the gaps of larger ones as densely as those fill the box.
+        """
+        densest = 1 - (1 - DENSEST[self.dim]) ** sizes
+        fraction = max(fraction, self.table.packing or 0.0)
+        if not fraction <= densest:
+            raise self.error(
+                f": grains would fill {fraction:.3g} of their box; no arrangement fills more than "
+                f"{densest:.3g}: lower packing, count or mass_total, or make the box larger"
+            )
+        if not number <= MOST_GRAINS:
+            raise self.error(f": {number:.3g} grains; at most {MOST_GRAINS:g} are packed")
 
     def sides(self, thickness: float) -> list[Group]:
         """Walls along the sides of the box, from well below to well above it.

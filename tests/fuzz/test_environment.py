@@ -1,0 +1,95 @@
+"""Whatever the environment, the terminal or the command line says: a sentence and an exit code."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import pytest
+from tests.run.channel import doseki_command, environment
+
+from .test_command_line import GOOD
+
+VARIABLES = {
+    "PMI_SIZE": ["x", "", "-1", "1e3", "9" * 30, "²"],
+    "PMI_RANK": ["x", "-1", ""],
+    "SLURM_PROCID": ["nan"],
+    "DOSEKI_ISA": ["pentium", "../v4"],
+    "MPLBACKEND": ["nothing"],
+    "PYTHONIOENCODING": ["ascii"],
+    "LC_ALL": ["C", "xx_YY"],
+    "COLUMNS": ["0", "x", "-5"],
+    "TERM": ["", "土"],
+    "HOME": ["/nowhere", ""],
+}
+CASES = [(name, value) for name, values in VARIABLES.items() for value in values]
+SAMPLE = [CASES[k] for k in (0, 4, 6, 9, 11, 12)]
+
+
+@pytest.fixture
+def good(tmp_path):
+    """A scenario whose title no narrow encoding has."""
+    path = tmp_path / "good.toml"
+    path.write_text(f'title = "土石流"\n{GOOD}', encoding="utf-8")
+    return path
+
+
+def assert_clear(done):
+    assert done.returncode in (0, 2, 4), (done.returncode, done.stderr)
+    assert "Traceback" not in done.stderr
+    assert "mistake in doseki" not in done.stderr
+    if done.returncode:
+        assert [line for line in done.stderr.splitlines() if line.startswith("doseki:")]
+
+
+def run_with(good, folder, name, value):
+    changed = environment() | {name: value}
+    return doseki_command("check", good, "--threads", 1, cwd=folder, env=changed)
+
+
+@pytest.mark.parametrize(("name", "value"), SAMPLE)
+def test_a_variable(good, tmp_path, name, value):
+    assert_clear(run_with(good, tmp_path, name, value))
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(("name", "value"), CASES)
+def test_every_variable(good, tmp_path, name, value):
+    assert_clear(run_with(good, tmp_path, name, value))
+
+
+@pytest.mark.parametrize("command", ["list", "check"])
+def test_output_that_cannot_be_printed(good, tmp_path, command):
+    arguments = [command] + ([good, "--threads", 1] if command == "check" else [])
+    with Path("/dev/full").open("w") as full:
+        done = doseki_command(*arguments, cwd=tmp_path, stdout=full, capture_output=False)
+    assert done.returncode == 4
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        *itertools.product(["census"], ["."], ["--bin-width", "--from", "--section"], ["nan"]),
+        ("census", ".", "--bin-width", "inf"),
+        ("resume", ".", "--checkpoint-minutes", "nan"),
+        ("plot", "x" * 300),
+        ("census", "x" * 300),
+        ("explain", "x" * 300),
+        ("run", "x" * 300 + ".toml"),
+        ("check", "/proc/self/mem"),
+        ("check", "good.toml", "--set", 'body.block.shape="file"'),
+    ],
+)
+def test_arguments(good, tmp_path, monkeypatch, capsys, arguments):
+    from .test_command_line import run
+
+    monkeypatch.chdir(tmp_path)
+    assert run(*arguments) == 2
+    assert "mistake in doseki" not in capsys.readouterr().err
+
+
+def test_a_movie_whose_name_is_too_long(run_folder, capsys):
+    from .test_command_line import run
+
+    assert run("plot", run_folder, "--movie", run_folder / ("x" * 300 + ".gif")) == 2
+    assert "File name too long" in capsys.readouterr().err
