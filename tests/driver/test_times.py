@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from doseki.driver.schedule import CheckpointClock, OutputTimes
+from doseki.driver.schedule import CheckpointClock, OutputTimes, steps_between
 
 
 def walk(times):
@@ -73,3 +73,21 @@ def test_a_run_without_simulated_interval_may_get_one_when_it_is_resumed():
     clock.reset(simulated=3.2)
     assert not clock.is_due(simulated=3.4)
     assert clock.is_due(simulated=3.5)
+
+
+@pytest.mark.parametrize(
+    ("start", "intervals", "steps"),
+    [
+        (0.0, [], 34),  # 1/0.03
+        (0.0, [1.0], 34),
+        (0.0, [0.1], 40),  # 0.03 0.03 0.03 0.01, ten times
+        (0.0, [0.1, 0.1], 40),
+        (0.0, [0.1, 0.05], 40),  # two each: 0.03 0.02
+        (0.0, [0.04], 50),
+        (0.0, [0.02], 50),
+        (0.5, [0.1], 20),
+        (0.0, [0.3], 34),  # as 10 + 10 + 10 + 4
+    ],
+)
+def test_outputs_end_steps(start, intervals, steps):
+    assert steps_between(start, 1.0, 0.03, intervals) == steps

@@ -87,7 +87,7 @@ BODY = "[body.b]\nshape = 'box'\nmaterial = 'water'\nmin = [0, 0]\nmax = [1, 1]\
         (BODY + "velocity = [1]", ["body.b.velocity: a 2-D run needs 2 entries here, not 1"]),
         (BODY + "velocity = [1, 'fast']", ["finite numbers"]),
         (BODY + "velocity = [1, '= 1/x*z']", ["body.b.velocity", "unknown name z"]),
-        (BODY + "rotate_axis = [0, 0]", ["rotate_axis", "only a 3-D run"]),
+        (BODY + "rotate = 10\nrotate_axis = [0, 0]", ["rotate_axis", "only a 3-D run"]),
         (BODY + "mass_per_particle = 1e-300", ["body.b: a mass of 1e-300 kg"]),
         (BODY + "enabled = 'no'", ["body.b.enabled = 'no' must be true or false"]),
         ("[body]\nb = 3", ["body.b = 3 must be a table"]),

@@ -75,10 +75,9 @@ def test_rotation_keeps_distances(degrees, dim):
 
 
 def test_disc_and_single_particle_have_the_same_mass_to_the_lattice(write):
-    tables = (
-        "[body.d]\nshape = 'disc'\nmaterial = 'water'\ncentre = [0, 0]\nradius = 1\ndp = 0.0625\n"
-    )
-    lattice, single = (build(write(tables=tables), *o) for o in ([], ["body.d.fill=single"]))
+    tables = "[body.d]\nshape = 'disc'\nmaterial = 'water'\ncentre = [0, 0]\nradius = 1\n"
+    ways = ["body.d.dp=0.0625"], ["body.d.fill=single"]
+    lattice, single = (build(write(tables=tables), *way) for way in ways)
     assert (len(lattice), len(single)) == (793, 1)
     assert single.mass[0] == pytest.approx(1000 * np.pi)
     assert lattice.mass.sum() == pytest.approx(single.mass[0], rel=0.02)

@@ -269,10 +269,10 @@ def test_a_body_of_few_particles_is_told(write):
 
 def test_contact_can_be_set_and_is_kept(write, tmp_path):
     path = write(top=TOP, tables=DISC)
-    scenario = load_scenario(path, ["contact.law=hertz", "contact.steps=30"])
+    scenario = load_scenario(path, ["contact.stiffness=material", "contact.steps=30"])
     (tmp_path / "again.toml").write_text(scenario.effective_toml())
     again = load_scenario(str(tmp_path / "again.toml"))
-    assert (again.contact.law, again.contact.steps) == ("hertz", 30)
+    assert (again.contact.stiffness, again.contact.steps) == ("material", 30)
     assert again.effective_toml() == scenario.effective_toml()
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..driver.schedule import steps_between
 from ..record import vtkhdf
 from ..scenario.model import Scenario
 from ..scene.inflow_sections import build_inflows
@@ -16,6 +17,7 @@ from ..solver.protocol import Simulation
 
 BURST_SECONDS = 1.0  # of wall time
 HISTORY_BYTES = 260  # a row
+SAMPLE_BYTES = 60  # of a gauge; a profile has as many at each of its heights
 CHECKPOINT_SECONDS = 600.0  # between two, of which the last two are kept
 PROCESS_BYTES = 100e6  # Python, numpy, scipy and the core themselves
 
@@ -29,6 +31,7 @@ class Estimate:
     memory: float
     disk: float
     steps: float
+    shortened: float  # of the steps, those that are there because outputs end steps
     seconds: float
     timestep: float
 
@@ -38,12 +41,15 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
     start = len(simulation)
     rate, timestep = _burst(simulation, scenario.time_max)
     mean, most = _particles(scenario, body_names, start)
-    steps = simulation.steps + (scenario.time_max - simulation.time) / timestep
+    done, now, end = simulation.steps, simulation.time, scenario.time_max
+    steps = done + steps_between(now, end, timestep, scenario.sampled_intervals)
+    unhindered = done + steps_between(now, end, timestep, ())
     snapshot_bytes, snapshot_seconds = _snapshot(scenario, simulation, body_names)
     per_particle = simulation.bytes_per_particle
     snapshots = scenario.time_max / scenario.time_out + 1
     checkpoint = sum(array.nbytes for array in simulation.checkpoint().values()) / len(simulation)
-    rows = scenario.time_max / scenario.time_history
+    rows = min(scenario.time_max / scenario.time_history, steps) + 1
+    samples = sum(scenario.time_max / interval + 1 for interval in scenario.sampled_intervals[1:])
     seconds = steps * mean / rate + snapshots * mean * snapshot_seconds
     checkpoints = 1 if seconds < CHECKPOINT_SECONDS else 2
     return Estimate(
@@ -53,8 +59,10 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
         memory=PROCESS_BYTES + most * (per_particle + 3 * checkpoint),
         disk=snapshots * snapshot_bytes * mean
         + rows * HISTORY_BYTES
+        + samples * SAMPLE_BYTES
         + checkpoints * most * checkpoint,
         steps=steps,
+        shortened=steps - unhindered,
         seconds=seconds,
         timestep=timestep,
     )

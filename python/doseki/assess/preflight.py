@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ..driver.schedule import steps_between
 from ..errors import PhysicsError, ResourceError
 from ..record.particles import FIXED
 from ..scenario.model import Scenario
@@ -55,9 +56,10 @@ def brief_check(
     """
     state, dt = simulation.state(), simulation.rates()["timestep"]
     memory = len(simulation) * simulation.bytes_per_particle
+    steps = steps_between(0.0, scenario.time_max, dt, scenario.sampled_intervals)
     head = (
         f"{len(simulation):,} particles, {_size(memory)}, first timestep {dt:.3g} s: about"
-        f" {scenario.time_max / dt:,.0f} steps"
+        f" {steps:,.0f} steps"
     )
     doubts = findings(scenario, state, body_names, warnings)
     return [head, *(f"warning: {doubt}" for doubt in doubts)]
@@ -83,7 +85,9 @@ def _costs(expected: Estimate) -> Iterator[str]:
     yield _line("memory", f"{_size(expected.memory)} of {_size(free)} free")
     yield _line("disk", _size(expected.disk))
     yield _line("timestep", f"{expected.timestep:.3g} s")
-    yield _line("steps", f"{expected.steps:,.0f}")
+    outputs = f", {expected.shortened:,.0f} of them because outputs end steps"
+    shown = outputs if expected.shortened >= 1 else ""
+    yield _line("steps", f"{expected.steps:,.0f}{shown}")
     yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second")
 
 

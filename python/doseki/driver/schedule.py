@@ -7,10 +7,12 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
+
+import numpy as np
 
 STOP_FILE = "STOP"
 
@@ -42,6 +44,20 @@ class OutputTimes:
     def is_due(self, simulated: float, planned: float) -> bool:
         """Whether `planned` has come at the time `simulated`, both in s."""
         return simulated * (1 + self.SAME) >= planned
+
+
+def steps_between(start: float, end: float, dt: float, intervals: Iterable[float]) -> float:
+    """How many steps of `dt`, s, lead from `start` to `end`, s.
+
+    Each multiple of one of the `intervals`, s, ends a step, which is shorter for it.
+    """
+    times = [np.array([start, end])]
+    for interval in set(intervals):
+        multiples = interval * np.arange(np.floor(start / interval), end / interval + 1)
+        times.append(multiples[(multiples > start) & (multiples < end)])
+    gaps = np.diff(np.unique(np.concatenate(times)))
+    gaps = gaps[gaps > OutputTimes.SAME * end]  # else two of these times are one
+    return float(np.ceil(gaps / dt * (1 - 1e-9)).sum())
 
 
 class CheckpointClock:

@@ -13,7 +13,7 @@ from pydantic import ConfigDict, PrivateAttr
 from ..util.toml_writer import to_toml
 from .gauges.gauge import Gauge, Setting
 from .kinematics import Kinematics
-from .materials import Material
+from .materials import MATERIAL_PARAMETERS, Material
 from .particle_files.reader import ParticleTable
 from .schemes import KERNEL_SUPPORT, RESOLVED
 from .tables.root import ScenarioTable
@@ -119,6 +119,11 @@ class Scenario(ScenarioTable):
         """Time between two samples, s."""
         return self.time_out if gauge.interval is None else gauge.interval
 
+    @property
+    def sampled_intervals(self) -> list[float]:
+        """Times between the outputs at which a step ends exactly, s: snapshots and gauges."""
+        return [self.time_out, *(self.interval_of(gauge) for gauge in self.gauge.values())]
+
     def setting(self, body_names: Sequence[str] = ()) -> Setting:
         """What surrounds its gauges; `body_names` are those that particles index."""
         low, high = self.domain_min, self.domain_max
@@ -154,13 +159,17 @@ class Scenario(ScenarioTable):
         implied = {"xi_height", "speed_max", "slope"}  # xi and gravity say the same
         table = self.model_dump(by_alias=True, exclude_none=True, exclude=implied | set(SECTIONS))
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
-        given["material"] = {name: self.materials[name].table() for name in self.material_names}
-        for material in given["material"].values():
-            del material["name"]  # to_toml leaves out what is None
+        given["material"] = {name: self._material_table(name) for name in self.material_names}
         for name, body in self.body.items():
             if (file := body.given("file")) is not None:
                 given["body"][name]["file"] = str(file_of(self.where, name, file).resolve())
         return to_toml(table | {name: given.get(name, {}) for name in SECTIONS})
+
+    def _material_table(self, name: str) -> dict[str, Any]:
+        """What the scheme has of a material; to_toml leaves out what is None."""
+        others = {p.name for p in MATERIAL_PARAMETERS if p.scheme not in (None, self.scheme)}
+        values = self.materials[name].table().items()
+        return {key: value for key, value in values if key not in others | {"name"}}
 
 
 def file_of(where: Where, name: str, file: str) -> Path:

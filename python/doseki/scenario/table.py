@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any, Union, get_args
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 
@@ -23,11 +25,40 @@ class Table(BaseModel):
         """The value of a key; None where this kind of table has no such key."""
         return getattr(self, key, None) if key in type(self).model_fields else None
 
+    def has_default(self, key: str) -> bool:
+        """Whether a key has the value that it has where it is not given."""
+        default = type(self).model_fields[key].get_default(call_default_factory=True)
+        return bool(np.array_equal(getattr(self, key), default))
+
 
 class Part(Table):
     """A named table that can be switched off."""
 
     enabled: bool = Field(True, description="false: as if the table were not there")
+
+
+@dataclass(frozen=True)
+class Only:
+    """Where alone a key means something; elsewhere nothing but its default may be given.
+
+    It annotates the type of a key.
+    """
+
+    scheme: str | None = None
+    dim: int | None = None
+    fixed: bool | None = None  # of bodies
+
+    def allows(self, scheme: str, dim: int) -> bool:
+        """Whether the key means something in such a run."""
+        return self.scheme in (None, scheme) and self.dim in (None, dim)
+
+
+def limited_keys(kind: type[Table]) -> Iterator[tuple[str, Only]]:
+    """The keys of a kind of table that mean something in some runs alone."""
+    for name, field in kind.model_fields.items():
+        for about in field.metadata:
+            if isinstance(about, Only):
+                yield name, about
 
 
 def only_kind(table: type[Table], key: str) -> str:

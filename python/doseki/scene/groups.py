@@ -109,10 +109,14 @@ def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.
     if not len(position):
         return inside
     period = periods(scenario)
-    tree = cKDTree(wrapped(scenario, position), boxsize=period)
+    low = np.zeros(scenario.dim) if scenario.domain_min is None else scenario.domain_min
+    origin = np.where(period > 0, low, 0.0)  # the tree's box begins at zero
+    tree = cKDTree(wrapped(scenario, position) - origin, boxsize=period)
     for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
         shape = group.shapes[group.shape[k]]
-        near = np.array(tree.query_ball_point(group.centre[k], shape.reach), dtype=np.int64)
+        near = np.array(
+            tree.query_ball_point(group.centre[k] - origin, shape.reach), dtype=np.int64
+        )
         offset = nearest_image(position[near] - group.centre[k], period)
         inside[near[shape.contains(offset @ turned)]] = True
     return inside

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..kinematics import SINGLE
 from ..model import Scenario
 from ..schemes import RESOLVED
 from ..tables.body import BodyTable
@@ -18,14 +19,21 @@ def check_bodies(scenario: Scenario) -> None:
         _check_dimension(scenario, name, body)
         _check_solid(scenario, name, body)
         _check_keys(scenario, name, body)
+        _check_shaped(scenario, name, body)
         if scenario.kinematics_of(name).is_whole:
             _check_whole(scenario, name, body)
 
 
 def _check_file(scenario: Scenario, name: str, body: BodyTable) -> None:
+    table = scenario.particle_tables[name]
+    for key in ("fixed", "material"):
+        if key in table.columns and key in body.model_fields_set:
+            raise scenario.where.error(
+                ("body", name, key),
+                f"body.{name}.{key}: the file has a column of this name; remove one of them",
+            )
     if scenario.scheme != RESOLVED:
         return
-    table = scenario.particle_tables[name]
     fixed = np.full(len(table), body.fixed) if table.fixed is None else table.fixed
     law = np.array([scenario.materials[m].law for m in table.material_names])[table.material]
     if (~fixed & (law == "solid")).any():
@@ -69,8 +77,18 @@ def _check_keys(scenario: Scenario, name: str, body: BodyTable) -> None:
     kinematics = scenario.kinematics_of(name)
     for key in type(body).model_fields:
         why = kinematics.why_not(key)
-        if why is not None and body.given(key) not in (None, False):
+        if why is not None and not body.has_default(key):
             raise scenario.where.error(("body", name, key), f"body.{name}.{key}: {why}")
+
+
+def _check_shaped(scenario: Scenario, name: str, body: BodyTable) -> None:
+    """The particles of a shape that is always a body are at rest, with the normals of the shape."""
+    for key in ("pressure", "normal") if body.is_solid else ():
+        if not body.has_default(key):
+            raise scenario.where.error(
+                ("body", name, key),
+                f"body.{name}.{key}: {body.described} has none of its own; remove it",
+            )
 
 
 def _check_whole(scenario: Scenario, name: str, body: BodyTable) -> None:
@@ -87,6 +105,11 @@ def _check_whole(scenario: Scenario, name: str, body: BodyTable) -> None:
             keys,
             f"body.{name}: points of a solid move as grains of one particle: set kinematics = "
             '"single", or fixed = true, or use the scheme ueta2022',
+        )
+    if scenario.kinematics_of(name) is SINGLE and body.given("dp") is not None:
+        raise scenario.where.error(
+            ("body", name, "dp"),
+            f"body.{name}.dp: a grain of one particle has no spacing; remove it",
         )
     for key in body.of_particles:
         if key in body.model_fields_set:

@@ -8,6 +8,7 @@ from ..schemes import RESOLVED, UETA2022
 from .bodies import check_bodies
 from .effort import check_effort
 from .gauges import check_figures, check_gauges
+from .meaning import check_meaning
 from .motions import check_motions
 
 MAX_OUTPUTS = 1e6
@@ -22,6 +23,7 @@ def check_scenario(scenario: Scenario) -> None:
         _check_resolved(scenario)
     else:
         _check_ueta2022(scenario)
+    check_meaning(scenario)
     check_bodies(scenario)
     check_motions(scenario)
     check_gauges(scenario)
@@ -40,7 +42,11 @@ def _check_outputs(scenario: Scenario) -> None:
 
 
 def _check_periodic(scenario: Scenario) -> None:
-    """Periodic axes must exist and have a domain."""
+    """Periodic axes must exist and have a domain, and nothing else has one."""
+    for key in ("domain_min", "domain_max"):
+        if getattr(scenario, key) is not None and "periodic" not in scenario.model_fields_set:
+            message = f"{key} goes with periodic, the axes along which it ends"
+            raise scenario.where.error((key,), message)
     for axis in scenario.periodic:
         if axis not in "xyz"[: scenario.dim]:
             raise scenario.where.error(("periodic",), f'periodic: a 2-D run has no axis "{axis}"')
@@ -80,6 +86,15 @@ def _check_resolved(scenario: Scenario) -> None:
             ("scheme",),
             "the resolved scheme needs the highest speed to expect: give speed_max (m/s), "
             "xi_height (m) or xi",
+        )
+    if scenario.contact.law == "hertz" and scenario.dim == 2:
+        raise scenario.where.error(
+            ("contact", "law"), 'contact.law = "hertz" is of spheres: discs touch along a line'
+        )
+    default = type(scenario).model_fields["smagorinsky"].default
+    if "turbulence" not in scenario.model_fields_set and scenario.smagorinsky != default:
+        raise scenario.where.error(
+            ("smagorinsky",), 'smagorinsky goes with turbulence = "smagorinsky"'
         )
     for name, body in scenario.body.items():
         keys = ("body", name)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from ...record.units import unit_in
+from ..table import Only
 from ..values.directions import section_axes
 from ..values.types import Direction, Length
 from .gauge import FlowGauge, Rows, Sampled, Setting
@@ -24,7 +25,9 @@ class Discharge(FlowGauge):
     depth: Length | None = Field(
         None, description="extent upwards from the position, m; default: everything"
     )
-    width: Length | None = Field(None, description="3-D: extent across, m; default: everything")
+    width: Annotated[Length | None, Only(dim=3)] = Field(
+        None, description="3-D: extent across, m; default: everything"
+    )
     length: Length | None = Field(
         None, description="of the slab around the section, m; default: 4 dp"
     )

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
+from ..schemes import RESOLVED, UETA2022
 from .laws import EQUATIONS_OF_STATE, RHEOLOGIES, owners, parameters_of
 from .parameters import LIMIT, MaterialParameter
 
@@ -13,14 +14,20 @@ LAWS = ("fluid", "solid")
 
 
 def _strength(name: str, unit: str, doc: str, below: float = LIMIT) -> MaterialParameter:
-    return MaterialParameter(name, unit, doc, least=0.0, below=below, default=0.0, law="solid")
+    return MaterialParameter(
+        name, unit, doc, least=0.0, below=below, default=0.0, law="solid", scheme=UETA2022
+    )
 
 
 _COMMON = (
     MaterialParameter("rho0", "kg/m3", "reference density", above=0.0),
     MaterialParameter("speedsound", "m/s", "sound speed at the reference density", above=0.0),
-    MaterialParameter("shear_modulus", "Pa", "shear modulus (solids)", least=0.0, default=0.0),
-    MaterialParameter("nu", "m2/s", "kinematic viscosity (fluids)", least=0.0, default=0.0),
+    MaterialParameter(
+        "shear_modulus", "Pa", "shear modulus (solids)", least=0.0, default=0.0, law="solid"
+    ),
+    MaterialParameter(
+        "nu", "m2/s", "kinematic viscosity (fluids)", least=0.0, default=0.0, law="fluid"
+    ),
     _strength("yield_strength", "Pa", "yield strength of von Mises; 0: none (solids)"),
     _strength("cohesion", "Pa", "cohesion of Drucker and Prager (solids)"),
     _strength("friction_angle", "degrees", "angle of friction of Drucker and Prager (solids)", 90),
@@ -35,13 +42,35 @@ _CONTACT = (
         below=None,
         most=1.0,
         default=0.7,
-    ),
-    MaterialParameter("friction", "", "coefficient of friction", least=0.0, default=0.6),
-    MaterialParameter(
-        "rolling_friction", "", "coefficient of rolling friction", least=0.0, default=0.0
+        law="solid",
+        scheme=RESOLVED,
     ),
     MaterialParameter(
-        "young_modulus", "Pa", "Young's modulus (default: of c0 and mu0)", above=0.0, optional=True
+        "friction",
+        "",
+        "coefficient of friction",
+        least=0.0,
+        default=0.6,
+        law="solid",
+        scheme=RESOLVED,
+    ),
+    MaterialParameter(
+        "rolling_friction",
+        "",
+        "coefficient of rolling friction",
+        least=0.0,
+        default=0.0,
+        law="solid",
+        scheme=RESOLVED,
+    ),
+    MaterialParameter(
+        "young_modulus",
+        "Pa",
+        "Young's modulus (default: of c0 and mu0)",
+        above=0.0,
+        optional=True,
+        law="solid",
+        scheme=RESOLVED,
     ),
     MaterialParameter(
         "poisson_ratio",
@@ -50,6 +79,8 @@ _CONTACT = (
         least=0.0,
         below=0.5,
         optional=True,
+        law="solid",
+        scheme=RESOLVED,
     ),
 )
 

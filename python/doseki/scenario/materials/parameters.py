@@ -21,3 +21,4 @@ class MaterialParameter:
     default: float | None = None
     optional: bool = False  # else a new material must give what has no default
     law: str | None = None  # the only one it belongs to: "fluid" or "solid"
+    scheme: str | None = None  # the only one that has it

@@ -32,6 +32,7 @@ class ParticleTable:
     body: np.ndarray | None  # (N,) int, index into body_names
     body_names: list[str]
     smoothing_length: np.ndarray | None  # (N,), m
+    columns: frozenset[str]  # those that the file has
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -51,6 +52,7 @@ def read_particles(path: Path, dim: int, default_material: str | None) -> Partic
     optional = ["material", "fixed", "body", "smoothing_length"]
     columns = (read_hdf5_columns if is_hdf5(path) else read_csv_columns)(path)
     _check_names(path, columns, required, [*required, *optional])
+    given = frozenset(columns)
     columns = {"material": np.full(_rows(columns), default_material or ""), **columns}
     material, material_names = _codes(path, "material", columns["material"])
     body, body_names = _optional_body(path, columns.get("body"))
@@ -67,6 +69,7 @@ def read_particles(path: Path, dim: int, default_material: str | None) -> Partic
         smoothing_length=_positive(path, "smoothing_length", columns["smoothing_length"])
         if "smoothing_length" in columns
         else None,
+        columns=given,
     )
 
 

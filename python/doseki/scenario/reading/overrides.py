@@ -10,7 +10,14 @@ from typing import Any
 from ...errors import UserError
 from ...util.spelling import suggestion
 from ..materials import BUILT_IN
-from ..tables.sections import ALIASES, EXCLUSIVE, SECTIONS, SINGLE_TABLES, TOP_LEVEL_KEYS
+from ..tables.sections import (
+    ALIASES,
+    EXCLUSIVE,
+    RIVALS,
+    SECTIONS,
+    SINGLE_TABLES,
+    TOP_LEVEL_KEYS,
+)
 from ..values.expressions import is_expression
 from ..values.toml_source import KeyPath, Where
 
@@ -94,6 +101,10 @@ def _put(table: dict[str, Any], keys: KeyPath, value: Any) -> None:
         table = table.setdefault(key, {})
         if not isinstance(table, dict):
             raise UserError(f"--set {'.'.join(map(str, keys))}: {key} is not a table")
+    for pair in RIVALS.get(str(keys[0]), ()) if len(keys) == 3 else ():
+        if last in pair:
+            for rival in pair:
+                table.pop(rival, None)
     table[last] = value
 
 

@@ -8,9 +8,16 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..schemes import RESOLVED, UETA2022
+from ..table import Kinds, limited_keys
 from ..tables.parameter import Parameter
 from ..tables.root import ScenarioTable
-from ..tables.sections import EXCLUSIVE, TOP_LEVEL_KEYS, can_be_switched_off
+from ..tables.sections import (
+    EXCLUSIVE,
+    SECTIONS,
+    TOP_LEVEL_KEYS,
+    can_be_switched_off,
+    table_at,
+)
 from ..values.expressions import (
     POSITION_NAMES,
     RESERVED_NAMES,
@@ -24,6 +31,7 @@ from .messages import to_user_error
 
 # A value may be a choice by the number of dimensions or by the scheme.
 CHOICES = {"dim": {"d2", "d3"}, "scheme": {UETA2022, RESOLVED}}
+ABSENT = object()  # the value of a key in a run that has no such key
 WORDS = {"schema", "title", "description"}  # top-level keys that no expression needs
 # Of a body: may use x, y, z.
 SPATIAL_KEYS = ("velocity", "pressure", "where", "clamped", "displacement")
@@ -39,6 +47,7 @@ def resolve_table(table: dict[str, Any], where: Where) -> tuple[dict[str, Any], 
     names = Names(table, where)
     kept = {key: _enabled(section, key, names) for key, section in table.items()}
     resolved = {key: names.resolve(value, (key,)) for key, value in kept.items()}
+    resolved = {key: value for key, value in resolved.items() if value is not ABSENT}
     if isinstance(resolved.get("parameters"), dict):
         resolved["parameters"] = {name: names.parameter(name) for name in resolved["parameters"]}
     return resolved, {name: names[name] for name in names}
@@ -74,6 +83,7 @@ class Names(Mapping[str, Any]):
 
     def __init__(self, table: dict[str, Any], where: Where) -> None:
         self._where = where
+        self._table = table
         self._parameters = _dict(table.get("parameters"))
         self._top_level = _defaults() | _scalars(table)
         self._values: dict[str, Any] = {}
@@ -103,7 +113,8 @@ class Names(Mapping[str, Any]):
         if isinstance(value, dict):
             if (by := _chooses(value)) is not None:
                 return self.resolve(self._chosen(value, by, keys), keys)
-            return {key: self.resolve(inner, (*keys, key)) for key, inner in value.items()}
+            found = {key: self.resolve(inner, (*keys, key)) for key, inner in value.items()}
+            return {key: inner for key, inner in found.items() if inner is not ABSENT}
         if isinstance(value, list):
             return [self.resolve(inner, (*keys, index)) for index, inner in enumerate(value)]
         return self._value_of(value, keys) if is_expression(value) else value
@@ -123,10 +134,32 @@ class Names(Mapping[str, Any]):
             raise self._where.error((by,), f"{by} must not depend on itself")
         key = f"d{self._dim}" if by == "dim" else self._scheme
         if key not in choice:
+            if self._means_nothing(keys):
+                return ABSENT
             run = f"a {self._dim}-D run" if by == "dim" else f"the scheme {self._scheme}"
             message = f"{dotted(keys)} has no value for {run} ({key} is missing)"
             raise self._where.error(keys, message)
         return choice[key]
+
+    def _means_nothing(self, keys: KeyPath) -> bool:
+        """Whether this run has no such key, so that a choice needs not name a value for it."""
+        table = self._with_kind_of_part(keys)
+        for depth, key in enumerate(keys):
+            kind = table_at(keys[:depth], table)
+            only = dict(limited_keys(kind)).get(str(key)) if kind is not None else None
+            if only is not None and not only.allows(self._scheme, self._dim):
+                return True
+        return False
+
+    def _with_kind_of_part(self, keys: KeyPath) -> dict[str, Any]:
+        """The table, in which the part that `keys` lead to names its kind without a choice."""
+        kinds = SECTIONS.get(str(keys[0]))
+        if len(keys) < 3 or not isinstance(kinds, Kinds):
+            return self._table
+        section, name, word = str(keys[0]), str(keys[1]), kinds.key
+        part = self._table[section][name]
+        said = self.resolve(part.get(word), (section, name, word))
+        return self._table | {section: {name: part | {word: said}}}
 
     def _evaluate_once(self, name: str) -> Any:
         if name in self._waiting:
@@ -136,7 +169,8 @@ class Names(Mapping[str, Any]):
         try:
             if name in self._parameters:
                 return self._parameter_value(name)
-            return self.resolve(self._top_level[name], (name,))
+            found = self.resolve(self._top_level[name], (name,))
+            return _defaults().get(name) if found is ABSENT else found
         finally:
             self._waiting.pop()
 

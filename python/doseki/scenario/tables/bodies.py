@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from ..kinematics import SINGLE, Kinematics
-from ..table import Kinds
+from ..table import Kinds, Only
 from ..values.types import (
     Grading,
     Length,
@@ -63,6 +63,18 @@ class Disc(LatticeBody):
         """See BodyTable."""
         return 2 * self.radius
 
+    @model_validator(mode="after")
+    def _one_particle(self) -> Disc:
+        if self.fill == "lattice":
+            return self
+        if self.kinematics not in (None, "single"):
+            raise ValueError(f'fill = "single" is no body with kinematics = "{self.kinematics}"')
+        if self.dp is not None:
+            raise ValueError('fill = "single" excludes dp: one particle has no spacing')
+        if "rotate" in self.model_fields_set and self.pivot is None:
+            raise ValueError('fill = "single" is rotated only about a pivot elsewhere: give one')
+        return self
+
     def kinematics_in(self, scheme: str, law: str | None) -> Kinematics:
         """As of any body; a ball that is one particle moves as one."""
         found = super().kinematics_in(scheme, law)
@@ -86,7 +98,9 @@ class Grains(TurnedBody):
     mass_total: Mass | None = Field(
         None, description='kg or a string such as "20 kg"; default: what fills the box'
     )
-    width: Length = Field(1.0, description="2-D: m; mass_total is that of a slice so wide")
+    width: Annotated[Length, Only(dim=2)] = Field(
+        1.0, description="2-D: m; mass_total is that of a slice so wide"
+    )
     packing: float | None = Field(
         None,
         gt=0,
@@ -114,6 +128,8 @@ class Grains(TurnedBody):
             raise ValueError("give either d or grading")
         if self.count is not None and self.mass_total is not None:
             raise ValueError("count and mass_total exclude each other: give one")
+        if "width" in self.model_fields_set and self.mass_total is None:
+            raise ValueError("width goes with mass_total, which is that of a slice so wide")
         if not np.all(self.min < self.max):
             raise ValueError("every entry of min must be below that of max")
         return self

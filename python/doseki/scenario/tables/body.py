@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ..kinematics import ELASTIC, FIXED, PARTICLES, RIGID, SINGLE, Kinematics
 from ..materials import ELASTIC_DEFAULTS, HYPERELASTIC_LAWS
 from ..schemes import RESOLVED
-from ..table import Part
+from ..table import Only, Part
 from ..values.types import Length, MaterialName, Positive, ScalarField, Vector, VelocityField
 from .motion import Motion
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     ElasticLaw = str
 else:
     ElasticLaw = Literal[tuple(HYPERELASTIC_LAWS)]
+
+OF_WALLS = Only(scheme=RESOLVED, fixed=True)
 
 
 class BodyTable(Part):
@@ -69,15 +71,19 @@ class ShapedBody(BodyTable):
         "their volume",
     )
     fixed: bool = Field(False, description="true: interacts but moves only as `motion` says")
-    motion: Motion | None = Field(None, description="prescribed motion of a fixed body")
+    motion: Annotated[Motion | None, Only(fixed=True)] = Field(
+        None, description="prescribed motion of a fixed body"
+    )
     velocity: VelocityField | None = Field(
         None, description="initial velocity, m/s; expressions may use x, y, z"
     )
-    wall: Literal["no_slip", "free_slip", "rough"] = Field(
+    wall: Annotated[Literal["no_slip", "free_slip", "rough"], OF_WALLS] = Field(
         "no_slip", description="fixed, resolved scheme: how fluid meets it"
     )
-    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
-    normal: Vector | None = Field(
+    ks: Annotated[Length | None, OF_WALLS] = Field(
+        None, description="rough wall: equivalent sand roughness, m"
+    )
+    normal: Annotated[Vector | None, OF_WALLS] = Field(
         None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
     )
     kinematics: Literal["rigid", "elastic", "single"] | None = Field(
@@ -114,6 +120,12 @@ class ShapedBody(BodyTable):
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
     )
 
+    @model_validator(mode="after")
+    def _rough_with_ks(self) -> ShapedBody:
+        if self.ks is not None and "wall" not in self.model_fields_set:
+            raise ValueError('ks goes with wall = "rough"')
+        return self
+
     @property
     def prescribed_motion(self) -> Motion | None:
         """How a fixed body moves."""
@@ -131,8 +143,21 @@ class TurnedBody(ShapedBody):
 
     dp: Length | None = Field(None, description="particle spacing, m (default: the run's)")
     rotate: float = Field(0.0, description="degrees, from the first axis towards the last")
-    rotate_axis: Vector | None = Field(None, description="3-D: axis of a right-handed rotation")
-    pivot: Vector | None = Field(None, description="point about which it is rotated, m")
+    rotate_axis: Annotated[Vector | None, Only(dim=3)] = Field(
+        None, description="3-D: axis of a right-handed rotation"
+    )
+    pivot: Vector | None = Field(
+        None,
+        description="point about which it is rotated, m; default: `min` of a box, the centre of a "
+        "disc, sphere or stl, the centre of mass of a polygon",
+    )
+
+    @model_validator(mode="after")
+    def _turned(self) -> TurnedBody:
+        for key in ("rotate_axis", "pivot"):
+            if key in self.model_fields_set and "rotate" not in self.model_fields_set:
+                raise ValueError(f"{key} goes with rotate, in degrees")
+        return self
 
 
 class LatticeBody(TurnedBody):
@@ -157,3 +182,9 @@ class LatticeBody(TurnedBody):
     where: ScalarField | None = Field(
         None, description="expression of x, y, z; only particles where it is above zero are kept"
     )
+
+    @model_validator(mode="after")
+    def _seed_of_jitter(self) -> LatticeBody:
+        if {"random_seed", "jitter"} & self.model_fields_set == {"random_seed"}:
+            raise ValueError("random_seed goes with jitter")
+        return self

@@ -63,6 +63,12 @@ class FigureOfSnapshots(Figure):
     )
     material: OptionalMaterialName = Field(None, description="count or draw only this material")
 
+    @model_validator(mode="after")
+    def _one_choice(self) -> FigureOfSnapshots:
+        if self.times and "when" in self.model_fields_set:
+            raise ValueError("times and when exclude each other: give one")
+        return self
+
 
 class SnapshotFigure(FigureOfSnapshots):
     """The particles at some moments."""

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
 from ..materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
-from ..table import Table
+from ..table import Only, Table
 
 
 def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
     description = f"{parameter.doc}, {parameter.unit}".removesuffix(", ")
     return (
-        float | None,
+        Annotated[float | None, Only(scheme=parameter.scheme)],
         Field(
             None,
             gt=parameter.above,

@@ -29,8 +29,13 @@ class Motion(Table):
             raise ValueError(f"stop = {self.stop:g} s must be later than start = {self.start:g} s")
         if self.angular_velocity is not None and self.pivot is None:
             raise ValueError("angular_velocity needs a pivot, the point about which the body turns")
+        if self.angular_velocity is None and self.pivot is not None:
+            raise ValueError("pivot goes with angular_velocity")
         if self.velocity is None and self.angular_velocity is None and self.removed_at is None:
             raise ValueError("give velocity, angular_velocity or removed_at")
+        turns_or_goes = self.velocity is not None or self.angular_velocity is not None
+        if {"start", "stop"} & self.model_fields_set and not turns_or_goes:
+            raise ValueError("start and stop go with velocity or angular_velocity")
         return self
 
     def spin(self, dim: int) -> np.ndarray:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
 from ..gauges.kinds import GaugeTable
 from ..materials import EQUATIONS_OF_STATE, laws_of
-from ..schemes import RESOLVED
-from ..table import Table
+from ..schemes import RESOLVED, UETA2022
+from ..table import Only, Table
 from ..values.types import Axis, Length, NonNegative, Positive, Skin, Vector
 from .bodies import AnyBody
 from .contact import Contact
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     EquationOfState = str
 else:
     EquationOfState = Literal[laws_of(EQUATIONS_OF_STATE, RESOLVED)]
+
+OF_RESOLVED, OF_UETA2022 = Only(scheme=RESOLVED), Only(scheme=UETA2022)
 
 
 class ScenarioTable(Table):
@@ -41,15 +43,19 @@ class ScenarioTable(Table):
         "wendland_c6", description="W; the resolved scheme has wendland_c2 by default"
     )
     eos: EquationOfState = Field("linear", description="resolved: law of pressure")
-    viscosity: Literal["morris", "monaghan_cleary"] = Field(
+    viscosity: Annotated[Literal["morris", "monaghan_cleary"], OF_RESOLVED] = Field(
         "morris",
         description="resolved: form of the viscous term; the second keeps angular momentum",
     )
-    turbulence: Literal["none", "smagorinsky", "mixing_length"] = Field(
+    turbulence: Annotated[Literal["none", "smagorinsky", "mixing_length"], OF_RESOLVED] = Field(
         "none", description="resolved: eddy viscosity"
     )
-    smagorinsky: NonNegative = Field(0.12, description="resolved: C_s of the eddy viscosity")
-    shifting: bool = Field(True, description="resolved: keep particles evenly spread")
+    smagorinsky: Annotated[NonNegative, OF_RESOLVED] = Field(
+        0.12, description="resolved: C_s of the eddy viscosity"
+    )
+    shifting: Annotated[bool, OF_RESOLVED] = Field(
+        True, description="resolved: keep particles evenly spread"
+    )
     speed_max: Positive | None = Field(
         None, description="highest speed expected, m/s: sound speed 10 times that; excludes xi"
     )
@@ -57,30 +63,39 @@ class ScenarioTable(Table):
     gravity: Vector | None = Field(None, description="m/s2; excludes slope")
     slope: float | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
     g: Positive = Field(9.8, description="gravity on a slope and in eq. 19, m/s2")
-    attraction: NonNegative = Field(
+    attraction: Annotated[NonNegative, OF_RESOLVED] = Field(
         0.0, description="resolved: B of a force -B^2 x per mass towards the origin, 1/s"
     )
     eta: float = Field(1.2, ge=0.8, le=3, description="smoothing length over spacing (eq. 10)")
-    alpha: NonNegative = Field(1.0, description="artificial viscosity (eq. 13)")
-    balsara: bool = Field(True, description="Balsara switch")
-    strength: bool = Field(True, description="elastic deviatoric stress of solids")
-    tension: Literal["free", "clamp_fluid", "clamp_all"] = Field(
-        "clamp_fluid", description="where negative pressure is set to zero"
+    alpha: Annotated[NonNegative, OF_UETA2022] = Field(
+        1.0, description="ueta2022: artificial viscosity (eq. 13)"
     )
-    h_mode: Literal["constant", "eq10"] = Field("constant", description="smoothing length in time")
-    sym_grad: bool = Field(False, description="mean kernel gradient also in eqs. 9 and 11")
+    balsara: Annotated[bool, OF_UETA2022] = Field(True, description="ueta2022: Balsara switch")
+    strength: Annotated[bool, OF_UETA2022] = Field(
+        True, description="ueta2022: elastic deviatoric stress of solids"
+    )
+    tension: Annotated[Literal["free", "clamp_fluid", "clamp_all"], OF_UETA2022] = Field(
+        "clamp_fluid", description="ueta2022: where negative pressure is set to zero"
+    )
+    h_mode: Annotated[Literal["constant", "eq10"], OF_UETA2022] = Field(
+        "constant", description="ueta2022: smoothing length in time"
+    )
+    sym_grad: Annotated[bool, OF_UETA2022] = Field(
+        False, description="ueta2022: mean kernel gradient also in eqs. 9 and 11"
+    )
     cflnumber: float = Field(0.1, gt=0, le=1, description="C_CFL of eq. 18")
     cfl_force: float = Field(0.1, gt=0, le=1, description="C_f of eq. 18")
     xi: Positive | None = Field(None, description="reduction factor (eq. 19); excludes xi_height")
     xi_height: Length | None = Field(None, description="H of eq. 19, m; excludes xi")
-    fixed_limits_dt: bool = Field(
-        True, description="false: in eq. 18 a fixed particle is no stiffer than what it meets"
+    fixed_limits_dt: Annotated[bool, OF_UETA2022] = Field(
+        True,
+        description="ueta2022: false: in eq. 18 a fixed particle is no stiffer than what it meets",
     )
     skin: Skin = Field(0.05, description='margin of the lists over the support, or "auto"')
     periodic: list[Axis] = Field(default_factory=list, description="periodic axes")
     domain_min: Vector | None = Field(None, description="lower corner of the periodic domain, m")
     domain_max: Vector | None = Field(None, description="upper corner of the periodic domain, m")
-    contact: Contact = Field(default_factory=Contact)
+    contact: Annotated[Contact, OF_RESOLVED] = Field(default_factory=Contact)
     parameters: dict[str, Parameter] = Field(default_factory=dict)
     material: dict[str, MaterialTable] = Field(default_factory=dict)
     body: dict[str, AnyBody] = Field(default_factory=dict)

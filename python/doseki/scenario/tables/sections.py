@@ -15,6 +15,11 @@ EXCLUSIVE = (
     ("xi", "speed_max"),
     ("xi_height", "speed_max"),
 )
+RIVALS = {  # keys of a table of which only one is given: --set puts one in the other's place
+    "body": (("d", "grading"), ("count", "mass_total")),
+    "figure": (("times", "when"),),
+    "inflow": (("rate", "hydrograph"), ("duration", "hydrograph")),
+}
 
 
 def _kind_of_entries(annotation: Any) -> type[Table] | Kinds:
