@@ -68,11 +68,13 @@ struct WallContact {
 };
 
 /// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle
-/// in front of its face; beyond an edge, the line between the two and no gravity.
+/// in front of its face; beyond an edge, the line between the two and no gravity. What lies on the
+/// face counts as in front, or rounding would choose.
 template <class T, int D>
 DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
     WallPoint<T, D> seen = w;
-    const T front = select(dot(r_iw, w.normal) > w.depth, T(1), T(0)), beyond = (T(1) - front) / r;
+    const T face = number<T>(1 - 1e-4) * w.depth;
+    const T front = select(dot(r_iw, w.normal) > face, T(1), T(0)), beyond = (T(1) - front) / r;
     for (int a = 0; a < D; ++a) seen.normal[a] = front * w.normal[a] + beyond * r_iw[a];
     seen.g_normal = front * w.g_normal;
     return seen;

@@ -108,8 +108,7 @@ def _joined(
         placed, owner = particles_of(group, body.spacing, scenario.dim)
         if group.elastic:
             elastic += body.elastic_bodies(group, placed, owner, sum(map(len, sets)))
-        position = body.displaced(placed.position) if group.elastic else placed.position
-        sets.append(body.particles_of_bodies(group, names, position, owner))
+        sets.append(body.particles_of_bodies(group, names, placed, owner))
         still = group.fixed or group.elastic
         grain = np.full(len(owner), -1) if still else first[name] + owner
         shaped = np.ones(len(owner), bool)

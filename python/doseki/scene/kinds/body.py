@@ -95,11 +95,12 @@ class Body(Generic[T]):
         raise NotImplementedError
 
     def particles_of_bodies(
-        self, group: Group, names: list[str], position: np.ndarray, owner: np.ndarray
+        self, group: Group, names: list[str], placed: Particles, owner: np.ndarray
     ) -> ParticleSet:
         """The particles of its bodies, where `is_of_bodies`.
 
-        `position` (N, dim), m; `owner` (N,) is the body of each within the group.
+        They are those `placed`, in `displaced` positions if deformable; `owner` (N,) is the body of
+        each within the group.
         """
         raise NotImplementedError
 

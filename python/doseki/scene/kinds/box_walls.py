@@ -10,6 +10,7 @@ import numpy as np
 from ...record.particles import FIXED, ParticleSet
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box
+from ..shapes import EDGE, nearest_faces
 
 SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab with one wet face
 
@@ -64,9 +65,8 @@ class BoxWalls:
         gaps = np.stack(
             [high[a] - upright[:, a] if s > 0 else upright[:, a] - low[a] for a, s in faces], axis=1
         )
-        nearest = gaps.argmin(axis=1)
         normals = np.array([s * self.matrix[:, a] for a, s in faces])
-        return normals[nearest], gaps[np.arange(len(gaps)), nearest]
+        return nearest_faces(gaps, normals, EDGE * self.scenario.dp)
 
     def _is_covered(self, axis: int, side: float) -> bool:
         """Whether other walls lie against the middle of a face."""

@@ -88,18 +88,16 @@ class Shaped(Body[S], Generic[S]):
         )
 
     def particles_of_bodies(
-        self, group: Group, names: list[str], position: np.ndarray, owner: np.ndarray
+        self, group: Group, names: list[str], placed: Particles, owner: np.ndarray
     ) -> ParticleSet:
-        """The particles of its bodies, which share the mass of each equally.
-
-        `position` (N, dim), m; `owner` (N,) is the body of each within the group.
-        """
+        """The particles of its bodies; `owner` (N,) is the body of each within the group."""
         n = len(owner)
         measure, wet = group.measures
+        position = self.displaced(placed.position) if group.elastic else placed.position
         return ParticleSet(
             position=wrapped(self.scenario, position),
             velocity=self._velocities(group, position, owner),
-            mass=(self.rho0 * measure / np.bincount(owner, minlength=len(group)))[owner],
+            mass=self.rho0 * measure[owner] * placed.share,
             density=self.rho0 * (measure / wet)[owner],
             smoothing_length=np.full(n, self.scenario.eta * self.scenario.dp),
             motion=np.full(n, FIXED if group.fixed else BOUND, np.int32),

@@ -1,0 +1,25 @@
+"""Shapes of bodies in their own frame, about their centre of mass: geometry and particles.
+
+Discs and spheres (Ball), convex polygons and polyhedra (Convex).  Lengths in m.  What a shape gives
+(particles, shares, normals, points of contact) has the symmetries of the shape and turns with it.
+"""
+
+from .ball import Ball
+from .convex import Convex
+from .making import ShapeError, box_shape, mesh_shape, polygon_shape
+from .particles import EDGE, Particles, nearest_faces
+
+Shape = Ball | Convex
+
+__all__ = [
+    "EDGE",
+    "Ball",
+    "Convex",
+    "Particles",
+    "Shape",
+    "ShapeError",
+    "box_shape",
+    "mesh_shape",
+    "nearest_faces",
+    "polygon_shape",
+]

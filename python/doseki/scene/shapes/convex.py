@@ -1,0 +1,133 @@
+"""Convex polygons and polyhedra."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .frame import own_frame
+from .outline import BULGE, FLAT, Outline, outline_of
+from .particles import EDGE, Particles, alike, nearest_faces
+
+SAME_DEPTH = 1e-6  # dp
+LEAST = 0.3  # of a particle's volume: particles that would have less are left out
+
+
+@dataclass(frozen=True)
+class Convex:
+    """A convex polygon (faces: segments, anticlockwise) or polyhedron (triangles, outwards)."""
+
+    vertices: np.ndarray  # (n, dim) about the centre of mass
+    faces: np.ndarray  # (m, dim) int32
+    measure: float
+    inertia: np.ndarray  # (3, 3) over the mass, m2; 2-D: only [2, 2]
+
+    @property
+    def wet_measure(self) -> float:
+        """Area or volume that fluid cannot enter."""
+        return self.measure
+
+    @property
+    def dim(self) -> int:
+        """Number of space dimensions."""
+        return self.vertices.shape[1]
+
+    @cached_property
+    def outline(self) -> Outline:
+        """Its sides, edges and corners."""
+        return outline_of(self.vertices, self.faces)
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """The shape's own axes, as columns of a matrix (dim, dim)."""
+        return own_frame(self.outline.corners, self.outline.area, self.outline.middles)
+
+    @property
+    def planes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit normals (m, dim) of the sides, outwards, and their distances from the centre."""
+        return self.outline.normal, self.outline.distance
+
+    @property
+    def width(self) -> float:
+        """Smallest extent across a face."""
+        normal, distance = self.planes
+        return float((distance - (self.vertices @ normal.T).min(axis=0)).min())
+
+    @property
+    def reach(self) -> float:
+        """Radius of the circumscribed ball."""
+        return float(np.linalg.norm(self.vertices, axis=1).max())
+
+    def particles(self, dp: float) -> Particles:
+        """The innermost points of a lattice along its own axes, as many as fill the shape.
+
+        Points of the same depth are all in or all out, and share what of the shape is left for
+        them. The mean of all is the centre.
+        """
+        upright = self.outline.corners @ self.axes
+        low, high = upright.min(axis=0), upright.max(axis=0)
+        counts = np.maximum(np.rint(np.round((high - low) / dp, 6)), 1).astype(int)
+        cell = (high - low) / counts
+        steps = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1)
+        lattice = (low + (steps.reshape(-1, self.dim) + 0.5) * cell) @ self.axes.T
+        number = self.measure / float(np.prod(cell))
+        share = _innermost(self._gaps(lattice).min(axis=1) / dp, number)
+        position, share = lattice[share > 0], share[share > 0] / share.sum()
+        position = position - share @ position
+        normal, depth = nearest_faces(self._gaps(position), self.planes[0], EDGE * dp)
+        return Particles(position, normal, depth, share)
+
+    def elastic_particles(self, dp: float) -> Particles:
+        """Those of a rigid body with equal shares."""
+        rigid = self.particles(dp)
+        return rigid._replace(share=alike(len(rigid.share)))
+
+    def single(self) -> Particles:
+        """One particle in the centre."""
+        zero = np.zeros((1, self.dim))
+        return Particles(zero, zero.copy(), self._gaps(zero).min(axis=1), np.ones(1))
+
+    def contains(self, position: np.ndarray) -> np.ndarray:
+        """Whether positions (N, dim) lie inside."""
+        return self._gaps(position).min(axis=1) > FLAT * self.reach
+
+    def _gaps(self, position: np.ndarray) -> np.ndarray:
+        """Distances (N, m) below the planes of the sides."""
+        normal, distance = self.planes
+        return distance - position @ normal.T
+
+    def samples(self, dp: float) -> np.ndarray:
+        """Corners, and points along edges no farther apart than dp.
+
+        Where two convex bodies touch there is one of these on one of them.
+        """
+        points = [self.outline.corners]
+        for start, end in self.outline.edges:
+            parts = int(np.ceil(np.linalg.norm(end - start) / dp * (1 - BULGE)))
+            share = np.arange(1, parts)[:, None] / max(parts, 1)
+            points.append(start + share * (end - start))
+        return np.concatenate(points)
+
+    def table(self, dp: float) -> dict[str, Any]:
+        """The shape as the core reads it."""
+        return {
+            "vertices": np.ascontiguousarray(self.vertices),
+            "faces": np.ascontiguousarray(self.faces, np.int32),
+            "samples": np.ascontiguousarray(self.samples(dp)),
+        }
+
+
+def _innermost(depth: np.ndarray, number: float) -> np.ndarray:
+    """The part (N,) of each point in a number of the deepest; depths in spacings."""
+    order = np.argsort(-depth, kind="stable")
+    level = np.append(0, np.cumsum(-np.diff(depth[order]) > SAME_DEPTH))
+    count = np.bincount(level)
+    part = np.clip((number - (np.cumsum(count) - count)) / count, 0, 1)
+    part[0] = max(part[0], LEAST)
+    part[part < LEAST] = 0
+    result = np.empty(len(depth))
+    result[order] = part[level]
+    return result

@@ -1,0 +1,49 @@
+"""Particles of a shape, and the way out of it from each."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+EDGE = 0.1  # dp: what is farther from one face than from another by less lies along their edge
+CANCEL = 1e-6  # the mean of normals that is shorter has no direction
+
+
+class Particles(NamedTuple):
+    """Particles of a shape; those midway between opposite sides have no normal: zero."""
+
+    position: np.ndarray  # (N, dim), m
+    normal: np.ndarray  # (N, dim) outwards
+    depth: np.ndarray  # (N,) below the surface, m
+    share: np.ndarray  # (N,) of the mass
+
+
+def alike(number: int) -> np.ndarray:
+    """Equal shares of so many particles."""
+    return np.full(number, 1.0 / number)
+
+
+def from_centre(position: np.ndarray, radius: float, share: np.ndarray) -> Particles:
+    """Particles of a ball about the origin."""
+    distance = np.linalg.norm(position, axis=1)
+    normal = position / np.maximum(distance, 1e-300)[:, None]
+    return Particles(position, normal, radius - distance, share)
+
+
+def nearest_faces(
+    gaps: np.ndarray, normals: np.ndarray, width: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Normal (N, dim) and depth (N,) below the nearest of faces.
+
+    `gaps` (N, m) to the faces, `normals` (m, dim) of them.  Those that are as near count as much:
+    along an edge the normal is the mean of two, in a corner of three.  One that is farther by
+    `width` counts no more.
+    """
+    depth = gaps.min(axis=1)
+    weight = np.maximum(1 - (gaps - depth[:, None]) / width, 0)
+    total = weight @ normals
+    length = np.linalg.norm(total, axis=1)
+    outwards = length > CANCEL * weight.sum(axis=1)
+    unit = total / np.where(outwards, length, 1.0)[:, None]
+    return np.where(outwards[:, None], unit, 0.0), depth
