@@ -235,7 +235,7 @@ class FlowReference:
     def _contact(self) -> dict[str, np.ndarray]:
         """What a fluid particle i and a wall particle w make of each other."""
         pairs, dp = self.fw, self.options.dp
-        in_front = dot(pairs.r_ij, self.normal[None]) > self.depth
+        in_front = dot(pairs.r_ij, self.normal[None]) > (1 - 1e-4) * self.depth
         n = np.where(in_front[..., None], self.normal, pairs.r_ij / pairs.safe_r[..., None])
         g_normal = np.where(in_front, self.g_normal, 0)
         r_n, v = dot(pairs.r_ij, n), self.v[:, None] - self.v_w[None]
