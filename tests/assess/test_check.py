@@ -12,6 +12,7 @@ import pytest
 
 import doseki
 from doseki.assess.preflight import brief_check, check_scenario
+from doseki.assess.sound_speed import rounded_up
 from doseki.assess.warnings import thorough_findings
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, filled_simulation
@@ -44,9 +45,11 @@ max = [0.3, {top}]
 def doubts(tmp_path):
     """The findings about a body of water over a floor."""
 
-    def find(xi=0.05, layers=3, bottom=0.0, top=0.12, more=""):
+    def find(xi=0.05, layers=3, bottom=0.0, top=0.12, more="", replace=("", "")):
         file = tmp_path / "case.toml"
-        file.write_text(SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top) + more)
+        file.write_text(
+            SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top).replace(*replace) + more
+        )
         scenario = load_scenario(file)
         simulation, *about = filled_simulation(scenario)
         simulation.start()
@@ -91,7 +94,7 @@ duration = 1
     [
         ({"top": 0.05}, ["water: 5 particles over its depth", "dp = 0.005 would do"]),
         ({"layers": 2}, ["floor: a wall of 2 layers", "make it 3 layers (0.03 m) thick"]),
-        ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.01"]),
+        ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.012 (now 0.001)"]),
         ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
         ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),
         ({"bottom": -0.012, "top": 0.12}, ["overlaps"]),
@@ -104,6 +107,27 @@ def test_a_doubtful_set_up_is_named_with_its_remedy(doubts, changes, words):
     told = " ".join(doubts(**changes))
     for word in words:
         assert word in told
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("xi = 0.001", "for Mach 0.1 set xi = 0.012 (now 0.001)"),
+        ("xi_height = 0.001", "set xi_height = 0.14 (now 0.001)"),
+        ("speed_max = 0.14", "set speed_max = 1.7 (now 0.14)"),
+    ],
+)
+def test_advice_names_the_key_that_the_scenario_gives(doubts, given, words):
+    """A fall from the top through the floor makes 1.66 m/s; the sound speed is 1.4 m/s."""
+    told = " ".join(doubts(replace=("xi = 0.05", given)))
+    assert words in told
+
+
+@pytest.mark.parametrize(
+    ("value", "rounded"), [(1.04, 1.1), (1.0, 1.0), (0.0101, 0.011), (123.0, 130.0), (99.1, 100.0)]
+)
+def test_advice_is_rounded_so_that_it_is_enough(value, rounded):
+    assert rounded_up(value) == rounded
 
 
 def test_report_has_all_that_is_promised():

@@ -14,6 +14,7 @@ from ..scenario.model import Scenario
 from ..scenario.schemes import UETA2022
 from ..util.finding import Finding
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
+from .sound_speed import raised
 
 MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
 MIN_ACROSS_FLOW = 10  # particles over the depth; below, a film is too viscous
@@ -95,12 +96,13 @@ class HighMach(Finding):
 
     speed: float  # m/s
     mach: float
-    xi: float
+    key: str  # by which the scenario gives the sound speed
+    value: float  # of the key
 
     def __str__(self) -> str:
         return (
-            f"speeds up to {self.speed:.3g} m/s are Mach {self.mach:.2g} at xi = {self.xi:.3g}; for"
-            f" Mach {MAX_MACH} set xi = {self.xi * self.mach / MAX_MACH:.2g}"
+            f"speeds up to {self.speed:.3g} m/s are Mach {self.mach:.2g}; for Mach {MAX_MACH} set"
+            f" {raised(self.key, self.value, self.mach / MAX_MACH)}"
         )
 
 
@@ -182,7 +184,7 @@ def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:
 def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
     speed, mach = mach_number(scenario, state)
     if mach > MAX_MACH * 1.05:
-        yield HighMach("", speed, mach, scenario.xi)
+        yield HighMach("", speed, mach, *scenario.sound_speed_key)
 
 
 def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:

@@ -64,6 +64,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "precision": scenario.precision,
         "dp": scenario.dp,
         "xi": scenario.xi,
+        "sound_speed_from": dict([scenario.sound_speed_key]),
         "ranks": run.ranks.count,
         "wall_seconds": run.wall_seconds,
         "particle_updates_per_second": simulation.updates / run.wall_seconds,

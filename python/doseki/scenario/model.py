@@ -120,6 +120,15 @@ class Scenario(ScenarioTable):
         return self.time_out if gauge.interval is None else gauge.interval
 
     @property
+    def sound_speed_key(self) -> tuple[str, float]:
+        """The key by which the file gives the reduced sound speed, and its value."""
+        for key in ("speed_max", "xi_height"):
+            value = getattr(self, key)
+            if value is not None:
+                return key, value
+        return "xi", self.xi
+
+    @property
     def sampled_intervals(self) -> list[float]:
         """Times between the outputs at which a step ends exactly, s: snapshots and gauges."""
         return [self.time_out, *(self.interval_of(gauge) for gauge in self.gauge.values())]
@@ -152,7 +161,7 @@ class Scenario(ScenarioTable):
 
     def with_xi(self, xi: float) -> Scenario:
         """The same run with another reduction factor, whatever it follows from in the file."""
-        return self.model_copy(update={"xi": xi})
+        return self.model_copy(update={"xi": xi, "xi_height": None, "speed_max": None})
 
     def effective_toml(self) -> str:
         """The scenario as TOML that `load_scenario` reads back to the same run."""

@@ -130,7 +130,7 @@ def test_fast_impact_on_too_soft_matter(fail, block):
     """Not absurd by itself, but far above the reduced sound speed."""
     failed = fail(block + "velocity = [0, 100]\n" + LID, *LONG_STEPS)
     assert_complete(failed, "density")
-    assert "Raise xi from 0.05" in failed.report["advice"]
+    assert "Set xi = 3.3 (now 0.05)" in failed.report["advice"]
 
 
 def test_a_density_near_zero(fail, tmp_path):

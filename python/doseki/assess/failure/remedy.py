@@ -10,6 +10,7 @@ import numpy as np
 from ...scenario.model import Scenario
 from ...scene.checks.particle_overlaps import Overlap
 from ...util.finding import Finding
+from ..sound_speed import raised
 
 LARGE_COURANT = 0.3  # above this the scheme is not known to be stable
 MACH = 0.3  # above this a reduced sound speed is too low
@@ -29,10 +30,11 @@ def remedy(report: dict[str, Any], scenario: Scenario, warnings: Sequence[Findin
         _mach(report, scenario),
         _outside(report),
     )
+    key, given = scenario.sound_speed_key
     return " ".join([each for each in said if each][:2]) or (
         f"Try half the timestep (--set cflnumber={scenario.cflnumber / 2:g} --set"
         f" cfl_force={scenario.cfl_force / 2:g}) with doseki resume; if it fails at the same"
-        f" time, raise xi (now {scenario.xi:.4g}) or lower dp."
+        f" time, raise {key} (now {given:.4g}) or lower dp."
     )
 
 
@@ -75,7 +77,7 @@ def _mach(report: dict[str, Any], scenario: Scenario) -> str | None:
     if not mach > MACH:
         return None
     return (
-        f"Raise xi from {scenario.xi:.4g} to {scenario.xi * mach / 0.1:.2g}, or lower the"
+        f"Set {raised(*scenario.sound_speed_key, mach / 0.1)}, or lower the"
         f" velocities: {speed:.4g} m/s is Mach {mach:.2g} in {particle['material']}; the scheme"
         " is meant for 0.1."
     )

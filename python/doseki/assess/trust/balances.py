@@ -11,6 +11,7 @@ import numpy as np
 from ...record.particles import BOUND, DRIVEN, FREE
 from ...record.reader import Run
 from ...scenario.materials import Material, complete_materials
+from ..sound_speed import sound_speed_from
 from .snapshots import Seen, gravity_of, is_resolved
 from .verdicts import Check, judged, unknown
 
@@ -37,7 +38,7 @@ def energy_check(run: Run, seen: Seen) -> Check:
     counted = "history from first to last row, work of gravity from the snapshots"
     counted += _left_in_residual(run)
     details = {"residual": residual, "gravity_work": work, "largest": largest}
-    return judged(name, value, ENERGY, counted, _energy_remedy(run.scenario), **details)
+    return judged(name, value, ENERGY, counted, _energy_remedy(run), **details)
 
 
 def _left_in_residual(run: Run) -> str:
@@ -55,10 +56,11 @@ def _left_in_residual(run: Run) -> str:
     return ""
 
 
-def _energy_remedy(scenario: Mapping[str, Any]) -> str:
-    if is_resolved(scenario):
-        return "raise speed_max, then lower dp; shifting = false tells what shifting takes"
-    return f"lower cflnumber (now {scenario.get('cflnumber', 0.1):g}) and cfl_force by half"
+def _energy_remedy(run: Run) -> str:
+    if is_resolved(run.scenario):
+        key, _ = sound_speed_from(run)
+        return f"raise {key}, then lower dp; shifting = false tells what shifting takes"
+    return f"lower cflnumber (now {run.scenario.get('cflnumber', 0.1):g}) and cfl_force by half"
 
 
 def works_on(run: Run, seen: Seen) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from ...record.reader import Run
 from ...scenario.schemes import RESOLVED, UETA2022
 from ...scene.checks.particle_overlaps import TOO_NEAR
+from ..sound_speed import raised, rounded_up
 from ..warnings import MIN_ACROSS_FLOW, MIN_ACROSS_GRAIN
 from .snapshots import Seen, gravity_of
 from .verdicts import Check, judged, max_of, unknown
@@ -17,24 +18,23 @@ MACH = (0.1, 0.3)  # speed over sound speed
 DENSITY = (0.01, 0.05)  # |rho/rho0 - 1|
 DEPTH = (float(MIN_ACROSS_FLOW), MIN_ACROSS_FLOW / 2)  # particles
 CLOSEST = (0.5, TOO_NEAR)  # spacings
-RESOLVED_MACH = 0.1  # for which the resolved scheme chooses its sound speed
 
 
-def mach_check(seen: Seen, xi: float, scheme: str = UETA2022) -> Check:
+def mach_check(seen: Seen, key: str, given: float) -> Check:
     """Speeds against the sound speed; the verdict is on the 99th percentile, not on one drop."""
     if not seen.mach_most:
         return unknown("Mach number", MACH, "no free particle in any snapshot")
     value, highest = max_of(seen.mach_most), max_of(seen.mach_highest)
     remedy = "see the failure"
     if math.isfinite(value):
-        remedy = f"raise xi to {xi * value / MACH[0]:.2g}"
-        if scheme == RESOLVED:
-            remedy += f", that is speed_max {value / RESOLVED_MACH:.2g} times"
+        remedy = f"set {raised(key, given, value / MACH[0])}"
     counted = f"99th percentile of free particles in {len(seen.mach_most)} snapshots"
     return judged("Mach number", value, MACH, counted, remedy, highest=highest)
 
 
-def density_check(seen: Seen, tension: str, xi: float, scheme: str = UETA2022) -> Check:
+def density_check(
+    seen: Seen, tension: str, key: str, given: float, scheme: str = UETA2022
+) -> Check:
     """Compression against none; the verdict is on the 99th percentile."""
     name = "density fluctuation"
     if not seen.density_most:
@@ -45,8 +45,7 @@ def density_check(seen: Seen, tension: str, xi: float, scheme: str = UETA2022) -
     if scheme == RESOLVED:
         signs = "both signs inside, compression of the free surface"
     counted = f"99th percentile of free particles, {signs}"
-    raised = "speed_max" if scheme == RESOLVED else f"xi (now {xi:.3g})"
-    remedy = f"raise {raised}; look for particles squeezed at the start or into walls"
+    remedy = f"raise {key} (now {given:.3g}); look for particles squeezed at first or into walls"
     largest = max_of(seen.density_highest)
     return judged(name, value, DENSITY, counted, remedy, highest=largest)
 
@@ -64,13 +63,13 @@ def depth_check(run: Run, seen: Seen) -> Check:
     return judged(name, value, DEPTH, counted, remedy, least=float(np.min(seen.depth)))
 
 
-def contact_check(seen: Seen, xi: float) -> Check:
+def contact_check(seen: Seen, key: str, given: float) -> Check:
     """Closest approach of grains of one particle, in spacings: the scheme has no contact law."""
     name = "closest approach"
     if not seen.closest:
         return unknown(name, CLOSEST, "no two free solid grains of one particle")
     counted = f"free solid grains of one particle in {len(seen.closest)} snapshots, over spacing"
-    remedy = f"raise xi (now {xi:.3g}), or resolve the grains: {MIN_ACROSS_GRAIN} dp across"
+    remedy = f"raise {key} (now {given:.3g}), or resolve the grains: {MIN_ACROSS_GRAIN} dp across"
     return judged(name, float(np.min(seen.closest)), CLOSEST, counted, remedy)
 
 
@@ -81,5 +80,5 @@ def overlap_check(run: Run, seen: Seen) -> Check:
     limits = (allowed, 5 * allowed)
     value = max_of(seen.overlap)
     counted = f"bodies that move in {len(seen.overlap)} snapshots, over the diameter"
-    remedy = f"raise contact.speed {max(value / allowed, 1):.2g} times"
+    remedy = f"raise contact.speed {max(rounded_up(value / allowed), 1.1):g} times"
     return judged(name, value, limits, counted, remedy)

@@ -11,8 +11,15 @@ from ...record.reader import Run
 from ...record.writer import jsonable
 from ...scenario.schemes import UETA2022
 from ...util.files import write_whole_text
+from ..sound_speed import sound_speed_from
 from .balances import energy_check, momentum_check
-from .checks import contact_check, density_check, depth_check, mach_check, overlap_check
+from .checks import (
+    contact_check,
+    density_check,
+    depth_check,
+    mach_check,
+    overlap_check,
+)
 from .deformable import deformable_checks
 from .snapshots import look
 from .verdicts import BAD, DOUBTFUL, GOOD, NOT_AVAILABLE, Check, overall
@@ -21,15 +28,15 @@ from .verdicts import BAD, DOUBTFUL, GOOD, NOT_AVAILABLE, Check, overall
 def trust_checks(run: Run) -> list[Check]:
     """Every check of a recorded run."""
     seen, scenario = look(run), run.scenario
-    xi, tension = scenario.get("xi", 1.0), scenario.get("tension", "clamp_fluid")
+    given, tension = sound_speed_from(run), scenario.get("tension", "clamp_fluid")
     scheme = scenario.get("scheme", UETA2022)
     return [
-        mach_check(seen, xi, scheme),
-        density_check(seen, tension, xi, scheme),
+        mach_check(seen, *given),
+        density_check(seen, tension, *given, scheme),
         energy_check(run, seen),
         momentum_check(run, seen),
         depth_check(run, seen),
-        contact_check(seen, xi),
+        contact_check(seen, *given),
         *deformable_checks(run, seen),
         *([overlap_check(run, seen)] if seen.overlap else []),
     ]

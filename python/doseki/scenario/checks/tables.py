@@ -42,11 +42,12 @@ def _check_outputs(scenario: Scenario) -> None:
 
 
 def _check_periodic(scenario: Scenario) -> None:
-    """Periodic axes must exist and have a domain, and nothing else has one."""
-    for key in ("domain_min", "domain_max"):
-        if getattr(scenario, key) is not None and "periodic" not in scenario.model_fields_set:
-            message = f"{key} goes with periodic, the axes along which it ends"
-            raise scenario.where.error((key,), message)
+    """Periodic axes must exist and have a domain, which has two corners."""
+    corners = {"domain_min": scenario.domain_min, "domain_max": scenario.domain_max}
+    given = [key for key, corner in corners.items() if corner is not None]
+    if len(given) == 1:
+        other = next(key for key in corners if key not in given)
+        raise scenario.where.error((given[0],), f"{given[0]} goes with {other}, the other corner")
     for axis in scenario.periodic:
         if axis not in "xyz"[: scenario.dim]:
             raise scenario.where.error(("periodic",), f'periodic: a 2-D run has no axis "{axis}"')

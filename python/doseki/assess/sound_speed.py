@@ -1,0 +1,32 @@
+"""Advice on the reduced sound speed, in the key by which a scenario gives it."""
+
+from __future__ import annotations
+
+import math
+
+from ..record.reader import Run
+
+POWERS = {"xi": 1.0, "speed_max": 1.0, "xi_height": 2.0}  # of the sound speed that it goes with
+DIGITS = 2
+
+
+def raised(key: str, value: float, factor: float) -> str:
+    """What `key` = `value` must be for a sound speed `factor` times as high, and what it is now."""
+    wanted = rounded_up(value * factor ** POWERS[key])
+    return f"{key} = {wanted:g} (now {value:.3g})"
+
+
+def sound_speed_from(run: Run) -> tuple[str, float]:
+    """The key by which the scenario of a run gave its reduced sound speed, and its value."""
+    given = run.summary.get("sound_speed_from") or {"xi": run.scenario.get("xi", 1.0)}
+    key, value = next(iter(given.items()))
+    return str(key), float(value)
+
+
+def rounded_up(value: float) -> float:
+    """The next number of DIGITS digits that is not less; what is not finite stays."""
+    if not math.isfinite(value) or value <= 0:
+        return value
+    exponent = math.floor(math.log10(value)) + 1 - DIGITS
+    digits = math.ceil(value / 10.0**exponent * (1 - 1e-9))
+    return float(f"{digits}e{exponent}")
