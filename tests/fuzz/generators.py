@@ -92,6 +92,95 @@ BASE: dict[str, Any] = {
     },
 }
 
+# The resolved scheme with walls of each kind, grains, an elastic plate, an inflow and an outflow.
+EVERYTHING = """\
+schema = 1
+dim = 2
+dp = 0.01
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 2.0
+gravity = [0.0,-9.8]
+attraction = 0.0
+eta = 1.2
+smagorinsky = 0.12
+turbulence = "smagorinsky"
+cflnumber = 0.1
+cfl_force = 0.1
+skin = 0.05
+periodic = []
+domain_min = [0.0,-1.0]
+domain_max = [0.3,1.0]
+
+[contact]
+overlap = 0.01
+speed = 2.0
+steps = 20
+
+[material.mud]
+based_on = "water"
+rho0 = 1500.0
+
+[body.bed]
+shape = "box"
+material = "aluminium"
+fixed = true
+wall = "rough"
+ks = 0.005
+min = [0.0,-0.03]
+max = [0.3,0.0]
+
+[body.water]
+shape = "box"
+material = "mud"
+min = [0.0,0.0]
+max = [0.3,0.04]
+
+[body.gate]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0.0,0.3]
+max = [0.03,0.4]
+motion = {velocity=[0.0,1.0],start=0.0005,stop=0.001,removed_at=0.0015}
+
+[body.grains]
+shape = "disc"
+material = "basalt"
+min = [0.05,0.1]
+max = [0.15,0.2]
+d = 0.02
+count = 8
+
+[body.plate]
+shape = "box"
+material = "basalt"
+kinematics = "elastic"
+min = [0.2,0.1]
+max = [0.25,0.15]
+
+[inflow.source]
+material = "water"
+rate = 0.01
+width = 1.0
+position = [0.02,0.06]
+direction = [1.0,0.0]
+depth = 0.03
+duration = 0.001
+start = 0.0005
+jitter = 0.1
+
+[gauge.depth]
+kind = "surface_height"
+position = [0.1,0.0]
+interval = 0.001
+
+[outflow.end]
+min = [0.28,-1.0]
+max = [0.3,1.0]
+"""
+
 # What people, and those who mean harm, write in place of a value.
 JUNK = st.one_of(
     st.sampled_from(

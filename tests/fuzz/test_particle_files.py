@@ -11,6 +11,8 @@ import h5py
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
+from tests.hostile_hdf5 import HARMS, spoil
 
 import doseki
 from doseki.errors import UserError
@@ -97,6 +99,20 @@ def damage_many(folder: Path, compressed: bool, count: int) -> list[int]:
 def test_damaged_hdf5(tmp_path, compressed):
     count = 1000 if FREE else 50
     assert sum(damage_many(tmp_path, compressed, count)) == count
+
+
+@examples(30, 1500)
+@given(
+    name=st.sampled_from(["x", "mass", "density", "material"]),
+    harm=st.sampled_from(sorted(HARMS)),
+    data=st.data(),
+)
+def test_any_hdf5(folder, name, harm, data):
+    """A file in which a column does harm, whole or damaged."""
+    path = folder / "harm.h5"
+    path.write_bytes(hdf5_file(data.draw(st.booleans())))
+    spoil(path, name, harm)
+    assert not read(path)
 
 
 def test_a_decompression_bomb_is_refused_by_its_claim(tmp_path):

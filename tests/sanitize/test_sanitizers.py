@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.fuzz.test_checkpoints import mutate
 
 import doseki
 
@@ -83,14 +84,30 @@ def exercise(
     )
 
 
-@pytest.mark.sanitize
-def test_addresses_and_undefined_behaviour(tmp_path):
+@pytest.fixture(scope="module")
+def addresses(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """What to load before all others, and the module that watches addresses."""
     preload = f"{library('libasan.so')} {library('libubsan.so')}"
-    site = build(tmp_path, ADDRESS)
+    return preload, build(tmp_path_factory.mktemp("addresses"), ADDRESS)
+
+
+@pytest.mark.sanitize
+def test_addresses_and_undefined_behaviour(addresses):
+    preload, site = addresses
     # Python itself frees nothing at its end, which would count as leaks.
     done = exercise(site, preload, 2, 1.0, ASAN_OPTIONS="detect_leaks=0", DOSEKI_POISON="1")
     assert done.returncode == 0, done.stderr[-3000:]
     assert done.stdout.count("\n") == 6
+
+
+@pytest.mark.sanitize
+def test_checkpoints_that_somebody_has_changed(addresses, tmp_path):
+    preload, site = addresses
+    paths = os.pathsep.join([str(site), *filter(None, sys.path)])
+    variables = {"PYTHONPATH": paths, "LD_PRELOAD": preload, "DOSEKI_ISA": "scalar"}
+    variables |= {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1"}
+    counts = mutate(2000, tmp_path / "last", ("-S",), **variables)
+    assert sum(counts.values()) == 2000
 
 
 @pytest.mark.sanitize

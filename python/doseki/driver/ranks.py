@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from ..scenario.model import Scenario
 from ..solver.build import empty_simulation, filled_simulation
 from ..solver.protocol import Columns, Simulation, SimulationView
+from ..solver.restoring import check_state
 from ..util.finding import Finding
 
 T = TypeVar("T")
@@ -49,6 +50,7 @@ class OneRank:
     ) -> tuple[Simulation, bool]:
         """A simulation with the state of a checkpoint, and whether it goes on to the same bits."""
         simulation = empty_simulation(scenario, body_names)
+        check_state(simulation, state, len(scenario.material_names), len(body_names))
         return simulation, simulation.restore(state)
 
     def whole_checkpoint(self, simulation: Simulation, state: Columns) -> Columns:

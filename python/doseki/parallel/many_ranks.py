@@ -16,6 +16,7 @@ from ..driver.ranks import OneRank
 from ..scenario.model import Scenario
 from ..solver.build import empty_simulation, filled_simulation
 from ..solver.protocol import Columns, Rates, Simulation, SimulationView
+from ..solver.restoring import check_state
 from ..util.finding import Finding
 from .rank_failure import RankFailure
 from .simulation import RankedSimulation
@@ -108,6 +109,7 @@ class ManyRanks(OneRank):
     ) -> tuple[RankedSimulation, bool]:
         """See OneRank."""
         core = empty_simulation(scenario, body_names)
+        check_state(core, state, len(scenario.material_names), len(body_names))
         simulation = RankedSimulation(core, self._comm, scenario.dim)
         core.restore_shared(state)
         return simulation, False

@@ -16,6 +16,7 @@ from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.load import load_scenario
 from ..scenario.model import Scenario
+from ..scene.build import body_names
 from ..util.files import write_whole_text
 from ..util.toml_writer import to_toml
 from .runner import RunOptions, carry_out
@@ -83,6 +84,8 @@ def _restored(
 ) -> ActiveRun:
     if scenario.material_names != checkpoint.material_names:
         raise UserError(f"{directory}: the scenario's materials are not those of its checkpoint")
+    if body_names(scenario) != checkpoint.body_names:
+        raise UserError(f"{directory}: the scenario's bodies are not those of its checkpoint")
     try:
         simulation, same_bits = ranks.restored_simulation(
             scenario, checkpoint.body_names, checkpoint.state

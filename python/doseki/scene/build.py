@@ -65,7 +65,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     """
     bodies, warnings = bodies_of(scenario), list[Finding]()
     _check_size(bodies)
-    names = _body_names(scenario)
+    names = body_names(scenario)
     parts = {n: body.particles(names) for n, body in bodies.items() if not body.is_of_bodies}
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
     groups = sorted(made, key=lambda group: group.fixed)
@@ -173,7 +173,7 @@ def _outside(scenario: Scenario, particles: ParticleSet, groups: list[Group]) ->
     return ParticleSet(**{name: values[keep] for name, values in vars(particles).items()})
 
 
-def _body_names(scenario: Scenario) -> list[str]:
+def body_names(scenario: Scenario) -> list[str]:
     """Bodies first, a file's own body names in place of the name of the file's body."""
     names = [each for name in scenario.body for each in scenario.names_of_bodies(name)]
     return list(dict.fromkeys([*names, *scenario.inflow]))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import UserError
+from ...scenario.values.types import LARGEST
 from ...util.foreign import read_bytes, readable
 from .convex import Convex
 from .outline import BULGE, FLAT
@@ -67,10 +68,9 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
     try:
         content = read_bytes(file, LARGEST_STL)
         with readable(file, " as STL"):
-            mesh = _closed_mesh(file, content)
+            mesh = _closed_mesh(file, content, scale)
     except UserError as error:
         raise ShapeError(str(error)) from None
-    mesh.apply_scale(scale)
     shape, centre = _from_mesh(mesh)
     normal, distance = shape.planes
     beyond = float((shape.vertices @ normal.T - distance).max())
@@ -81,18 +81,21 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
     return shape, centre
 
 
-def _closed_mesh(file: Path, content: bytes) -> Any:
+def _closed_mesh(file: Path, content: bytes, scale: float) -> Any:
     import trimesh
 
     mesh = trimesh.load_mesh(io.BytesIO(content), file_type="stl")
-    if not np.isfinite(mesh.vertices).all():
-        raise UserError(f"{file}: a vertex is not finite")
+    with np.errstate(over="ignore"):
+        farthest = float(np.abs(mesh.vertices * scale).max(initial=0.0))
+    if not farthest <= LARGEST:
+        raise UserError(f"{file}: a vertex is beyond {LARGEST:g} m")
     mesh.merge_vertices()
     if len(mesh.faces) < 4 or not mesh.is_watertight:
         raise UserError(f"the surface in {file} is not closed")
     if not mesh.nondegenerate_faces().all():
         raise UserError(f"the surface in {file} has triangles without area")
     mesh.faces = _outwards(np.array(mesh.vertices), np.array(mesh.faces))
+    mesh.apply_scale(scale)
     return mesh
 
 

@@ -1,0 +1,65 @@
+"""Whatever an STL file holds: a convex body, or one sentence."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+
+from doseki.scene.shapes import Convex, ShapeError, mesh_shape
+
+from .examples import examples
+from .generators import damaged
+
+
+def stl(form: str, kind: str) -> bytes:
+    """A body in a file, binary or text."""
+    mesh = {
+        "box": lambda: trimesh.creation.box(extents=(1, 2, 3)),
+        "ball": lambda: trimesh.creation.icosphere(subdivisions=1),
+        "ring": lambda: trimesh.creation.annulus(0.5, 1, 1, sections=8),
+    }[kind]()
+    image = io.BytesIO()
+    mesh.export(image, file_type="stl" if form == "binary" else "stl_ascii")
+    return image.getvalue()
+
+
+WHOLE = [stl(form, kind) for form in ("binary", "text") for kind in ("box", "ball", "ring")]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("stl")
+
+
+@examples(40, 1500)
+@given(data=st.sampled_from(WHOLE).flatmap(damaged), scale=st.sampled_from([1.0, 1e-300, 1e300]))
+def test_any_stl(folder, data, scale):
+    (folder / "a.stl").write_bytes(data)
+    try:
+        shape, centre = mesh_shape(folder / "a.stl", scale)
+    except ShapeError:
+        return
+    assert isinstance(shape, Convex)
+    assert np.isfinite(shape.vertices).all()
+    assert np.isfinite(centre).all()
+    assert shape.measure > 0
+
+
+@pytest.mark.parametrize("flipped", [[0], [1, 4, 7], list(range(12))])
+def test_triangles_may_turn_either_way(folder, flipped):
+    mesh = trimesh.creation.box(extents=(1, 2, 3))
+    faces = np.array(mesh.faces)
+    faces[flipped] = faces[flipped][:, ::-1]
+    turned = trimesh.Trimesh(mesh.vertices, faces, process=False)
+    turned.export(folder / "b.stl")
+    shape, centre = mesh_shape(folder / "b.stl", 1.0)
+    assert shape.measure == pytest.approx(6)
+    assert centre == pytest.approx([0, 0, 0], abs=1e-12)
+    _, distance = shape.planes
+    assert len(distance) == 6
+    assert (distance > 0).all()
