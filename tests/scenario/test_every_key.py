@@ -287,6 +287,7 @@ def test_particles_of_files(tmp_path, scheme, dim):
         other = "full" if name == "plain" else "plain"
         values = {
             "file": [str(tmp_path / f"{other}.csv")],
+            "digest": ["0" * 32],
             "fixed": ["true"],
             "material": ["rock"],
         }

@@ -44,7 +44,7 @@ def run(
     """Run a scenario; the record, figures and a one-screen summary go to DIR."""
     from ..assess.preflight import brief_check
     from ..run.progress import progress_bar
-    from ..run.runner import RunOptions, run_scenario
+    from ..run.runner import RunOptions, run_folder, run_scenario
     from ..scenario.load import load_scenario
 
     team = join(ranks)
@@ -55,13 +55,14 @@ def run(
         for line in brief_check(*started):
             typer.echo(line, err=True)
 
-    with progress_bar(loaded.title, loaded.time_max) as progress:
-        options = RunOptions(
-            threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes, team
-        )
-        summary = run_scenario(loaded, directory, options)
-    if team.is_root:
-        _report(directory, summary, figures, as_json)
+    with run_folder(directory, overwrite, team):
+        with progress_bar(loaded.title, loaded.time_max) as progress:
+            options = RunOptions(
+                threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes, team
+            )
+            summary = run_scenario(loaded, directory, options)
+        if team.is_root:
+            _report(directory, summary, figures, as_json)
 
 
 def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
@@ -125,19 +126,20 @@ def resume(
 
     team = join(ranks)
     scenario = load(directory).scenario
-    with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
-        options = RunOptions(
-            threads,
-            progress=progress,
-            checkpoint_every=checkpoint_every,
-            checkpoint_minutes=checkpoint_minutes,
-            ranks=team,
-        )
-        summary, notes = resume_run(directory, settings or [], options, until)
-    for note in notes:
-        typer.echo(f"warning: {note}", err=True)
-    if team.is_root:
-        _report(directory, summary, figures, as_json)
+    with team.holding(directory):
+        with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
+            options = RunOptions(
+                threads,
+                progress=progress,
+                checkpoint_every=checkpoint_every,
+                checkpoint_minutes=checkpoint_minutes,
+                ranks=team,
+            )
+            summary, notes = resume_run(directory, settings or [], options, until)
+        for note in notes:
+            typer.echo(f"warning: {note}", err=True)
+        if team.is_root:
+            _report(directory, summary, figures, as_json)
 
 
 def explain(directory: Directory) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..record.lock import FolderLock
 from ..scenario.model import Scenario
 from ..solver.build import empty_simulation, filled_simulation
 from ..solver.protocol import Columns, Simulation, SimulationView
@@ -19,6 +21,7 @@ class OneRank:
     """A run that is not spread over ranks; parallel.many_ranks has the other kind."""
 
     rank, count = 0, 1
+    _held: Path | None = None
 
     @property
     def is_root(self) -> bool:
@@ -36,6 +39,25 @@ class OneRank:
     def threads(self, wish: int | None) -> int | None:
         """Threads of each rank; None: as many as the core takes by itself."""
         return wish
+
+    @contextmanager
+    def holding(self, directory: str | Path) -> Iterator[None]:
+        """Keep other processes from writing into the folder of a run; once more is no harm.
+
+        Rank 0 holds the lock; all raise UserError where another process has it.
+        """
+        folder, before = Path(directory).resolve(), self._held
+        if folder == before:
+            yield
+            return
+        lock = FolderLock(folder)
+        self.on_root(lock.take)
+        self._held = folder
+        try:
+            yield
+        finally:
+            self._held = before
+            lock.release()
 
     def recorder(self, directory: str | Path, make: Callable[[], Any]) -> Any:
         """The recorder that `make` makes on rank 0, or one that leaves the writing to it."""

@@ -15,8 +15,8 @@ import numpy as np
 from ..errors import UserError
 from ..measure.census import CLASSES, Census, SpeedDraws, deposit_outline, draw_speeds, take_census
 from ..measure.views import View, named_window, windows
+from ..record.beginning import refuse_links
 from ..record.reader import Run, load
-from ..record.writer import refuse_links
 from ..util.files import clear_errors, write_whole, write_whole_text
 from .census import draw_classes, draw_deposit, draw_passed, draw_speed_histogram
 

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from ..errors import UserError
 from ..measure.flow import measure_flow
 from ..measure.views import tables, tilt, whole_space
+from ..record.beginning import refuse_links
 from ..record.reader import Run, load
-from ..record.writer import refuse_links
 from ..scenario.tables.figure import Figure as FigureTable
 from ..util.files import clear_errors, write_whole
 from .flow import draw_flow

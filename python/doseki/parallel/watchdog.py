@@ -14,6 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from ..record.lock import holder_of
 from .rank_failure import RankFailure
 
 GRACE = 2.0  # s between the end of a rank and the report, in which another one may write its own
@@ -60,7 +61,11 @@ def _watch(pipe: int) -> None:
     first = _first_to_end(pipe, said)
     if not said.get("dismissed") and "directory" in said:
         select.select([], [], [], GRACE)
-        RankFailure(first, _cause(first, said)).write(Path(said["directory"]))
+        directory = Path(said["directory"])
+        holder = holder_of(directory)
+        # Another run may have the folder by now.
+        if holder is None or holder.pid in said.get("processes", ()):
+            RankFailure(first, _cause(first, said)).write(directory)
 
 
 def _close_all_but(pipe: int) -> None:

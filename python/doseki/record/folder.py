@@ -10,6 +10,8 @@ from pathlib import Path
 from ..errors import UserError
 from ..util.foreign import read_text, readable
 
+INPUTS = "inputs"  # folder of copies of the files that a scenario names
+
 
 @dataclass(frozen=True)
 class RunFolder:
@@ -21,6 +23,21 @@ class RunFolder:
     def scenario(self) -> Path:
         """The effective scenario."""
         return self.path / "scenario.toml"
+
+    @property
+    def inputs(self) -> Path:
+        """The folder of copies of the files that the scenario names."""
+        return self.path / INPUTS
+
+    @property
+    def lock(self) -> Path:
+        """Held by the process that writes here."""
+        return self.path / "lock"
+
+    @property
+    def prepared(self) -> RunFolder:
+        """Where a new folder is made, before it gets its name with all that a run starts from."""
+        return RunFolder(self.path.with_name(f".{self.path.name}.new"))
 
     @property
     def history(self) -> Path:
@@ -83,13 +100,35 @@ class RunFolder:
 
     def links(self) -> list[Path]:
         """Symbolic links in the folder: writing to one would write somewhere else."""
-        folders = (self.path, self.snapshots, self.figures, self.checkpoints, self.gauges)
+        folders = (
+            self.path,
+            self.inputs,
+            self.snapshots,
+            self.figures,
+            self.checkpoints,
+            self.gauges,
+        )
         inside = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
         return sorted(file for file in inside if file.is_symlink())
 
     def is_run(self) -> bool:
         """Whether a run was recorded here."""
         return self.scenario.is_file() and self.snapshots.is_dir()
+
+    def is_vacant(self) -> bool:
+        """Whether nothing is here but what a run leaves that is killed before it has a scenario."""
+        names = {file.name for file in self.path.iterdir()}
+        began = {self.lock.name, self.inputs.name, self.snapshots.name, ".scenario.toml.part"}
+        return names <= began and not any(self.snapshots.glob("*"))
+
+    def remove(self) -> None:
+        """Remove what a run has prepared here."""
+        files = [self.lock, self.scenario, *self.path.glob(".*.part"), *self.inputs.glob("*")]
+        for file in files:
+            file.unlink(missing_ok=True)
+        for folder in (self.inputs, self.snapshots, self.path):
+            if folder.is_dir():
+                folder.rmdir()
 
     def snapshot(self, number: int) -> Path:
         """File of snapshot `number`, counted from 0."""
@@ -100,24 +139,19 @@ class RunFolder:
         files = self.snapshots.glob("*.vtkhdf")
         return sorted((f for f in files if re.fullmatch(r"\d{6,}", f.stem)), key=_number)
 
-    def written_files(self) -> list[Path]:
-        """Every file that a run may have left here."""
-        plain = (
-            self.scenario,
-            self.history,
-            self.summary,
-            self.summary_text,
-            self.trust,
-            self.series,
-            self.log,
-            self.failure,
-        )
+    def endings(self) -> list[Path]:
+        """What says how a run goes on: reports of its end, then checkpoints, the newest first."""
+        reports = (self.summary, self.summary_text, self.trust, self.failure)
+        checkpoints = sorted(self.checkpoints.glob("*.h5"), reverse=True)
+        return [*(file for file in reports if file.exists()), *checkpoints]
+
+    def recorded(self) -> list[Path]:
+        """What a run may have written while it went on."""
         return [
-            *(file for file in plain if file.exists()),
+            *(file for file in (self.history, self.series, self.log) if file.exists()),
             *self.snapshot_files(),
             *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),
-            *self.checkpoints.glob("*.h5"),
         ]
 
 

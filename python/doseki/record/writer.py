@@ -13,7 +13,9 @@ import numpy as np
 
 from ..errors import UserError
 from ..util.files import clear_errors, sync, write_whole, write_whole_text
+from ..util.input_file import InputFile
 from . import vtkhdf
+from .beginning import begin, refuse_links
 from .folder import RunFolder, read_history
 
 
@@ -33,15 +35,16 @@ class Recorder:
         body_names: Sequence[str],
         dim: int,
         overwrite: bool = False,
+        inputs: Sequence[InputFile] = (),
     ) -> None:
         """Start a new record in `directory`; raises UserError if something is there already.
 
-        `scenario_text` is the effective scenario; the names are those that the fields `material`
-        and `body` of the snapshots index.  With `overwrite` an earlier run is removed first.
+        `scenario_text` is the effective scenario, which names `inputs` by their names in the
+        folder; the other names are those that the fields `material` and `body` of the snapshots
+        index.  With `overwrite` an earlier run is removed first.
         """
         folder = RunFolder(Path(directory))
-        _make_room(folder, overwrite)
-        write_whole_text(folder.scenario, scenario_text)
+        begin(folder, scenario_text, inputs, overwrite)
         self._attach(folder, material_names, body_names, dim)
 
     @classmethod
@@ -160,34 +163,6 @@ class Recorder:
         files = [{"name": f"{names}/{name}", "time": time} for name, time in self._index]
         index = {"file-series-version": "1.0", "files": files}
         write_whole_text(self._folder.series, json.dumps(index, indent=1) + "\n")
-
-
-def _make_room(folder: RunFolder, overwrite: bool) -> None:
-    """Create the folder, or empty it of an earlier run if that is wanted."""
-    with clear_errors(folder.path):
-        if folder.path.exists() and not folder.path.is_dir():
-            raise UserError(f"{folder.path}: is a file, not a folder")
-        if folder.path.is_dir() and any(folder.path.iterdir()):
-            _refuse_to_overwrite(folder, overwrite)
-            refuse_links(folder)
-            for file in folder.written_files():
-                file.unlink()
-        folder.snapshots.mkdir(parents=True, exist_ok=True)
-
-
-def refuse_links(folder: RunFolder) -> None:
-    """Raise UserError where writing into the folder would write outside it."""
-    if links := folder.links():
-        raise UserError(f"{links[0]}: is a symbolic link; nothing is written through it")
-
-
-def _refuse_to_overwrite(folder: RunFolder, overwrite: bool) -> None:
-    if not overwrite:
-        raise UserError(
-            f"{folder.path}: exists and is not empty; give another folder or --overwrite"
-        )
-    if not folder.is_run():
-        raise UserError(f"{folder.path}: is not the folder of a run, so it is not overwritten")
 
 
 def _truncate(path: Path, count: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from ..driver.active_run import ActiveRun
 from ..driver.checkpoint import Checkpoint, CheckpointFolder
 from ..driver.ranks import OneRank
 from ..errors import UserError
+from ..record.folder import RunFolder
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.load import load_scenario
@@ -19,13 +21,14 @@ from ..scenario.model import Scenario
 from ..scene.build import body_names
 from ..util.files import write_whole_text
 from ..util.toml_writer import to_toml
-from .runner import RunOptions, carry_out
+from .runner import RunOptions, carry_out, run_scenario
 
 # What may differ from the run so far: nothing that the particles or the record were made with.
 CHANGEABLE = {
     "time_max", "cflnumber", "cfl_force", "fixed_limits_dt", "alpha", "balsara", "skin", "gravity",
     "title",
 }  # fmt: skip
+NOTHING_YET = "no checkpoint was written yet; the run began anew"
 
 
 def resume_run(
@@ -43,19 +46,31 @@ def resume_run(
     """
     options = options or RunOptions()
     folder = load(directory).folder
-    checkpoint, notes = CheckpointFolder(folder.checkpoints).read_last(until)
+    with options.ranks.holding(directory):
+        checkpoints = CheckpointFolder(folder.checkpoints)
+        has_begun = bool(checkpoints.files()) or folder.summary.is_file()
+        if not options.ranks.agree(has_begun):
+            return _begun_anew(folder, overrides, options), [f"{directory}: {NOTHING_YET}"]
+        checkpoint, notes = checkpoints.read_last(until)
+        scenario = _scenario(folder.scenario, overrides)
+        if checkpoint.time >= scenario.time_max and folder.summary.is_file():
+            raise UserError(
+                f"{directory}: the run has reached time_max = {scenario.time_max:g} s;"
+                " go further with --set time_max=..."
+            )
+        run = _restored(directory, scenario, checkpoint, notes, options.ranks)
+        if overrides:
+            # The last snapshot may have been made early, at the time_max of then.
+            run.position.outputs = int(checkpoint.time / scenario.time_out + 1e-9) + 1
+            text = scenario.effective_toml(stored=True)
+            options.ranks.on_root(lambda: write_whole_text(folder.scenario, text))
+        return carry_out(run, options, fresh=False), notes
+
+
+def _begun_anew(folder: RunFolder, overrides: Sequence[str], options: RunOptions) -> dict[str, Any]:
+    """The run again from its scenario: it was ended before it could write a checkpoint."""
     scenario = _scenario(folder.scenario, overrides)
-    if checkpoint.time >= scenario.time_max and folder.summary.is_file():
-        raise UserError(
-            f"{directory}: the run has reached time_max = {scenario.time_max:g} s;"
-            " go further with --set time_max=..."
-        )
-    run = _restored(directory, scenario, checkpoint, notes, options.ranks)
-    if overrides:
-        # The last snapshot may have been made early, at the time_max of then.
-        run.position.outputs = int(checkpoint.time / scenario.time_out + 1e-9) + 1
-        options.ranks.on_root(lambda: write_whole_text(folder.scenario, scenario.effective_toml()))
-    return carry_out(run, options, fresh=False), notes
+    return run_scenario(scenario, folder.path, replace(options, overwrite=True))
 
 
 def _scenario(path: Path, overrides: Sequence[str]) -> Scenario:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from ..driver.active_run import ActiveRun, Progress
 from ..driver.ranks import OneRank
 from ..driver.schedule import CheckpointClock, StopRequests
 from ..errors import PhysicsError, ResourceError
+from ..record.beginning import check_free
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
@@ -89,15 +91,29 @@ def run_scenario(
     there is kept, the summary says "failed"), ResourceError when memory or disk runs out.
     """
     options = options or RunOptions()
-    simulation, body_names, warnings = options.ranks.filled_simulation(scenario)
-    names = scenario.material_names, body_names
-    text = scenario.effective_toml()
-    recorder = options.ranks.recorder(
-        directory,
-        lambda: Recorder(directory, text, *names, scenario.dim, overwrite=options.overwrite),
-    )
-    run = ActiveRun(scenario, simulation, recorder, body_names, options.ranks, warnings)
-    return carry_out(run, options, fresh=True)
+    with run_folder(directory, options.overwrite, options.ranks):
+        simulation, body_names, warnings = options.ranks.filled_simulation(scenario)
+        names = scenario.material_names, body_names
+        text, inputs = scenario.effective_toml(stored=True), scenario.inputs.values()
+        recorder = options.ranks.recorder(
+            directory,
+            lambda: Recorder(
+                directory, text, *names, scenario.dim, options.overwrite, list(inputs)
+            ),
+        )
+        run = ActiveRun(scenario, simulation, recorder, body_names, options.ranks, warnings)
+        return carry_out(run, options, fresh=True)
+
+
+@contextmanager
+def run_folder(directory: str | Path, overwrite: bool, ranks: OneRank) -> Iterator[None]:
+    """Hold the folder of a new run, which is looked at before the work of making a scene.
+
+    Raises UserError where another process writes there, or where something else is.
+    """
+    ranks.on_root(lambda: check_free(directory, overwrite))
+    with ranks.holding(directory):
+        yield
 
 
 def _explained(run: ActiveRun, message: str) -> Failure:

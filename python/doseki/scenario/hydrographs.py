@@ -20,6 +20,7 @@ from .values.types import LARGEST, RATE_UNITS, checked_hydrograph
 TIME_UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}
 HEADERS = {"t": TIME_UNITS, "Q": RATE_UNITS}
 MAX_BYTES = 20_000_000
+MAX_ROWS = 100_000
 
 
 def completed_inflows(
@@ -75,6 +76,8 @@ def read_hydrograph(path: Path) -> list[list[float]]:
         raise UserError(f"{path}: a hydrograph may have at most {MAX_BYTES // 10**6} MB")
     columns = read_csv_columns(path)
     t, rate = (_column(columns, name) for name in HEADERS)
+    if len(t) > MAX_ROWS:
+        raise ValueError(f"{len(t)} rows; at most {MAX_ROWS}, which the run's scenario.toml holds")
     return checked_hydrograph(list(zip(t, rate, strict=True)))
 
 

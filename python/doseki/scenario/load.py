@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from ..util.input_file import digest_of
 from .checks.references import check_names, check_references
 from .checks.tables import check_scenario
 from .hydrographs import completed_inflows
@@ -51,6 +52,7 @@ def list_scenarios() -> list[tuple[str, str, Path]]:
 def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -> Scenario:
     """Fill in what follows from the tables together; raises UserError where they disagree."""
     materials = _materials(tables, where)
+    _check_digests(tables, where)
     read = {
         name: read_particles(file_of(where, name, body.given("file")), tables.dim, body.material)
         for name, body in tables.body.items()
@@ -70,6 +72,20 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
     scenario = Scenario.made_of(tables, completed, where, materials, constants, read)
     check_scenario(scenario)
     return scenario
+
+
+def _check_digests(tables: ScenarioTable, where: Where) -> None:
+    """Files whose content is known must still have it."""
+    for name, body in tables.body.items():
+        expected = body.given("digest")
+        if expected is not None:
+            path = file_of(where, name, body.given("file"))
+            if (found := digest_of(path)) != expected:
+                raise where.error(
+                    ("body", name, "digest"),
+                    f"body.{name}.digest: {path} is not the file that was meant: its digest is"
+                    f" {found}, expected {expected}; bring back the file, or remove the key",
+                )
 
 
 def _gravity_on_slope(slope: float | None, g: float, dim: int) -> np.ndarray:

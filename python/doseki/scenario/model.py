@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from pydantic import ConfigDict, PrivateAttr
 
+from ..record.folder import INPUTS
+from ..util.input_file import InputFile, digest_of
 from ..util.toml_writer import to_toml
 from .gauges.gauge import Gauge, Setting
 from .kinematics import Kinematics
@@ -163,15 +165,25 @@ class Scenario(ScenarioTable):
         """The same run with another reduction factor, whatever it follows from in the file."""
         return self.model_copy(update={"xi": xi, "xi_height": None, "speed_max": None})
 
-    def effective_toml(self) -> str:
-        """The scenario as TOML that `load_scenario` reads back to the same run."""
+    @cached_property
+    def inputs(self) -> dict[str, InputFile]:
+        """The files that it names, by body; raises UserError for one that cannot be read."""
+        given = ((name, body.given("file")) for name, body in self.body.items())
+        files = {name: file_of(self.where, name, file) for name, file in given if file is not None}
+        return {name: InputFile(path.resolve(), digest_of(path)) for name, path in files.items()}
+
+    def effective_toml(self, stored: bool = False) -> str:
+        """The scenario as TOML that `load_scenario` reads back to the same run.
+
+        `stored`: for the folder of the run, which holds copies of the files that it names.
+        """
         implied = {"xi_height", "speed_max", "slope"}  # xi and gravity say the same
         table = self.model_dump(by_alias=True, exclude_none=True, exclude=implied | set(SECTIONS))
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
         given["material"] = {name: self._material_table(name) for name in self.material_names}
-        for name, body in self.body.items():
-            if (file := body.given("file")) is not None:
-                given["body"][name]["file"] = str(file_of(self.where, name, file).resolve())
+        for name, file in self.inputs.items():
+            path = f"{INPUTS}/{file.name}" if stored else str(file.path)
+            given["body"][name] |= {"file": path, "digest": file.digest}
         return to_toml(table | {name: given.get(name, {}) for name in SECTIONS})
 
     def _material_table(self, name: str) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from ..kinematics import SINGLE, Kinematics
 from ..table import Kinds, Only
 from ..values.types import (
+    Digest,
     Grading,
     Length,
     Mass,
@@ -168,6 +169,9 @@ class Mesh(TurnedBody):
 
     shape: Literal["stl"]
     file: str = Field(description="path, relative to this scenario file")
+    digest: Digest | None = Field(
+        None, description="BLAKE2b of the file, 32 hexadecimal digits; another one is refused"
+    )
     scale: Positive = Field(1.0, description="m per unit of the file")
     centre: Vector | None = Field(
         None, description="where its centre of mass is put, m; default: where the file has it"
@@ -192,6 +196,9 @@ class ParticleFile(BodyTable):
 
     shape: Literal["file"]
     file: str = Field(description="path, relative to this scenario file")
+    digest: Digest | None = Field(
+        None, description="BLAKE2b of the file, 32 hexadecimal digits; another one is refused"
+    )
     fixed: bool = Field(False, description="where the file has no column `fixed`")
     material: OptionalMaterialName = Field(
         None, description="where the file has no column `material`"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationInfo
 
+from ...util.input_file import DIGEST
 from .expressions import is_expression
 
 # A length beyond these is a slip of the keyboard, and would overflow further on.
@@ -134,6 +135,12 @@ def _skin(value: float | str) -> float | str:
     return value
 
 
+def _digest(value: str) -> str:
+    if not DIGEST.fullmatch(value):
+        raise ValueError("must be 32 hexadecimal digits, as in scenario.toml of a run")
+    return value
+
+
 @dataclass(frozen=True)
 class RefersTo:
     """What a key names: a table of this section."""
@@ -142,6 +149,7 @@ class RefersTo:
 
 
 Positive = Annotated[float, Field(gt=0)]
+Digest = Annotated[str, AfterValidator(_digest)]
 Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
 Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 NonNegative = Annotated[float, Field(ge=0)]
