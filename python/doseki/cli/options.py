@@ -16,7 +16,9 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scenario; repeatable."),
 ]
-Threads = Annotated[int | None, typer.Option(min=1, max=4096, help="Threads [all cores].")]
+Threads = Annotated[
+    int | None, typer.Option(min=1, max=4096, help="Threads.", show_default="all cores")
+]
 CheckpointEvery = Annotated[
     float | None,
     typer.Option(

@@ -17,7 +17,10 @@ Tier = StrEnum("Tier", ["coarse", "full"])
 
 
 def list_scenarios() -> None:
-    """List the scenarios that are shipped."""
+    """List the scenarios that are shipped.
+
+    See also: doseki check NAME looks one over, doseki run NAME runs it.
+    """
     from ..scenario.load import list_scenarios as shipped
 
     table = Table("scenario", "what it is", box=None)
@@ -38,14 +41,17 @@ def bench(
         str | None, typer.Option(metavar="double,float", help="Of the pairs.")
     ] = None,
     threads: Annotated[
-        str | None, typer.Option(metavar="T,...", help="Threads [1, 2, all].")
+        str | None, typer.Option(metavar="T,...", help="Threads.", show_default="1, 2, all")
     ] = None,
     isa: Annotated[
         str | None,
-        typer.Option(metavar="v4,...", help="Instruction sets [best; others at one size]."),
+        typer.Option(
+            metavar="v4,...", help="Instruction sets.", show_default="best; others at one size"
+        ),
     ] = None,
     scheme: Annotated[
-        str | None, typer.Option(metavar="NAME", help="ueta2022 or resolved [ueta2022].")
+        str | None,
+        typer.Option(metavar="NAME", help="ueta2022 or resolved.", show_default="ueta2022"),
     ] = None,
     ranks: Annotated[
         str | None,
@@ -75,14 +81,16 @@ def bench(
 
 def validate(
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME ...]", help="Cases [all].")
+        list[str] | None, typer.Argument(metavar="[NAME ...]", help="Cases.", show_default="all")
     ] = None,
     tier: Annotated[
         Tier, typer.Option(help="coarse: the coarsest resolution only; full: all of them.")
     ] = Tier.coarse,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Of the report [runs/validation]."),
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Of the report.", show_default="runs/validation"
+        ),
     ] = None,
     threads: Threads = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,

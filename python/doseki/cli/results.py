@@ -36,7 +36,7 @@ def census(
     directory: Directory,
     window: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help='Of the speeds [the window "outlet", else all].'),
+        typer.Option(metavar="NAME", help="Of the speeds.", show_default="outlet, else everywhere"),
     ] = None,
     start: Annotated[
         float, typer.Option("--from", parser=number(), metavar="SECONDS", help="Of the speeds.")
@@ -50,7 +50,8 @@ def census(
             "--section",
             parser=number(),
             metavar="X",
-            help="Where passing is counted, m; repeatable [0].",
+            help="Where passing is counted, m; repeatable.",
+            show_default="0",
         ),
     ] = None,
     sample: Annotated[
@@ -77,7 +78,10 @@ def export(
         bool, typer.Option("--vtu", help="VTU files and a .pvd, for older viewers.")
     ] = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="[DIR/vtu]")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Output folder.", show_default="DIR/vtu"
+        ),
     ] = None,
 ) -> None:
     """Write the snapshots of a run in another format."""

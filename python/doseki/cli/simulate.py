@@ -28,7 +28,9 @@ def run(
     scenario: ScenarioName,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Output folder [runs/NAME]."),
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Output folder.", show_default="runs/NAME"
+        ),
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
@@ -92,7 +94,10 @@ def check(
     settings: Settings = None,
     threads: Threads = None,
 ) -> None:
-    """Say what a scenario will take, and what is doubtful about it, without running it."""
+    """Say what a scenario will take, and what is doubtful about it, without running it.
+
+    See also: doseki list names the shipped ones, doseki explain says why a run failed.
+    """
     from ..assess.preflight import check_scenario
     from ..scenario.load import load_scenario
 
@@ -143,7 +148,10 @@ def resume(
 
 
 def explain(directory: Directory) -> None:
-    """Say why a run failed, and what to change."""
+    """Say why a run failed, and what to change.
+
+    See also: doseki check says before a run what is doubtful about a scenario.
+    """
     from ..assess.failure.failure import explanation
     from ..record.reader import load
 

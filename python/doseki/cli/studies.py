@@ -19,7 +19,9 @@ def trust(
     ] = "xi",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", help="Of the runs [runs/NAME-trust]."),
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Of the runs.", show_default="runs/NAME-trust"
+        ),
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
@@ -38,11 +40,20 @@ def compare(
     name: Annotated[str, typer.Argument(metavar="flume", help="What to compare.")],
     runs: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[RUN RUN]", help="Runs of both schemes [both are run now]."),
+        typer.Argument(
+            metavar="[RUN RUN]", help="Runs of both schemes.", show_default="both are run now"
+        ),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--out", "--output", metavar="DIR", help="[runs/NAME-comparison]"),
+        typer.Option(
+            "-o",
+            "--out",
+            "--output",
+            metavar="DIR",
+            help="Output folder.",
+            show_default="runs/NAME-comparison",
+        ),
     ] = None,
     settings: Settings = None,
     threads: Threads = None,

@@ -1,0 +1,47 @@
+"""What `--help` shows of each command."""
+
+from __future__ import annotations
+
+import pytest
+from typer.main import get_command
+from typer.testing import CliRunner
+
+from doseki.cli.app import app
+
+COMMANDS = get_command(app).commands
+
+
+def shown(*arguments: str) -> str:
+    """The help of a command in one line."""
+    done = CliRunner().invoke(app, [*arguments, "--help"], env={"COLUMNS": "400", "TERM": "dumb"})
+    assert done.exit_code == 0, done.output
+    return " ".join(done.output.split())
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_loses_none_of_its_words(name):
+    """Square brackets would be taken for markup."""
+    told = shown(name)
+    for parameter in COMMANDS[name].params:
+        if parameter.param_type_name == "option" and not parameter.hidden:
+            assert " ".join((parameter.help or "").split()) in told
+            if isinstance(parameter.show_default, str):
+                assert f"({parameter.show_default})" in told
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("run", ["(all cores)", "(runs/NAME)"]),
+        ("census", ["(0)", "(outlet, else everywhere)"]),
+        ("validate", ["(all)", "(runs/validation)"]),
+        ("bench", ["(1, 2, all)", "(ueta2022)"]),
+        ("check", ["doseki list", "doseki explain"]),
+        ("list", ["doseki check"]),
+        ("explain", ["doseki check"]),
+    ],
+)
+def test_help_names_defaults_and_neighbours(name, words):
+    told = shown(name)
+    for word in words:
+        assert word in told
