@@ -29,9 +29,9 @@ struct FreeSurfaceIndicator {
 };
 
 /// sum V W and -sum V F x^2 on a square (2-D) or cubic lattice of spacing dp, both 1 for an
-/// integral.
+/// integral, and V W of the particle itself.
 struct LatticeSums {
-    double concentration = 0.0, moment = 0.0;
+    double concentration = 0.0, moment = 0.0, own_share = 0.0;
 };
 
 template <class Kernel, int D>
@@ -39,6 +39,7 @@ LatticeSums lattice_sums(double dp, double support) {
     const int reach = static_cast<int>(support / dp) + 1;
     const double volume = std::pow(dp, D);
     LatticeSums sums;
+    sums.own_share = volume * Kernel::value(0.0, 1.0 / support);
     for (int x = -reach; x <= reach; ++x)
         for (int y = -reach; y <= reach; ++y)
             for (int z = D == 3 ? -reach : 0; z <= (D == 3 ? reach : 0); ++z) {
@@ -57,12 +58,12 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
 }
 
 /// Velocity at which particles are shifted towards where they are scarce (Lind et al., J. Comput.
-/// Phys. 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 5 h |L|: what disorder the flow
+/// Phys. 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 10 h |L|: what disorder the flow
 /// makes in the time 1/|L| is undone in about that time, however fast the frame moves.
 template <int D>
 Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate,
                                  double h) {
-    constexpr double strength = 40.0, max_speed = 5.0;
+    constexpr double strength = 80.0, max_speed = 10.0;
     const double length = std::sqrt(dot(gradient_of_concentration, gradient_of_concentration));
     if (!(length > 0.0)) return {};
     const double speed = std::min(strength * h * length, max_speed) * h * rate;

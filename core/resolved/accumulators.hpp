@@ -14,6 +14,7 @@ struct FlowConstants {
     double c;  // sound speed of the fluid [m/s]
     double dp;
     double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
+    double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
     ViscousForm<double> form;
     bool harmonic = false;  // see pair_viscosity
 };
@@ -21,11 +22,12 @@ struct FlowConstants {
 /// Over the neighbours of a fluid particle i; gradients are those of the plain kernel.
 template <class T, int D>
 struct FluidAccumulators {
-    Vec<T, D> force;     // over V_i/2
+    Vec<T, D> force;     // of viscosity, dissipation and shifting, over V_i/2
     Vec<T, D> traction;  // of rough walls, over V_i
     T density_rate{};    // over rho_i
     T power{};           // that pairs dissipate, over V_i
     Vec<T, D> pressure_gradient, concentration_gradient, surface_gradient;
+    Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
     Mat<T, D> velocity_gradient;
     Sym<T, D> moment;
     T concentration{};  // sum of rest volumes times W
@@ -36,8 +38,8 @@ struct FluidAccumulators {
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.traction...), f(self.density_rate...), f(self.power...);
         f(self.pressure_gradient...), f(self.concentration_gradient...);
-        f(self.surface_gradient...), f(self.velocity_gradient...), f(self.moment...);
-        f(self.concentration...), f(self.wall_share...), f(self.max_surface...);
+        f(self.surface_gradient...), f(self.corrected_gradient...), f(self.velocity_gradient...);
+        f(self.moment...), f(self.concentration...), f(self.wall_share...), f(self.max_surface...);
     }
 };
 
@@ -59,10 +61,11 @@ struct WallAccumulators {
 /// for fluid of mirrored velocity.
 template <class T, int D>
 struct WallContact {
-    Vec<T, D> force;  // 2 (p* r_iw - mu jump) -F V_w: force on i over V_i
-    T excess;         // of the pressure at w over p_i
-    T approach;       // (v_i - v_w).(-n)
-    T r_dot_n;
+    Vec<T, D> pressure_force, viscous_force;  // on i over V_i
+    Vec<T, D> corrected_r;                    // B_i r_iw
+    T excess;                                 // of the pressure at w over p_i
+    T approach;                               // (v_i - v_w).(-n)
+    T r_dot_n, corrected_r_dot_n;
     Vec<T, D> jump;  // v_i - velocity extrapolated to w
     T power;
 };
@@ -93,15 +96,29 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     const T extra = approach_pressure(T(2) * contact.approach, i.rho, c);
     contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
                                           contact.r_dot_n, r_iw);
-    const T p = i.p + number<T>(0.5) * contact.excess + extra;
+    contact.corrected_r = i.correction * r_iw;
+    contact.corrected_r_dot_n = dot(contact.corrected_r, w.normal);
+    const T p = i.p + number<T>(0.5) * contact.excess;
     const T no_slip = w.no_slip * no_slip_factor(w.depth, contact.r_dot_n - w.depth, min_distance);
     const Vec<T, D> sliding = v_iw + contact.approach * w.normal;
     contact.jump = no_slip * sliding - (T(2) * contact.approach) * w.normal;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
-    contact.force = scale * (p * r_iw - mu_wall * sliding);
+    contact.pressure_force = (scale * p) * contact.corrected_r;
+    contact.viscous_force = scale * (extra * r_iw - mu_wall * sliding);
     contact.power =
         scale * (mu_wall * dot(sliding, v_iw) + extra * contact.approach * contact.r_dot_n);
     return contact;
+}
+
+/// Force of pressure on a fluid particle i over V_i: -sum_j V_j (p_i B_j + p_j B_i) grad W, with
+/// B_i and 2 p* in front of walls (reverse kernel gradient correction: Zhang, Adams and Hu,
+/// arXiv:2406.02576). Pairs conserve momentum, and an arrangement of particles under pressure
+/// resists no shear, as it does with B = 1: its stress is that of p times the moment of gradients.
+template <int D>
+Vec<double, D> pressure_force(const FluidAccumulators<double, D>& sums,
+                              const FluidFields<double, D>& i) {
+    const Vec<double, D> of_neighbours = sums.pressure_gradient + i.p * sums.concentration_gradient;
+    return -1.0 * (i.correction * of_neighbours + i.p * sums.corrected_gradient);
 }
 
 /// What every neighbour, fluid or wall, adds to the gradients.
@@ -129,18 +146,24 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
     const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
     const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
     const T extra = approach_pressure((smooth - v_dot_r) / pair.r, rho, c);
-    const T p = half * (i.p + j.p) + extra;
+    const Vec<T, D> corrected_r = j.correction * pair.r_ij;
     const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
     const ViscousForm<T> form{T(constants.form.along_jump), T(constants.form.along_pair)};
     const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, pair.r, pair.r_ij);
-    for (int a = 0; a < D; ++a) sums.force[a] -= VF * (p * pair.r_ij[a] - mu * viscous[a]);
+    const T W = Kernel::value(pair.r, inverse_support);
+    const T exchange = half * T(constants.exchange) * rho * j.volume * W;
+    for (int a = 0; a < D; ++a) {
+        sums.force[a] -= VF * (extra * pair.r_ij[a] - mu * viscous[a]);
+        sums.force[a] += exchange * (i.carried[a] - j.carried[a]);
+        sums.corrected_gradient[a] += VF * corrected_r[a];
+    }
     sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r);
     const T jump = pressure_jump(i.p, j.p, i.pressure_gradient, j.pressure_gradient, pair.r_ij);
-    sums.density_rate += VF * (v_dot_r + jump * pair.r / (rho * c));
+    sums.density_rate += VF * (dot(v_ij, corrected_r) + jump * pair.r / (rho * c));
     add_gradients(sums, pair.r_ij, VF, i.p - j.p, v_ij);
     const T surface = j.surface - i.surface;
     for (int a = 0; a < D; ++a) sums.surface_gradient[a] += surface * (VF * pair.r_ij[a]);
-    sums.concentration += j.rest_volume * Kernel::value(pair.r, inverse_support);
+    sums.concentration += j.rest_volume * W;
     sums.max_surface = max(sums.max_surface, select(F < T(0), j.surface, T(0)));
 }
 
@@ -155,11 +178,12 @@ DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& cons
     const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
     const T half = number<T>(0.5);
     for (int a = 0; a < D; ++a) {
-        sums.force[a] += half * contact.force[a];
+        sums.force[a] += half * contact.viscous_force[a];
         sums.traction[a] += W * w.traction[a];
+        sums.corrected_gradient[a] += VF * contact.corrected_r[a];
     }
     sums.power += contact.power;
-    sums.density_rate -= T(2) * VF * contact.approach * contact.r_dot_n;
+    sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
     add_gradients(sums, pair.r_ij, VF, -contact.excess, contact.jump);
     sums.wall_share += w.volume * W;
 }
@@ -176,7 +200,7 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);
     const T share = j.volume * W;
     for (int a = 0; a < D; ++a) {
-        sums.force[a] -= j.volume * contact.force[a];
+        sums.force[a] -= j.volume * (contact.pressure_force[a] + contact.viscous_force[a]);
         sums.velocity[a] += share * j.v[a];
     }
     sums.weight += share;

@@ -110,6 +110,9 @@ void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_d
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
     record.pressure_gradient = state.pressure_gradient[p];
+    record.correction = state.correction_excess[p];
+    for (int a = 0; a < D; ++a) record.correction(a, a) += 1.0;
+    record.carried = L * state.shift[p];
 }
 
 template <int D, class Backend>
@@ -177,7 +180,7 @@ template <class Kernel>
 void Resolved<D, Backend>::sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
                                      const FlowRecords<D>& records) {
     const FluidTerm<Kernel, D> term{records, model_->constants};
-    const FluidEpilogue<D> epilogue(*model_, activity_, fluid_, fluid_count_, summary_, state);
+    const FluidEpilogue<D> epilogue(*model_, fluid_, fluid_count_, summary_, state);
     const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
     while_ghosts_come(halo, lists, lists.clusters().first(clusters), Backend::width,
                       [&](std::span<const ClusterList> part, std::size_t first) {
@@ -192,20 +195,15 @@ template <int D, class Backend>
 void Resolved<D, Backend>::reduce_summaries(const Ranks& ranks) {
     // What enters next may be the first fluid there is.
     const Options<D>& options = model_->options;
-    const double c = model_->constants.c;
-    timestep_ = options.cflnumber * options.eta * options.flow.dp / c;
+    timestep_ = options.cflnumber * options.eta * options.flow.dp / model_->constants.c;
     power_ = 0.0;
     fault_ = {}, limiting_ = -1;
-    std::array<double, 2> total{0.0, static_cast<double>(fluid_count_)};  // of |L|^2, of particles
     for (const FlowSummary& summary : summary_) {
         if (summary.timestep < timestep_)
             timestep_ = summary.timestep, limiting_ = summary.limiting;
         power_ += summary.power;
-        total[0] += summary.strain;
         fault_.merge(summary.fault);
     }
-    ranks.sum(total);
-    if (total[1] > 0.0) activity_.update(total[0] / total[1], options.eta * options.flow.dp, c);
 }
 
 template <int D, class Backend>

@@ -17,11 +17,10 @@ class FluidEpilogue {
 public:
     using Sums = FluidAccumulators<double, D>;
 
-    FluidEpilogue(const ResolvedModel<D>& model, const FlowActivity& activity,
-                  std::span<const FluidRecord<D>> records, std::size_t fluid_count,
-                  std::span<FlowSummary> summaries, ResolvedState<D>& state)
+    FluidEpilogue(const ResolvedModel<D>& model, std::span<const FluidRecord<D>> records,
+                  std::size_t fluid_count, std::span<FlowSummary> summaries,
+                  ResolvedState<D>& state)
         : model_(model),
-          activity_(activity),
           records_(records),
           fluid_count_(fluid_count),
           summaries_(summaries),
@@ -32,6 +31,7 @@ public:
         correct_gradients(p, sums);
         const FreeSurfaceIndicator indicator = free_surface(p, sums);
         state_.surface[p] = indicator.x;
+        state_.correction_excess[p] = correction_excess(p, sums);
         state_.shift[p] = {};
         summary(p).fault.note_density(records_[p].rho, rho0(p), p);
         if (!state_.is_free(p)) {
@@ -39,16 +39,14 @@ public:
             return;
         }
         const Mat<double, D>& L = state_.velocity_gradient[p];
-        double norm = 0.0;
-        for (double element : L.element) norm += element * element;
-        summary(p).strain += norm;
+        double square = 0.0;
+        for (double element : L.element) square += element * element;
+        const double strain = std::sqrt(square);
 
         Rates rates = momentum_and_continuity(p, sums);
-        if (sums.wall_share == 0.0 && sums.max_surface < FreeSurfaceIndicator::surface)
-            correct_interior(p, sums, rates);
         if (model_.options.flow.shifting && indicator.x < FreeSurfaceIndicator::surface)
-            shift(p, sums, std::sqrt(norm), rates);
-        relax_density(p, indicator.normalised_density, rates);
+            shift(p, sums, strain, rates);
+        relax_density(p, indicator.normalised_density, strain, rates);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
         summary(p).power += records_[p].volume * sums.power;
@@ -91,6 +89,18 @@ private:
         }
     }
 
+    /// None near a free surface, where there is little pressure and the inverse is large.
+    Sym<double, D> correction_excess(std::size_t p, const Sums& sums) const {
+        constexpr double min_determinant = 0.3;
+        const Mat<double, D> B = inverse(full(sums.moment), min_determinant);
+        const bool corrected =
+            std::max(sums.max_surface, state_.surface[p]) < FreeSurfaceIndicator::surface &&
+            B(0, 0) > 0.0;
+        Sym<double, D> excess;
+        if (corrected) excess = symmetric_part(B - identity<double, D>());
+        return excess;
+    }
+
     FreeSurfaceIndicator free_surface(std::size_t p, const Sums& sums) const {
         const Vec<double, D>& gradient = sums.concentration_gradient;
         const double slope = std::sqrt(dot(gradient, gradient));
@@ -103,50 +113,36 @@ private:
     Rates momentum_and_continuity(std::size_t p, const Sums& sums) const {
         const double rho = records_[p].rho, B = model_.options.attraction;
         Vec<double, D> a =
-            (1.0 / rho) * (2.0 * sums.force + sums.traction) + model_.options.gravity;
+            (1.0 / rho) * (pressure_force(sums, records_[p]) + 2.0 * sums.force + sums.traction) +
+            model_.options.gravity;
         a = a - B * B * state_.position[p];
         return {a, rho * sums.density_rate};
     }
 
-    /// In the interior, subtract the zeroth-order pressure error and use the corrected gradient.
-    void correct_interior(std::size_t p, const Sums& sums, Rates& rates) const {
-        const FluidRecord<D>& record = records_[p];
-        const double blending = activity_.interior_blending;
-        const Vec<double, D> noise = sums.pressure_gradient - state_.pressure_gradient[p];
-        rates.acceleration =
-            rates.acceleration +
-            (blending / record.rho) * (2.0 * record.p * sums.concentration_gradient + noise);
-        rates.density += blending * record.rho *
-                         (trace(sums.velocity_gradient) - trace(state_.velocity_gradient[p]));
-    }
-
-    /// Moves the particle relative to the fluid, and its rates with it: what it carries is that of
-    /// where it goes.
+    /// Moves the particle relative to the fluid, and its density with it. Pairs see to its
+    /// velocity.
     void shift(std::size_t p, const Sums& sums, double strain, Rates& rates) const {
         const double c = model_.constants.c;
         Vec<double, D> velocity =
-            shifting_velocity(sums.concentration_gradient, std::max(strain, activity_.strain),
-                              state_.smoothing_length[p]);
+            shifting_velocity(sums.concentration_gradient, strain, state_.smoothing_length[p]);
         if (sums.max_surface > FreeSurfaceIndicator::surface)
             velocity = tangential(velocity, sums.surface_gradient);
         const double fastest = max_shift * c, speed = std::sqrt(dot(velocity, velocity));
         if (speed > fastest) velocity = (fastest / speed) * velocity;
         state_.shift[p] = velocity;
-        const Mat<double, D>& L = state_.velocity_gradient[p];
-        for (int k = 0; k < D; ++k)
-            for (int l = 0; l < D; ++l) rates.acceleration[k] += L(k, l) * velocity[l];
         rates.density += dot(state_.pressure_gradient[p], velocity) / (c * c);
     }
 
-    /// What continuity sums up over many steps forgets how far apart particles are: the density is
-    /// drawn to the one that their arrangement says.
-    void relax_density(std::size_t p, double normalised_density, Rates& rates) const {
-        const double rho = records_[p].rho;
-        const double time =
-            (density_relaxation + (1.0 - activity_.interior_blending) *
-                                      (density_relaxation_at_rest - density_relaxation)) *
-            state_.smoothing_length[p] / model_.constants.c;
-        rates.density += (normalised_density * rho0(p) - rho) / time;
+    /// What continuity sums up over many steps forgets how far apart particles are: the density
+    /// goes towards the one that their arrangement says, and the faster the more the flow disturbs
+    /// it.
+    void relax_density(std::size_t p, double normalised_density, double strain,
+                       Rates& rates) const {
+        constexpr double per_strain = 10.0;
+        const double rho = records_[p].rho, sound = model_.constants.c / state_.smoothing_length[p];
+        const double rate = std::clamp(per_strain * strain, sound / density_relaxation_at_rest,
+                                       sound / density_relaxation);
+        rates.density += rate * (normalised_density * rho0(p) - rho);
         if (rho < min_density * rho0(p)) rates.density = std::max(0.0, rates.density);
     }
 
@@ -163,7 +159,6 @@ private:
     }
 
     const ResolvedModel<D>& model_;
-    const FlowActivity& activity_;
     std::span<const FluidRecord<D>> records_;
     std::size_t fluid_count_;
     std::span<FlowSummary> summaries_;

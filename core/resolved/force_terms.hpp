@@ -35,31 +35,39 @@ struct FluidPass {
         return found;
     }
 
-    /// Terms of Eq. (27) for particle p: pressure and viscosity among fluids, and what walls do.
+    /// Terms of Eq. (27) for particle p: pressure, viscosity and what shifting makes neighbours
+    /// exchange among fluids, and what walls do.
     template <class Kernel>
     ForceTerms<D> pair_forces(std::size_t p) const {
-        std::vector<FluidRecord<D>> inviscid(records.fluid_fields.begin(),
-                                             records.fluid_fields.end());
-        for (FluidRecord<D>& record : inviscid) record.mu = 0.0;
-        FlowRecords<D> without_viscosity = records;
-        without_viscosity.fluid_fields = inviscid;
-
+        std::vector<FluidRecord<D>> changed(records.fluid_fields.begin(),
+                                            records.fluid_fields.end());
+        const FluidRecord<D>& record = records.fluid_fields[p];
+        const auto force = [&](const FluidAccumulators<double, D>& sums) {
+            return (1.0 / record.rho) * (pressure_force(sums, record) + 2.0 * sums.force);
+        };
+        const auto fluid_force = [&] {
+            FlowRecords<D> given = records;
+            given.fluid_fields = changed;
+            return force(sums_of<Kernel>(p, given, false));
+        };
         const auto all = sums_of<Kernel>(p, records, true);
-        const auto fluid = sums_of<Kernel>(p, records, false);
-        const auto pressure = sums_of<Kernel>(p, without_viscosity, false);
-        const double over_rho = 1.0 / records.fluid_fields[p].rho;
+        const Vec<double, D> fluid = fluid_force();
+        for (FluidRecord<D>& other : changed) other.carried = {};
+        const Vec<double, D> unshifted = fluid_force();
+        for (FluidRecord<D>& other : changed) other.mu = 0.0;
+        const Vec<double, D> pressure = fluid_force();
         ForceTerms<D> terms;
         terms.acceleration = {
-            {"pressure", over_rho * (2.0 * pressure.force)},
-            {"viscosity", over_rho * (2.0 * (fluid.force - pressure.force))},
-            {"walls", over_rho * (2.0 * (all.force - fluid.force) + all.traction)},
+            {"pressure", pressure},
+            {"viscosity", unshifted - pressure},
+            {"shifting", fluid - unshifted},
+            {"walls", force(all) + (1.0 / record.rho) * all.traction - fluid},
         };
         return terms;
     }
 };
 
-/// Eqs. (27) and (41) of particle p. What its acceleration has beside the forces of pairs and
-/// bodies is the correction in the interior and what shifting carries along.
+/// Eqs. (27) and (41) of particle p.
 template <int D, class Backend>
 ForceTerms<D> force_terms(const FluidPass<D, Backend>& pass, const ResolvedState<D>& state,
                           std::size_t p) {
@@ -71,7 +79,6 @@ ForceTerms<D> force_terms(const FluidPass<D, Backend>& pass, const ResolvedState
     if (attraction > 0.0)
         terms.acceleration.emplace_back("attraction", -attraction * state.position[p]);
     const Vec<double, D> a = state.acceleration[p], v = state.velocity[p];
-    terms.acceleration.emplace_back("correction_and_shifting", a - terms.total_acceleration());
 
     const auto limits =
         FlowTimestep::of(options, pass.records.fluid_fields[p], state.smoothing_length[p],

@@ -15,8 +15,8 @@
 
 namespace doseki {
 
-/// Relaxation time [h/c] of the integrated density towards the summation density, in flow and at
-/// rest.
+/// Relaxation times [h/c] of the integrated density towards the summation density: the least, in
+/// flow, and the greatest, at rest.
 inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest = 1000.0;
 
 template <int D>
@@ -41,6 +41,7 @@ struct ResolvedModel {
                                               : lattice_sums<WendlandC2<D>, D>(flow.dp, support);
         lattice_concentration = lattice.concentration;
         constants.gradient_scale = 1.0 / lattice.moment;
+        constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);
         constants.form = flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}
                                               : ViscousForm<double>{1.0, 0.0};
     }

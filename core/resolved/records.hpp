@@ -9,6 +9,8 @@ template <class T, int D>
 struct FluidFields {
     Vec<T, D> pressure_gradient;
     Sym<T, D> strain;       // symmetric part of the velocity gradient
+    Sym<T, D> correction;   // of kernel gradients, see ResolvedState::correction_excess
+    Vec<T, D> carried;      // L dv, what shifting makes of the velocity
     T volume, rest_volume;  // m/rho, m/rho0
     T rho, p;
     T mu;       // molecular and eddy viscosity [Pa s]
@@ -16,8 +18,9 @@ struct FluidFields {
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.pressure_gradient...), f(self.strain...), f(self.volume...);
-        f(self.rest_volume...), f(self.rho...), f(self.p...), f(self.mu...), f(self.surface...);
+        f(self.pressure_gradient...), f(self.strain...), f(self.correction...);
+        f(self.carried...), f(self.volume...), f(self.rest_volume...), f(self.rho...), f(self.p...),
+            f(self.mu...), f(self.surface...);
     }
 };
 

@@ -75,8 +75,7 @@ public:
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("next_timestep", timestep_), archive("av_power", power_),
-            archive("liveliness", activity_.interior_blending), archive("strain", activity_.strain);
+        archive("next_timestep", timestep_), archive("av_power", power_);
     }
 
     std::size_t bytes() const {
@@ -107,7 +106,6 @@ private:
     Field<WallRecord<D>> wall_;  // the first is that of particle fluid_count_
     Field<FlowSummary> summary_;
     PhaseTimer phases_;
-    FlowActivity activity_;
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;
     Fault fault_;

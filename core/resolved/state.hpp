@@ -14,16 +14,19 @@ struct ResolvedState : Particles<D> {
 
     Field<Vec<double, D>> pressure_gradient;  // [Pa/m]
     Field<Mat<double, D>> velocity_gradient;  // [1/s]
-    Field<Vec<double, D>> shift;              // velocity relative to the fluid [m/s]
-    Field<double> surface;                    // free-surface indicator
-    Field<double> mixing_length;              // [m]
-    Field<double> mean_pressure;              // over a time, where friction depends on it [Pa]
+    /// Inverse moment of kernel gradients less the identity: zero near a free surface, and before a
+    /// particle has been summed over.
+    Field<Sym<double, D>> correction_excess;
+    Field<Vec<double, D>> shift;  // velocity relative to the fluid [m/s]
+    Field<double> surface;        // free-surface indicator
+    Field<double> mixing_length;  // [m]
+    Field<double> mean_pressure;  // over a time, where friction depends on it [Pa]
 
     template <class F>
     void for_each_field(F&& f) {
         this->for_each_common_field(f);
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
-        f("shift", shift), f("surface", surface);
+        f("correction_excess", correction_excess), f("shift", shift), f("surface", surface);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
     }
 

@@ -101,7 +101,7 @@ def test_pressure_carries_water_inside_and_not_at_the_side(tmp_path):
     inside, side = terms(0.155, 0.155), terms(0.005, 0.155)
     np.testing.assert_allclose(inside["pressure"], [0, 9.81], atol=0.3)
     np.testing.assert_allclose(inside["gravity"], [0, -9.81])
-    for name in ("viscosity", "walls", "correction_and_shifting"):
+    for name in ("viscosity", "walls", "shifting"):
         assert np.linalg.norm(inside[name]) < 0.5, name
     assert side["pressure"][0] < -100
     bottom = terms(0.155, 0.005)

@@ -35,8 +35,8 @@ def forces(simulation, gravity):
 @WALLS
 @pytest.mark.parametrize("steps", [0, 30])
 def test_what_the_fluid_loses_the_walls_get(core, flows, dim, wall, steps):
-    """Every pair is balanced. Shifting alone is not, so it is off."""
-    settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01", "shifting=false"]
+    """Every pair is balanced, what shifting makes neighbours exchange as well."""
+    settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01"]
     film = advance(flows(FILM.format(dim=dim), *settings), steps)
     fluid, walls, size = forces(film, gravity_of(dim))
     assert np.abs(walls).max() > 1e-4 * size
@@ -45,7 +45,6 @@ def test_what_the_fluid_loses_the_walls_get(core, flows, dim, wall, steps):
 
 @WALLS
 def test_water_at_rest_and_walls_are_in_balance_at_any_depth(core, flows, wall):
-    """Also where only differences of pressure act while it flows: the first evaluation has none."""
     settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01", "body.film.velocity=[0, 0]"]
     settings += ["body.film.max=[0.2, 0.15]", "body.film.pressure== 3000*(0.15 - y)"]
     fluid, walls, size = forces(flows(FILM.format(dim=2), *settings), gravity_of(2))
@@ -66,7 +65,7 @@ def test_momentum_of_a_small_drop_is_conserved(core, flows, dim):
     """All of it is near the surface, so that nothing acts that belongs inside a flow."""
     velocity = ["= -3*y + 5*x", *[0.1] * (dim - 2), "= 3*x"]
     settings = [f"body.drop.velocity={velocity}", "body.drop.radius=0.025", "body.drop.jitter=0.2"]
-    drop = flows(DROP.format(dim=dim), *settings, "shifting=false")
+    drop = flows(DROP.format(dim=dim), *settings)
     before, mass = np.array(drop.totals()["momentum"]), drop.totals()["mass"]
     advance(drop, 40)
     fluid, _, size = forces(drop, 0.0)
@@ -175,3 +174,64 @@ def test_a_stiffened_gas_at_rest_carries_its_weight(core, flows):
     np.testing.assert_allclose(p[p > 0], law[p > 0], rtol=1e-10)
     np.testing.assert_allclose(p, 1000 * G * (depth - y), atol=0.03 * 1000 * G * depth)
     assert np.abs(state["velocity"][water]).max() < 0.02 * np.sqrt(G * depth)
+
+
+SHEARED = """\
+dim = 2
+scheme = "resolved"
+speed_max = 2
+dp = 0.005
+time_max = 1
+time_out = 1
+periodic = ["x", "y"]
+domain_min = [0, 0]
+domain_max = [0.2, 0.2]
+
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.2, 0.2]
+pressure = 2e4
+"""
+
+
+@pytest.mark.parametrize(
+    ("waves", "time"), [((0, 1), 0.1), ((1, 1), 0.025)], ids=["along rows", "askew"]
+)
+def test_an_arrangement_under_pressure_resists_no_shear(core, flows, waves, time):
+    """A slow shear wave in water under a twentieth of rho c^2 goes on as it would under none.
+
+    Sums of p_i + p_j alone resist like an elastic solid, at any spacing: 0.69 and -0.04 are left.
+    """
+    k = 2 * np.pi / 0.2 * np.array(waves)
+    along = np.array([k[1], -k[0]]) / np.linalg.norm(k)
+    velocity = [f"= 2e-3*{a}*sin({k[0]}*x + {k[1]}*y)" for a in along]
+    simulation = flows(SHEARED, f"body.water.velocity={velocity}")
+
+    def amplitude():
+        state = simulation.state()
+        return 2 * np.mean((state["velocity"] @ along) * np.sin(state["position"] @ k))
+
+    start = amplitude()
+    simulation.advance(limit=time, pause=time, max_steps=10**6)
+    assert amplitude() == pytest.approx(start, rel=0.05)
+
+
+def test_water_elsewhere_changes_nothing(core, flows):
+    """A film runs as it does without a second body of water far above it."""
+    above = """
+[body.above]
+shape = "box"
+material = "water"
+min = [0, 0.6]
+max = [0.2, 0.68]
+"""
+    settings = ["domain_max=[0.2, 1]", "skin=0.1"]
+    alone = advance(flows(FILM.format(dim=2), *settings), 100)
+    beside = advance(flows(FILM.format(dim=2) + above, *settings), 100)
+    assert beside.time == pytest.approx(alone.time, rel=1e-12)
+    one, other = alone.state(), beside.state()
+    here = other["body"] <= one["body"].max()
+    for key in ("velocity", "density"):
+        np.testing.assert_allclose(other[key][here], one[key], rtol=1e-9, atol=1e-9)

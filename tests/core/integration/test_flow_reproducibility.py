@@ -9,6 +9,7 @@ from ..flows import CHANNEL, FILM, advance, assert_same_bits
 from ..instruction_sets import INSTRUCTION_SETS
 
 STEPS = 120
+PERIOD = 0.2  # of FILM in 2-D, m
 
 
 def result(simulation):
@@ -71,7 +72,10 @@ def test_margin_of_the_lists_changes_only_rounding(core, flows, skin):
         advance(flows(FILM.format(dim=2), f"skin={margin}"), STEPS // 3).state()
         for margin in (0.1, skin)
     )
-    np.testing.assert_allclose(state["position"], expected["position"], rtol=0, atol=1e-11)
+    # When a particle comes back at the other side of the period is up to the lists.
+    moved = state["position"] - expected["position"]
+    moved[:, 0] -= PERIOD * np.round(moved[:, 0] / PERIOD)
+    np.testing.assert_allclose(moved, 0, rtol=0, atol=1e-11)
     np.testing.assert_allclose(state["velocity"], expected["velocity"], rtol=0, atol=1e-9)
 
 

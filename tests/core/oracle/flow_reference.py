@@ -4,7 +4,8 @@ An oracle for the core on small sets of particles. It shares no code with it. Ar
 the particle i on their first axis, its neighbour on the second; r_ij = x_i - x_j and
 grad_i W = F r_ij.
 "Fluid" are the particles that move, "wall" the fixed ones. Gradients of pressure and velocity, the
-measure of the surface and the liveliness enter with the values of the evaluation before.
+measure of the surface, corrections of gradients and shifting velocities enter with the values of
+the evaluation before.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surfac
 LEAST_CONCENTRATION = 0.6
 LEAST_BETA = 0.05  # of the Riemann dissipation
 RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
+RELAXATION_PER_STRAIN = 10.0
+LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LEAST_DENSITY = 0.98  # rho0
-AT_REST = 5e-4  # rms |L| h/c
 LEAST_FILLED = 0.05  # of a rough wall's kernel
-SHIFT_STRENGTH, SHIFT_MOST = 40.0, 5.0
+SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
 SHIFT_FASTEST = 0.05  # over the sound speed
 
 
@@ -65,6 +67,13 @@ def lattice_sums(name: str, dp: float, R: float, dim: int) -> tuple[float, float
     x = np.array(list(product(axis, repeat=dim)))
     W, F = kernel(name, np.linalg.norm(x, axis=1), R, dim)
     return dp**dim * W.sum(), -(dp**dim) * (F * x[:, 0] ** 2).sum()
+
+
+def lattice_concentration(options: FlowOptions, R: float, dim: int) -> tuple[float, float]:
+    """Sum of V W over a lattice, and the part of it that the particle itself adds."""
+    own, _ = kernel(options.kernel, np.zeros(1), R, dim)
+    full, _ = lattice_sums(options.kernel, options.dp, R, dim)
+    return full, options.dp**dim * own[0]
 
 
 def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -121,6 +130,7 @@ class FlowReference:
         self.h = options.eta * options.dp
         self.R = SUPPORT[options.kernel] * self.h
         self.c = max(m["speedsound"] for m in materials if m["law"] == "fluid")
+        self.slowest, self.fastest = self.c / self.h / np.array([RELAXATION_AT_REST, RELAXATION])
         self._take_fluid(particles, materials)
         self._take_walls(particles)
         self.ff = Pairs(self.x, self.x, options)
@@ -129,7 +139,8 @@ class FlowReference:
         self.pressure_gradient = np.zeros((n, self.dim))
         self.L = np.zeros((n, self.dim, self.dim))
         self.surface = np.zeros(n)
-        self.strain = self.liveliness = 0.0
+        self.shift = np.zeros((n, self.dim))
+        self.B = np.tile(np.eye(self.dim), (n, 1, 1))
 
     def _take_fluid(self, particles: Any, materials: Sequence[Mapping[str, Any]]) -> None:
         self.fluid = particles.motion != FIXED
@@ -245,16 +256,18 @@ class FlowReference:
         along = pairs.r_ij - r_n[..., None] * n
         excess = self.rho[:, None] * g_normal * r_n - dot(gradient, along)
         extra = self._dissipation(2 * approach, self.rho[:, None])
-        p = self.p[:, None] + 0.5 * excess + extra
+        p = self.p[:, None] + 0.5 * excess
+        corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
         factor = self.stick * (1 + self.depth / np.maximum(r_n - self.depth, dp / 4))
         sliding = v + approach[..., None] * n
         mu = (self.mu[:, None] * factor)[..., None]
         scale = -2 * self.V_w * pairs.F
         return {
-            "force": scale[..., None] * (p[..., None] * pairs.r_ij - mu * sliding),
+            "force": scale[..., None]
+            * (p[..., None] * corrected_r + extra[..., None] * pairs.r_ij - mu * sliding),
             "excess": excess,
             "height": r_n - self.depth,
-            "v_dot_r": -2 * approach * r_n,
+            "v_dot_r": -2 * approach * dot(corrected_r, n),
             "jump": factor[..., None] * sliding - 2 * approach[..., None] * n,
             "power": scale * (mu[..., 0] * dot(sliding, v) + extra * approach * r_n),
         }
@@ -296,13 +309,11 @@ class FlowReference:
         self.power = (self.volume * power).sum()
         self.acceleration = force / self.rho[:, None] + self.gravity
         self.density_rate = self.rho * rate
-        self._add_pressure_difference()
         if self.options.shifting:
             self._add_shift()
         self._relax_density()
         self._set_timestep()
-        self.strain = np.sqrt((self.L**2).sum() / len(self.x))
-        self.liveliness = np.clip(self.h * self.strain / (AT_REST * self.c) - 1, 0, 1)
+        self._correct_pressure()
         self.surface = self.measure
 
     def _pair_sums(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -313,16 +324,27 @@ class FlowReference:
         D = 0.5 * (self.old_L + self.old_L.transpose(0, 2, 1))
         smooth = np.einsum("ijab,ija,ijb->ij", self._mean(D), pairs.r_ij, pairs.r_ij)
         extra = self._dissipation((smooth - v_r) / pairs.safe_r, rho)
-        p = self._mean(self.p) + extra
+        corrected_r = np.einsum("jab,ijb->ija", self.B, pairs.r_ij)
+        reverse = self.p[:, None, None] * corrected_r
+        pressure = reverse - reverse.transpose(1, 0, 2)  # r_ji = -r_ij
         mu = self._mean(self.mu)
         if self.harmonic:
             mu = self.mu[:, None] * self.mu[None] / mu
         viscous = mu[..., None] * self._viscous_direction(v, v_r)
-        force = -2 * (VF[..., None] * (p[..., None] * pairs.r_ij - viscous)).sum(axis=1)
+        force = -(VF[..., None] * pressure).sum(axis=1)
+        force -= 2 * (VF[..., None] * (extra[..., None] * pairs.r_ij - viscous)).sum(axis=1)
+        force += self._exchange(rho)
         jump = self.p[:, None] - self.p[None]
         jump = jump - dot(self._mean(self.old_gradient), pairs.r_ij)
-        rate = (VF * (v_r + jump * pairs.r / (rho * self.c))).sum(axis=1)
+        rate = (VF * (dot(v, corrected_r) + jump * pairs.r / (rho * self.c))).sum(axis=1)
         return force, rate, (VF * (extra * v_r - dot(viscous, v))).sum(axis=1)
+
+    def _exchange(self, rho: np.ndarray) -> np.ndarray:
+        """Force over volume by which neighbours make up for each other's shifting."""
+        carried = np.einsum("iab,ib->ia", self.old_L, self.shift)
+        full, own = lattice_concentration(self.options, self.R, self.dim)
+        weight = rho * self.volume[None] * self.ff.W / (full - own)
+        return (weight[..., None] * (carried[:, None] - carried[None])).sum(axis=1)
 
     def _mean(self, a: np.ndarray) -> np.ndarray:
         return 0.5 * (a[:, None] + a[None])
@@ -347,8 +369,8 @@ class FlowReference:
         plain += np.einsum("ij,ij,ija->ia", VF_w, contact["excess"], r_w)
         L = -np.einsum("ij,ija,ijb->iab", VF_f, v_ij, r_f)
         L -= np.einsum("ij,ija,ijb->iab", VF_w, contact["jump"], r_w)
+        self.moment, self.spans = moment, np.linalg.det(moment) > LEAST_DETERMINANT
         self.old_gradient, self.old_L = self.pressure_gradient, self.L
-        self.plain_gradient, self.plain_L = plain, L
         self.pressure_gradient = np.einsum("iab,ib->ia", inverse, plain)
         self.L = np.einsum("ibc,iac->iab", inverse, L)
         self.concentration_gradient = np.einsum("ij,ija->ia", VF_f, r_f)
@@ -366,20 +388,15 @@ class FlowReference:
         self.measure = x
         self.nearby = np.where(self.ff.F < 0, self.surface[None], 0).max(axis=1)
 
-    def _add_pressure_difference(self) -> None:
-        """Away from walls and surface, while it flows, gradients are the corrected ones."""
-        self.inside = (self.share_of_walls == 0) & (self.nearby < SURFACE)
-        push = 2 * self.p[:, None] * self.concentration_gradient
-        push += self.plain_gradient - self.pressure_gradient
-        share = self.liveliness * self.inside
-        self.acceleration += (share / self.rho)[:, None] * push
-        trace = np.einsum("iaa->i", self.plain_L - self.L)
-        self.density_rate += share * self.rho * trace
+    def _correct_pressure(self) -> None:
+        """Inverse moments inside the fluid and at walls, none near the surface."""
+        self.inside = (np.maximum(self.nearby, self.measure) < SURFACE) & self.spans
+        self.B = np.tile(np.eye(self.dim), (len(self.x), 1, 1))
+        self.B[self.inside] = np.linalg.inv(self.moment[self.inside])
 
     def _add_shift(self) -> None:
         """What moving relative to the fluid does to velocity and density."""
-        norm = np.sqrt((self.L**2).sum(axis=(1, 2)))
-        rate = np.maximum(norm, self.strain)
+        rate = np.sqrt((self.L**2).sum(axis=(1, 2)))
         slope = np.linalg.norm(self.concentration_gradient, axis=1)
         speed = np.minimum(SHIFT_STRENGTH * self.h * slope, SHIFT_MOST) * self.h * rate
         shift = -speed[:, None] * unit_or_zero(self.concentration_gradient)
@@ -394,13 +411,13 @@ class FlowReference:
         speed = np.linalg.norm(shift, axis=1)[:, None]
         shift = shift * np.minimum(1, SHIFT_FASTEST * self.c / np.maximum(speed, 1e-300))
         self.shift = np.where((self.measure < SURFACE)[:, None], shift, 0)
-        self.acceleration += np.einsum("iab,ib->ia", self.L, self.shift)
         self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2
 
     def _relax_density(self) -> None:
-        live = self.liveliness
-        memory = (live * RELAXATION + (1 - live) * RELAXATION_AT_REST) * self.h / self.c
-        self.density_rate += (self.filling * self.rho0 - self.rho) / memory
+        strain = np.sqrt((self.L**2).sum(axis=(1, 2)))
+        rate = RELAXATION_PER_STRAIN * strain
+        self.relaxation = np.clip(rate, self.slowest, self.fastest)
+        self.density_rate += self.relaxation * (self.filling * self.rho0 - self.rho)
         void = self.rho < LEAST_DENSITY * self.rho0
         self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
 

@@ -193,9 +193,11 @@ def test_shift_and_pressure_gradient(isa: str, dim: int, name: str) -> None:
 def test_the_cases_reach_every_branch(dim: int) -> None:
     """What no case reaches, no case tests."""
     case = {name: reference(dim, name) for name in CASES}
-    assert 0 < case["hardly moving"].liveliness < 1
-    assert case["periodic"].liveliness == 1
-    assert 0 < case["periodic"].inside.sum() < len(case["periodic"].x)
+    slow = case["hardly moving"]
+    between = (slow.relaxation > slow.slowest) & (slow.relaxation < slow.fastest)
+    assert between.any()
+    assert (case["periodic"].relaxation == case["periodic"].fastest).any()
+    assert 0 < case["open"].inside.sum() < len(case["open"].x)
     for name in ("open", "spray", "periodic"):
         assert (case[name].rho < LEAST_DENSITY * case[name].rho0).any()
     near = (case["open"].nearby > SURFACE) & (case["open"].measure < SURFACE)

@@ -132,15 +132,12 @@ SETTLING = Case(
             (within(0.1), within(0.05), within(0.05)),
             "5 % at 12 particles across",
             unit="m/s",
-            short="6 % too slow at 12 particles across, for the reason of the one below",
         ),
         Criterion(
             LIGHT,
             (within(0.1), within(0.05), within(0.05)),
             "the same where the weight is small beside the pressure of the liquid",
             unit="m/s",
-            short="39 % too slow: what moves so slowly counts as at rest, and particles under "
-            "pressure then lock like grains (docs/equations.md)",
         ),
     ),
     axes=("time (s)", "speed (m/s)"),
