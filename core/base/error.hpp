@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -35,5 +36,18 @@ struct PhysicsFailure : std::runtime_error {
 struct ResourceFailure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// For state that comes from a file: throws std::invalid_argument, which names the array, unless it
+/// fits the others.
+inline void expect_fit(bool good, const char* name) {
+    if (!good)
+        throw std::invalid_argument(std::string("not the state of this simulation: ") + name);
+}
+
+/// The same for an index into `count` elements.
+template <class Index>
+void expect_index(Index index, std::size_t count, const char* name) {
+    expect_fit(index >= 0 && static_cast<std::size_t>(index) < count, name);
+}
 
 }  // namespace doseki

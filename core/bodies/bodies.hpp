@@ -85,10 +85,22 @@ public:
 
     template <class Archive>
     void serialise(Archive& archive);
+    /// Throws std::invalid_argument unless restored particles are points of these bodies.
+    void expect_points(const Particles<D>& particles) const {
+        if (!particles.wall.in_use) return;
+        for (std::size_t p = 0; p < particles.size(); ++p) {
+            if (particles.is_point_of(p, BodyKind::rigid))
+                expect_index(particles.wall.point[p], rigid_particles_.size(), "point");
+            else if (particles.is_point_of(p, BodyKind::deformable))
+                expect_index(particles.wall.point[p], deformable.size(), "point");
+        }
+    }
 
 private:
     /// Contact steps in one step of the run, where no fluid asks for shorter ones.
     static constexpr double max_contact_steps = 50.0;
+    /// More in one step come of speeds or strains that have gone wrong.
+    static constexpr double most_contact_steps = 1e6;
 
     void prepare_contacts() {
         contact_ = {};
@@ -139,6 +151,7 @@ void Bodies<D>::serialise(Archive& archive) {
     deformable.serialise(archive, gravity_);
     contacts_.serialise(archive);
     if constexpr (Archive::loading) {
+        rigid_particles_.expect_points_of(rigid.size());
         prepare_contacts();
         contacts_.restore(contact_);
     }
@@ -152,6 +165,9 @@ void Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     deformable_step_ = deformable.timestep();
     for (double left = dt; left > 0.0;) {
         const double steps = std::max(1.0, std::ceil(left / contact_step())), step = left / steps;
+        if (!(steps <= most_contact_steps))
+            throw PhysicsFailure("bodies are too fast for their contacts to be followed",
+                                 FailureKind::speed);
         drift(0.5 * step);
         follow_walls(walls, t + dt - left, step);
         show_bodies();

@@ -119,11 +119,28 @@ void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
 
 template <int D>
 void Contacts<D>::restore(const ContactBodies<D>& bodies) {
+    expect_pairs_of(bodies);
     contacts_.clear();
     timestep_ = std::numeric_limits<double>::infinity();
     for (const ContactPair& pair : pairs_) {
         contacts_.push_back(contact_of(bodies, pair));
         timestep_ = std::min(timestep_, contacts_.back().law.timestep(laws_.speed()));
+    }
+}
+
+/// Throws std::invalid_argument unless the pairs are pairs of these bodies.
+template <int D>
+void Contacts<D>::expect_pairs_of(const ContactBodies<D>& bodies) const {
+    for (const std::int32_t material : bodies.points.material)
+        expect_index(material, laws_.materials(), "body_material");
+    for (const ConvexBody<D>& convex : bodies.convex)
+        expect_index(convex.material, laws_.materials(), "body_material");
+    for (const ContactPair& pair : pairs_) {
+        expect_index(pair.a, bodies.points.size(), "contact_a");
+        if (pair.with_convex())
+            expect_index(pair.convex(), bodies.convex.size(), "contact_b");
+        else
+            expect_index(pair.b, bodies.points.size(), "contact_b");
     }
 }
 

@@ -62,6 +62,8 @@ public:
 
     ContactLaw between(const ContactSide& a, const ContactSide& b) const;
     double speed() const { return options_.speed; }
+    /// How many materials it knows.
+    std::size_t materials() const { return materials_.size(); }
 
 private:
     /// Points of deformable bodies are only kept apart, by a penalty: a spring this many times as

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/error.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/contact_search.hpp"
 #include "bodies/overlap.hpp"
@@ -45,8 +46,9 @@ public:
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);
         archive("contact_a", a), archive("contact_b", b), archive("contact_springs", springs_);
         archive("worst_overlap", max_overlap_);
+        expect_fit(b.size() == a.size() && springs_.size() == a.size(), "contact_springs");
         pairs_.resize(a.size());
-        for (std::size_t k = 0; k < a.size(); ++k) pairs_[k] = {a[k], b.at(k)};
+        for (std::size_t k = 0; k < a.size(); ++k) pairs_[k] = {a[k], b[k]};
     }
     /// Completes what serialise() loaded.
     void restore(const ContactBodies<D>& bodies);
@@ -63,6 +65,7 @@ private:
         return static_cast<std::uint64_t>(static_cast<std::uint32_t>(pair.a)) << 32 |
                static_cast<std::uint32_t>(pair.b);
     }
+    void expect_pairs_of(const ContactBodies<D>& bodies) const;
     Contact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
     void push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap, double dt);
 

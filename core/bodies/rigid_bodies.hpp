@@ -137,6 +137,7 @@ void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& stat
 template <int D>
 void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
     const std::vector<RigidBodyState<D>> states = std::move(states_);
+    columns.expect_fit_of(states.size());
     shapes = columns.shapes();
     bodies_.clear(), states_.clear(), contact_force_.clear(), contact_torque_.clear(), moving_ = 0;
     for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});

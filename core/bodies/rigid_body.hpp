@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/error.hpp"
 #include "bodies/shape.hpp"
 
 namespace doseki {
@@ -76,24 +77,47 @@ struct RigidBodyColumns {
         archive("body_fixed", fixed), archive("body_mass", mass), archive("body_inertia", inertia);
     }
 
+    /// Throws std::invalid_argument unless these are the columns of so many bodies.
+    void expect_fit_of(std::size_t bodies) const {
+        const std::size_t n = radius.size();
+        expect_fit(facet_count.size() == n && sample_count.size() == n, "shape_radius");
+        expect_parts(facet_count, corners.size(), D, "shape_facets");
+        expect_parts(sample_count, samples.size(), 1, "shape_sample_count");
+        expect_fit(shape.size() == bodies && material.size() == bodies && group.size() == bodies &&
+                       fixed.size() == bodies && mass.size() == bodies && inertia.size() == bodies,
+                   "bodies");
+        for (const std::int32_t k : shape) expect_index(k, n, "body_shape");
+    }
+
     std::vector<Shape<D>> shapes() const {
         std::vector<Shape<D>> result(radius.size());
         auto corner = corners.begin(), sample = samples.begin();
         for (std::size_t k = 0; k < result.size(); ++k) {
             result[k].radius = radius[k];
-            for (int f = 0; f < facet_count.at(k); ++f, corner += D) {
+            for (int f = 0; f < facet_count[k]; ++f, corner += D) {
                 result[k].facets.emplace_back();
                 std::copy_n(corner, D, result[k].facets.back().begin());
             }
-            result[k].samples.assign(sample, sample + sample_count.at(k));
+            result[k].samples.assign(sample, sample + sample_count[k]);
             sample += sample_count[k];
         }
         return result;
     }
 
     RigidBody<D> rigid(std::size_t k) const {
-        return {shape.at(k),      material.at(k), group.at(k),
-                fixed.at(k) != 0, mass.at(k),     inertia.at(k)};
+        return {shape[k], material[k], group[k], fixed[k] != 0, mass[k], inertia[k]};
+    }
+
+private:
+    /// That the parts, of `size` elements each, are all there are.
+    static void expect_parts(const std::vector<std::int32_t>& counts, std::size_t all,
+                             std::size_t size, const char* name) {
+        std::size_t sum = 0;
+        for (const std::int32_t count : counts) {
+            expect_fit(count >= 0 && static_cast<std::size_t>(count) <= all, name);
+            sum += size * static_cast<std::size_t>(count);
+        }
+        expect_fit(sum == all, name);
     }
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "bodies/nearest_image.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -47,6 +48,13 @@ public:
     template <class Archive>
     void serialise(Archive& archive) {
         archive("body_points", points_);
+    }
+    std::size_t size() const { return points_.size(); }
+    /// Throws std::invalid_argument unless the points are those of so many bodies.
+    void expect_points_of(std::size_t bodies) const {
+        for (const RigidBodyPoint<D>& point : points_)
+            expect_fit(point.body >= 0.0 && point.body < static_cast<double>(bodies),
+                       "body_points");
     }
 
 private:

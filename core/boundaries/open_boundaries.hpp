@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "boundaries/speed_table.hpp"
 #include "model/particles.hpp"
 
@@ -57,6 +58,7 @@ struct Inflow {
     void serialise(Archive& archive) {
         archive("inflow_released", released), archive("inflow_open", open),
             archive("inflow_closed", closed);
+        if constexpr (Archive::loading) expect_fit(released >= 0, "inflow_released");
     }
 
     /// Distance of layer k beyond the section at time t (< 0: still in the buffer).

@@ -207,7 +207,10 @@ public:
             sim_.renew_order();
             return false;
         }
-        if (width == Sim::width) return true;
+        if (width == Sim::width) {
+            sim_.expect_lists();
+            return true;
+        }
         sim_.renew_lists();
         return false;
     }

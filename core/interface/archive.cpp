@@ -1,7 +1,5 @@
 #include "interface/archive.hpp"
 
-#include <stdexcept>
-
 namespace doseki {
 
 void SavingArchive::operator()(const char*, const std::vector<Tag>& tags) {
@@ -29,24 +27,20 @@ void LoadingArchive::operator()(const char* name, std::vector<Tag>& tags) {
     TagColumns columns;
     columns.serialise(*this);
     const std::size_t n = columns.id.size();
-    check(columns.body.size() == n && columns.material.size() == n && columns.motion.size() == n,
-          name);
+    expect_fit(
+        columns.body.size() == n && columns.material.size() == n && columns.motion.size() == n,
+        name);
     tags.resize(n);
     for (std::size_t p = 0; p < n; ++p)
         tags[p] = {columns.id[p], columns.body[p], columns.material[p],
                    static_cast<Motion>(columns.motion[p])};
 }
 
-void LoadingArchive::check(bool good, const char* name) {
-    if (!good)
-        throw std::invalid_argument(std::string("not the state of this simulation: ") + name);
-}
-
 const Array& LoadingArchive::find(const char* name, std::size_t columns) const {
     const Value* value = arrays_.find(prefix_ + name);
     const auto* array = value ? std::get_if<Array>(value) : nullptr;
-    check(array && array->shape.size() >= 1 && array->shape.size() <= 2, name);
-    check((array->shape.size() == 2 ? array->shape[1] : 1) == columns, name);
+    expect_fit(array && array->shape.size() >= 1 && array->shape.size() <= 2, name);
+    expect_fit((array->shape.size() == 2 ? array->shape[1] : 1) == columns, name);
     return *array;
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/error.hpp"
 #include "base/members.hpp"
 #include "bodies/bodies.hpp"
 #include "boundaries/open_boundaries.hpp"
@@ -105,7 +106,7 @@ public:
     void operator()(const char* name, T& value) {
         std::vector<T> one;
         (*this)(name, one);
-        check(one.size() == 1, name);
+        expect_fit(one.size() == 1, name);
         value = one[0];
     }
 
@@ -114,7 +115,7 @@ public:
         using Number = typename Numbers<T>::type;
         const Array& array = find(name, Numbers<T>::count);
         const auto* numbers = std::get_if<const Number*>(&array.numbers);
-        check(numbers != nullptr, name);
+        expect_fit(numbers != nullptr, name);
         values.resize(array.rows());
         if (array.size() > 0)
             std::memcpy(static_cast<void*>(values.data()), *numbers, array.size() * sizeof(Number));
@@ -136,7 +137,6 @@ public:
     void operator()(const char* name, std::vector<Tag>& tags);
 
 private:
-    static void check(bool good, const char* name);
     /// An array of one row for each element, of `columns` numbers.
     const Array& find(const char* name, std::size_t columns) const;
 

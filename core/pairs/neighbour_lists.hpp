@@ -69,6 +69,10 @@ public:
     std::size_t inner() const { return inner_; }
     void set_size(std::size_t size) { size_ = size; }
 
+    /// Throws std::invalid_argument unless the lists are those of clusters of `width` particles, so
+    /// many as there are flags, moving ones first.
+    void expect_fit_of(int width, std::span<const std::uint8_t> is_fixed) const;
+
     /// The lists as they are; the grids are used only while lists are built.
     template <class Archive>
     void serialise(Archive& archive);

@@ -88,8 +88,8 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
     for (int a = 0; a < D; ++a) {
         const double size = 0.5 * grid.support;
         if (domain_.periodic[a]) {
-            cells[a] =
-                std::max<std::int64_t>(1, static_cast<std::int64_t>(domain_.length(a) / size));
+            cells[a] = std::max<std::int64_t>(
+                1, static_cast<std::int64_t>(std::min(domain_.length(a) / size, 1048576.0)));
             grid.origin[a] = domain_.low[a];
             grid.cell_size[a] = domain_.length(a) / static_cast<double>(cells[a]);
         } else {
@@ -226,14 +226,35 @@ auto Neighbours<D>::flatten() const -> FlatLists {
 
 template <int D>
 void Neighbours<D>::unflatten(const FlatLists& flat) {
+    expect_fit(flat.moving.size() == flat.fixed.size(), "lists_fixed");
     storage_.assign(1, {});
     clusters_.assign(flat.moving.size(), {});
     std::span<const std::uint32_t> rest(flat.entries);
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
-        const std::size_t length = flat.moving[c] + flat.fixed.at(c);
-        if (length > rest.size()) throw ResourceFailure("neighbour lists cut short");
+        const std::size_t length = std::size_t{flat.moving[c]} + flat.fixed[c];
+        expect_fit(length <= rest.size(), "lists_entries");
         clusters_[c] = storage_[0].keep(rest.first(length), flat.moving[c]);
         rest = rest.subspan(length);
+    }
+    expect_fit(rest.empty(), "lists_entries");
+}
+
+template <int D>
+void Neighbours<D>::expect_fit_of(int width, std::span<const std::uint8_t> is_fixed) const {
+    const auto in_cluster = static_cast<std::size_t>(width);
+    const std::size_t n = is_fixed.size();
+    expect_fit(clusters_.size() == (n + in_cluster - 1) / in_cluster, "lists_moving");
+    expect_fit(moving_ <= n, "moving_particles");
+    for (std::size_t p = 0; p < n; ++p)
+        expect_fit((is_fixed[p] != 0) == (p >= moving_), "moving_particles");
+    auto expect_entry = [this](std::uint32_t entry, std::size_t first, std::size_t last) {
+        const std::size_t j = entry & ListEntry::index_mask;
+        expect_fit(first <= j && j < last, "lists_entries");
+        expect_index(entry >> ListEntry::index_bits, image_shift_.size(), "lists_entries");
+    };
+    for (const ClusterList& list : clusters_) {
+        list.for_each_moving([&](std::uint32_t entry) { expect_entry(entry, 0, moving_); });
+        list.for_each_fixed([&](std::uint32_t entry) { expect_entry(entry, moving_, n); });
     }
 }
 

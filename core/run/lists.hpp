@@ -75,6 +75,11 @@ public:
         lists_.set_size(state.size());
     }
 
+    /// Throws std::invalid_argument unless the lists are those of particles stored as these are.
+    void expect_fit_of(const State& state) const {
+        lists_.expect_fit_of(Backend::width, wall_flags(state));
+    }
+
 private:
     static std::vector<std::uint8_t> wall_flags(const State& state) {
         std::vector<std::uint8_t> fixed(state.size());

@@ -94,8 +94,10 @@ public:
         archive("least_timestep", min_timestep_);
         lists_.serialise_wear(archive);
         particles.for_each_field(archive);
+        if constexpr (Archive::loading) expect_particles();
         open_boundaries.serialise(archive);
         bodies.serialise(archive);
+        if constexpr (Archive::loading) bodies.expect_points(particles);
         scheme_.serialise(archive);
         lists_.serialise_lists(archive, particles);
     }
@@ -106,6 +108,9 @@ public:
         rebuild_lists();
         for (int n = 0; n < SchemeOf::first_evaluations; ++n) evaluate(0.0);
     }
+
+    /// Throws std::invalid_argument where restored lists are not those of clusters of this width.
+    void expect_lists() const { lists_.expect_fit_of(particles); }
 
     /// The same for a state that keeps its rates: only the order of sums changes.
     void renew_order() { rebuild_lists(); }
@@ -159,6 +164,19 @@ private:
         for (const Material& material : materials)
             if (material.law == Law::fluid) c = max(c, material.c0);
         return c > 0.0 ? 5.0 * options.flow.dp / c : 0.0;
+    }
+
+    /// That the fields of a restored state fit one another and the materials and bodies of the run.
+    void expect_particles() {
+        const std::size_t n = particles.size(), walls = options_.flow.walls.size();
+        particles.for_each_field(
+            [n](const char* name, const auto& field) { expect_fit(field.size() == n, name); });
+        for (const Tag& tag : particles.tag) {
+            expect_index(tag.material, scheme_.materials().size(), "material");
+            expect_fit(tag.body >= 0, "body");
+            if (walls > 0) expect_index(tag.body, walls, "body");
+            expect_fit(tag.motion <= Motion::bound, "motion");
+        }
     }
 
     Ranks& ranks() { return lists_.halo().ranks; }

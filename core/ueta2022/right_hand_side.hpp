@@ -77,8 +77,10 @@ public:
     std::span<const StressRecord<real, D>> stress_records() const { return stress_; }
     const CoordinateFrame<real, D>& frame() const { return frame_; }
     const Options<D>& options() const;
-    /// Balsara's switch of a particle, as last summed.
-    double balsara(std::size_t p) const { return static_cast<double>(stress_[p].balsara); }
+    /// Balsara's switch of a particle, as last summed; zero in a restored state until then.
+    double balsara(std::size_t p) const {
+        return p < stress_.size() ? static_cast<double>(stress_[p].balsara) : 0.0;
+    }
 
     /// Deviatoric part of the stress of particle p: S of a solid, tau of a fluid (as last summed).
     Deviator<double, D> deviator(const State& particles, std::size_t p) const;

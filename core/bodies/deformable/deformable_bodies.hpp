@@ -18,6 +18,8 @@ template <int D>
 class DeformableBodies {
 public:
     bool empty() const { return solids_.size() == 0; }
+    /// Points of all bodies.
+    std::size_t size() const { return solids_.size(); }
 
     /// Makes the particles `members`, with the normals that they have, the points of one body.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
@@ -92,6 +94,12 @@ public:
             archive("deformable_material", material_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
+        if constexpr (Archive::loading) {
+            const std::size_t n = solids_.size();
+            expect_fit(normal_.size() == n && surface_.size() == n && flow_force_.size() == n &&
+                           acceleration_.size() == n && material_.size() == solids_.bodies(),
+                       "deformable_normal");
+        }
     }
 
 private:

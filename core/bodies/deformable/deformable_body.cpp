@@ -1,5 +1,6 @@
 #include "bodies/deformable/deformable_body.hpp"
 
+#include "base/error.hpp"
 #include "bodies/deformable/elastic_law.hpp"
 
 namespace doseki {
@@ -40,6 +41,9 @@ std::array<double, DeformableBody::count> DeformableBody::numbers() const {
 }
 
 DeformableBody DeformableBody::of(const double* n) {
+    expect_fit(n[3] >= 0.0 && n[3] < static_cast<double>(std::variant_size_v<Hyperelastic<double>>),
+               "elastic_numbers");
+    expect_fit(n[0] > 0.0 && n[4] > 0.0, "elastic_numbers");
     auto known = alternative<Hyperelastic<double>>(static_cast<std::size_t>(n[3]));
     with_value(known, [n](auto& law) { law.lame = {n[1], n[2]}; });
     return {n[0], std::make_shared<const ElasticLaw>(known), n[4], n[5], n[6]};

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
 #include "pairs/neighbour_lists.hpp"
@@ -112,6 +113,7 @@ public:
         archive("elastic_acceleration", accelerations),
             archive("elastic_deformation", deformations);
         if constexpr (Archive::loading) {
+            expect_whole(numbers.size(), accelerations.size(), deformations.size());
             const auto slots = slot_;
             bodies_.clear();
             for (std::size_t k = 0; k < numbers.size(); k += DeformableBody::count)
@@ -125,6 +127,19 @@ public:
     std::vector<Vec<double, D>> load;     // force of others within a step [N], 2-D: [N/m]
 
 private:
+    /// Throws std::invalid_argument unless restored arrays are those of the same bodies.
+    void expect_whole(std::size_t numbers, std::size_t accelerations,
+                      std::size_t deformations) const {
+        const std::size_t n = x.size();
+        expect_fit(numbers == apart_.size() * DeformableBody::count, "elastic_numbers");
+        expect_fit(rest_.size() == n && v.size() == n && body_.size() == n &&
+                       clamped_.size() == n && slot_.size() == n && accelerations == n &&
+                       deformations == n,
+                   "elastic_position");
+        for (const std::int32_t body : body_) expect_index(body, apart_.size(), "elastic_body");
+        for (const std::uint32_t slot : slot_) expect_index(slot, n, "elastic_slot");
+    }
+
     /// Of the longest stable step.
     static constexpr double courant = 0.7;
 
