@@ -61,6 +61,7 @@ def bodies_run(tmp_path, plain_state):
         }
         table |= {"position": centre, "velocity": np.array([[0.6, 0.8]] * 2)}
         table |= {"mass": np.full(2, 7.0), "diameter": np.full(2, 0.06)}
+        table["orientation"] = np.tile([1.0, 0.0, 0.0, 0.0], (2, 1))
         recorder.snapshot(state, time=time, step=1, dt=0.1, grains=table)
     return load(recorder.directory)
 

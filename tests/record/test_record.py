@@ -29,7 +29,8 @@ def start(directory: Path, **options: bool) -> Recorder:
 def one_grain(dim):
     """The table of one body at rest in the origin."""
     rows = {"vector": (1, dim), "rows": (1, 3), "scalar": (1,)}
-    return {field.key: np.zeros(rows[field.shape]) for field in GRAIN_FIELDS}
+    table = {field.key: np.zeros(rows[field.shape]) for field in GRAIN_FIELDS}
+    return table | {"orientation": np.array([[1.0, 0.0, 0.0, 0.0]])}
 
 
 def test_folder_of_a_run_has_the_promised_files(run_folder):
