@@ -3,8 +3,8 @@
 LONGEST = 1000  # characters of a message
 
 
-def _one_line(message: str) -> str:
-    """A name or a value that is quoted may hold line breaks, terminal codes, or a novel."""
+def one_line(message: str) -> str:
+    """A message fit for a terminal: it may quote line breaks, terminal codes, or a novel."""
     line = " ".join(message.splitlines())
     line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
     return line if len(line) <= LONGEST else f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
@@ -16,7 +16,7 @@ class DosekiError(Exception):
     exit_code = 1
 
     def __init__(self, message: str) -> None:
-        super().__init__(_one_line(message))
+        super().__init__(one_line(message))
 
 
 class UserError(DosekiError):

@@ -10,7 +10,8 @@ import numpy as np
 from mpi4py import MPI
 
 from ..compiled import available_instruction_sets
-from ..parallel.simulation import SHARES, RankedSimulation
+from ..parallel.simulation import RankedSimulation
+from ..record.history import SHARES
 from ..solver.protocol import Simulation
 from .case import Case, empty_simulation, fill
 

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from .options import Threads, free_directory
 
@@ -25,7 +26,7 @@ def list_scenarios() -> None:
 
     table = Table("scenario", "what it is", box=None)
     for name, title, _path in shipped():
-        table.add_row(name, title)
+        table.add_row(name, Text(title))
     Console().print(table)
 
 

@@ -23,13 +23,18 @@ def plot(
 ) -> None:
     """Draw the figures of a run (and a movie on request)."""
     from ..figures.movie import make_movie
-    from ..figures.plot import plot_run
+    from ..figures.plot import draw_run
     from ..record.reader import load
 
-    for picture in plot_run(directory):
+    drawn = draw_run(directory)
+    for picture in drawn.pictures:
         typer.echo(str(picture))
     if movie:
         typer.echo(str(make_movie(load(directory), movie, colour=colour)))
+    for remark in drawn.remarks:
+        typer.echo(f"warning: {remark}", err=True)
+    if drawn.failures:
+        raise UserError(f"{len(drawn.failures)} of the figures could not be drawn")
 
 
 def census(

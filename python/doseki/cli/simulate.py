@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..errors import Interrupted, one_line
 from .numbers import number
 from .options import (
     AsJson,
@@ -68,25 +69,49 @@ def run(
 
 
 def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
-    """Figures and the summary on one screen, or as JSON."""
-    from ..assess.summary import summary_text
-    from ..figures.plot import plot_run
-    from ..record.reader import load
-
-    pictures = plot_run(directory) if figures else []
-    text = summary_text(load(directory))
-    (directory / "summary.txt").write_text(text + "\n")
+    """Figures and the summary on one screen, or as JSON; what fails here loses no finished run."""
+    remarks: list[str] = []
+    pictures = _pictures(directory, remarks) if figures else []
+    text = _summary_text(directory, summary, remarks)
+    for remark in remarks:
+        typer.echo(f"warning: {one_line(remark)}", err=True)
     if as_json:
-        typer.echo(
-            json.dumps(
-                summary | {"directory": str(directory), "figures": [str(p) for p in pictures]}
-            )
-        )
+        said = {"directory": str(directory), "figures": [str(p) for p in pictures]}
+        typer.echo(json.dumps(summary | said))
         return
     typer.echo(text)
     typer.echo(f"\nIn {directory}: summary.txt, history.csv, snapshots, figures:")
     for picture in pictures:
         typer.echo(f"  {picture}")
+
+
+def _pictures(directory: Path, remarks: list[str]) -> list[Path]:
+    """The figures of a run, and in `remarks` what is wrong with them."""
+    from ..figures.plot import draw_run
+
+    try:
+        drawn = draw_run(directory)
+    except (Exception, Interrupted) as error:
+        remarks.append(f"no figures: {error or repr(error)}; later: doseki plot {directory}")
+        return []
+    remarks += drawn.remarks
+    return drawn.pictures
+
+
+def _summary_text(directory: Path, summary: dict[str, Any], remarks: list[str]) -> str:
+    """The summary for people, which is also written; the bare numbers where that fails."""
+    from ..assess.summary import summary_text
+    from ..record.reader import load
+    from ..util.files import write_whole_text
+
+    text = "\n".join(f"{name:<18}{value}" for name, value in summary.items())
+    try:
+        run = load(directory)
+        text = summary_text(run)
+        write_whole_text(run.folder.summary_text, text + "\n")
+    except Exception as error:
+        remarks.append(f"the summary is not whole: {error or repr(error)}")
+    return text
 
 
 def check(

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..record.history import SHARES
 from ..record.lock import FolderLock
 from ..scenario.model import Scenario
 from ..solver.build import empty_simulation, filled_simulation
@@ -95,6 +96,3 @@ class OneRank:
 
     def fail(self, text: str, exit_code: int, say: Callable[[str], None]) -> None:
         """End the other ranks' part of a run, which goes no further after an error on this rank."""
-
-
-SHARES = ("balance", "migrate", "halo", "wait")  # of the wall time, beside the steps themselves

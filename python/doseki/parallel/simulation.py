@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 from mpi4py import MPI
 
+from ..record.history import SHARES
 from ..solver.protocol import Columns, CoreSimulation, ForceTerms, Grains, Rates, Totals
 from .balance import Balance
 from .engines import chosen_engine
@@ -17,7 +18,6 @@ from .transport import Transport
 SUMMED = (
     "mass_initial", "mass_entered", "mass_left", "av_dissipation", "av_power", "updates",
 )  # fmt: skip
-SHARES = ("balance", "migrate", "halo", "wait")
 SHORT = 1e-3  # s of work; too short to tell how it is shared
 
 

@@ -70,7 +70,7 @@ def progress_bar(title: str, time_max: float) -> Iterator[Progress]:
         yield _lines(console, time_max)
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TaskProgressColumn(),
         TextColumn("finish time {task.fields[finish]}"),

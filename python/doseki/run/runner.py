@@ -165,5 +165,16 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
     summary = _summary(run, status)
     run.recorder.close(summary)
-    run.ranks.on_root(lambda: write_trust(load(directory)))
+    if remark := run.ranks.on_root(lambda: _judge(directory)):
+        summary["warnings"].append(remark)
+        run.recorder.close(summary)
     return summary
+
+
+def _judge(directory: Path) -> str:
+    """Say how far to trust a finished run; it stays one where that fails, which is told."""
+    try:
+        write_trust(load(directory))
+    except Exception as error:
+        return f"no trust report: {error or repr(error)}"
+    return ""

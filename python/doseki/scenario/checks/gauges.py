@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from ...record.history import history_columns
 from ..gauges.gauge import Gauge
 from ..model import Scenario
+from ..tables.figure import Drawable
 
 MAX_SAMPLES = 1e6
+MACH = 0.1  # of the fastest flow that a sound speed is meant for
 
 
 def check_gauges(scenario: Scenario) -> None:
@@ -19,8 +22,14 @@ def check_gauges(scenario: Scenario) -> None:
 
 def check_figures(scenario: Scenario) -> None:
     """Raise UserError for figures of what is not there: none must fail after a long run."""
+    around = Drawable(
+        dim=scenario.dim,
+        gauges=scenario.gauge,
+        history=history_columns(scenario.dim, scenario.material_names),
+        speed=MACH * scenario.xi * scenario.min_sound_speed,
+    )
     for name, figure in scenario.figure.items():
-        for key, why in figure.objections(scenario.gauge, scenario.dim):
+        for key, why in figure.objections(around):
             raise scenario.where.error(("figure", name, key), f"figure.{name}.{key}{why}")
 
 

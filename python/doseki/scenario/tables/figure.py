@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -16,9 +17,10 @@ from ..table import Kinds, Part
 from ..values.types import (
     Direction,
     GaugeName,
+    Length,
     OptionalMaterialName,
     OptionalWindowName,
-    Positive,
+    Title,
     Vector,
     dimension,
 )
@@ -33,16 +35,30 @@ def _known_quantities(names: list[str], info: ValidationInfo) -> list[str]:
     return names
 
 
-Quantities = Annotated[list[str], AfterValidator(_known_quantities)]
+Quantities = Annotated[
+    list[str], Field(min_length=1, max_length=8), AfterValidator(_known_quantities)
+]
+Times = Annotated[list[float], Field(max_length=24)]  # panels on a page
+MAX_BINS = 2000
+
+
+@dataclass(frozen=True)
+class Drawable:
+    """What figures of a run can show."""
+
+    dim: int
+    gauges: Mapping[str, Gauge]
+    history: Sequence[str]  # columns
+    speed: float  # m/s, the highest that the sound speed is meant for
 
 
 class Figure(Part):
     """What figures of all kinds have."""
 
     kind: str
-    title: str = Field("", description="caption")
+    title: Title = Field("", description="caption")
 
-    def objections(self, gauges: Mapping[str, Gauge], dim: int) -> Iterator[tuple[str, str]]:
+    def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:
         """Why it cannot be drawn: the key to blame, and what to say after it."""
         yield from ()
 
@@ -53,7 +69,7 @@ class FigureOfSnapshots(Figure):
     window: OptionalWindowName = Field(
         None, description="name of a [window.NAME]; default: everything"
     )
-    times: list[float] = Field(
+    times: Times = Field(
         default_factory=list, description="s; nearest snapshots; default: see `when`"
     )
     when: Literal["all", "first", "last", "before_flow", "with_flow"] = Field(
@@ -84,15 +100,33 @@ class HistogramFigure(FigureOfSnapshots):
     """How fast particles are at some moments."""
 
     kind: Literal["histogram"]
-    bin_width: Positive = Field(0.1, description="of the bins, m/s")
-    sample: int = Field(30, gt=0, description="size of a random sample of particles")
+    bin_width: Length = Field(0.1, description="of the bins, m/s")
+    sample: int = Field(30, gt=0, le=1_000_000, description="size of a random sample of particles")
+
+    def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:
+        """There must not be more bins than can be seen."""
+        if around.speed > MAX_BINS * self.bin_width:
+            yield (
+                "bin_width",
+                f" = {self.bin_width:g} m/s: speeds up to {around.speed:.3g} m/s would need more"
+                f" than {MAX_BINS} bins; make it larger",
+            )
 
 
 class SeriesFigure(Figure):
     """Columns of the history over time."""
 
     kind: Literal["series"]
-    columns: list[str] = Field(default_factory=list, description="columns of the history")
+    columns: list[str] = Field(
+        min_length=1, max_length=40, description="columns of the history (history.csv)"
+    )
+
+    def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:
+        """Its columns must be those of the history."""
+        for column in self.columns:
+            if column not in around.history:
+                why = f': "{column}" is not a column of the history'
+                yield "columns", why + suggestion(column, around.history)
 
 
 class GaugeFigure(Figure):
@@ -103,14 +137,14 @@ class GaugeFigure(Figure):
     columns: list[str] = Field(
         default_factory=list, description="columns of the gauge; default: all"
     )
-    times: list[float] = Field(
+    times: Times = Field(
         default_factory=list, description="of profiles, s; default: some spread over the run"
     )
 
-    def objections(self, gauges: Mapping[str, Gauge], dim: int) -> Iterator[tuple[str, str]]:
+    def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:
         """Its columns must be those of the gauge; only profiles are drawn at certain times."""
-        gauge = gauges[self.gauge]
-        known = gauge.columns(dim)
+        gauge = around.gauges[self.gauge]
+        known = gauge.columns(around.dim)
         for column in self.columns:
             if column not in known:
                 why = f': "{column}" is not a column of {self.gauge}'

@@ -10,7 +10,7 @@ from ..gauges.kinds import GaugeTable
 from ..materials import EQUATIONS_OF_STATE, laws_of
 from ..schemes import RESOLVED, UETA2022
 from ..table import Only, Table
-from ..values.types import Axis, Length, NonNegative, Positive, Skin, Vector
+from ..values.types import Axis, Length, NonNegative, Positive, Skin, Title, Vector
 from .bodies import AnyBody
 from .contact import Contact
 from .figure import FigureTable
@@ -31,7 +31,7 @@ class ScenarioTable(Table):
     """A whole scenario file, every expression evaluated."""
 
     schema_version: Literal[1] = Field(1, alias="schema", description="version of this format")
-    title: str = Field("", description="one line")
+    title: Title = Field("", description="one line")
     description: str = Field("", description="what it is and where it comes from")
     dim: Literal[2, 3] = Field(description="number of space dimensions")
     dp: Length = Field(description="particle spacing, m")

@@ -135,6 +135,12 @@ def _skin(value: float | str) -> float | str:
     return value
 
 
+def _one_line(value: str) -> str:
+    if not value.isprintable():
+        raise ValueError("must be one line, without control characters")
+    return value
+
+
 def _digest(value: str) -> str:
     if not DIGEST.fullmatch(value):
         raise ValueError("must be 32 hexadecimal digits, as in scenario.toml of a run")
@@ -149,6 +155,7 @@ class RefersTo:
 
 
 Positive = Annotated[float, Field(gt=0)]
+Title = Annotated[str, Field(max_length=300), AfterValidator(_one_line)]
 Digest = Annotated[str, AfterValidator(_digest)]
 Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
 Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]

@@ -1,0 +1,17 @@
+"""The columns of history.csv (units: docs/output.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+SHARES = ("balance", "migrate", "halo", "wait")  # of the wall time, beside the steps themselves
+
+
+def history_columns(dim: int, material_names: Sequence[str]) -> list[str]:
+    """Names of the columns, in order."""
+    momentum = [f"momentum_{axis}" for axis in "xyz"[:dim]]
+    energies = ["kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation"]
+    masses = ["mass_asked", "mass_entered", "mass_left", "mass_inside", "mass_initial"]
+    counts = ["n_particles", *(f"n_{name}" for name in material_names)]
+    ranks = ["imbalance", *(f"share_{name}" for name in SHARES)]
+    return ["time", "step", "dt", "mass", *momentum, *energies, *masses, *counts, *ranks]

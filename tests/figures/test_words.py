@@ -1,0 +1,180 @@
+"""Titles are drawn as they are written, and no figure loses a finished run."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from doseki.cli.main import main
+from doseki.errors import UserError
+from doseki.figures import plot, text
+from doseki.figures.layout import chart_grid
+from doseki.record.history import history_columns
+from doseki.record.reader import load
+from doseki.run.progress import progress_bar
+from doseki.run.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
+
+RUN = """\
+dim = 2
+dp = 0.05
+time_max = 0.002
+time_out = 0.001
+xi = 0.05
+[body.block]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.2, 0.2]
+[gauge.level]
+kind = "surface_height"
+position = [0.1, 0]
+"""
+NAMES = ["flow", "mass", "overview"]  # of general figures, but for the energy
+ODD = ("5 $ and 7 $", "$\\frac{1}{", "[/] [bold]", "\\alpha \\$ %s {x} ^_", "土石流 debris")
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    """Writes a small scenario with more tables."""
+
+    def write(more="", title="plain"):
+        file = tmp_path / "case.toml"
+        file.write_text(f"title = {json.dumps(title)}\n{RUN}{more}", encoding="utf-8")
+        return file
+
+    return write
+
+
+def picture(title):
+    """The pixels of a chart with a title."""
+    figure, _ = chart_grid(1, 1, (3, 1), title)
+    image = io.BytesIO()
+    figure.savefig(image, format="rgba")
+    return np.frombuffer(image.getvalue(), np.uint8)
+
+
+def test_dollars_begin_no_formula():
+    with text.plain_text() as complaints:
+        one, other = picture("a $x$ b"), picture("a x b")
+        assert not np.array_equal(one, other)
+        assert np.array_equal(one, picture("a $x$ b"))
+    with_formula = picture("a $x$ b")
+    assert not np.array_equal(one, with_formula)
+    assert complaints == []
+
+
+def test_characters_without_a_font_are_told(monkeypatch):
+    monkeypatch.setattr(text, "CJK", ())
+    with text.plain_text() as complaints:
+        picture("土石 debris")
+    (said,) = complaints
+    assert "no font has the characters 土石" in said
+    assert "fonts-noto-cjk" in said
+
+
+@pytest.mark.parametrize("title", ODD)
+def test_odd_titles_are_drawn(scenario, tmp_path, capsys, title):
+    figure = f'[figure.one]\nkind = "series"\ncolumns = ["mass"]\ntitle = {json.dumps(title)}\n'
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(scenario(figure, title)), "-o", str(tmp_path / "run"), "--threads", "1"])
+    assert ended.value.code == 0
+    said = capsys.readouterr()
+    assert said.out.startswith(title)
+    assert "status            done" in said.out
+    assert "could not be drawn" not in said.err
+    assert (tmp_path / "run/figures/one.png").is_file()
+    assert (tmp_path / "run/figures/overview.png").is_file()
+
+
+@pytest.mark.parametrize("title", ODD)
+def test_odd_titles_are_no_markup_of_the_progress_bar(monkeypatch, title):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with progress_bar(title, 1.0) as progress:
+        progress(0.5, 1e-3, 10)
+
+
+@pytest.mark.parametrize(
+    ("figure", "said"),
+    [
+        ('kind = "snapshot"\ncolour = []', "colour"),
+        ('kind = "snapshot"\ncolour = [""]', "colour"),
+        ('kind = "snapshot"\ntimes = [' + "0.1, " * 100 + "]", "times"),
+        ('kind = "histogram"\nbin_width = 1e-300', "bin_width"),
+        ('kind = "histogram"\nbin_width = 1e-9', "more than 2000 bins"),
+        ('kind = "histogram"\nbin_width = 1e300', "bin_width"),
+        ('kind = "histogram"\nsample = 100000000000', "sample"),
+        ('kind = "series"\ncolumns = []', "columns"),
+        ('kind = "series"\ncolumns = ["n_watr"]', '"n_watr" is not a column.*did you mean n_water'),
+        ('kind = "series"', "columns is missing"),
+        ('kind = "gauge"\ngauge = "level"\ncolumns = ["hight"]', "did you mean height"),
+        ('kind = "series"\ncolumns = ["mass"]\ntitle = "a\\nb"', "one line"),
+        ('kind = "series"\ncolumns = ["mass"]\ntitle = "\\u001b[2J"', "one line"),
+        ('kind = "series"\ncolumns = ["mass"]\ntitle = "' + "x" * 400 + '"', "title"),
+    ],
+)
+def test_figures_that_cannot_be_drawn_are_refused_before_the_run(scenario, figure, said):
+    with pytest.raises(UserError, match=said):
+        load_scenario(scenario(f"[figure.one]\n{figure}\n"))
+
+
+def test_the_columns_that_figures_may_name_are_those_of_the_record(scenario, tmp_path):
+    case = load_scenario(scenario())
+    run_scenario(case, tmp_path / "run", RunOptions(threads=1))
+    columns = load(tmp_path / "run").history.columns
+    assert columns == history_columns(2, case.material_names)
+
+
+def test_a_figure_that_fails_loses_neither_the_others_nor_the_summary(
+    scenario, tmp_path, capsys, monkeypatch
+):
+    def fail(_run):
+        raise RuntimeError("out of\nink")
+
+    monkeypatch.setitem(plot.GENERAL, "energy", fail)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(scenario()), "-o", str(tmp_path / "run"), "--threads", "1"])
+    assert ended.value.code == 0
+    said = capsys.readouterr()
+    assert "warning: figure energy could not be drawn: RuntimeError('out of" in said.err
+    assert "status            done" in said.out
+    assert (tmp_path / "run/summary.txt").read_text().startswith("plain")
+    assert sorted(f.stem for f in (tmp_path / "run/figures").iterdir()) == NAMES
+    with pytest.raises(SystemExit) as ended:
+        main(["plot", str(tmp_path / "run")])
+    assert ended.value.code == 2
+    assert "1 of the figures could not be drawn" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("broken", ["doseki.assess.summary.summary_text", "doseki.run.runner.load"])
+def test_a_summary_that_fails_loses_no_run(scenario, tmp_path, capsys, monkeypatch, broken):
+    def fail(_run):
+        raise RuntimeError("no words")
+
+    monkeypatch.setattr(broken, fail)
+    with pytest.raises(SystemExit) as ended:
+        main(
+            ["run", str(scenario()), "-o", str(tmp_path / "run"), "--threads", "1", "--no-figures"]
+        )
+    assert ended.value.code == 0
+    said = capsys.readouterr()
+    assert "no words" in said.err + said.out
+    assert "status            done" in said.out
+
+
+def test_a_disk_that_is_full_for_pictures_loses_no_run(scenario, tmp_path, capsys, monkeypatch):
+    def fail(*_arguments):
+        raise OSError(28, "No space left on device")
+
+    shutil.rmtree(tmp_path / "run", ignore_errors=True)
+    monkeypatch.setattr(plot, "write_whole", fail)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(scenario()), "-o", str(tmp_path / "run"), "--threads", "1"])
+    assert ended.value.code == 0
+    said = capsys.readouterr()
+    assert "No space left" in said.err
+    assert "status            done" in said.out
