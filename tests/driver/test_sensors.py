@@ -130,6 +130,16 @@ def test_a_face_knows_its_wall_beside_a_corner():
     assert told[n:].sum() == 0
 
 
+def test_a_face_at_an_edge_has_the_particles_of_the_edge():
+    """Whichever of the two faces these say they belong to."""
+    state = wall(2)
+    end = state["position"][:, 0] > 0.29
+    state["normal"][end] = [1.0, 0.0]
+    state["depth"][end] = 0.3 - state["position"][end, 0]
+    face = Face(np.array([0.298, 0.0]), 0.001, DP, np.array([0.0, 1.0]))
+    assert face.covered(state) == pytest.approx(0.7)
+
+
 def test_a_filtered_gauge_shows_what_the_filter_makes_of_every_step(tmp_path):
     """The interval changes what is written, not what is read."""
     more = f'\n[gauge.rare]\nkind = "pressure"\n{SENSOR}filter_hz = 60\ninterval = 0.03\n'

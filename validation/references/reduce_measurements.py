@@ -4,7 +4,7 @@
 .venv/bin/python validation/references/reduce_measurements.py [FOLDER]
 
 FOLDER holds the full records.  Prints the tables of kleefsman-2005-*.csv and
-lobovsky-2014-sensor-2.csv of python/doseki/validate/data, and how far they are from the records.
+lobovsky-2014-sensor-*.csv of python/doseki/validate/data, and how far they are from the records.
 """
 
 from __future__ import annotations
@@ -47,10 +47,16 @@ class Record:
 
 KLEEFSMAN = "kleefsman_spheric2/test_case_2_exp_data.dat"
 LOBOVSKY = "lobovsky2014/Fig31_Wemmenhove_sensor2_compared_graph.csv"
+LOBOVSKY_OF = "lobovsky2014/lobovsky_H300_P{}.csv"
 RECORDS = {
     "kleefsman-2005-p1.csv": Record(KLEEFSMAN, None, (1,), 6.001, 100, peak=0),
+    "kleefsman-2005-p2-p4.csv": Record(KLEEFSMAN, None, (2, 3, 4), 2.001, 50, peak=0),
+    "kleefsman-2005-p5-p6.csv": Record(KLEEFSMAN, None, (5, 6), 2.001, 66, peak=0),
+    "kleefsman-2005-p7-p8.csv": Record(KLEEFSMAN, None, (7, 8), 2.001, 66, peak=0),
     "kleefsman-2005-levels.csv": Record(KLEEFSMAN, None, (10, 12), 6.001, 66),
+    "kleefsman-2005-levels-h1-h3.csv": Record(KLEEFSMAN, None, (9, 11), 6.001, 66),
     "lobovsky-2014-sensor-2.csv": Record(LOBOVSKY, ",", (1, 2, 3), 6.51, 50, peak=1),
+    "lobovsky-2014-sensor-3.csv": Record(LOBOVSKY_OF.format(3), ",", (1,), 6.51, 80, peak=0),
 }
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..driver.gauges import build_gauges
+from ..driver.sensors import Sensor, build_sensors
 from ..errors import PhysicsError
 from ..record.particles import FREE
 from ..scenario.load import load_scenario
@@ -27,6 +29,9 @@ class Running:
         own = next(CASES.glob(f"*/{name}.toml"), None)
         self.scenario = load_scenario(str(own or name), overrides)
         self.simulation, self.body_names = build_simulation(self.scenario)
+        gauges = build_gauges(self.scenario, self.body_names)
+        self.sensors: dict[str, Sensor] = build_sensors(gauges)
+        self._follow()
 
     @property
     def time(self) -> float:
@@ -51,10 +56,25 @@ class Running:
         Raises PhysicsError where the run goes wrong.
         """
         try:
-            self.simulation.advance(limit=time, pause=time, max_steps=max_steps)
+            self._step(time, max_steps)
         except load_core().PhysicsFailure as failure:
             raise PhysicsError(str(failure), *self.simulation.failure) from None
         return self.state()
+
+    def _step(self, time: float, max_steps: int) -> None:
+        """Steps, each of which the sensors of the scenario see."""
+        if not self.sensors:
+            self.simulation.advance(limit=time, pause=time, max_steps=max_steps)
+            return
+        for _ in range(max_steps):
+            if self.time >= time:
+                return
+            self.simulation.advance(limit=time, pause=time, max_steps=1)
+            self._follow()
+
+    def _follow(self) -> None:
+        for sensor in self.sensors.values():
+            sensor.follow(self.simulation)
 
     def sampled(self, times: Iterable[float]) -> Iterator[State]:
         """The states at `times`, which must rise."""

@@ -57,7 +57,11 @@ class Face:
         if not surface.any():
             return np.zeros(len(away))
         normal = self._normal(state, away, offset, surface)
-        surface &= (np.abs(offset) < 0.5 * self.dp) & (state["normal"] @ normal > FACING)
+        facing = (state["normal"] @ normal > FACING) & (np.abs(offset) < 0.5 * self.dp)
+        # A particle of an edge has the normal of one of its faces; that of a corner that is hollow
+        # is on the other side of the middle.
+        below = np.abs(away @ normal + 0.5 * self.dp) < 0.5 * self.dp
+        surface &= facing | (below & (offset > 1e-6 * self.dp))
         aside = np.linalg.norm(away - np.outer(away @ normal, normal), axis=1)
         return surface * np.clip((self.radius - aside) / self.dp + 0.5, 0.0, 1.0)
 
