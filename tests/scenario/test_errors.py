@@ -165,7 +165,8 @@ def test_line_is_that_of_the_file_that_sets_the_key(write, tmp_path, error_of):
 
 @pytest.mark.parametrize("override", ["dp=1e-9", "body.block.max=[1e9, 1e9]"])
 def test_too_many_particles(write, override):
-    scenario = load_scenario(write(), [override])
+    short = ["time_max=1e-6", "time_out=1e-6"]  # the number of steps is not what is too large
+    scenario = load_scenario(write(), [override, *short])
     with pytest.raises(ResourceError, match="increase dp"):
         build_bodies(scenario)
 
