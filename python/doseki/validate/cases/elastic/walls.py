@@ -11,6 +11,7 @@ from ...running import Running
 SAG = "sag of the middle"
 MISS_X, MISS_Y, PEAK = "miss of the tip along x", "miss of the tip along y", "farthest along x"
 MEASURED = ("antoci-2007-x.csv", "antoci-2007-y.csv")
+STIFF = "0.18, 0.27 and -8.2 % at 3 and at 5 layers alike: the foot goes less far than measured"
 SETTLED, END, SAMPLE = 0.06, 0.16, 0.005  # s
 
 
@@ -72,6 +73,7 @@ PLATE = Case(
             (within(0.15), within(0.05), within(0.05)),
             "5 % of thin-plate theory at 10 layers; others miss it by 8 to 13 %",
             "m",
+            short="15.5 % at 5 layers, as a plate of so few is too soft; the water is right to 0.5 %",
         ),
     ),
     axes=("time (s)", "sag (m)"),
@@ -88,9 +90,10 @@ GATE = Case(
             MISS_X,
             (at_most(0.15),),
             "0.15 of the greatest displacement; the best of other codes has 0.18",
+            short=STIFF,
         ),
-        Criterion(MISS_Y, (at_most(0.27),), "as the best of other codes"),
-        Criterion(PEAK, (within(0.08),), "8 % of the experiment", "m"),
+        Criterion(MISS_Y, (at_most(0.27),), "as the best of other codes", short=STIFF),
+        Criterion(PEAK, (within(0.08),), "8 % of the experiment", "m", short=STIFF),
     ),
     axes=("time (s)", "displacement of the foot (m)"),
     controls=(Control("four times as stiff", MISS_X, lambda n: gate(n, "young=31.2e6")),),
