@@ -155,8 +155,9 @@ def test_what_the_state_was_made_with_cannot_change(uninterrupted, setting):
         resume_run(uninterrupted, [setting, "time_max=1"])
 
 
-def test_a_folder_without_checkpoint_is_refused(uninterrupted, tmp_path):
+def test_a_run_that_ended_and_has_no_checkpoint_is_refused(uninterrupted, tmp_path):
     (tmp_path / "snapshots").mkdir()
-    (tmp_path / "scenario.toml").write_bytes((uninterrupted / "scenario.toml").read_bytes())
+    for name in ("scenario.toml", "summary.json"):
+        (tmp_path / name).write_bytes((uninterrupted / name).read_bytes())
     with pytest.raises(UserError, match="no whole checkpoint"):
         resume_run(tmp_path)

@@ -73,7 +73,7 @@ PLATE = Case(
             (within(0.15), within(0.05), within(0.05)),
             "5 % of thin-plate theory at 10 layers; others miss it by 8 to 13 %",
             "m",
-            short="15.5 % at 5 layers, as a plate of so few is too soft; the water is right to 0.5 %",
+            short="15.5 % at 5 layers: a plate of so few is too soft",
         ),
     ),
     axes=("time (s)", "sag (m)"),
