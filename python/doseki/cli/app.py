@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .. import __version__
-from .project import bench, list_scenarios, validate
+from .project import bench, list_scenarios, new, validate
 from .results import census, export, plot
 from .simulate import check, explain, resume, run
 from .studies import compare, trust
@@ -55,6 +55,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "census": census,
     "export": export,
     "list": list_scenarios,
+    "new": new,
     "bench": bench,
     "validate": validate,
 }

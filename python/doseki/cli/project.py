@@ -1,4 +1,4 @@
-"""Commands about doseki itself: list, bench, validate."""
+"""Commands about doseki itself and its scenarios: list, new, bench, validate."""
 
 from __future__ import annotations
 
@@ -17,6 +17,13 @@ from .options import Threads, free_directory
 Tier = StrEnum("Tier", ["coarse", "full"])
 
 
+class Dimensions(StrEnum):
+    """Of space."""
+
+    TWO = "2"
+    THREE = "3"
+
+
 def list_scenarios() -> None:
     """List the scenarios that are shipped.
 
@@ -28,6 +35,21 @@ def list_scenarios() -> None:
     for name, title, _path in shipped():
         table.add_row(name, Text(title))
     Console().print(table)
+
+
+def new(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Of the scenario, FILE.toml.")],
+    dim: Annotated[Dimensions, typer.Option(help="Dimensions.")] = Dimensions.TWO,
+    dry: Annotated[bool, typer.Option("--dry", help="Grains without water.")] = False,
+) -> None:
+    """Write a commented scenario to start from: water in a tank, or dry grains.
+
+    See also: doseki check FILE looks it over, doseki run FILE runs it.
+    """
+    from ..scenario.start import write_start
+
+    write_start(file, int(dim.value), dry)
+    typer.echo(f"{file}: run it with doseki run {file}")
 
 
 def bench(
