@@ -278,7 +278,11 @@ OBSTACLE = Case(
         *criteria_of(
             FRONT_SENSORS,
             COARSER,
-            {f"{label}: impulse": LOW_BOX for label in ("P3", "P4")},
+            {
+                f"{label}: {what}": LOW_BOX
+                for label in ("P3", "P4")
+                for what in ("impulse", "peak at 20 Hz")
+            },
         ),
         *criteria_of(TOP_SENSORS, {what: (None, more) for what, (_, more) in COARSER.items()}, {}),
         *(
