@@ -92,6 +92,7 @@ def addresses(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
 
 
 @pytest.mark.sanitize
+@pytest.mark.xdist_group("addresses")  # which are built once for both
 def test_addresses_and_undefined_behaviour(addresses):
     preload, site = addresses
     # Python itself frees nothing at its end, which would count as leaks.
@@ -101,6 +102,7 @@ def test_addresses_and_undefined_behaviour(addresses):
 
 
 @pytest.mark.sanitize
+@pytest.mark.xdist_group("addresses")  # which are built once for both
 def test_checkpoints_that_somebody_has_changed(addresses, tmp_path):
     preload, site = addresses
     paths = os.pathsep.join([str(site), *filter(None, sys.path)])
