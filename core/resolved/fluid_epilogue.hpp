@@ -28,10 +28,11 @@ public:
 
     void operator()(std::size_t p, const Sums& sums) const {
         if (p >= fluid_count_) return;  // a wall particle in the last cluster of fluid
-        correct_gradients(p, sums);
+        const Mat<double, D> B = inverse_moment(sums.moment);
+        correct_gradients(p, sums, B);
         const FreeSurfaceIndicator indicator = free_surface(p, sums);
         state_.surface[p] = indicator.x;
-        state_.correction_excess[p] = correction_excess(p, sums);
+        state_.correction_excess[p] = correction_excess(p, sums, B);
         state_.shift[p] = {};
         summary(p).fault.note_density(records_[p].rho, rho0(p), p);
         if (!state_.is_free(p)) {
@@ -70,9 +71,8 @@ private:
         return summaries_[p / static_cast<std::size_t>(lanes<double>)];
     }
 
-    /// Gradients of first order: those of the kernel times the inverse of their moment.
-    void correct_gradients(std::size_t p, const Sums& sums) const {
-        const Mat<double, D> B = inverse_moment(sums.moment);
+    /// Gradients of first order: those of the kernel times B, the inverse of their moment.
+    void correct_gradients(std::size_t p, const Sums& sums, const Mat<double, D>& B) const {
         auto corrected = [&B](const Vec<double, D>& raw) {
             Vec<double, D> v;
             for (int a = 0; a < D; ++a)
@@ -90,12 +90,12 @@ private:
     }
 
     /// None near a free surface, where there is little pressure and the inverse is large.
-    Sym<double, D> correction_excess(std::size_t p, const Sums& sums) const {
-        constexpr double min_determinant = 0.3;
-        const Mat<double, D> B = inverse(full(sums.moment), min_determinant);
+    Sym<double, D> correction_excess(std::size_t p, const Sums& sums,
+                                     const Mat<double, D>& B) const {
+        constexpr double min_determinant = 0.3;  // of the moment
         const bool corrected =
             std::max(sums.max_surface, state_.surface[p]) < FreeSurfaceIndicator::surface &&
-            B(0, 0) > 0.0;
+            B(0, 0) > 0.0 && min_determinant * determinant(B) < 1.0;
         Sym<double, D> excess;
         if (corrected) excess = symmetric_part(B - identity<double, D>());
         return excess;
