@@ -61,8 +61,9 @@ public:
         if (!deformable.empty()) deformable.kick(half_dt);
         rigid.kick(half_dt);
     }
-    /// From t to t + dt, through as many contact steps as it takes.
-    void advance(const MovingWalls<D>& walls, double t, double dt);
+    /// From t to t + dt, through as many contact steps as it takes. Tells what that gave to the
+    /// rigid bodies.
+    BodyStep<D> advance(const MovingWalls<D>& walls, double t, double dt);
     /// Puts particles where their bodies are; returns the largest distance that one went.
     double place(Particles<D>& particles) const {
         if (!any_moves()) return 0.0;
@@ -76,10 +77,9 @@ public:
         rigid_particles_.set_velocities(particles, rigid, ahead);
     }
 
-    /// Removes the rigid bodies whose centre is in the box and marks their particles in `removed`;
-    /// returns their mass.
+    /// Removes the rigid bodies whose centre is in the box and marks their particles in `removed`.
     template <class Box>
-    double drain(const Particles<D>& particles, const Box& box, std::vector<std::uint8_t>& removed);
+    void drain(const Particles<D>& particles, const Box& box, std::vector<std::uint8_t>& removed);
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
 
@@ -105,7 +105,7 @@ private:
     void prepare_contacts() {
         contact_ = {};
         rigid.add_to(contact_);
-        deformable.add_to(contact_.points, static_cast<std::int32_t>(rigid.size()));
+        deformable.add_to(contact_, static_cast<std::int32_t>(rigid.size()));
         const double margin = std::min(rigid.margin(), deformable.margin());
         margin_ = std::isfinite(margin) ? margin : 0.0;
         deformable_step_ = deformable.timestep();
@@ -113,17 +113,19 @@ private:
     }
     void show_bodies() {
         rigid.show(contact_);
-        deformable.show(contact_.points);
+        deformable.show(contact_);
     }
     void find_contacts() {
         moved_ = 0.0;
         contacts_.find(contact_, margin_);
     }
-    /// Also short against the margin of the pairs.
+    /// Also short against the margin of the pairs, at the speed of now and in a fall from rest.
     double contact_step() const {
-        const double fastest = std::max(deformable.max_speed(), rigid.max_speed());
-        return std::min(
-            {contacts_.timestep(), deformable_step_, 0.25 * margin_ / std::max(fastest, 1e-300)});
+        const double fastest = std::max(deformable.max_speed(), rigid.max_speed()),
+                     pull = norm(gravity_);
+        return std::min({contacts_.timestep(), deformable_step_,
+                         0.25 * margin_ / std::max(fastest, 1e-300),
+                         std::sqrt(0.25 * margin_ / std::max(pull, 1e-300))});
     }
     void drift(double dt) { moved_ += std::max(deformable.drift(dt), rigid.drift(dt)); }
     void follow_walls(const MovingWalls<D>& walls, double t, double dt) {
@@ -159,8 +161,9 @@ void Bodies<D>::serialise(Archive& archive) {
 
 /// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
 template <int D>
-void Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
-    if (!any_moves() || dt <= 0.0) return;
+BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
+    if (!any_moves() || dt <= 0.0) return {};
+    const BodySums<D> before = rigid.sums();
     rigid.begin_step(), deformable.begin_step();
     deformable_step_ = deformable.timestep();
     for (double left = dt; left > 0.0;) {
@@ -170,10 +173,11 @@ void Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
                                  FailureKind::speed);
         drift(0.5 * step);
         follow_walls(walls, t + dt - left, step);
-        show_bodies();
-        if (2.0 * moved_ >= margin_) find_contacts();
+        const bool search = 2.0 * moved_ >= margin_;
+        if (search || contacts_.any()) show_bodies();
+        if (search) find_contacts();
         contacts_.apply(contact_, step);
-        rigid.collect(contact_), deformable.collect(contact_.points);
+        rigid.collect(contact_), deformable.collect(contact_);
         if (!deformable.empty()) deformable.push(step, gravity_);
         rigid.push(gravity_, step);
         drift(0.5 * step);
@@ -181,22 +185,20 @@ void Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     }
     deformable.end_step(dt, memory_);
     rigid.end_step(dt, memory_);
+    return rigid.sums().since(before, gravity_);
 }
 
 template <int D>
 template <class Box>
-double Bodies<D>::drain(const Particles<D>& particles, const Box& box,
-                        std::vector<std::uint8_t>& removed) {
-    if (!any_moves()) return 0.0;
+void Bodies<D>::drain(const Particles<D>& particles, const Box& box,
+                      std::vector<std::uint8_t>& removed) {
+    if (!any_moves()) return;
     const std::vector<std::uint8_t> leaves = rigid.remove_inside(box);
     if (std::find(leaves.begin(), leaves.end(), 1) != leaves.end()) moved_ = margin_;
-    double mass = 0.0;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::int32_t k = rigid_body_of(particles, p);
-        if (k >= 0 && leaves[static_cast<std::size_t>(k)])
-            removed[p] = 1, mass += particles.mass[p];
+        if (k >= 0 && leaves[static_cast<std::size_t>(k)]) removed[p] = 1;
     }
-    return mass;
 }
 
 // Compiled once: bodies_2.cpp, bodies_3.cpp.

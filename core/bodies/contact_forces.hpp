@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 
 #include "bodies/contacts.hpp"
 #include "physics/contact.hpp"
@@ -21,10 +23,12 @@ inline Vec3 turned_with(const Vec3& n, const ContactSprings& springs, int first)
     return after > 0.0 ? (before / after) * stretch : stretch;
 }
 
-inline double ContactLaw::timestep(double speed) const {
+inline double ContactLaw::timestep(double speed, double points) const {
     const CollisionEstimate collision = hertz ? hertz_collision(stiffness, curvature(), mass, speed)
                                               : linear_collision(stiffness, mass, speed);
-    return collision.time / steps;
+    constexpr double frequency = 4.0;  // of one spring, over the time of a collision, at most
+    const double fastest = frequency * std::max(2.0 * zeta * points, std::sqrt(points));
+    return collision.time / std::max(steps, fastest);
 }
 
 inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, const Vec3& n,
@@ -63,6 +67,7 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     const ContactProperties &u = materials_[first], &v = materials_[second];
     const bool penalty = a.deformable || b.deformable;
     ContactLaw law{};
+    law.rigid = !penalty;
     law.hertz = hertz() && !penalty;
     law.mass = !a.fixed && !b.fixed ? a.mass * b.mass / (a.mass + b.mass)
                : a.fixed            ? b.mass
@@ -75,7 +80,8 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     law.steps = penalty ? penalty_steps : options_.steps;
     if (penalty) {
         const double spacing = 2.0 * (b.flat ? a.radius : std::min(a.radius, b.radius));
-        law.stiffness = penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : 1.0);
+        law.stiffness =
+            penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : a.share * b.share);
         law.zeta = law.rolling = 0.0;
     } else
         law.stiffness = stiffness(law, u, v);
@@ -110,6 +116,7 @@ void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
     pairs_.clear();
     find_ball_pairs(bodies.points, domain_, margin, pairs_);
     find_convex_pairs(bodies, domain_, margin, pairs_);
+    turn_to_surfaces(bodies, pairs_);
     springs_.assign(pairs_.size(), {});
     for (std::size_t k = 0; k < pairs_.size(); ++k)
         if (const auto found = stretched.find(key(pairs_[k])); found != stretched.end())
@@ -122,9 +129,18 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
     contacts_.clear();
     timestep_ = std::numeric_limits<double>::infinity();
+    std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch
+    auto at = [&points](const Contact& contact) -> double& {
+        return points[std::minmax(contact.body_a, contact.body_b)];
+    };
     for (const ContactPair& pair : pairs_) {
         contacts_.push_back(contact_of(bodies, pair));
-        timestep_ = std::min(timestep_, contacts_.back().law.timestep(laws_.speed()));
+        at(contacts_.back()) += 1.0;
+    }
+    for (const Contact& contact : contacts_) {
+        // Points of deformable bodies move each on its own.
+        const double together = contact.law.rigid ? at(contact) : 1.0;
+        timestep_ = std::min(timestep_, contact.law.timestep(laws_.speed(), together));
     }
 }
 
@@ -137,8 +153,8 @@ void Contacts<D>::expect_pairs_of(const ContactBodies<D>& bodies) const {
         expect_index(convex.material, laws_.materials(), "body_material");
     for (const ContactPair& pair : pairs_) {
         expect_index(pair.a, bodies.points.size(), "contact_a");
-        if (pair.with_convex())
-            expect_index(pair.convex(), bodies.convex.size(), "contact_b");
+        if (pair.with_shape())
+            expect_index(pair.shape(), bodies.convex.size() + bodies.surfaces.size(), "contact_b");
         else
             expect_index(pair.b, bodies.points.size(), "contact_b");
     }
@@ -149,24 +165,24 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     -> Contact {
     const ContactPoints<D>& points = bodies.points;
     const ContactSide a = points.side(pair.first());
-    if (pair.with_convex()) {
-        const ConvexBody<D>& convex = bodies.convex[pair.convex()];
-        return {points.body[pair.first()], convex.body, laws_.between(a, convex.side()), 0.0};
+    const std::int32_t first = points.body[pair.first()];
+    if (const Surface<D>* surface = bodies.surface(pair)) {
+        const Vec<double, D>& x = points.position[pair.first()];
+        return {first, surface->body, laws_.between(a, surface->side()), 0.0,
+                surface->nearest_vertex(x, domain_)};
     }
-    return {points.body[pair.first()], points.body[pair.second()],
-            laws_.between(a, points.side(pair.second())), 0.0};
+    if (pair.with_shape()) {
+        const ConvexBody<D>& convex = bodies.convex[pair.shape()];
+        return {first, convex.body, laws_.between(a, convex.side()), 0.0};
+    }
+    return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }
 
 template <int D>
 void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        const ContactPair& pair = pairs_[k];
         Contact& contact = contacts_[k];
-        const auto overlap =
-            pair.with_convex()
-                ? overlap_of(bodies.points, pair.first(), bodies.convex[pair.convex()], domain_)
-                : overlap_of(bodies.points, pair.first(), pair.second(), domain_);
-        if (overlap) {
+        if (const auto overlap = overlap_of_pair(bodies, k)) {
             contact.overlap = overlap->depth;
             max_overlap_ = std::max(max_overlap_, overlap->depth / contact.law.diameter);
             push_apart(bodies, k, *overlap, dt);
@@ -177,29 +193,37 @@ void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
 }
 
 template <int D>
+std::optional<Overlap<D>> Contacts<D>::overlap_of_pair(const ContactBodies<D>& bodies,
+                                                       std::size_t k) const {
+    const ContactPair& pair = pairs_[k];
+    const ContactPoints<D>& points = bodies.points;
+    if constexpr (D == 2)
+        if (const Surface<D>* surface = bodies.surface(pair))
+            return overlap_of(points, pair.first(), *surface, contacts_[k].vertex, domain_);
+    if (pair.with_shape())
+        return overlap_of(points, pair.first(), bodies.convex[pair.shape()], domain_);
+    return overlap_of(points, pair.first(), pair.second(), domain_);
+}
+
+template <int D>
 void Contacts<D>::push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
                              double dt) {
+    const SecondSide<D> b(bodies, pairs_[k], overlap);
     ContactPoints<D>& points = bodies.points;
-    const ContactPair& pair = pairs_[k];
-    const std::size_t a = pair.first();
-    ConvexBody<D>* convex = pair.with_convex() ? &bodies.convex[pair.convex()] : nullptr;
-    const std::size_t b = convex ? 0 : pair.second();
-    const Vec3 spin_a = points.spin[a], spin_b = convex ? convex->spin : points.spin[b];
-    const Vec<double, D> v_a = points.velocity[a] + turning_velocity(spin_a, overlap.lever_a);
-    const Vec<double, D> v_b = (convex ? convex->velocity : points.velocity[b]) +
-                               turning_velocity(spin_b, overlap.lever_b);
+    const std::size_t a = pairs_[k].first();
+    const Vec<double, D> v_a =
+                             points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
+                         v_b = b.velocity() + turning_velocity(b.spin(), overlap.lever_b);
     const ContactAction on_a =
         contacts_[k].law.act(springs_[k], overlap.depth, in_space(overlap.normal),
-                             {in_space(v_a - v_b), spin_a - spin_b}, dt);
-    auto push = [&](auto& force, auto& torque, const Vec<double, D>& lever, double sign) {
-        force = force + sign * in_run<D>(on_a.force);
-        torque = torque + sign * (cross(in_space(lever), on_a.force) + on_a.moment);
+                             {in_space(v_a - v_b), points.spin[a] - b.spin()}, dt);
+    const Vec<double, D> force = in_run<D>(on_a.force);
+    auto torque = [&](const Vec<double, D>& lever) {
+        return cross(in_space(lever), on_a.force) + on_a.moment;
     };
-    push(points.force[a], points.torque[a], overlap.lever_a, 1.0);
-    if (convex)
-        push(convex->force, convex->torque, overlap.lever_b, -1.0);
-    else
-        push(points.force[b], points.torque[b], overlap.lever_b, -1.0);
+    points.force[a] = points.force[a] + force;
+    points.torque[a] = points.torque[a] + torque(overlap.lever_a);
+    b.push(-1.0 * force, -1.0 * torque(overlap.lever_b));
 }
 
 }  // namespace doseki

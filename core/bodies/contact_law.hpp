@@ -14,7 +14,8 @@ struct ContactSide {
     double radius;          // of curvature where it touches; of a facet: none
     double mass, diameter;  // of the body
     bool fixed, deformable;
-    bool flat;  // touched on a facet
+    bool flat;           // touched on a facet
+    double share = 1.0;  // of the spring of a point of a deformable body
 };
 
 /// Springs of one contact: stretch of friction, then of rolling; zero while apart.
@@ -34,6 +35,7 @@ struct RelativeMotion {
 /// The law of one pair, eqs. (42) to (50).
 struct ContactLaw {
     bool hertz;        // otherwise a linear spring
+    bool rigid;        // both bodies are
     double stiffness;  // k, or E* of Hertz
     double mass;       // m*
     double radius;     // R*; 0: does not roll
@@ -46,8 +48,9 @@ struct ContactLaw {
 
     double curvature() const { return radius > 0.0 ? radius : 0.5 * diameter; }
 
-    /// That resolves a collision at this speed.
-    double timestep(double speed) const;
+    /// That resolves a collision at this speed, and is stable where two bodies touch at `points`
+    /// points at once, whose springs and dashpots add up.
+    double timestep(double speed, double points) const;
 
     /// n points away from the first body.
     ContactAction act(ContactSprings& springs, double overlap, const Vec3& n,

@@ -1,29 +1,36 @@
 #pragma once
+#include <compare>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bodies/contact_law.hpp"
 #include "bodies/shape.hpp"
+#include "bodies/surface.hpp"
 
 namespace doseki {
 
 /// Points at which bodies touch others, each a ball: a whole body, a sample of the surface of a
-/// convex one (radius 0), or a surface particle of a deformable one. Bodies are numbered over all
-/// kinds.
+/// convex one or (2-D) of a deformable one (radius 0), or (3-D) a surface particle of a deformable
+/// one. Bodies are numbered over all kinds.
 template <int D>
 struct ContactPoints {
     std::vector<Vec<double, D>> position, velocity;  // of the centre
     std::vector<Vec3> spin;
     std::vector<double> radius;
     std::vector<double> mass, diameter;  // of the body; overlaps are compared with the diameter
+    std::vector<double> share;           // see ContactSide
     std::vector<std::int32_t> body, material;
     std::vector<std::uint8_t> fixed, removed, deformable;
+    std::vector<std::int32_t> surface;  // of which it is a sample, in ContactBodies; -1: of none
     // What the contacts do to them; torque about their own centre.
     std::vector<Vec<double, D>> force;
     std::vector<Vec3> torque;
 
     std::size_t size() const { return radius.size(); }
 
+    /// How far from the point bodies that may touch it are looked for.
+    double reach(std::size_t k) const { return surface[k] >= 0 ? 0.5 * diameter[k] : radius[k]; }
     /// Adds a point of a body, as a side of a contact has it.
     void add(std::int32_t of_body, const ContactSide& side) {
         position.push_back({}), velocity.push_back({}), spin.push_back({});
@@ -32,11 +39,12 @@ struct ContactPoints {
         diameter.push_back(side.diameter);
         body.push_back(of_body), material.push_back(side.material);
         fixed.push_back(side.fixed), removed.push_back(0), deformable.push_back(side.deformable);
+        share.push_back(side.share), surface.push_back(-1);
     }
 
     ContactSide side(std::size_t k) const {
         return {material[k],   radius[k],          mass[k], diameter[k],
-                fixed[k] != 0, deformable[k] != 0, false};
+                fixed[k] != 0, deformable[k] != 0, false,   share[k]};
     }
 };
 
@@ -56,11 +64,36 @@ struct ConvexBody {
     ContactSide side() const { return {material, 0.0, mass, diameter, fixed, false, true}; }
 };
 
+/// Two contact points, or a contact point and shape number -1 - b: the convex bodies, then the
+/// surfaces.
+struct ContactPair {
+    std::int32_t a, b;
+
+    auto operator<=>(const ContactPair&) const = default;
+    bool with_shape() const { return b < 0; }
+    std::size_t shape() const { return static_cast<std::size_t>(-1 - b); }
+    std::size_t first() const { return static_cast<std::size_t>(a); }
+    std::size_t second() const { return static_cast<std::size_t>(b); }
+};
+
 /// All that may touch.
 template <int D>
 struct ContactBodies {
     ContactPoints<D> points;
     std::vector<ConvexBody<D>> convex;
+    std::vector<Surface<D>> surfaces;
+
+    ContactPair pair_with_surface(std::int32_t point, std::int32_t surface) const {
+        return {point, -1 - static_cast<std::int32_t>(convex.size()) - surface};
+    }
+    /// That of the pair; none where it is one of other things.
+    const Surface<D>* surface(const ContactPair& pair) const {
+        if (!pair.with_shape() || pair.shape() < convex.size()) return nullptr;
+        return &surfaces[pair.shape() - convex.size()];
+    }
+    Surface<D>* surface(const ContactPair& pair) {
+        return const_cast<Surface<D>*>(std::as_const(*this).surface(pair));
+    }
 };
 
 }  // namespace doseki

@@ -6,20 +6,10 @@
 #include <vector>
 
 #include "bodies/contact_points.hpp"
-#include "bodies/nearest_image.hpp"
+#include "model/domain.hpp"
 #include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
-
-/// Two contact points, or a contact point and convex body number -1 - b.
-struct ContactPair {
-    std::int32_t a, b;
-
-    bool with_convex() const { return b < 0; }
-    std::size_t convex() const { return static_cast<std::size_t>(-1 - b); }
-    std::size_t first() const { return static_cast<std::size_t>(a); }
-    std::size_t second() const { return static_cast<std::size_t>(b); }
-};
 
 /// The balls among the contact points, sorted in space.
 template <int D>
@@ -35,14 +25,14 @@ SortedBalls<D> sorted_balls(const ContactPoints<D>& points, const Domain<D>& dom
     SortedBalls<D> balls;
     std::vector<std::uint8_t> fixed;
     for (std::size_t c = 0; c < points.size(); ++c) {
-        if (points.radius[c] <= 0.0 || points.removed[c]) continue;
+        if (points.reach(c) <= 0.0 || points.removed[c]) continue;
         Vec<double, D> x = points.position[c];
         for (int axis = 0; axis < D; ++axis)
             if (domain.periodic[axis])
                 x[axis] -= domain.length(axis) *
                            std::floor((x[axis] - domain.low[axis]) / domain.length(axis));
         balls.point.push_back(static_cast<std::int32_t>(c));
-        balls.position.push_back(x), balls.support.push_back(2.0 * points.radius[c]);
+        balls.position.push_back(x), balls.support.push_back(2.0 * points.reach(c));
         fixed.push_back(points.fixed[c]);
     }
     if (balls.point.size() < 2) return balls;
@@ -70,7 +60,8 @@ void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, do
             const std::int32_t a = balls.point[i], b = balls.point[j];
             if (points.body[a] == points.body[b] || (j < neighbours.moving() && j <= i)) return;
             const Vec<double, D> r = nearest_image(domain, balls.position[j] - balls.position[i]);
-            const double reach = points.radius[a] + points.radius[b] + margin;
+            const double reach = points.reach(static_cast<std::size_t>(a)) +
+                                 points.reach(static_cast<std::size_t>(b)) + margin;
             if (dot(r, r) < reach * reach) pairs.push_back({std::min(a, b), std::max(a, b)});
         };
         neighbours.clusters()[i].for_each_moving(pair_with);
@@ -97,6 +88,25 @@ void find_convex_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, 
                 pairs.push_back({static_cast<std::int32_t>(c), -1 - static_cast<std::int32_t>(s)});
         }
     }
+}
+
+/// Points of two deformable bodies with surfaces touch the surface of the other, each once.
+template <int D>
+void turn_to_surfaces(const ContactBodies<D>& bodies, std::vector<ContactPair>& pairs) {
+    const std::vector<std::int32_t>& surface = bodies.points.surface;
+    std::vector<ContactPair> others, turned;
+    for (const ContactPair& pair : pairs) {
+        if (pair.with_shape() || surface[pair.first()] < 0 || surface[pair.second()] < 0) {
+            others.push_back(pair);
+            continue;
+        }
+        turned.push_back(bodies.pair_with_surface(pair.a, surface[pair.second()]));
+        turned.push_back(bodies.pair_with_surface(pair.b, surface[pair.first()]));
+    }
+    std::sort(turned.begin(), turned.end());
+    turned.erase(std::unique(turned.begin(), turned.end()), turned.end());
+    pairs = std::move(others);
+    pairs.insert(pairs.end(), turned.begin(), turned.end());
 }
 
 }  // namespace doseki

@@ -27,6 +27,8 @@ public:
     /// Adds forces and torques of all pairs, whose springs stretch for dt.
     void apply(ContactBodies<D>& bodies, double dt);
 
+    /// Whether there are pairs that may touch.
+    bool any() const { return !pairs_.empty(); }
     const Domain<D>& domain() const { return domain_; }
     /// Step that follows the stiffest pair found, infinite without any.
     double timestep() const { return timestep_; }
@@ -59,6 +61,7 @@ private:
         std::int32_t body_a, body_b;
         ContactLaw law;
         double overlap;
+        std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
     };
 
     static std::uint64_t key(const ContactPair& pair) {
@@ -67,6 +70,7 @@ private:
     }
     void expect_pairs_of(const ContactBodies<D>& bodies) const;
     Contact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
+    std::optional<Overlap<D>> overlap_of_pair(const ContactBodies<D>& bodies, std::size_t k) const;
     void push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap, double dt);
 
     Domain<D> domain_;

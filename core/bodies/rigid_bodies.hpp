@@ -6,6 +6,7 @@
 #include "bodies/contact_points.hpp"
 #include "bodies/rigid_body.hpp"
 #include "boundaries/moving_walls.hpp"
+#include "model/body_step.hpp"
 
 namespace doseki {
 
@@ -25,8 +26,9 @@ public:
         return shapes[static_cast<std::size_t>(bodies_[k].shape)];
     }
     bool is_free(std::size_t k) const { return !bodies_[k].fixed && !states_[k].is_removed(); }
-    /// Of the last contact step.
-    const Vec<double, D>& contact_force(std::size_t k) const { return contact_force_[k]; }
+    /// Mean over the last step: within a step a body swings between the kicks of the fluid, and
+    /// its contacts with it.
+    const Vec<double, D>& contact_force(std::size_t k) const { return mean_contact_force_[k]; }
     Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
     /// All spins when the fluid will have acted for `ahead` more.
     std::vector<Vec3> spins(double ahead) const {
@@ -92,6 +94,16 @@ public:
             if (!bodies_[k].fixed) smallest = std::min(smallest, 0.3 * shape(k).radius);
         return smallest;
     }
+    BodySums<D> sums() const {
+        BodySums<D> sum;
+        for (std::size_t k = 0; k < size(); ++k) {
+            if (!is_free(k)) continue;
+            sum.momentum = sum.momentum + bodies_[k].mass * states_[k].velocity;
+            sum.moment = sum.moment + bodies_[k].mass * states_[k].centre;
+        }
+        sum.kinetic_energy = kinetic_energy();
+        return sum;
+    }
     double kinetic_energy() const {
         double energy = 0.0;
         for (std::size_t k = 0; k < size(); ++k)
@@ -116,9 +128,10 @@ private:
 
     std::vector<RigidBody<D>> bodies_;
     std::vector<RigidBodyState<D>> states_;
-    std::vector<Vec<double, D>> contact_force_;
+    std::vector<Vec<double, D>> contact_force_;  // of the last contact step
     std::vector<Vec3> contact_torque_;
-    std::vector<Vec<double, D>> velocity_before_;  // at the start of a step
+    std::vector<Vec<double, D>> mean_contact_force_;
+    std::vector<Vec<double, D>> velocity_before_, impulse_before_;  // at the start of a step
     std::vector<Vec3> spin_before_;
     std::size_t moving_ = 0;
 };
@@ -127,7 +140,7 @@ template <int D>
 void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& state,
                          const Vec3& spin) {
     bodies_.push_back(body), states_.push_back(state);
-    contact_force_.push_back({}), contact_torque_.push_back({});
+    contact_force_.push_back({}), contact_torque_.push_back({}), mean_contact_force_.push_back({});
     const Mat<double, 3> R = state.orientation.matrix();
     states_.back().angular_momentum = rotated(R, body.inertia * rotated_back(R, spin));
     moving_ += !body.fixed;
@@ -139,7 +152,8 @@ void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
     const std::vector<RigidBodyState<D>> states = std::move(states_);
     columns.expect_fit_of(states.size());
     shapes = columns.shapes();
-    bodies_.clear(), states_.clear(), contact_force_.clear(), contact_torque_.clear(), moving_ = 0;
+    bodies_.clear(), states_.clear(), moving_ = 0;
+    contact_force_.clear(), contact_torque_.clear(), mean_contact_force_.clear();
     for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});
     states_ = states;
 }
@@ -234,6 +248,7 @@ void RigidBodies<D>::kick(double half_dt) {
         if (!is_free(k)) continue;
         RigidBodyState<D>& state = states_[k];
         state.velocity = state.velocity + (half_dt / bodies_[k].mass) * state.flow_force;
+        state.flow_impulse = state.flow_impulse + half_dt * state.flow_force;
         state.angular_momentum = state.angular_momentum + half_dt * state.flow_torque;
     }
 }
@@ -241,8 +256,11 @@ void RigidBodies<D>::kick(double half_dt) {
 template <int D>
 void RigidBodies<D>::begin_step() {
     spin_before_ = spins(0.0);
-    velocity_before_.resize(size());
-    for (std::size_t k = 0; k < size(); ++k) velocity_before_[k] = states_[k].velocity;
+    velocity_before_.resize(size()), impulse_before_.resize(size());
+    for (std::size_t k = 0; k < size(); ++k) {
+        velocity_before_[k] = states_[k].velocity;
+        impulse_before_[k] = states_[k].contact_impulse;
+    }
 }
 
 template <int D>
@@ -263,8 +281,9 @@ double RigidBodies<D>::drift(double dt) {
 template <int D>
 void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
     for (std::size_t k = 0; k < size(); ++k) {
-        if (!is_free(k)) continue;
         RigidBodyState<D>& state = states_[k];
+        state.contact_impulse = state.contact_impulse + dt * contact_force_[k];
+        if (!is_free(k)) continue;
         state.velocity =
             state.velocity + dt * (gravity + (1.0 / bodies_[k].mass) * contact_force_[k]);
         state.angular_momentum = state.angular_momentum + dt * contact_torque_[k];
@@ -274,8 +293,9 @@ void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
 template <int D>
 void RigidBodies<D>::end_step(double dt, double memory) {
     for (std::size_t k = 0; k < size(); ++k) {
-        if (!is_free(k)) continue;
         RigidBodyState<D>& state = states_[k];
+        mean_contact_force_[k] = (1.0 / dt) * (state.contact_impulse - impulse_before_[k]);
+        if (!is_free(k)) continue;
         const Vec<double, D> mean = (1.0 / dt) * (state.velocity - velocity_before_[k]) +
                                     (1.0 / bodies_[k].mass) * state.flow_force;
         const double share = std::min(1.0, dt / memory);

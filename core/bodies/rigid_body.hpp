@@ -27,7 +27,8 @@ struct RigidBodyState {
     Vec3 spin_rate;
     Vec<double, D> flow_force;  // of the fluid
     Vec3 flow_torque;
-    double removed;  // 1: gone
+    Vec<double, D> flow_impulse, contact_impulse;  // since the start
+    double removed;                                // 1: gone
 
     bool is_removed() const { return removed != 0.0; }
 };
@@ -36,7 +37,7 @@ struct RigidBodyState {
 template <int D>
 struct RigidBodyPoint {
     double body;
-    Vec<double, D> offset, normal;
+    Vec<double, D> offset, normal, area;
 
     std::size_t index() const { return static_cast<std::size_t>(body); }
 };

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "bodies/nearest_image.hpp"
 #include "bodies/rigid_bodies.hpp"
+#include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
 
@@ -26,7 +26,7 @@ public:
         points_.push_back(
             {static_cast<double>(k),
              rotated_back(R, nearest_image(domain, particles.position[p] - state.centre)),
-             rotated_back(R, particles.wall.normal[p])});
+             rotated_back(R, particles.wall.normal[p]), rotated_back(R, particles.wall.area[p])});
     }
     bool has(const Particles<D>& particles, std::size_t p) const {
         return particles.is_point_of(p, BodyKind::rigid);
@@ -99,6 +99,7 @@ double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& b
             nearest_image(domain, state.centre + lever - particles.position[p]);
         particles.position[p] = particles.position[p] + step;
         particles.wall.normal[p] = rotated(R[k], point.normal);
+        particles.wall.area[p] = rotated(R[k], point.area);
         particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
                                     turning_velocity(w[k], turning_velocity(w[k], lever));
         return dot(step, step);

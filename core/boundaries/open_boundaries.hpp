@@ -61,6 +61,13 @@ struct Inflow {
         if constexpr (Archive::loading) expect_fit(released >= 0, "inflow_released");
     }
 
+    /// Stands where it would at time t had it been there from the start; before it has opened.
+    void begin_at(double t) {
+        const double until = min(t, speed.stop());
+        while (advance(released, until) >= 0.0) ++released;
+        open = closed = t >= speed.stop();
+    }
+
     /// Distance of layer k beyond the section at time t (< 0: still in the buffer).
     double advance(std::int64_t k, double t) const {
         return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
@@ -78,9 +85,26 @@ struct Outflow {
     }
 };
 
-/// Account of mass [kg], 2-D: [kg/m].
+/// What came in or went out: mass [kg], momentum [kg m/s], kinetic energy [J]; 2-D: per metre. What
+/// compression stores is smaller by the square of the Mach number and is left out.
+template <int D>
+struct Passed {
+    double mass = 0.0;
+    Vec<double, D> momentum{};
+    double energy = 0.0;
+
+    void add(const Particles<D>& particles, std::size_t p) {
+        const double m = particles.mass[p];
+        const Vec<double, D>& v = particles.velocity[p];
+        mass += m, momentum = momentum + m * v, energy += 0.5 * m * dot(v, v);
+    }
+};
+
+/// Account of what passes open boundaries; masses [kg], 2-D: [kg/m].
+template <int D>
 struct Ledger {
-    double initial = 0.0, requested = 0.0, inflow = 0.0, outflow = 0.0;
+    double initial = 0.0, requested = 0.0;
+    Passed<D> inflow, outflow;
 };
 
 /// Everything that adds or removes particles, with its account.
@@ -89,7 +113,7 @@ class OpenBoundaries {
 public:
     std::vector<Inflow<D>> inflows;
     std::vector<Outflow<D>> outflows;
-    Ledger ledger;  // of the particles of this rank
+    Ledger<D> ledger;  // of the particles of this rank
     std::int64_t next_id = 0;
     bool adds = true;  // on one rank only; from there particles go to their owners
 
@@ -97,6 +121,16 @@ public:
         double next = std::numeric_limits<double>::infinity();
         for (const Inflow<D>& inflow : inflows) next = min(next, inflow.next_event());
         return next;
+    }
+
+    /// Goes on from time t in place of the start: what inflows have brought by then is taken for
+    /// entered, and not for what was there initially.
+    void begin_at(double t) {
+        for (Inflow<D>& inflow : inflows) {
+            inflow.begin_at(t);
+            ledger.inflow.mass += inflow.mass_per_layer() * static_cast<double>(inflow.released);
+        }
+        ledger.initial = -ledger.inflow.mass;
     }
 
     /// Carries out all events up to time t; true if particles came or changed their motion, so that
@@ -119,7 +153,7 @@ public:
     }
 
     /// Marks in `removed` the free particles inside an outflow, and what `remove_bodies(outflow,
-    /// removed)` marks there, which returns its mass.
+    /// removed)` marks there.
     template <class RemoveBodies>
     void remove_outflow(const Particles<D>& particles, const RemoveBodies& remove_bodies);
 
@@ -142,7 +176,7 @@ template <int D>
 template <class Archive>
 void OpenBoundaries<D>::serialise(Archive& archive) {
     archive("mass_initial", ledger.initial), archive("mass_asked", ledger.requested);
-    archive("mass_entered", ledger.inflow), archive("mass_left", ledger.outflow);
+    archive("entered", ledger.inflow), archive("left", ledger.outflow);
     archive("next_id", next_id);
     for (std::size_t k = 0; k < inflows.size(); ++k)
         archive.nested(std::to_string(k) + "_", inflows[k]);
@@ -201,7 +235,7 @@ void OpenBoundaries<D>::release(State& particles, Inflow<D>& inflow, double t) {
         // Half the way to the next layer at most: a layer is set free as a whole.
         if (beyond >= -(inflow.jitter + 1e-9) * inflow.spacing) {
             tag.motion = Motion::free;
-            ledger.inflow += particles.mass[p];
+            ledger.inflow.add(particles, p);
         }
     }
 }
@@ -216,7 +250,7 @@ bool OpenBoundaries<D>::inject(State& particles, double t) {
         if (!inflow.open) {
             inflow.open = true;
             for (std::int64_t k = 0; k < inflow.buffer_layers; ++k)
-                add_layer(particles, inflow, k, t);
+                add_layer(particles, inflow, inflow.released + k, t);
         }
         release(particles, inflow, min(t, inflow.speed.stop()));
         if (t >= inflow.speed.stop()) {
@@ -238,13 +272,12 @@ template <class RemoveBodies>
 void OpenBoundaries<D>::remove_outflow(const Particles<D>& particles,
                                        const RemoveBodies& remove_bodies) {
     removed.resize(particles.size(), 0);
-    for (const Outflow<D>& outflow : outflows) ledger.outflow += remove_bodies(outflow, removed);
-    for (std::size_t p = 0; p < particles.size(); ++p)
+    for (const Outflow<D>& outflow : outflows) remove_bodies(outflow, removed);
+    for (std::size_t p = 0; p < particles.size(); ++p) {
         for (const Outflow<D>& outflow : outflows)
-            if (!removed[p] && particles.is_free(p) && outflow.contains(particles.position[p])) {
-                removed[p] = 1;
-                ledger.outflow += particles.mass[p];
-            }
+            if (particles.is_free(p) && outflow.contains(particles.position[p])) removed[p] = 1;
+        if (removed[p] && particles.is_counted(p)) ledger.outflow.add(particles, p);
+    }
 }
 
 }  // namespace doseki

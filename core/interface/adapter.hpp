@@ -39,6 +39,9 @@ public:
     void set_walls(const NamedValues& columns) override {
         ParticleTables<D>::set_walls(sim_.particles, columns);
     }
+    void set_faces(const NamedValues& columns) override {
+        ParticleTables<D>::set_faces(sim_.particles, columns);
+    }
     void add_shapes(const std::vector<NamedValues>& shapes) override {
         for (const NamedValues& shape : shapes)
             sim_.bodies.rigid.shapes.push_back(BodyTables<D>::shape(shape));
@@ -61,6 +64,13 @@ public:
     void move_body(const NamedValues& motion) override {
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
+    void set_stresses(const NamedValues& columns) override {
+        if constexpr (requires { sim_.particles.deviatoric_stress; })
+            if (sim_.particles.has_strength)
+                sim_.particles.deviatoric_stress =
+                    ParticleTables<D>::deviators(columns, sim_.particles.size());
+    }
+    void begin_at(double time) override { sim_.begin_at(time); }
     void join(std::unique_ptr<Exchange> exchange) override {
         exchange_ = std::move(exchange);
         sim_.join(*exchange_);
@@ -118,14 +128,22 @@ public:
 
     NamedValues totals() const override {
         const auto sum = sim_.totals();
-        const Ledger& ledger = sim_.open_boundaries.ledger;
+        const Ledger<D>& ledger = sim_.open_boundaries.ledger;
         NamedValues table;
         table["mass"] = sum.mass;
-        table["momentum"] = List(sum.momentum.component.begin(), sum.momentum.component.end());
+        table["momentum"] = list_of(sum.momentum);
         table["kinetic_energy"] = sum.kinetic_energy, table["bulk_energy"] = sum.bulk_energy;
         table["shear_energy"] = sum.shear_energy, table["av_dissipation"] = sim_.dissipation();
         table["mass_initial"] = ledger.initial, table["mass_asked"] = ledger.requested;
-        table["mass_entered"] = ledger.inflow, table["mass_left"] = ledger.outflow;
+        table["mass_entered"] = ledger.inflow.mass, table["mass_left"] = ledger.outflow.mass;
+        table["momentum_entered"] = list_of(ledger.inflow.momentum);
+        table["momentum_left"] = list_of(ledger.outflow.momentum);
+        table["energy_entered"] = ledger.inflow.energy;
+        table["energy_left"] = ledger.outflow.energy;
+        const Account<D>& account = sim_.account();
+        table["impulse"] = list_of(account.impulse);
+        table["gravity_work"] = account.gravity_work, table["wall_work"] = account.wall_work;
+        table["contact_work"] = account.contact_work, table["scheme_work"] = account.scheme_work;
         table["count"] = List(sum.count.begin(), sum.count.end());
         return table;
     }
@@ -240,6 +258,10 @@ public:
     }
 
 private:
+    static List list_of(const Vec<double, D>& v) {
+        return List(v.component.begin(), v.component.end());
+    }
+
     PointStates<D> states() const {
         return [this](std::size_t p) -> PointState<D> {
             return {sim_.scheme().equation_of_state(sim_.particles, p),

@@ -30,6 +30,9 @@ public:
     virtual void add_particles(const NamedValues& columns) = 0;
     /// Normals and depths of walls, for all particles in the order of adding.
     virtual void set_walls(const NamedValues& columns) = 0;
+    /// Faces between which fluid stands though no particle fits, for all particles; after
+    /// set_walls and before bind_points.
+    virtual void set_faces(const NamedValues& columns) = 0;
     /// Balls {radius}, or convex shapes {vertices, faces, samples}, which bodies name by index.
     virtual void add_shapes(const std::vector<NamedValues>& shapes) = 0;
     virtual void add_rigid_bodies(const NamedValues& columns) = 0;
@@ -41,6 +44,10 @@ public:
     virtual void add_inflow(const NamedValues& inflow) = 0;
     virtual void add_outflow(const std::vector<double>& low, const std::vector<double>& high) = 0;
     virtual void move_body(const NamedValues& motion) = 0;
+    /// Deviatoric stresses of all particles in the order of adding, where the scheme evolves them.
+    virtual void set_stresses(const NamedValues& columns) = 0;
+    /// Sets the clock [s] of a run that goes on from another one; after the inflows.
+    virtual void begin_at(double time) = 0;
     /// Makes this one of several ranks.
     virtual void join(std::unique_ptr<Exchange> exchange) = 0;
 

@@ -33,15 +33,11 @@ struct Numbers<BodyKind> {
     using type = std::uint8_t;
     static constexpr std::size_t count = 1;
 };
-template <int D>
-struct Numbers<RigidBodyPoint<D>> {
+/// Structs of doubles alone.
+template <template <int> class Row, int D>
+struct Numbers<Row<D>> {
     using type = double;
-    static constexpr std::size_t count = sizeof(RigidBodyPoint<D>) / sizeof(double);
-};
-template <int D>
-struct Numbers<RigidBodyState<D>> {
-    using type = double;
-    static constexpr std::size_t count = sizeof(RigidBodyState<D>) / sizeof(double);
+    static constexpr std::size_t count = sizeof(Row<D>) / sizeof(double);
 };
 
 /// Tags as one vector for each member: a Tag has padding, which is not state.
@@ -66,7 +62,9 @@ public:
 
     template <class T>
     void operator()(const char* name, const T& value) {
-        add(name, &value, 1, 1);
+        using Number = typename Numbers<T>::type;
+        static_assert(sizeof(T) == Numbers<T>::count * sizeof(Number), "padding is not state");
+        add(name, reinterpret_cast<const Number*>(&value), 1, Numbers<T>::count);
     }
 
     template <class T>

@@ -21,6 +21,21 @@ void read_facets(ColumnReader& column, Shape<D>& shape) {
     }
 }
 
+template <int D>
+std::vector<SurfaceVertex<D>> surface_of(const NamedValues& table,
+                                         const std::vector<Vec<double, D>>& rest) {
+    ColumnReader column(table, "surface of an elastic body");
+    const auto place = column.vectors<D>("vertex");
+    const auto carrier = column.numbers<std::int32_t>("carrier");
+    const auto crease = column.numbers<std::uint8_t>("crease");
+    std::vector<SurfaceVertex<D>> vertices;
+    for (std::size_t v = 0; v < place.size(); ++v) {
+        const Vec<double, D> point = rest.at(static_cast<std::size_t>(carrier[v]));
+        vertices.push_back({static_cast<std::uint32_t>(carrier[v]), place[v] - point, crease[v]});
+    }
+    return vertices;
+}
+
 }  // namespace
 
 DeformableBody read_elastic_body(const NamedValues& table, const std::vector<const char*>& others) {
@@ -93,16 +108,17 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const std::vector<const char*> own{"material", "particles", "rest",   "position",
-                                       "velocity", "clamped",   "surface"};
+    const std::vector<const char*> own{"material", "particles", "rest",    "position", "velocity",
+                                       "clamped",  "vertex",    "carrier", "crease"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
     Reader(table, "elastic body")("material", material);
     ColumnReader column(table, "elastic body");
     const auto members = column.numbers<std::int32_t>("particles");
-    const auto surface = column.numbers<std::uint8_t>("surface");
-    bodies.deformable.add(particles, body, material, members, solid_points<D>(column), surface);
+    const SolidPoints<D> points = solid_points<D>(column);
+    bodies.deformable.add(particles, body, material, members, points,
+                          surface_of<D>(table, points.rest));
 }
 
 template <int D>
@@ -110,7 +126,8 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
     const RigidBodies<D>& rigid = bodies.rigid;
     const std::size_t n = rigid.size();
     NewArray<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}),
-        flow_force({n, D}), contact_force({n, D}), mass({n}), radius({n}), overlap({n});
+        flow_force({n, D}), contact_force({n, D}), flow_impulse({n, D}), contact_impulse({n, D}),
+        mass({n}), radius({n}), overlap({n});
     NewArray<std::int32_t> contacts({n}), named({n}), material({n});
     NewArray<bool> fixed({n}), removed({n});
     auto put = [](NewArray<double>& array, std::size_t k, const auto& vector) {
@@ -124,6 +141,7 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
         put(spin, k, rigid.spin(k));
         put(orientation, k, Vec<double, 4>{{q.w, q.x, q.y, q.z}});
         put(flow_force, k, state.flow_force), put(contact_force, k, rigid.contact_force(k));
+        put(flow_impulse, k, state.flow_impulse), put(contact_impulse, k, state.contact_impulse);
         mass[k] = body.mass, radius[k] = rigid.shape(k).radius;
         named[k] = body.group, material[k] = body.material, fixed[k] = body.fixed;
         removed[k] = state.is_removed();
@@ -139,6 +157,7 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
     NamedValues table;
     table["centre"] = centre, table["velocity"] = velocity, table["spin"] = spin;
     table["orientation"] = orientation, table["flow_force"] = flow_force;
+    table["flow_impulse"] = flow_impulse, table["contact_impulse"] = contact_impulse;
     table["contact_force"] = contact_force, table["mass"] = mass, table["radius"] = radius;
     table["contacts"] = contacts, table["overlap"] = overlap, table["body"] = named;
     table["material"] = material, table["fixed"] = fixed, table["removed"] = removed;

@@ -28,8 +28,9 @@ struct BodyTables {
     static void add_rigid(Bodies<D>& bodies, const NamedValues& columns);
     /// `body`: index of its rigid body for each particle, or -1.
     static void bind(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& columns);
-    /// The parameters of read_elastic_body, its `material` and, for each of its `particles`, the
-    /// columns of solid_points, places not wrapped, and whether it is on the `surface`.
+    /// The parameters of read_elastic_body, its `material`, for each of its `particles` the columns
+    /// of solid_points, places not wrapped, and of its surface each `vertex` at rest, the number of
+    /// the particle that is its `carrier` and whether it is a `crease`.
     static void add_elastic(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& table);
 
     /// The rigid bodies, in the order in which they were added.

@@ -17,6 +17,8 @@ Material read_material(const NamedValues& table, const std::string& place) {
     MaterialLaws laws{};
     read.law("eos", laws.eos), read.law("rheology", laws.rheology);
     m.laws = std::make_shared<const MaterialLaws>(laws);
+    read("cavitation_pressure", m.cavitation_pressure);
+    read("air_entry_suction", m.air_entry_suction);
     read("shear_modulus", m.shear_modulus), read("yield_strength", m.yield_strength);
     read("cohesion", m.cohesion), read("friction_angle", m.friction_angle);
     m.friction_angle *= std::numbers::pi / 180.0;

@@ -68,6 +68,21 @@ void ParticleTables<D>::set_walls(Particles<D>& particles, const NamedValues& co
 }
 
 template <int D>
+void ParticleTables<D>::set_faces(Particles<D>& particles, const NamedValues& columns) {
+    ColumnReader column(columns, "faces");
+    const auto face = column.numbers<std::int32_t>("face");
+    const auto area = column.vectors<D>("area");
+    const auto rows = column.numbers<double>("rows");
+    column.finish();
+    if (column.rows() != particles.size())
+        throw std::invalid_argument("faces: one row for each particle");
+    if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
+    particles.wall.face.assign(face.begin(), face.end());
+    particles.wall.area = area;
+    particles.wall.rows.assign(rows.begin(), rows.end());
+}
+
+template <int D>
 std::vector<std::size_t> ParticleTables<D>::id_order(const Particles<D>& particles) {
     std::vector<std::size_t> order(particles.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -171,6 +186,23 @@ Value ParticleTables<D>::stresses(const std::vector<std::size_t>& order,
     for (std::size_t k = 0; k < order.size(); ++k)
         fill_stress(column.data() + 9 * k, 0.0, deviator(order[k]));
     return column;
+}
+
+template <int D>
+std::vector<Deviator<double, D>> ParticleTables<D>::deviators(const NamedValues& columns,
+                                                              std::size_t count) {
+    ColumnReader column(columns, "stresses");
+    const auto numbers = column.numbers<double>("deviatoric_stress", 9);
+    column.finish();
+    if (column.rows() != count) throw std::invalid_argument("stresses: one row for each particle");
+    std::vector<Deviator<double, D>> rows(count);
+    for (std::size_t k = 0; k < count; ++k)
+        for (int a = 0; a < D; ++a)
+            for (int b = a; b < D; ++b)
+                if (a < 2)  // zz follows from the others
+                    rows[k].element[static_cast<std::size_t>(Deviator<double, D>::index(a, b))] =
+                        numbers[9 * k + static_cast<std::size_t>(3 * a + b)];
+    return rows;
 }
 
 template struct ParticleTables<2>;

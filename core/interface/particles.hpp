@@ -26,6 +26,7 @@ struct ParticleTables {
     /// Sets the particles from `first` on; returns the number after the largest id among them.
     static std::int64_t set(Particles<D>& particles, std::size_t first, const NamedValues& columns);
     static void set_walls(Particles<D>& particles, const NamedValues& columns);
+    static void set_faces(Particles<D>& particles, const NamedValues& columns);
 
     /// Indices of the particles in the order of their ids.
     static std::vector<std::size_t> id_order(const Particles<D>& particles);
@@ -48,6 +49,10 @@ struct ParticleTables {
     /// Stresses, all nine components of each.
     static Value stresses(const std::vector<std::size_t>& order,
                           const std::function<Deviator<double, D>(std::size_t)>& deviator);
+
+    /// The deviators of `count` particles from a column `deviatoric_stress` of nine components.
+    static std::vector<Deviator<double, D>> deviators(const NamedValues& columns,
+                                                      std::size_t count);
 
     /// All nine components of S - p I.
     static void fill_stress(double* out, double p, const Deviator<double, D>& S) {

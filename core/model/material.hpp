@@ -18,6 +18,8 @@ struct Material {
     double c0;    // [m/s]
     /// Apart, so that only what evaluates a law is compiled anew when one changes.
     std::shared_ptr<const MaterialLaws> laws;
+    double cavitation_pressure;  // of fluids: gauge pressure at which they tear [Pa]
+    double air_entry_suction;    // of fluids: suction that pores hold until air enters [Pa]
     // Of solids; no yield strength, cohesion or friction angle: never yields.
     double shear_modulus;   // [Pa]; 0 = no strength
     double yield_strength;  // von Mises [Pa]

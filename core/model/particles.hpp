@@ -28,6 +28,12 @@ struct Tag {
 template <class T>
 using Field = std::vector<T>;
 
+/// Numbers of the faces of walls. Those of a body share one: fluid films lie between two that
+/// differ.
+struct Face {
+    static constexpr std::int32_t none = 0, fixed = 1, first_body = 2;
+};
+
 /// What wall particles have: those of fixed bodies and the points of bodies that move.
 template <int D>
 struct WallState {
@@ -36,6 +42,12 @@ struct WallState {
     Field<double> depth;           // below the surface of the wall [m]
     Field<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]
     Field<double> pressure;        // of the fluid at its place [Pa]
+    // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
+    Field<std::int32_t> face;             // none, of a fixed body, or of rigid body `face - first`
+    Field<Vec<double, D>> area;           // of a body that moves, outwards [m^2], 2-D: [m]
+    Field<double> rows;                   // pressure force on all its rows over that on this one
+    Field<double> film_density;           // of the fluid that presses on it [kg/m^3]; 0: dry
+    Field<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
     // Of bound particles:
     Field<BodyKind> body_kind;
     Field<std::int32_t> point;  // index among the points of bodies of that kind
@@ -45,6 +57,8 @@ struct WallState {
         if (!in_use) return;
         f("normal", normal), f("wall_depth", depth);
         f("wall_force", force), f("wall_pressure", pressure);
+        f("face", face), f("face_area", area), f("face_rows", rows);
+        f("film_density", film_density), f("film_traction", film_traction);
         f("body_kind", body_kind), f("point", point);
     }
 };

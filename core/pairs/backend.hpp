@@ -31,13 +31,11 @@ struct PairsToSum {
 };
 
 template <class B, int D>
-concept SortsAndLists =
-    requires(typename B::template Lists<D> lists, ParticlesToSort<D> particles, double skin) {
-        {
-            B::sort(lists, particles)
-        } -> std::same_as<std::vector<std::uint32_t>>;  // order of storage
-        B::build_lists(lists, particles.position, particles.support, skin);
-    };
+concept SortsAndLists = requires(typename B::template Lists<D> lists, ParticlesToSort<D> particles,
+                                 double skin, std::span<const std::int32_t> faces) {
+    { B::sort(lists, particles) } -> std::same_as<std::vector<std::uint32_t>>;  // order of storage
+    B::build_lists(lists, particles.position, particles.support, skin, faces);
+};
 
 template <class B, int D>
 concept SumsPairs = requires(const typename B::template Lists<D>& lists,

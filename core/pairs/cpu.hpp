@@ -21,8 +21,9 @@ struct Cpu {
 
     template <int D>
     static void build_lists(Lists<D>& lists, std::span<const Vec<double, D>> position,
-                            std::span<const double> support, double skin) {
-        lists.build(width, position, support, skin);
+                            std::span<const double> support, double skin,
+                            std::span<const std::int32_t> faces) {
+        lists.build(width, position, support, skin, faces);
     }
 
     /// Sums a term over pairs and calls epilogue(p, sums) for each particle of the clusters.

@@ -27,7 +27,8 @@ struct ListEntry {
 ///  - every pair with |x_i - x_j| < max(R_i, R_j) + skin at the time of the build is listed for i,
 ///  in
 ///    the list of i's cluster; nothing is ever truncated;
-///  - fixed-fixed pairs are not listed: neither moves, so every sum over them vanishes;
+///  - fixed-fixed pairs are listed only where both have a face and these differ: no sum is taken
+///    over others;
 ///  - the content of a list does not depend on the number of threads.
 /// Cells wrap around a power-of-two table, so a particle far away costs nothing and loses nothing:
 /// cells that share a table entry only add candidates, which the distance test removes.
@@ -51,8 +52,9 @@ public:
 
     /// Lists of all clusters of `width` particles, for positions already stored in sorted order,
     /// those of ghosts at the end.
+    /// `faces`: of each particle, 0 for none; empty where none has one.
     void build(int width, std::span<const Vec<double, D>> position, std::span<const double> support,
-               double skin);
+               double skin, std::span<const std::int32_t> faces = {});
 
     std::span<const ClusterList> clusters() const { return clusters_; }
     const Vec<double, D>& image_shift(std::uint32_t entry) const {
@@ -127,6 +129,7 @@ private:
     /// What a thread needs while it searches.
     struct Scratch {
         std::vector<std::uint32_t> list;
+        std::span<const std::int32_t> faces;  // that must differ; empty: all pairs are listed
         std::vector<Part> parts;
         std::array<std::vector<CellStep>, D> steps;
     };

@@ -52,6 +52,12 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
     const auto reach =
         Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
 
+    auto meets = [&](int lane, std::uint32_t j) {
+        const std::int32_t own = scratch.faces[std::min<std::uint32_t>(
+                               first + static_cast<std::uint32_t>(lane), last)],
+                           other = scratch.faces[j];
+        return own != 0 && other != 0 && own != other;
+    };
     auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
         const Vec<double, D>& shift = image_shift_[image];
         const std::uint32_t code = image << ListEntry::index_bits;
@@ -64,8 +70,12 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
             Lanes limit = support[j];
             stdx::where(limit < reach, limit) = reach;
             limit += skin;
-            const auto near = square < limit * limit;
+            auto near = square < limit * limit;
             if (stdx::none_of(near)) continue;
+            if (!scratch.faces.empty()) {
+                for (int lane = 0; lane < width; ++lane) near[lane] = near[lane] && meets(lane, j);
+                if (stdx::none_of(near)) continue;
+            }
             // Another part finds what is near its particles, too.
             const int lane = stdx::find_first_set(near);
             if (part.first <= lane && lane < part.last) scratch.list.push_back(j | code);
@@ -101,7 +111,8 @@ void Neighbours<D>::search_cells(int width, const Grid& grid, const Part& part, 
 
 template <int D>
 void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
-                          std::span<const double> support, double skin) {
+                          std::span<const double> support, double skin,
+                          std::span<const std::int32_t> faces) {
     const auto in_cluster = static_cast<std::size_t>(width);
     const std::size_t n = size_, count = (n + in_cluster - 1) / in_cluster;
     clusters_.assign(count, {});
@@ -123,7 +134,17 @@ void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
         scratch.list.clear();
         search_grids(false);
         const std::size_t moving = scratch.list.size();
-        if (first < moving_) search_grids(true);
+        const std::size_t end = std::min(n, first + in_cluster);
+        const bool any_face = std::any_of(faces.begin() + std::min(first, faces.size()),
+                                          faces.begin() + std::min(end, faces.size()),
+                                          [](std::int32_t face) { return face != 0; });
+        if (first < moving_)
+            search_grids(true);
+        else if (any_face) {
+            scratch.faces = faces;
+            search_grids(true);
+            scratch.faces = {};
+        }
         clusters_[c] = storage_[thread].keep(scratch.list, moving);
     });
 }

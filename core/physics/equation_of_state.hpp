@@ -28,6 +28,17 @@ DOSEKI_FN ThermodynamicState<T> thermodynamic_state(const EquationOfState<T>& eo
     return with_value(eos, [&](const auto& law) { return law.at(rho); });
 }
 
+/// Density at which a law that rises with it has this pressure; `low` or `high` where that lies
+/// beyond them.
+inline double density_of(const EquationOfState<double>& eos, double pressure, double low,
+                         double high) {
+    while (high - low > 1e-14 * high) {
+        const double middle = 0.5 * (low + high);
+        (thermodynamic_state(eos, middle).pressure < pressure ? low : high) = middle;
+    }
+    return high;
+}
+
 template <class T>
 DOSEKI_FN T pressure(const EquationOfState<T>& eos, const T& rho) {
     return with_value(eos, [&](const auto& law) { return law.at(rho).pressure; });

@@ -15,8 +15,9 @@ DOSEKI_FN T approach_pressure(const T& dU, const T& rho, const T& c) {
 }
 
 /// The part of the solver's velocity U* that comes from pressures, twice over: (p_i - p_j)/(rho c).
-/// It spreads density. The mean pressure gradient is taken out first, as in delta-SPH (Antuono et
-/// al., Comput. Phys. Commun. 181, 2010), so that water at rest stays at rest.
+/// It spreads density; half of it damps the same noise and leaves the timestep a margin (Eq. 31).
+/// The mean pressure gradient is taken out first, as in delta-SPH (Antuono et al., Comput. Phys.
+/// Commun. 181, 2010), so that water at rest stays at rest.
 template <class T, int D>
 DOSEKI_FN T pressure_jump(const T& p_i, const T& p_j, const Vec<T, D>& gradient_i,
                           const Vec<T, D>& gradient_j, const Vec<T, D>& r_ij) {

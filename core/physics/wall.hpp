@@ -32,4 +32,23 @@ inline double bed_friction(double rho, double z, double ks) {
     return rho * root * root;
 }
 
+/// Sum of V W over a plane lattice of spacing dp at this distance.
+template <class Kernel, int D>
+double weight_of_row(double dp, double support, double distance) {
+    const int reach = static_cast<int>(support / dp) + 1;
+    double weight = 0.0;
+    for (int x = -reach; x <= reach; ++x)
+        for (int y = D == 3 ? -reach : 0; y <= (D == 3 ? reach : 0); ++y)
+            weight += std::pow(dp, D) *
+                      Kernel::value(std::sqrt(distance * distance + dp * dp * (x * x + y * y)),
+                                    1.0 / support);
+    return weight;
+}
+
+/// What a face sees of another one when nothing fits between them any more: a gap of one spacing.
+template <class Kernel, int D>
+double full_cover(double dp, double support) {
+    return weight_of_row<Kernel, D>(dp, support, 2.0 * dp);
+}
+
 }  // namespace doseki

@@ -24,6 +24,7 @@ public:
 
     void add_particles(const nb::kwargs& columns) { core_->add_particles(to_table(columns)); }
     void set_walls(const nb::kwargs& columns) { core_->set_walls(to_table(columns)); }
+    void set_faces(const nb::kwargs& columns) { core_->set_faces(to_table(columns)); }
     void add_shapes(const nb::list& shapes) { core_->add_shapes(to_tables(shapes)); }
     void add_rigid_bodies(const nb::dict& columns) { core_->add_rigid_bodies(to_table(columns)); }
     void bind_points(const nb::object& body) {
@@ -35,6 +36,12 @@ public:
     void add_inflow(const nb::dict& inflow) { core_->add_inflow(to_table(inflow)); }
     void add_outflow(const Corner& low, const Corner& high) { core_->add_outflow(low, high); }
     void move_body(const nb::dict& motion) { core_->move_body(to_table(motion)); }
+    void set_stresses(const nb::object& deviatoric_stress) {
+        NamedValues columns;
+        columns["deviatoric_stress"] = to_value(deviatoric_stress);
+        core_->set_stresses(columns);
+    }
+    void begin_at(double time) { core_->begin_at(time); }
     void join(nb::object transport) {
         core_->join(std::make_unique<PythonExchange>(std::move(transport)));
     }
@@ -98,6 +105,9 @@ void bind_setup(Class& c) {
                      "mass: numpy.ndarray, density: numpy.ndarray, smoothing_length: "
                      "numpy.ndarray, material: numpy.ndarray, body: numpy.ndarray, motion: "
                      "numpy.ndarray, id: numpy.ndarray) -> None"))
+        .def("set_faces", &P::set_faces,
+             nb::sig("def set_faces(self, *, face: numpy.ndarray, area: numpy.ndarray, "
+                     "rows: numpy.ndarray) -> None"))
         .def("set_walls", &P::set_walls,
              nb::sig("def set_walls(self, *, normal: numpy.ndarray, depth: numpy.ndarray) -> None"))
         .def("add_shapes", &P::add_shapes, nb::arg("shapes"),
@@ -114,6 +124,9 @@ void bind_setup(Class& c) {
         .def("add_outflow", &P::add_outflow, nb::arg("low"), nb::arg("high"))
         .def("move_body", &P::move_body, nb::arg("motion"),
              nb::sig("def move_body(self, motion: doseki.solver.protocol.Table) -> None"))
+        .def("set_stresses", &P::set_stresses, nb::arg("deviatoric_stress"),
+             nb::sig("def set_stresses(self, deviatoric_stress: numpy.ndarray) -> None"))
+        .def("begin_at", &P::begin_at, nb::arg("time"))
         .def("join", &P::join, nb::arg("transport"),
              nb::sig("def join(self, transport: object) -> None"));
 }

@@ -46,7 +46,7 @@ auto Halo<D>::peer_of(int rank) -> Peer& {
 template <int D>
 void Halo<D>::find_exports(std::span<const Vec<double, D>> position,
                            std::span<const double> support, std::span<const std::uint8_t> is_fixed,
-                           double skin) {
+                           double skin, bool fixed_meet) {
     peers_.clear();
     exported_.assign(position.size(), 0);
     const std::vector<Bounds> bounds = all_bounds(position, support, is_fixed);
@@ -58,7 +58,7 @@ void Halo<D>::find_exports(std::span<const Vec<double, D>> position,
             continue;
         std::vector<std::uint32_t> exported;
         for (std::size_t p = 0; p < position.size(); ++p) {
-            const Box& box = is_fixed[p] ? theirs.moving : theirs.all;
+            const Box& box = is_fixed[p] && !fixed_meet ? theirs.moving : theirs.all;
             if (!(gap({position[p], position[p]}, box) <
                   std::max(support[p], theirs.support) + skin))
                 continue;

@@ -43,8 +43,8 @@ HaloColumn halo_column(std::vector<Record>& records, Member Record::* member, Ha
 ///  less
 ///    than max(R_j, largest R here) + skin, through images across periodic axes too; so every pair
 ///    that Neighbours lists on one rank is listed on the owner of i;
-///  - fixed ones are measured from the bounds of moving particles, since fixed-fixed pairs are not
-///  listed;
+///  - fixed ones are measured from the bounds of moving particles, where no fixed-fixed pairs
+///  are listed;
 ///  - ghosts have records, never state: nothing but the pair loop sees them;
 ///  - who sends which particles to whom, and in which order, does not change.
 template <int D>
@@ -56,9 +56,9 @@ public:
 
     bool alone() const { return ranks.alone(); }
 
-    /// Finds the particles that other ranks need.
+    /// Finds the particles that other ranks need; `fixed_meet`: fixed ones need fixed ones.
     void find_exports(std::span<const Vec<double, D>> position, std::span<const double> support,
-                      std::span<const std::uint8_t> is_fixed, double skin);
+                      std::span<const std::uint8_t> is_fixed, double skin, bool fixed_meet = false);
     /// 1 for those, until announce(); empty on one rank.
     std::span<const std::uint8_t> exported() const { return exported_; }
 

@@ -2,6 +2,7 @@
 // What the resolved scheme sums over pairs, and what one pair adds: numbers in, numbers out, so
 // that one source serves packs on a processor and one thread for each particle on a device.
 
+#include "model/particles.hpp"
 #include "physics/kernel.hpp"
 #include "physics/riemann.hpp"
 #include "physics/viscosity.hpp"
@@ -26,6 +27,7 @@ struct FluidAccumulators {
     Vec<T, D> traction;  // of rough walls, over V_i
     T density_rate{};    // over rho_i
     T power{};           // that pairs dissipate, over V_i
+    T made_power{};      // that shifting and walls make, over V_i
     Vec<T, D> pressure_gradient, concentration_gradient, surface_gradient;
     Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
     Mat<T, D> velocity_gradient;
@@ -33,13 +35,16 @@ struct FluidAccumulators {
     T concentration{};  // sum of rest volumes times W
     T wall_share{};     // of walls in it
     T max_surface{};    // of the neighbours' free-surface indicators
+    T at_body{};        // 1: one that moves is in reach
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.traction...), f(self.density_rate...), f(self.power...);
+        f(self.made_power...);
         f(self.pressure_gradient...), f(self.concentration_gradient...);
         f(self.surface_gradient...), f(self.corrected_gradient...), f(self.velocity_gradient...);
-        f(self.moment...), f(self.concentration...), f(self.wall_share...), f(self.max_surface...);
+        f(self.moment...), f(self.concentration...), f(self.wall_share...);
+        f(self.max_surface...), f(self.at_body...);
     }
 };
 
@@ -49,11 +54,16 @@ struct WallAccumulators {
     Vec<T, D> force;  // of the fluid, over the wall particle's volume
     T weight{}, height{}, pressure{}, density{};
     Vec<T, D> velocity;
+    Vec<T, D> area;  // that it sees of the fluid, outwards, over the wall particle's volume
+    // Over the faces of other bodies around its own:
+    Vec<T, D> film_force;
+    T cover{}, film_pressure{}, film_density{};
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.weight...), f(self.height...), f(self.pressure...);
-        f(self.density...), f(self.velocity...);
+        f(self.density...), f(self.velocity...), f(self.area...), f(self.film_force...);
+        f(self.cover...), f(self.film_pressure...), f(self.film_density...);
     }
 };
 
@@ -67,7 +77,8 @@ struct WallContact {
     T approach;                               // (v_i - v_w).(-n)
     T r_dot_n, corrected_r_dot_n;
     Vec<T, D> jump;  // v_i - velocity extrapolated to w
-    T power;
+    T power;         // dissipated, over V_i
+    T made;          // by pressure beyond what it does to the density, over V_i
 };
 
 /// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle
@@ -105,8 +116,9 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
     contact.pressure_force = (scale * p) * contact.corrected_r;
     contact.viscous_force = scale * (extra * r_iw - mu_wall * sliding);
-    contact.power =
-        scale * (mu_wall * dot(sliding, v_iw) + extra * contact.approach * contact.r_dot_n);
+    contact.power = scale * (mu_wall * dot(sliding, v_iw) - extra * dot(r_iw, v_iw));
+    contact.made = dot(contact.pressure_force, v_iw) +
+                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return contact;
 }
 
@@ -154,12 +166,15 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
     const T exchange = half * T(constants.exchange) * rho * j.volume * W;
     for (int a = 0; a < D; ++a) {
         sums.force[a] -= VF * (extra * pair.r_ij[a] - mu * viscous[a]);
-        sums.force[a] += exchange * (i.carried[a] - j.carried[a]);
+        const T exchanged = exchange * (i.carried[a] - j.carried[a]);
+        sums.force[a] += exchanged;
+        sums.made_power += exchanged * v_ij[a];
         sums.corrected_gradient[a] += VF * corrected_r[a];
     }
-    sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r);
     const T jump = pressure_jump(i.p, j.p, i.pressure_gradient, j.pressure_gradient, pair.r_ij);
-    sums.density_rate += VF * (dot(v_ij, corrected_r) + jump * pair.r / (rho * c));
+    const T levelled = half * jump * pair.r / (rho * c);
+    sums.density_rate += VF * (dot(v_ij, corrected_r) + levelled);
+    sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r + half * levelled * (i.p - j.p));
     add_gradients(sums, pair.r_ij, VF, i.p - j.p, v_ij);
     const T surface = j.surface - i.surface;
     for (int a = 0; a < D; ++a) sums.surface_gradient[a] += surface * (VF * pair.r_ij[a]);
@@ -183,9 +198,11 @@ DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& cons
         sums.corrected_gradient[a] += VF * contact.corrected_r[a];
     }
     sums.power += contact.power;
+    sums.made_power += contact.made;
     sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
     add_gradients(sums, pair.r_ij, VF, -contact.excess, contact.jump);
     sums.wall_share += w.volume * W;
+    sums.at_body = max(sums.at_body, select(F < T(0), w.bound, T(0)));
 }
 
 /// What a fluid particle j adds to a wall particle w. `pair` points from the fluid particle j
@@ -202,11 +219,33 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     for (int a = 0; a < D; ++a) {
         sums.force[a] -= j.volume * (contact.pressure_force[a] + contact.viscous_force[a]);
         sums.velocity[a] += share * j.v[a];
+        sums.area[a] -= T(2) * j.volume * F * contact.corrected_r[a];
     }
     sums.weight += share;
     sums.density += share * j.rho;
     sums.height += share * (contact.r_dot_n - w.depth);
     sums.pressure += share * (j.p + contact.excess);
+}
+
+/// What a face v of another body adds to a face w: the pressure of the film between them, and their
+/// share in the force of that film, which is the opposite for v.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& gravity,
+                        const T& inverse_support, const Pair<T, D>& pair, const WallPoint<T, D>& w,
+                        const WallPoint<T, D>& v) {
+    const T none = T(Face::none), body = T(Face::first_body);
+    const T apart = select(w.face != v.face && w.face != none && v.face != none, T(1), T(0));
+    const T W = apart * Kernel::value(pair.r, inverse_support), share = v.volume * W;
+    T head = v.pressure;
+    for (int a = 0; a < D; ++a) head += v.film_density * T(gravity[a]) * pair.r_ij[a];
+    sums.cover += share;
+    sums.film_pressure += share * head;
+    sums.film_density += share * v.film_density;
+    // Two bodies that move have the force of one film each.
+    const T both = select(w.face >= body && v.face >= body, number<T>(0.5), T(1));
+    for (int a = 0; a < D; ++a)
+        sums.film_force[a] +=
+            both * (share * w.film_traction[a] - w.volume * W * v.film_traction[a]);
 }
 
 }  // namespace doseki

@@ -125,6 +125,10 @@ void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
     record.depth = state.wall.depth[p];
     record.g_normal = std::max(0.0, dot(state.acceleration[p] - model_->options.gravity, normal));
     record.no_slip = model_->wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
+    record.bound = state.is_bound(p) ? 1.0 : 0.0;
+    record.face = state.wall.face[p], record.pressure = state.wall.pressure[p];
+    record.film_density = state.wall.film_density[p];
+    record.film_traction = state.wall.film_traction[p];
 }
 
 /// Friction between grains takes the mean over the relaxation time of the density: sound that runs
@@ -171,8 +175,8 @@ void Resolved<D, Backend>::sum_walls(State& state, const Lists& lists,
     const std::size_t first = fluid_count_ / Backend::width;
     Backend::sum_pairs(lists,
                        {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},
-                       WallTerm<Kernel, D>{records, model_->constants},
-                       WallEpilogue<D>(*model_, wall_, fluid_count_, state));
+                       WallTerm<Kernel, D>{records, model_->constants, model_->options.gravity},
+                       WallEpilogue<D>(*model_, wall_, fluid_count_, summary_, state));
 }
 
 template <int D, class Backend>
@@ -196,12 +200,12 @@ void Resolved<D, Backend>::reduce_summaries(const Ranks& ranks) {
     // What enters next may be the first fluid there is.
     const Options<D>& options = model_->options;
     timestep_ = options.cflnumber * options.eta * options.flow.dp / model_->constants.c;
-    power_ = 0.0;
+    power_ = 0.0, work_ = {};
     fault_ = {}, limiting_ = -1;
-    for (const FlowSummary& summary : summary_) {
+    for (const FlowSummary<D>& summary : summary_) {
         if (summary.timestep < timestep_)
             timestep_ = summary.timestep, limiting_ = summary.limiting;
-        power_ += summary.power;
+        power_ += summary.power, work_.add(summary.work);
         fault_.merge(summary.fault);
     }
 }

@@ -18,7 +18,7 @@ public:
     using Sums = FluidAccumulators<double, D>;
 
     FluidEpilogue(const ResolvedModel<D>& model, std::span<const FluidRecord<D>> records,
-                  std::size_t fluid_count, std::span<FlowSummary> summaries,
+                  std::size_t fluid_count, std::span<FlowSummary<D>> summaries,
                   ResolvedState<D>& state)
         : model_(model),
           records_(records),
@@ -35,8 +35,12 @@ public:
         state_.correction_excess[p] = correction_excess(p, sums, B);
         state_.shift[p] = {};
         summary(p).fault.note_density(records_[p].rho, rho0(p), p);
+        summary(p).power +=
+            records_[p].volume * (sums.power - dot(sums.traction, state_.velocity[p]));
+        summary(p).work.power += records_[p].volume * sums.made_power;
         if (!state_.is_free(p)) {
             state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
+            push_of_layers(p, sums);
             return;
         }
         const Mat<double, D>& L = state_.velocity_gradient[p];
@@ -44,19 +48,21 @@ public:
         for (double element : L.element) square += element * element;
         const double strain = std::sqrt(square);
 
-        Rates rates = momentum_and_continuity(p, sums);
+        const Rates of_pairs = momentum_and_continuity(p, sums);
+        Rates rates = of_pairs;
         if (model_.options.flow.shifting && indicator.x < FreeSurfaceIndicator::surface)
             shift(p, sums, strain, rates);
         relax_density(p, indicator.normalised_density, strain, rates);
+        bound_tension(p, sums.at_body > 0.0, rates);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
-        summary(p).power += records_[p].volume * sums.power;
+        summary(p).work.power += power_of_corrections(p, rates.density - of_pairs.density);
         limit_timestep(p);
     }
 
 private:
-    /// Of rho0: what tears apart leaves a void, not water under tension.
-    static constexpr double min_density = 0.98;
+    /// Time [h/c] in which water that comes to a body under tension gives it up.
+    static constexpr double tension_release = 10.0;
     /// Cap on the shifting velocity over the sound speed, half of the fastest flow; it diverges in
     /// a closing gap.
     static constexpr double max_shift = 0.05;
@@ -67,7 +73,7 @@ private:
     };
 
     double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
-    FlowSummary& summary(std::size_t p) const {
+    FlowSummary<D>& summary(std::size_t p) const {
         return summaries_[p / static_cast<std::size_t>(lanes<double>)];
     }
 
@@ -110,13 +116,32 @@ private:
             model_.options.flow.wide_kernel);
     }
 
+    /// Over the particle's volume.
+    Vec<double, D> force_of_pairs(std::size_t p, const Sums& sums) const {
+        return pressure_force(sums, records_[p]) + 2.0 * sums.force + sums.traction;
+    }
+
     Rates momentum_and_continuity(std::size_t p, const Sums& sums) const {
         const double rho = records_[p].rho, B = model_.options.attraction;
-        Vec<double, D> a =
-            (1.0 / rho) * (pressure_force(sums, records_[p]) + 2.0 * sums.force + sums.traction) +
-            model_.options.gravity;
+        Vec<double, D> a = (1.0 / rho) * force_of_pairs(p, sums) + model_.options.gravity;
         a = a - B * B * state_.position[p];
         return {a, rho * sums.density_rate};
+    }
+
+    /// What shifting and the relaxation of density give to energies of compression and height [W].
+    double power_of_corrections(std::size_t p, double density_rate) const {
+        const FluidRecord<D>& record = records_[p];
+        return record.volume * record.p / record.rho * density_rate -
+               state_.mass[p] * dot(model_.options.gravity, state_.shift[p]);
+    }
+
+    /// A driven particle hands on the force and the rate of density that it is kept up against.
+    void push_of_layers(std::size_t p, const Sums& sums) const {
+        const Vec<double, D> force = records_[p].volume * force_of_pairs(p, sums);
+        SchemeWork<D>& work = summary(p).work;
+        work.layer_force = work.layer_force - force;
+        work.layer_power -=
+            dot(force, state_.velocity[p]) + records_[p].volume * records_[p].p * sums.density_rate;
     }
 
     /// Moves the particle relative to the fluid, and its density with it. Pairs see to its
@@ -143,7 +168,15 @@ private:
         const double rate = std::clamp(per_strain * strain, sound / density_relaxation_at_rest,
                                        sound / density_relaxation);
         rates.density += rate * (normalised_density * rho0(p) - rho);
-        if (rho < min_density * rho0(p)) rates.density = std::max(0.0, rates.density);
+    }
+
+    /// Below its least density a fluid does not expand any further.
+    void bound_tension(std::size_t p, bool at_body, Rates& rates) const {
+        const MinDensity& bound = model_.min_density[state_.tag[p].material];
+        const double missing = (at_body ? bound.at_bodies : bound.in_flow) - records_[p].rho;
+        if (missing <= 0.0) return;
+        const double time = tension_release * state_.smoothing_length[p] / model_.constants.c;
+        rates.density = std::max(at_body ? missing / time : 0.0, rates.density);
     }
 
     void limit_timestep(std::size_t p) const {
@@ -152,7 +185,7 @@ private:
             FlowTimestep::of(model_.options, records_[p], state_.smoothing_length[p],
                              std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), model_.constants.c)
                 .smallest();
-        FlowSummary& of_cluster = summary(p);
+        FlowSummary<D>& of_cluster = summary(p);
         if (dt < of_cluster.timestep)
             of_cluster.timestep = dt, of_cluster.limiting = static_cast<std::int64_t>(p);
         of_cluster.fault.note_right_hand_side(dot(a, a) + state_.density_rate[p], p);
@@ -161,7 +194,7 @@ private:
     const ResolvedModel<D>& model_;
     std::span<const FluidRecord<D>> records_;
     std::size_t fluid_count_;
-    std::span<FlowSummary> summaries_;
+    std::span<FlowSummary<D>> summaries_;
     ResolvedState<D>& state_;
 };
 

@@ -72,7 +72,7 @@ struct FluidTerm {
     }
 };
 
-/// What a wall particle sums of the fluid around it.
+/// What a wall particle sums of the fluid and the other faces around it.
 template <class Kernel, int D>
 struct WallTerm {
     using Real = double;
@@ -82,6 +82,7 @@ struct WallTerm {
 
     FlowRecords<D> records;
     FlowConstants constants;
+    Vec<double, D> gravity;
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
@@ -101,10 +102,13 @@ struct WallTerm {
                        const FluidPoint<T, D>& j) const {
         add_fluid_to_wall<Kernel>(sums, constants, T(records.inverse_support), pair, w, j);
     }
-    /// Walls do not act on walls; a cluster that has fluid as well lists some.
+    /// Walls act on walls through the film between two faces alone; a cluster that has fluid as
+    /// well lists others.
     template <class T>
-    DOSEKI_FN void add_fixed(Accumulators<T>&, const Pair<T, D>&, const WallPoint<T, D>&,
-                             const WallPoint<T, D>&) const {}
+    DOSEKI_FN void add_fixed(Accumulators<T>& sums, const Pair<T, D>& pair,
+                             const WallPoint<T, D>& w, const WallPoint<T, D>& v) const {
+        add_face<Kernel>(sums, gravity, T(records.inverse_support), pair, w, v);
+    }
 };
 
 }  // namespace doseki

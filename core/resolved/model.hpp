@@ -19,18 +19,41 @@ namespace doseki {
 /// flow, and the greatest, at rest.
 inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest = 1000.0;
 
+/// Densities below which a fluid expands no further: what tears apart leaves a void, not water
+/// under tension.
+struct MinDensity {
+    /// Of rho0, whatever the fluid could bear: the scheme is one of weak compressibility.
+    static constexpr double of_scheme = 0.98;
+
+    double in_flow;
+    double at_bodies;  // that move: where they part, air comes in or water from the third dimension
+
+    static MinDensity of(const Material& fluid) {
+        auto at = [&fluid](double pressure) {
+            const double rho0 = fluid.rho0;
+            return density_of(fluid.laws->eos, pressure, of_scheme * rho0, rho0);
+        };
+        return {at(fluid.cavitation_pressure),
+                at(std::max(fluid.cavitation_pressure, -fluid.air_entry_suction))};
+    }
+};
+
 template <int D>
 struct ResolvedModel {
     std::vector<Material> materials;
+    std::vector<MinDensity> min_density;  // of each material that is a fluid
     Options<D> options;
     FlowConstants constants{};
     double lattice_concentration = 1.0;
+    double full_cover = 1.0;                       // see physics/wall.hpp
     std::array<double, D + 1> spacing_power{1.0};  // dp^k
 
     ResolvedModel(std::vector<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
         for (const Material& material : materials) {
             if (material.law == Law::fluid) constants.c = std::max(constants.c, material.c0);
+            min_density.push_back(material.law == Law::fluid ? MinDensity::of(material)
+                                                             : MinDensity{});
             constants.harmonic |= has_yield_stress(material.laws->rheology);
         }
         const FlowOptions& flow = options.flow;
@@ -40,6 +63,8 @@ struct ResolvedModel {
         const auto lattice = flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(flow.dp, support)
                                               : lattice_sums<WendlandC2<D>, D>(flow.dp, support);
         lattice_concentration = lattice.concentration;
+        full_cover = flow.wide_kernel ? doseki::full_cover<WendlandC6<D>, D>(flow.dp, support)
+                                      : doseki::full_cover<WendlandC2<D>, D>(flow.dp, support);
         constants.gradient_scale = 1.0 / lattice.moment;
         constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);
         constants.form = flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}

@@ -33,11 +33,16 @@ struct WallFields {
     T depth;     // below the surface of the wall [m]
     T g_normal;  // see wall_excess_pressure
     T no_slip;   // 1: no slip; 0: the wall pass has the friction
+    T bound;     // 1: of a body that moves
+    // Of the film between faces, see WallState:
+    T face, pressure, film_density;
+    Vec<T, D> film_traction;
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.normal...), f(self.traction...), f(self.volume...), f(self.depth...);
-        f(self.g_normal...), f(self.no_slip...);
+        f(self.g_normal...), f(self.no_slip...), f(self.bound...), f(self.face...);
+        f(self.pressure...), f(self.film_density...), f(self.film_traction...);
     }
 };
 

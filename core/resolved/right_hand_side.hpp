@@ -7,6 +7,7 @@
 #include "model/force_terms.hpp"
 #include "model/material.hpp"
 #include "model/options.hpp"
+#include "model/scheme_work.hpp"
 #include "pairs/cpu.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
@@ -60,6 +61,7 @@ public:
     double timestep() const { return timestep_; }
     /// By the viscosity of fluid and scheme, of the particles of this rank [W], 2-D: [W/m].
     double dissipated_power() const { return power_; }
+    SchemeWork<D> work() const { return work_; }
     PhaseTimer& phases() { return phases_; }
     const Fault& fault() const { return fault_; }
     std::int64_t limiting_particle() const { return limiting_; }
@@ -75,13 +77,15 @@ public:
 
     template <class Archive>
     void serialise(Archive& archive) {
-        archive("next_timestep", timestep_), archive("av_power", power_);
+        archive("next_timestep", timestep_), archive("av_power", power_),
+            archive("scheme_work", work_);
     }
 
     std::size_t bytes() const {
         return motion_.capacity() * sizeof(MotionRecord<double, D>) +
                fluid_.capacity() * sizeof(FluidRecord<D>) +
-               wall_.capacity() * sizeof(WallRecord<D>) + summary_.capacity() * sizeof(FlowSummary);
+               wall_.capacity() * sizeof(WallRecord<D>) +
+               summary_.capacity() * sizeof(FlowSummary<D>);
     }
 
 private:
@@ -104,10 +108,11 @@ private:
     Field<MotionRecord<double, D>> motion_;
     Field<FluidRecord<D>> fluid_;
     Field<WallRecord<D>> wall_;  // the first is that of particle fluid_count_
-    Field<FlowSummary> summary_;
+    Field<FlowSummary<D>> summary_;
     PhaseTimer phases_;
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;
+    SchemeWork<D> work_;
     Fault fault_;
     std::int64_t limiting_ = -1;
 };

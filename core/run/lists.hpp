@@ -10,6 +10,7 @@
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "pairs/backend.hpp"
+#include "pairs/list_wear.hpp"
 #include "pairs/skin.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -17,9 +18,9 @@
 
 namespace doseki {
 
-/// The neighbour lists of a run and what keeps them true: the skin, the distance that particles
-/// have gone since the last build, and the ghosts of other ranks. Lists hold as long as no two
-/// particles can have come nearer by more than the skin.
+/// The neighbour lists of a run and what keeps them true: the skin, how far particles have gone
+/// since the last build, and the ghosts of other ranks. Lists hold as long as no two particles can
+/// have come nearer by more than the skin.
 template <class Scheme>
 class RunLists {
 public:
@@ -30,7 +31,7 @@ public:
     static_assert(doseki::Backend<Backend, D>);
 
     RunLists(const Domain<D>& domain, double skin, bool adapts)
-        : given_skin_(skin), adapts_(adapts), lists_(domain), halo_(domain) {}
+        : given_skin_(skin), adapts_(adapts), domain_(domain), lists_(domain), halo_(domain) {}
 
     const Lists& lists() const { return lists_; }
     /// The other ranks and the ghosts that they send.
@@ -40,11 +41,16 @@ public:
     double skin() const { return skin_; }
     double min_support() const { return min_support_; }
     std::int64_t rebuilds() const { return rebuilds_; }
+    std::size_t bytes() const { return lists_.bytes() + wear_.bytes(); }
 
     /// Particles have gone `distance` at most in one more step; true where lists have to be built.
-    bool wear(double distance) {
-        moved_ += distance;
-        return !(2.0 * moved_ < skin_width_);
+    /// On several ranks no one knows how far ghosts have gone, so all count as the farthest.
+    bool wear(const State& state, double distance) {
+        moved_ += distance, approach_ = 2.0 * moved_;
+        if (approach_ < skin_width_) return false;
+        if (!halo_.alone() || !(approach_ < wear_.reach())) return true;
+        approach_ = wear_.approach(state.position);
+        return !(approach_ < skin_width_);
     }
 
     /// Whether lists are new since the last call.
@@ -67,12 +73,20 @@ public:
     void serialise_wear(Archive& archive) {
         archive("rebuilds", rebuilds_), archive("moved", moved_);
         archive("skin_width", skin_width_), archive("skin", skin_);
-        archive("rebuild_step", rebuild_step_);
+        archive("rebuild_step", rebuild_step_), archive("approach", approach_);
     }
     template <class Archive>
     void serialise_lists(Archive& archive, const State& state) {
         lists_.serialise(archive);
         lists_.set_size(state.size());
+        double reach = wear_.reach();
+        std::vector<Vec<double, D>> built(wear_.positions().begin(), wear_.positions().end());
+        archive("lists_reach", reach), archive("lists_position", built);
+        if constexpr (Archive::loading) {
+            expect_fit(built.empty() || built.size() == state.size(), "lists_position");
+            expect_fit(built.empty() || reach > 0.0, "lists_reach");
+            if (!built.empty()) wear_.start(domain_, built, reach);
+        }
     }
 
     /// Throws std::invalid_argument unless the lists are those of particles stored as these are.
@@ -86,18 +100,29 @@ private:
         for (std::size_t p = 0; p < state.size(); ++p) fixed[p] = state.is_wall(p);
         return fixed;
     }
+    /// Whether walls of any rank have faces that may meet.
+    bool has_faces(const State& state) const {
+        const auto& faces = state.wall.face;
+        const bool own = std::any_of(faces.begin(), faces.end(),
+                                     [](std::int32_t face) { return face != Face::none; });
+        return halo_.ranks.largest(own ? 1.0 : 0.0) > 0.0;
+    }
+    std::vector<std::int32_t> faces(const State& state);
     double cheapest_skin(double min_support, std::int64_t steps) const;
     void append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
                        std::vector<double>& support);
 
     double given_skin_;
     bool adapts_;
+    Domain<D> domain_;
     Lists lists_;
+    ListWear<D> wear_;  // of a run on one rank
     Halo<D> halo_;
     double skin_ = 0.0;         // of the smallest support radius
     double skin_width_ = 0.0;   // [m]
     double min_support_ = 0.0;  // [m]
-    double moved_ = 0.0;        // since the lists were built [m]
+    double moved_ = 0.0;        // since the lists were built, by any particle [m]
+    double approach_ = 0.0;     // of any two, at most [m]
     std::int64_t rebuilds_ = 0;
     std::int64_t rebuild_step_ = 0;  // when the lists were built
     bool news_ = false;
@@ -126,7 +151,7 @@ double RunLists<Scheme>::cheapest_skin(double min_support, std::int64_t steps) c
     const std::int64_t lasted = steps - rebuild_step_;
     if (!adapts_ || skin_ == 0.0) return given_skin_;
     if (lasted == 0) return skin_;
-    return CheapestSkin<D>::at(moved_ / (static_cast<double>(lasted) * min_support));
+    return CheapestSkin<D>::at(approach_ / (static_cast<double>(lasted) * min_support));
 }
 
 template <class Scheme>
@@ -142,7 +167,7 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
     skin_width_ = skin_ * min_support_;
     if (!halo_.alone()) {
         const auto timing = halo_.ranks.clock.measure(Share::halo);
-        halo_.find_exports(state.position, support, fixed, skin_width_);
+        halo_.find_exports(state.position, support, fixed, skin_width_, has_faces(state));
     }
     {
         const auto timing = phases.measure(Phase::sort);
@@ -157,9 +182,25 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
     const auto timing = phases.measure(Phase::list_build);
     const std::span<const Vec<double, D>> position =
         halo_.alone() ? std::span<const Vec<double, D>>(state.position) : with_ghosts;
-    Backend::build_lists(lists_, position, std::span<const double>(support), skin_width_);
-    moved_ = 0.0, news_ = true, rebuild_step_ = steps;
+    const std::vector<std::int32_t> faces = this->faces(state);
+    Backend::build_lists(lists_, position, std::span<const double>(support), skin_width_,
+                         std::span<const std::int32_t>(faces));
+    if (halo_.alone())
+        wear_.start(domain_, state.position,
+                    skin_width_ + *std::max_element(support.begin(), support.end()));
+    moved_ = 0.0, approach_ = 0.0, news_ = true, rebuild_step_ = steps;
     ++rebuilds_;
+}
+
+/// Faces of the particles here, sorted, and of their ghosts after them; empty where there are none.
+template <class Scheme>
+std::vector<std::int32_t> RunLists<Scheme>::faces(const State& state) {
+    if (!has_faces(state)) return {};
+    std::vector<std::int32_t> faces(state.wall.face);
+    faces.resize(state.size() + halo_.ghosts(), Face::none);
+    halo_.start({halo_column(faces)});
+    halo_.finish();
+    return faces;
 }
 
 /// Positions and supports of the particles here, sorted, and of their ghosts after them.

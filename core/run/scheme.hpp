@@ -10,6 +10,7 @@
 #include "model/material.hpp"
 #include "model/options.hpp"
 #include "model/particles.hpp"
+#include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -44,6 +45,7 @@ concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, 
                      } -> std::same_as<ForceTerms<S::dim>>;
                      { known.timestep() } -> std::same_as<double>;
                      { known.dissipated_power() } -> std::same_as<double>;
+                     { known.work() } -> std::same_as<SchemeWork<S::dim>>;
                      { known.kernel_support() } -> std::same_as<double>;
                      { known.fault() } -> std::same_as<const Fault&>;
                      { known.limiting_particle() } -> std::same_as<std::int64_t>;

@@ -7,6 +7,7 @@
 #include "bodies/bodies.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
+#include "run/account.hpp"
 #include "run/diagnostics.hpp"
 #include "run/failure.hpp"
 #include "run/integrate.hpp"
@@ -54,13 +55,22 @@ public:
     void leave_to_first_rank() {
         if (ranks().rank() == 0) return;
         resize(particles, 0);
-        open_boundaries.ledger = {}, dissipation_ = 0.0, updates_ = 0;
+        open_boundaries.ledger = {}, account_ = {}, dissipation_ = 0.0, updates_ = 0;
+    }
+
+    /// Sets the clock [s] of a run that goes on from another; after the inflows, before the start.
+    void begin_at(double time) {
+        time_ = time;
+        open_boundaries.begin_at(time);
     }
 
     /// Sorts, builds lists and evaluates the right-hand side. Call once, after the particles are
     /// in.
     void start() {
-        if (ranks().rank() > 0) resize(particles, 0);  // was filled for the sake of bodies
+        if (ranks().rank() > 0) {  // was filled for the sake of bodies
+            resize(particles, 0);
+            open_boundaries.ledger = {};
+        }
         for (std::size_t p = 0; p < particles.size(); ++p)
             if (particles.is_counted(p)) open_boundaries.ledger.initial += particles.mass[p];
         moving_walls.set_velocities(particles, time_);
@@ -92,6 +102,7 @@ public:
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
         archive("least_timestep", min_timestep_);
+        archive("account", account_);
         lists_.serialise_wear(archive);
         particles.for_each_field(archive);
         if constexpr (Archive::loading) expect_particles();
@@ -120,6 +131,7 @@ public:
     double next_timestep() const { return min(scheme_.timestep(), bodies.timestep()); }
     /// By viscosity, of the particles of this rank, as are updates() and totals().
     double dissipation() const { return dissipation_; }
+    const Account<D>& account() const { return account_; }
     std::int64_t steps() const { return steps_; }
     std::int64_t rebuilds() const { return lists_.rebuilds(); }
     /// Particles stepped, summed over the steps.
@@ -143,7 +155,7 @@ public:
     /// Bytes held per particle: state, records, lists.
     double bytes_per_particle() const {
         const std::size_t bytes =
-            neighbours().bytes() + scheme_.bytes() + bytes_of(const_cast<State&>(particles));
+            lists_.bytes() + scheme_.bytes() + bytes_of(const_cast<State&>(particles));
         return static_cast<double>(bytes) /
                static_cast<double>(max<std::size_t>(1, particles.size()));
     }
@@ -202,6 +214,7 @@ private:
     double time_ = 0.0, last_dt_ = 0.0;
     double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
     double dissipation_ = 0.0;
+    Account<D> account_;
     double sound_speed_ = 0.0;   // of the stiffest material at rest [m/s]
     double min_timestep_ = 0.0;  // [s]
     std::int64_t steps_ = 0, updates_ = 0;
@@ -216,6 +229,7 @@ void Simulation<SchemeOf>::step(double limit) {
                  dt = min(next_timestep(), end - before), power = scheme_.dissipated_power();
 
     kick(0.5 * dt);
+    account_.add_forces(particles, scheme_.work(), 0.5 * dt);
     const double own_moved = drift(dt), moved = ranks().largest(own_moved);
     time_ = dt < end - before ? before + dt : end;
     if (moved > max_mach * sound_speed_ * dt)
@@ -225,6 +239,7 @@ void Simulation<SchemeOf>::step(double limit) {
     open_boundaries.impose_velocity(particles, time_);
     update_lists(before, moved);
     evaluate(0.5 * dt);
+    account_.add_forces(particles, scheme_.work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_.end_step(particles);
     bodies.set_velocities(particles, 0.0);
@@ -247,7 +262,9 @@ template <class SchemeOf>
 double Simulation<SchemeOf>::drift(double dt) {
     const auto timing = phases().measure(Phase::integrate);
     open_boundaries.impose_mean_velocity(particles, time_, dt);
-    bodies.advance(moving_walls, time_, dt);
+    const BodyStep<D> of_bodies = bodies.advance(moving_walls, time_, dt);
+    if (ranks().rank() == 0) account_.add(of_bodies);  // every rank has all bodies
+    account_.add_weight(particles, options_.gravity, dt);
     return max(max(doseki::drift(particles, dt), moving_walls.move(particles, time_, dt)),
                bodies.place(particles));
 }
@@ -262,7 +279,7 @@ double Simulation<SchemeOf>::next_event() const {
 
 template <class SchemeOf>
 void Simulation<SchemeOf>::update_lists(double before, double moved) {
-    const bool worn = lists_.wear(moved);
+    const bool worn = lists_.wear(particles, moved);
     bool changed = open_boundaries.inject(particles, time_);
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
     if (changed || worn) rebuild_lists();
@@ -310,7 +327,7 @@ void Simulation<SchemeOf>::wrap_positions() {
 template <class SchemeOf>
 void Simulation<SchemeOf>::remove_outflow() {
     open_boundaries.remove_outflow(particles, [this](const Outflow<D>& outflow, auto& removed) {
-        return bodies.drain(particles, outflow, removed);
+        bodies.drain(particles, outflow, removed);
     });
 }
 

@@ -10,6 +10,7 @@
 #include "model/force_terms.hpp"
 #include "model/material.hpp"
 #include "model/options.hpp"
+#include "model/scheme_work.hpp"
 #include "pairs/cpu.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
@@ -67,6 +68,8 @@ public:
     double timestep() const { return timestep_; }
     /// By artificial viscosity, of the particles of this rank [W], 2-D: [W/m].
     double dissipated_power() const { return av_power_; }
+    /// Not known of this scheme.
+    SchemeWork<D> work() const { return {}; }
     PhaseTimer& phases() { return phases_; }
     /// The particle to blame where a density is absurd or rates are not finite.
     const Fault& fault() const { return fault_; }

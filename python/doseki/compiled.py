@@ -21,8 +21,9 @@ INSTRUCTION_SETS: dict[str, dict[str, set[str]]] = {
     "other": {"native": set(), "scalar": set()},
 }
 
-# How long a thread that waits for the others spins before it sleeps.  OpenMP's own choice, some
-# milliseconds, makes a run many times slower as soon as another program wants one of its cores.
+# How long a thread that waits for the others spins before it sleeps (decision 0024).  OpenMP's own
+# choice, some milliseconds, makes a run many times slower as soon as another program wants one of
+# its cores.  A user who says how threads wait is obeyed.
 SPIN_COUNT = "2000"
 
 Table = list[list[float]]  # columns of numbers
@@ -120,7 +121,8 @@ def load_core(isa: str | None = None) -> Core:
             f"instruction set {chosen!r} is not available on this {platform.machine()} processor;"
             f" built and usable here: {', '.join(available) or 'none (is the core built?)'}"
         )
-    os.environ.setdefault("GOMP_SPINCOUNT", SPIN_COUNT)
+    if not os.environ.get("OMP_WAIT_POLICY"):
+        os.environ.setdefault("GOMP_SPINCOUNT", SPIN_COUNT)
     return cast(Core, import_module(f"doseki._core_{chosen}"))
 
 

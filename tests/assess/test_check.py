@@ -45,12 +45,12 @@ max = [0.3, {top}]
 def doubts(tmp_path):
     """The findings about a body of water over a floor."""
 
-    def find(xi=0.05, layers=3, bottom=0.0, top=0.12, more="", replace=("", "")):
+    def find(xi=0.05, layers=3, bottom=0.0, top=0.12, more="", replace=("", ""), scheme="ueta2022"):
         file = tmp_path / "case.toml"
         file.write_text(
             SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top).replace(*replace) + more
         )
-        scenario = load_scenario(file)
+        scenario = load_scenario(file, [f"scheme={scheme}"])
         simulation, *about = filled_simulation(scenario)
         simulation.start()
         return [str(doubt) for doubt in thorough_findings(scenario, simulation.state(), *about)]
@@ -60,6 +60,14 @@ def doubts(tmp_path):
 
 def test_a_good_set_up_raises_no_doubt(doubts):
     assert doubts() == []
+
+
+def test_walls_of_a_dry_scene_need_no_thickness(doubts):
+    dry = {"layers": 1, "replace": ('"water"', '"basalt"')}
+    assert not any("thinner than the kernel" in doubt for doubt in doubts(**dry, scheme="resolved"))
+    assert any("thinner than the kernel" in doubt for doubt in doubts(**dry))
+    wet = {"layers": 1, "scheme": "resolved"}
+    assert any("thinner than the kernel" in doubt for doubt in doubts(**wet))
 
 
 GAUGE = """
@@ -89,6 +97,10 @@ duration = 1
 """
 
 
+# Water makes room for whole boxes, not for one that is cut.
+CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"')}
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -97,7 +109,7 @@ duration = 1
         ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.012 (now 0.001)"]),
         ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
         ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),
-        ({"bottom": -0.012, "top": 0.12}, ["overlaps"]),
+        (CUT_FLOOR | {"bottom": -0.012, "top": 0.12}, ["overlaps"]),
         ({"more": GAUGE}, ["gauge.far.position = [0.2, 3.0] m lies outside everything"]),
         ({"more": PISTON}, ["speeds up to 13.1 m/s are Mach"]),
         ({"more": ROUGH}, ["inflow.i.ks = 0.15 m is larger than the depth of the flow, 0.12 m"]),

@@ -15,11 +15,13 @@ from doseki.errors import UserError
 from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
 from doseki.figures.dots import dots, extent_of
 from doseki.figures.kinds.histogram import SpeedHistogram, draw_speed_row
-from doseki.figures.kinds.snapshot import Panels, draw_panels
+from doseki.figures.kinds.panels import Panels
+from doseki.figures.kinds.snapshot import draw_panels
 from doseki.figures.movie import make_movie
 from doseki.figures.plot import figures, plot_run
 from doseki.figures.raster import EMPTY, coloured, splat
 from doseki.measure.census import draw_speeds
+from doseki.measure.moments import Moment
 from doseki.measure.quantities import quantity
 from doseki.measure.views import View, named_window, whole_space
 from doseki.record.quantities import quantity_label
@@ -116,7 +118,7 @@ def test_quantities_by_name(run_folder):
 def test_snapshot_panels_are_true_to_scale_and_hold_every_particle(two_grains):
     run = load(two_grains)
     what = Panels(whole_space(2), ["speed"], sizes=("support", "grain"))
-    figure = draw_panels(run, [run[0], run[-1]], what)
+    figure = draw_panels(run, [Moment(0, ""), Moment(len(run) - 1, "")], what)
     figure.canvas.draw()
     panels = [axes for axes in figure.axes if axes.get_aspect() == 1.0]
     assert len(panels) == 4
@@ -134,7 +136,7 @@ def test_snapshot_panels_are_true_to_scale_and_hold_every_particle(two_grains):
 
 def test_plot_run_writes_the_figures_of_the_scenario_and_the_general_ones(flow_folder):
     files = plot_run(flow_folder)
-    names = {"overview", "energy", "mass", "flow", "before", "speeds", "energies"}
+    names = {"overview", "energy", "mass", "flow", "before", "energies"}
     assert {path.stem for path in files} == names
     for path in files:
         height, width, _ = image.imread(path).shape
@@ -166,7 +168,7 @@ def test_a_figure_of_the_scenario_replaces_the_general_one_of_its_name(two_grain
     assert sorted(names) == ["energy", "mass", "overview"]
 
 
-def test_a_run_in_three_dimensions_is_drawn_as_a_slice(tmp_path, record_run):
+def test_a_run_in_three_dimensions_is_drawn(tmp_path, record_run):
     record_run(tmp_path / "run", dim=3)
     assert [path.stem for path in plot_run(tmp_path / "run")] == [
         "overview",

@@ -12,12 +12,20 @@ import pytest
 from doseki.cli.main import main
 from doseki.errors import UserError
 from doseki.figures import plot, text
-from doseki.figures.layout import chart_grid
+from doseki.figures.census_output import CensusOptions, write_census
+from doseki.figures.dots import extent_of
+from doseki.figures.layout import chart_grid, nice_length
+from doseki.figures.movie import _Camera
+from doseki.figures.stage import WIDTH
+from doseki.measure.views import whole_space
 from doseki.record.history import history_columns
 from doseki.record.reader import load
 from doseki.run.progress import progress_bar
 from doseki.run.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
+from doseki.studies import compare
+
+from ..synthetic_runs import flow_state
 
 RUN = """\
 dim = 2
@@ -34,7 +42,7 @@ max = [0.2, 0.2]
 kind = "surface_height"
 position = [0.1, 0]
 """
-NAMES = ["flow", "mass", "overview"]  # of general figures, but for the energy
+NAMES = ["flow", "overview"]  # of general figures of a closed run, but for the energy
 ODD = ("5 $ and 7 $", "$\\frac{1}{", "[/] [bold]", "\\alpha \\$ %s {x} ^_", "土石流 debris")
 
 
@@ -178,3 +186,51 @@ def test_a_disk_that_is_full_for_pictures_loses_no_run(scenario, tmp_path, capsy
     said = capsys.readouterr()
     assert "No space left" in said.err
     assert "status            done" in said.out
+
+
+def test_movies_have_axes_a_scale_bar_and_their_title(scenario, tmp_path):
+    file = scenario(title="5 $ and 7 $")
+    run_scenario(load_scenario(str(file)), tmp_path / "run", RunOptions(threads=1))
+    run = load(tmp_path / "run")
+    with text.plain_text():
+        camera = _Camera(run, "speed", None)
+        frame = next(iter(camera.frames()))
+    figure = camera.stage.figure
+    (axes,) = figure.axes
+    assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx(extent_of([*run], whole_space(2)))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (m)", "y (m)")
+    assert len(axes.get_xticks()) > 2
+    words = [each.get_text() for each in figure.texts]
+    assert words == ["5 $ and 7 $", "0.02 m"]
+    assert not any(each.get_parse_math() for each in figure.texts)
+    (bar,) = [line for line in figure.artists if line.get_gid() == "scale bar"]
+    pixels = np.ptp(bar.get_xdata()) * frame.width
+    assert pixels * np.ptp(axes.get_xlim()) / WIDTH == pytest.approx(0.02, rel=1e-6)
+    assert len(figure.legends) == 1
+
+
+@pytest.mark.parametrize(
+    ("longest", "length"), [(1.0, 1), (0.99, 0.5), (0.3, 0.2), (4.9, 2), (5.0, 5), (37.0, 20)]
+)
+def test_scale_bars_have_round_lengths(longest, length):
+    assert nice_length(longest) == pytest.approx(length)
+
+
+def test_a_census_is_drawn_in_plain_text(tmp_path, record_run, monkeypatch):
+    monkeypatch.setattr(text, "CJK", ())
+    tables = '\n[window."土石"]\nmin = [-9.0, -9.0]\nmax = [9.0, 9.0]\n'
+    record_run(tmp_path / "run", state_at=flow_state, tables=tables)
+    lines = write_census(tmp_path / "run", CensusOptions(window="土石"))
+    assert "no font has the characters 土石" in lines[-1]
+
+
+def test_a_comparison_is_drawn_in_plain_text(tmp_path, monkeypatch):
+    def drawn(_flumes):
+        figure, _ = chart_grid(1, 1, (3, 1), "5 $ and \\frac{1")
+        assert not figure._suptitle.get_parse_math()
+        return figure
+
+    monkeypatch.setattr(compare, "_water_figure", drawn)
+    monkeypatch.setattr(compare, "_passed_figure", drawn)
+    compare._draw_pictures((), tmp_path)
+    assert (tmp_path / "water.png").is_file()

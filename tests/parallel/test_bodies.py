@@ -75,6 +75,11 @@ velocity = [0, -1]
 [gauge.stones]
 kind = "mass_centre"
 bodies = ["stone", "pebble"]
+
+[gauge.path]
+kind = "motion"
+bodies = ["stone", "pebble"]
+interval = 0.005
 """
 BODIES = ("stone", "pebble", "plate")
 
@@ -117,6 +122,14 @@ def test_bodies_did_meet_water_and_each_other(tank):
         of_it = first["body"] == name
         before, after = (snapshot["velocity"][of_it].mean(axis=0) for snapshot in (first, last))
         assert np.linalg.norm(after - before) > 0.05, name
+
+
+def test_the_gauge_of_their_motion_reads_the_same(tank):
+    one, two = (tank[ranks].gauges["path"] for ranks in "12")
+    assert two["grain"].tolist() == [0, 1] * 7
+    for name in one:
+        scale = np.nanmax(np.abs(one[name]))
+        np.testing.assert_allclose(two[name], one[name], atol=1e-5 * scale, err_msg=name)
 
 
 def test_bodies_go_on_on_other_ranks(tank):

@@ -11,6 +11,9 @@ import pytest
 
 import doseki
 
+from ..start.tank import continued, disc, tank_text
+from ..start.tank import run as run_tank
+
 # The time that is compared is short of the first splash: from there on any other order of sums, on
 # one rank too, leads to other drops.
 CASES = {
@@ -136,3 +139,20 @@ def test_ranks_are_started_by_an_option(command, alone, tmp_path):
     two = doseki.load(tmp_path / "two")
     assert two.summary["ranks"] == 2
     assert_same_snapshots(alone("collision"), two, ROUNDING["collision"])
+
+
+def test_a_run_that_starts_from_another_one_is_that_of_one_rank(command, tmp_path):
+    """With all of a checkpoint, and from a snapshot with a body that is added."""
+    earlier = tmp_path / "earlier.toml"
+    earlier.write_text(tank_text())
+    run_tank(tank_text(), earlier, "time_max=0.02")
+    added = tank_text() + disc("three", 0.1, y=0.3)
+    for name, text in (("same", tank_text()), ("added", added)):
+        file = tmp_path / f"{name}.toml"
+        alone = run_tank(continued(text, "earlier"), file, "time_max=0.022")
+        folder = tmp_path / f"{name}-2"
+        done = command(
+            2, "run", file, "-o", folder, "--no-figures", "--threads", 1, "--set", "time_max=0.022"
+        )
+        assert done.returncode == 0, done.stderr
+        assert_same_snapshots(doseki.load(folder), alone, 1e-9)

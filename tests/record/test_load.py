@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
 from doseki.errors import UserError
+from doseki.record.between import Between
 from doseki.record.reader import load
 
 NAMES = {"material": ("water", "basalt", "aluminium"), "body": ("sea", "grain", "bed")}
@@ -25,11 +28,46 @@ def test_snapshots_come_back_bit_by_bit(tmp_path, record_run, dim):
         assert np.array_equal(snapshot["fixed"], state["motion"] == 1)
 
 
-def test_at_gives_the_nearest_snapshot(run_folder):
+def test_at_gives_the_snapshot_of_a_time(run_folder):
     run = load(run_folder)
-    assert run.at(1.4).time == 1.0
-    assert run.at(99.0).time == run[-1].time == 2.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert run.at(1.0).time == run.at(1.0 + 1e-12).time == 1.0
+        assert run.at(2.0).time == run[-1].time == 2.0
+        assert run.at(1.4, nearest=True).time == 1.0
+    with pytest.warns(UserWarning, match="no snapshot at 1.4 s, took that of 1 s"):
+        assert run.at(1.4).time == 1.0
     assert [snapshot.time for snapshot in run[1:]] == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("time", [99.0, -0.1, 2.001, float("nan"), float("inf")])
+@pytest.mark.parametrize("how", [{}, {"nearest": True}, {"interpolate": True}])
+def test_at_refuses_times_outside_the_record(run_folder, time, how):
+    with pytest.raises(UserError, match="outside the record, which goes from 0 to 2 s"):
+        load(run_folder).at(time, **how)
+
+
+def test_at_interpolates_between_two_snapshots(run_folder):
+    run = load(run_folder)
+    before, after, between = run[1], run[2], run.at(1.25, interpolate=True)
+    assert between.time == 1.25
+    assert set(between) == set(before)
+    both = np.isin(before["id"], after["id"])
+    assert np.array_equal(between["id"], before["id"][both])
+    rows = [np.flatnonzero(after["id"] == k)[0] for k in between["id"]]
+    for key in ("position", "velocity", "pressure", "stress"):
+        expected = 0.75 * before[key][both] + 0.25 * after[key][rows]
+        np.testing.assert_allclose(between[key], expected, rtol=1e-12, atol=1e-15)
+    assert np.array_equal(between["material"], before["material"][both])
+    assert run.at(1.0, interpolate=True).time == 1.0
+
+
+def test_what_crosses_a_period_goes_the_shorter_way():
+    before = {"id": np.array([7, 3, 5]), "position": np.array([[0.9, 0], [0.1, 1], [0.5, 0]])}
+    after = {"id": np.array([3, 7]), "position": np.array([[0.9, 1.0], [0.1, 2.0]])}
+    between = Between(0.75, (0.0, 1.0), (before, after), [(0, 0.0, 1.0)])
+    np.testing.assert_allclose(between["position"], [[0.05, 1.5], [0.95, 1.0]])
+    assert between["id"].tolist() == [7, 3]
 
 
 def test_history_scenario_and_summary(run_folder):

@@ -55,6 +55,23 @@ def test_a_file_that_does_not_fit(channel_file, tmp_path, size):
     assert_stopped_cleanly(done, tmp_path / "run")
 
 
+@pytest.mark.parametrize("size", [500, 2_000, 12_000, 40_000])
+def test_before_the_first_checkpoint(channel_file, uninterrupted, tmp_path, size):
+    """The scenario, the first snapshot or the first checkpoint does not fit; later it does."""
+    folder = tmp_path / "run"
+    words = ("run", channel_file, "-o", folder, "--threads", 1, "--no-figures")
+    done = doseki_command(*words, preexec_fn=limit_files_to(size))
+    assert done.returncode == 4, done.stderr
+    assert "Traceback" not in done.stderr
+    assert len([line for line in done.stderr.splitlines() if line.startswith("doseki:")]) == 1
+    assert not list(tmp_path.rglob("*.part"))
+    assert not list(folder.glob("checkpoints/*.h5"))
+    again = ("resume", folder, *words[4:]) if folder.exists() else words
+    done = doseki_command(*again)
+    assert done.returncode == 0, done.stderr
+    assert_same_record(folder, uninterrupted)
+
+
 @pytest.fixture
 def small_disk(tmp_path):
     """A disk of 400 kB, where the test may mount one."""

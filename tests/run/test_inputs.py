@@ -127,7 +127,7 @@ def test_a_missing_copy_is_refused(stopped):
 
 def test_a_file_that_changes_before_it_is_copied_is_refused(tmp_path):
     scenario = load_scenario(write_scenario(tmp_path / "given"))
-    inputs = scenario.inputs  # looked at
+    inputs = scenario.body_files  # looked at
     inputs["water"].path.write_text("another")
     with pytest.raises(UserError, match="has changed since it was read"):
         inputs["water"].copy_to(tmp_path / "copy")

@@ -76,9 +76,10 @@ def said(change):
     """A change of what stands beside the state."""
 
     def change_file(file):
-        table = json.loads(file.attrs["doseki"])
+        table = json.loads(file["doseki"][...].tobytes())
         change(table)
-        file.attrs["doseki"] = json.dumps(table)
+        del file["doseki"]
+        file["doseki"] = np.frombuffer(json.dumps(table).encode(), np.uint8)
 
     return change_file
 
@@ -139,3 +140,35 @@ def test_other_names_of_bodies(run, names):
     tamper(run, said(lambda table: table.update(body_names=names)))
     with pytest.raises(UserError, match="bodies"):
         resume_run(run, (), RunOptions(threads=1))
+
+
+@pytest.fixture
+def half(channel_file, tmp_path):
+    """The folder of a run that was stopped on its way."""
+    folder = tmp_path / "half"
+    run_channel(channel_file, folder, progress=lambda *_: (folder / "STOP").touch())
+    return folder
+
+
+def test_a_scenario_that_was_changed_by_hand_is_noticed(half, uninterrupted):
+    scenario = half / "scenario.toml"
+    text = scenario.read_text()
+    for edited in (text.replace("time_max = 0.06", "time_max = 0.05"), "# mine\n" + text):
+        assert edited != text
+        scenario.write_text(edited)
+        before = sorted(half.rglob("*"))
+        with pytest.raises(UserError, match=r"changed by hand since the run wrote it; .* --set"):
+            resume_run(half, (), RunOptions(threads=1))
+        assert sorted(half.rglob("*")) == before
+    scenario.write_text(text)
+    resume_run(half, ["title=other"], RunOptions(threads=1))  # which seals it again
+    resume_run(half, ["time_max=0.061"], RunOptions(threads=1))
+
+
+def test_what_was_changed_on_purpose_goes_on(half):
+    """Without its last line, a scenario is taken as it is."""
+    scenario = half / "scenario.toml"
+    lines = scenario.read_text().replace("time_max = 0.06", "time_max = 0.05").splitlines()
+    scenario.write_text("\n".join(lines[:-1]) + "\n")
+    summary, _ = resume_run(half, (), RunOptions(threads=1))
+    assert summary["time"] == pytest.approx(0.05)

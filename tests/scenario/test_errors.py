@@ -85,7 +85,7 @@ BODY = "[body.b]\nshape = 'box'\nmaterial = 'water'\nmin = [0, 0]\nmax = [1, 1]\
         (BODY + "count = 1.5", ["must be a whole number"]),
         (BODY + "dp = 3", ["less than one particle thick"]),
         (BODY + "velocity = [1]", ["body.b.velocity: a 2-D run needs 2 entries here, not 1"]),
-        (BODY + "velocity = [1, 'fast']", ["finite numbers"]),
+        (BODY + "velocity = [1, 'fast']", ['velocity.1 = "fast" is not a speed']),
         (BODY + "velocity = [1, '= 1/x*z']", ["body.b.velocity", "unknown name z"]),
         (BODY + "rotate = 10\nrotate_axis = [0, 0]", ["rotate_axis", "only a 3-D run"]),
         (BODY + "mass_per_particle = 1e-300", ["body.b: a mass of 1e-300 kg"]),
@@ -115,7 +115,7 @@ duration = 1
 @pytest.mark.parametrize(
     ("old", "new", "part"),
     [
-        ('"3 L/s"', '"3 gal/s"', "a rate is a number in m3/s or a string"),
+        ('"3 L/s"', '"3 gal/s"', "is not a rate; allowed: a number in m3/s or a string"),
         ('"3 L/s"', "0", "inflow.i.rate = 0 is out of range; must be greater than 0"),
         ("[1, 0]", "[0, 0]", "direction must not be the zero vector"),
         ("depth = 0.4", "depth = 0.01", "less than one particle"),

@@ -33,7 +33,7 @@ def test_each_kind_of_key(write):
     assert (scenario.alpha, scenario.xi, scenario.eta) == (0.5, 0.4, 1.3)
     assert scenario.body["block"].velocity == [1, 0]
     assert scenario.materials["water"].rho0 == 998
-    assert scenario.constants["rate"] == "2 L/s"
+    assert scenario.constants["rate"] == 0.002
     assert scenario.constants["lid"] is True
     assert (scenario.title, scenario.time_max) == ("hello", 0.2)
 
@@ -54,7 +54,7 @@ def test_a_key_replaces_its_rival(write):
         ("length=0", "--set length: parameters.length: 0 is out of range; must be 1 m or more"),
         ("lid=1", "lid = 1 must be true or false"),
         ("alpha=-1", "--set alpha: alpha = -1 is out of range"),
-        ("xi=60/3116", 'must be a number, or an expression such as "= 2*dp"'),
+        ("xi=60:3116", 'must be a number, or an expression such as "= 2*dp"'),
         ("body.blok.velocity=[0, 0]", "no table body.blok; did you mean body.block?"),
         ("bodi.block.velocity=[0, 0]", "no table bodi; did you mean body?"),
         ("body.block.velocty=[0, 0]", "body.block.velocty is not a known key; did you mean veloc"),

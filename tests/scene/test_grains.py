@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from doseki.record.particles import BOUND, FREE
 from doseki.scenario.load import load_scenario
@@ -128,6 +129,29 @@ def test_a_disc_is_one_body_and_water_makes_room(write):
     assert shapes == [{"radius": 0.5}]
     assert table["inertia"][0, 2, 2] == pytest.approx(2750 * np.pi * 0.5**4 / 2)
     assert (table["velocity"][0].tolist(), table["spin"][0].tolist()) == ([1, 2], [0, 0, 3])
+
+
+@pytest.mark.parametrize(
+    ("shape", "area"),
+    [
+        ('shape = "disc"\ncentre = [1, 1]\nradius = 0.5', np.pi * 0.25),
+        ('shape = "box"\nmin = [0.52, 0.52]\nmax = [1.42, 1.42]', 0.81),
+        ('shape = "box"\nmin = [0.6, 0.6]\nmax = [1.4, 1.4]\nrotate = 30\npivot = [1, 1]', 0.64),
+        ('shape = "polygon"\nvertices = [[0.48, 0.48], [1.48, 0.48], [0.48, 1.48]]', 0.5),
+    ],
+    ids=["disc", "box off the lattice", "box turned", "triangle"],
+)
+def test_water_makes_room_for_what_is_fixed(write, shape, area):
+    """With bodies that move beside it, and without."""
+    water = BLOCK.replace("[1, 0.5]", "[2, 2]")
+    fixed = f'[body.fixed]\nmaterial = "basalt"\nfixed = true\n{shape}\n'
+    for more in ("", DISC.replace("[0.5, 1.2]", "[3.5, 1.2]")):
+        _, scene = scene_of(write, water + fixed + more)
+        particles = scene.particles
+        left = particles.motion == FREE
+        assert (left.sum() - 400) * 0.01 == pytest.approx(-area, abs=0.08)
+        gap, _ = cKDTree(particles.position[~left]).query(particles.position[left])
+        assert gap.min() > 0.03
 
 
 def test_a_disc_across_a_periodic_side(write):

@@ -90,7 +90,7 @@ def test_settling_for_some_time(write):
         (FLOOR + LOAD, TOP.replace("-9.81", "0"), "no gravity"),
         (FLOOR + LOAD + "fixed = true", TOP, "body.load.settle: only solids"),
         (FLOOR + LOAD.replace("true", "-1"), TOP, "settle = -1"),
-        (FLOOR + LOAD.replace("true", '"yes"'), TOP, "settle = 'yes'"),
+        (FLOOR + LOAD.replace("true", '"yes"'), TOP, 'settle = "yes"'),
     ],
 )
 def test_errors(write, tables, top, part):

@@ -10,10 +10,10 @@ from doseki.validate.running import CASES
 
 # Cases that the default tier runs.
 CANARIES = (
-    "artificial-viscosity", "bingham", "channel-plane", "dam-front", "elastic-plate",
-    "elliptical-drop-disturbed", "grains-drag", "grains-incline", "grains-stream", "hydrostatic",
-    "hydrostatic-plate", "nusselt-film", "poiseuille", "shear-decay", "sound-wave",
-    "taylor-green-100-lattice",
+    "artificial-viscosity", "bingham", "channel-plane", "dam-front", "elastic-oblique",
+    "elastic-plate", "elliptical-drop-disturbed", "grains-drag", "grains-incline", "grains-stream",
+    "grains-under-water", "hydrostatic", "hydrostatic-plate", "nusselt-film", "poiseuille",
+    "shear-decay", "sound-wave", "taylor-green-100-lattice",
 )  # fmt: skip
 
 

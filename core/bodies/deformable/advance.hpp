@@ -212,6 +212,22 @@ std::vector<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) cons
 }
 
 template <int D>
+std::vector<PointShare> TotalLagrangian<D>::carriers(std::size_t p,
+                                                     const Vec<double, D>& offset) const {
+    std::vector<PointShare> shares{{static_cast<std::uint32_t>(p), 1.0}};
+    const Vec<double, D> along = correction_[p] * offset;
+    for (const std::uint32_t j : neighbours_of(p)) {
+        const Vec<double, D> R = rest_[p] - rest_[j];
+        const double F = WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(p).support()),
+                     share = -volume(j) * F * dot(R, along);
+        if (j == p || share == 0.0) continue;
+        shares[0].share += share;
+        shares.push_back({j, -share});
+    }
+    return shares;
+}
+
+template <int D>
 double TotalLagrangian<D>::timestep() const {
     double stiffening = 1.0;
     for (std::size_t p = 0; p < size(); ++p)
@@ -244,27 +260,12 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
         for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
         return result;
     };
-    normal_ = sorted(normal_), surface_ = sorted(surface_);
+    normal_ = sorted(normal_);
+    surfaces_.start(solids_);
     flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (has(particles, p))
             particles.set_point(p, BodyKind::deformable, solids_.slot(particles.point(p)));
-}
-
-template <int D>
-void DeformableBodies<D>::add_to(ContactPoints<D>& points, std::int32_t first_body) {
-    first_contact_point_ = points.size();
-    touching_.clear(), patches_.clear();
-    for (std::size_t k = 0; k < solids_.size(); ++k) {
-        if (!surface_[k]) continue;
-        const double radius = 0.5 * solids_.body_of(k).spacing;
-        const std::int32_t body = solids_.body(k);
-        points.add(first_body + body,
-                   {material_[static_cast<std::size_t>(body)], radius, solids_.mass(k),
-                    2.0 * radius, solids_.clamped(k), true, false});
-        touching_.push_back(k);
-        patches_.emplace_back(solids_.neighbours_of(k));
-    }
 }
 
 template <int D>
@@ -275,28 +276,6 @@ void DeformableBodies<D>::end_step(double dt, double memory) {
         const Vec<double, D> mean =
             (1.0 / dt) * (solids_.v[k] - before_[k]) + (1.0 / solids_.mass(k)) * flow_force_[k];
         acceleration_[k] = acceleration_[k] + share * (mean - acceleration_[k]);
-    }
-}
-
-template <int D>
-void DeformableBodies<D>::show(ContactPoints<D>& points) const {
-    for (std::size_t t = 0; t < touching_.size(); ++t) {
-        const std::size_t c = first_contact_point_ + t;
-        points.position[c] = solids_.x[touching_[t]], points.velocity[c] = solids_.v[touching_[t]];
-        points.spin[c] = patches_[t].spin(solids_.x, solids_.v);
-        points.force[c] = {}, points.torque[c] = {};
-    }
-}
-
-/// The contact acts on the surface, not in the middle of the point: its moment goes to the patch.
-template <int D>
-void DeformableBodies<D>::collect(const ContactPoints<D>& points) {
-    std::fill(solids_.load.begin(), solids_.load.end(), Vec<double, D>{});
-    for (std::size_t t = 0; t < touching_.size(); ++t) {
-        const std::size_t c = first_contact_point_ + t, k = touching_[t];
-        solids_.load[k] = solids_.load[k] + points.force[c];
-        if (norm(points.torque[c]) > 0.0)
-            patches_[t].add_moment(points.torque[c], solids_.x, solids_.load);
     }
 }
 

@@ -4,16 +4,16 @@
 #include <vector>
 
 #include "bodies/contact_points.hpp"
-#include "bodies/deformable/patches.hpp"
+#include "bodies/deformable/surfaces.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
-#include "bodies/nearest_image.hpp"
+#include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
 
 namespace doseki {
 
 /// Deformable bodies among water and other bodies: each of their points is a bound particle, which
-/// the fluid meets as a wall, and points of their surfaces are contact points.
+/// the fluid meets as a wall, and their surfaces touch other bodies.
 template <int D>
 class DeformableBodies {
 public:
@@ -22,14 +22,18 @@ public:
     std::size_t size() const { return solids_.size(); }
 
     /// Makes the particles `members`, with the normals that they have, the points of one body.
+    /// Vertices of its surface are carried by points numbered within the body.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
              std::span<const std::int32_t> members, const SolidPoints<D>& points,
-             std::span<const std::uint8_t> surface) {
+             std::span<const SurfaceVertex<D>> surface) {
+        for (SurfaceVertex<D> vertex : surface) {
+            vertex.point += static_cast<std::uint32_t>(solids_.size());
+            surfaces_.add(vertex);
+        }
         for (std::size_t k = 0; k < members.size(); ++k) {
             const auto p = static_cast<std::size_t>(members[k]);
             particles.set_point(p, BodyKind::deformable, solids_.size() + k);
             normal_.push_back(particles.wall.normal[p]);
-            surface_.push_back(surface[k]);
         }
         solids_.add(body, points);
         material_.push_back(material);
@@ -37,9 +41,11 @@ public:
 
     /// Call once, after all bodies are in.
     void start(Particles<D>& particles, const Vec<double, D>& gravity);
-    /// Adds points of surfaces to those that may touch; `first_body` is the number of the first of
-    /// these bodies among all bodies that do.
-    void add_to(ContactPoints<D>& points, std::int32_t first_body);
+    /// Adds surfaces to those that may touch; `first_body` is the number of the first of these
+    /// bodies among all bodies that do.
+    void add_to(ContactBodies<D>& contact, std::int32_t first_body) {
+        surfaces_.add_to(contact, first_body, solids_, material_);
+    }
 
     bool has(const Particles<D>& particles, std::size_t p) const {
         return particles.is_point_of(p, BodyKind::deformable);
@@ -61,8 +67,8 @@ public:
     /// Accelerations as the fluid sees them, averaged over `memory`.
     void end_step(double dt, double memory);
     /// Shows the contacts where the points are, and takes their forces.
-    void show(ContactPoints<D>& points) const;
-    void collect(const ContactPoints<D>& points);
+    void show(ContactBodies<D>& contact) const { surfaces_.show(contact, solids_); }
+    void collect(ContactBodies<D>& contact) { surfaces_.collect(contact, solids_); }
     double place(Particles<D>& particles, const Domain<D>& domain) const;
     void set_velocities(Particles<D>& particles, double ahead) const;
 
@@ -90,13 +96,13 @@ public:
     template <class Archive>
     void serialise(Archive& archive, const Vec<double, D>& gravity) {
         solids_.serialise(archive, gravity);
-        archive("deformable_normal", normal_), archive("deformable_surface", surface_),
-            archive("deformable_material", material_);
+        surfaces_.serialise(archive, solids_);
+        archive("deformable_normal", normal_), archive("deformable_material", material_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
         if constexpr (Archive::loading) {
             const std::size_t n = solids_.size();
-            expect_fit(normal_.size() == n && surface_.size() == n && flow_force_.size() == n &&
+            expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && material_.size() == solids_.bodies(),
                        "deformable_normal");
         }
@@ -114,12 +120,9 @@ private:
 
     TotalLagrangian<D> solids_;
     std::vector<Vec<double, D>> normal_;  // at rest
-    std::vector<std::uint8_t> surface_;
     std::vector<std::int32_t> material_;  // by body
     std::vector<Vec<double, D>> flow_force_, acceleration_, before_;
-    std::vector<std::size_t> touching_;  // points of the surface
-    std::vector<Patch<D>> patches_;      // around each
-    std::size_t first_contact_point_ = 0;
+    DeformableSurfaces<D> surfaces_;
 };
 
 // Compiled once: deformable_2.cpp, deformable_3.cpp.

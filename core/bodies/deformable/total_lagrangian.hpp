@@ -23,6 +23,12 @@ struct SolidPoints {
     std::vector<std::uint8_t> clamped;
 };
 
+/// Part of a point in a place that points carry along.
+struct PointShare {
+    std::uint32_t point;
+    double share;
+};
+
 /// Deformable bodies in a total-Lagrangian description: pairs are those of the places at rest,
 /// found once. Stress and strain are strictly inside one body, since at rest bodies are set far
 /// apart. Forces are the gradient of a discrete energy, so that without damping position Verlet
@@ -83,6 +89,9 @@ public:
     std::uint32_t slot(std::size_t k) const { return slot_[k]; }
     /// Points within the support of one at rest, itself among them.
     std::vector<std::uint32_t> neighbours_of(std::size_t p) const;
+    /// The place that goes with point p by its deformation gradient, from `offset` at rest: shares
+    /// of points, which add up to 1.
+    std::vector<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }

@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from ..driver.schedule import steps_between
-from ..record import vtkhdf
+from ..record.snapshot_writer import SnapshotWriter
+from ..record.vtkhdf import Header
 from ..scenario.model import Scenario
 from ..scene.inflow_sections import build_inflows
 from ..solver.protocol import Simulation
 
 BURST_SECONDS = 1.0  # of wall time
-HISTORY_BYTES = 260  # a row
+HISTORY_BYTES = 430  # a row
 SAMPLE_BYTES = 60  # of a gauge; a profile has as many at each of its heights
 CHECKPOINT_SECONDS = 600.0  # between two, of which the last two are kept
 PROCESS_BYTES = 100e6  # Python, numpy, scipy and the core themselves
@@ -46,10 +47,11 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
     unhindered = done + steps_between(now, end, timestep, ())
     snapshot_bytes, snapshot_seconds = _snapshot(scenario, simulation, body_names)
     per_particle = simulation.bytes_per_particle
-    snapshots = scenario.time_max / scenario.time_out + 1
+    length = scenario.time_max - scenario.begins_at
+    snapshots = length / scenario.time_out + 1
     checkpoint = sum(array.nbytes for array in simulation.checkpoint().values()) / len(simulation)
-    rows = min(scenario.time_max / scenario.time_history, steps) + 1
-    samples = sum(scenario.time_max / interval + 1 for interval in scenario.sampled_intervals[1:])
+    rows = min(length / scenario.time_history, steps) + 1
+    samples = sum(length / interval + 1 for interval in scenario.sampled_intervals[1:])
     seconds = steps * mean / rate + snapshots * mean * snapshot_seconds
     checkpoints = 1 if seconds < CHECKPOINT_SECONDS else 2
     return Estimate(
@@ -87,7 +89,8 @@ def _particles(scenario: Scenario, body_names: list[str], start: int) -> tuple[f
     """Mean and largest number of particles, if nothing that enters leaves again."""
     mean = most = float(start)
     for section in build_inflows(scenario, body_names):
-        entered = section.entered(np.linspace(0.0, scenario.time_max, 1001))
+        entered = section.entered(np.linspace(scenario.begins_at, scenario.time_max, 1001))
+        entered -= entered[0]
         most += float(entered[-1])
         mean += float(entered.mean())
     return mean, most
@@ -97,7 +100,7 @@ def _snapshot(
     scenario: Scenario, simulation: Simulation, body_names: list[str]
 ) -> tuple[float, float]:
     """Bytes and seconds that a snapshot takes for each particle."""
-    header = vtkhdf.Header(
+    header = Header(
         simulation.time,
         simulation.steps,
         simulation.timestep,
@@ -108,6 +111,6 @@ def _snapshot(
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "snapshot"
         started = time.perf_counter()
-        vtkhdf.write(file, simulation.state(), header)
+        SnapshotWriter().write(file, simulation.state(), header)
         seconds = time.perf_counter() - started
         return file.stat().st_size / len(simulation), seconds / len(simulation)

@@ -10,6 +10,7 @@ from ..driver.schedule import steps_between
 from ..errors import PhysicsError, ResourceError
 from ..record.particles import FIXED
 from ..scenario.model import Scenario
+from ..scenario.tables.bodies import Box
 from ..solver.build import filled_simulation, load_core
 from ..solver.protocol import SimulationView
 from ..util.finding import Finding
@@ -56,7 +57,7 @@ def brief_check(
     """
     state, dt = simulation.state(), simulation.rates()["timestep"]
     memory = len(simulation) * simulation.bytes_per_particle
-    steps = steps_between(0.0, scenario.time_max, dt, scenario.sampled_intervals)
+    steps = steps_between(scenario.begins_at, scenario.time_max, dt, scenario.sampled_intervals)
     head = (
         f"{len(simulation):,} particles, {_size(memory)}, first timestep {dt:.3g} s: about"
         f" {steps:,.0f} steps"
@@ -72,11 +73,35 @@ def _line(name: str, text: str) -> str:
 def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str]) -> Iterator[str]:
     fixed = int(np.sum(state["motion"] == FIXED))
     yield _line("particles", f"{len(state['id']):,} at the start, {fixed:,} of them fixed")
+    counts: dict[tuple[str, str], list[int]] = {}
     for body, name in enumerate(names):
         count = int(np.sum(state["body"] == body))
         if count:
             material = scenario.material_names[state["material"][state["body"] == body][0]]
-            yield _line(f"  {name}", f"{count:,} {material}")
+            stem, _, number = name.rpartition(".")
+            copied = stem if number.isdigit() else name
+            counts.setdefault((copied, material), []).append(count)
+    for (name, material), each in counts.items():
+        copies = f" in {len(each)} copies" if len(each) > 1 else ""
+        yield _line(f"  {name}", f"{sum(each):,} {material}{copies}")
+        yield from _resized(scenario, name)
+
+
+def _resized(scenario: Scenario, name: str) -> Iterator[str]:
+    """The size that a box of particles got, where dp does not divide it."""
+    table = scenario.body.get(_first(scenario, name))
+    if not isinstance(table, Box) or scenario.kinematics_of(_first(scenario, name)).is_whole:
+        return
+    given, got = table.max - table.min, table.filled_size(scenario.dp)
+    if np.any(np.abs(got - given) > 1e-6 * (table.dp or scenario.dp)):
+        shown = [" x ".join(f"{x:.4g}" for x in size) for size in (got, given)]
+        spacing = table.dp or scenario.dp
+        yield _line("", f"{shown[0]} m: dp = {spacing:g} m does not divide {shown[1]} m")
+
+
+def _first(scenario: Scenario, name: str) -> str:
+    """A body, or the first of its copies."""
+    return name if name in scenario.body else f"{name}.1"
 
 
 def _costs(expected: Estimate) -> Iterator[str]:

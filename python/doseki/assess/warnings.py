@@ -11,9 +11,10 @@ import numpy as np
 from ..driver.gauges import outside_everything
 from ..record.particles import BOUND, DRIVEN, FIXED, FREE
 from ..scenario.model import Scenario
-from ..scenario.schemes import UETA2022
+from ..scenario.schemes import RESOLVED, UETA2022
 from ..util.finding import Finding
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
+from .open_sides import open_sides
 from .sound_speed import raised
 
 MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
@@ -107,6 +108,32 @@ class HighMach(Finding):
 
 
 @dataclass(frozen=True)
+class NoUplift(Finding):
+    """Bodies that water does not press on where they lie on something."""
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: false: water does not press on bodies from below where they lie on a "
+            "bed or on one another, so that these do not float and keep the friction of their full "
+            "weight; set uplift = true"
+        )
+
+
+@dataclass(frozen=True)
+class FinePores(Finding):
+    """Suction in pores between bodies that no particle resolves."""
+
+    across: float  # particles
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: pores between touching bodies are {self.across:.2g} particles wide; "
+            "what suction does in pores of less than 1 the kernel does not see: make dp "
+            f"{1 / self.across:.2g} times smaller, or set it to 0"
+        )
+
+
+@dataclass(frozen=True)
 class Detached(Finding):
     """A free body that touches nothing: under gravity it falls before the flow begins."""
 
@@ -131,6 +158,8 @@ def findings(
     found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, state, names)]
     found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
     found += [*_gauges(scenario, state), *_mach(scenario, state)]
+    found += open_sides(scenario, state, names)
+    found += [*_films(scenario, state)]
     return list(dict.fromkeys(found))
 
 
@@ -155,6 +184,8 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
+    if scenario.scheme == RESOLVED and scenario.is_dry:
+        return  # bodies meet the shapes of walls, not their particles
     needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
     for body, name in names.items():
         table = scenario.body.get(name)
@@ -185,6 +216,33 @@ def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
     speed, mach = mach_number(scenario, state)
     if mach > MAX_MACH * 1.05:
         yield HighMach("", speed, mach, *scenario.sound_speed_key)
+
+
+def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
+    """Doubts about water between bodies that move."""
+    grains, liquids = _rigid_bodies(scenario, state), _liquids(scenario)
+    if not len(grains) or not liquids:
+        return
+    if not scenario.uplift:
+        yield NoUplift("uplift")
+    # The smaller gap between three equal discs that touch.
+    count = np.unique(grains, return_counts=True)[1].min()
+    diameter = 2 * (count / np.pi) ** 0.5 if scenario.dim == 2 else (6 * count / np.pi) ** (1 / 3)
+    pore = (2 / 3**0.5 - 1) * diameter
+    for name in liquids:
+        if scenario.materials[name].air_entry_suction > 0 and pore < 1:
+            yield FinePores(f"material.{name}.air_entry_suction", float(pore))
+
+
+def _rigid_bodies(scenario: Scenario, state: State) -> np.ndarray:
+    """The rigid body of each particle of one that moves."""
+    if scenario.scheme == UETA2022 or "grain" not in state:
+        return np.zeros(0, np.int32)
+    return state["grain"][state["grain"] >= 0]
+
+
+def _liquids(scenario: Scenario) -> list[str]:
+    return [name for name in scenario.material_names if scenario.materials[name].law == "fluid"]
 
 
 def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,6 +18,7 @@ from ..compiled import available_instruction_sets, load_core
 from ..errors import ResourceError, UserError
 from ..scenario.schemes import RESOLVED, UETA2022
 from ..solver.protocol import CoreSimulation
+from ..util.cores import allowed_cores, shared_cores
 from .case import SCHEMES, Case, make_simulation
 from .report import checks, growth, machine, memory_check, phase_table, speed_table
 
@@ -72,7 +72,7 @@ class Plan:
 
 def default_threads() -> list[int]:
     """One, two, and all."""
-    every = len(os.sched_getaffinity(0))
+    every = allowed_cores()
     return sorted({1, min(2, every), every})
 
 
@@ -237,6 +237,8 @@ def append_history(path: Path, rows: Sequence[Row]) -> None:
 def print_report(rows: Sequence[Row]) -> None:
     """Tables, growth and targets, as Markdown."""
     print(f"{machine()}; scheme {rows[0]['scheme']}")
+    for doubt in shared_cores(max(row["threads"] for row in rows)):
+        print(f"warning: {doubt}")
     for title, table in (("Speed and memory", speed_table), ("Share of a step, %", phase_table)):
         print(f"\n{title}\n\n{table(rows)}")
     print("\nStep time ~ N^a\n")

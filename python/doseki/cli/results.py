@@ -29,6 +29,8 @@ def plot(
     drawn = draw_run(directory)
     for picture in drawn.pictures:
         typer.echo(str(picture))
+    for note in drawn.notes:
+        typer.echo(note)
     if movie:
         typer.echo(str(make_movie(load(directory), movie, colour=colour)))
     for remark in drawn.remarks:

@@ -55,7 +55,7 @@ def run(
     directory = output or team.agree(free_directory(scenario))
 
     def tell(*started: Any) -> None:
-        for line in brief_check(*started):
+        for line in [*brief_check(*started), *_about_cores(threads)]:
             typer.echo(line, err=True)
 
     with run_folder(directory, overwrite, team):
@@ -68,10 +68,18 @@ def run(
             _report(directory, summary, figures, as_json)
 
 
+def _about_cores(threads: int | None) -> list[str]:
+    """A line where the cores are not those of the run alone."""
+    from ..util.cores import shared_cores
+
+    return [f"warning: {doubt}" for doubt in shared_cores(threads)]
+
+
 def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
     """Figures and the summary on one screen, or as JSON; what fails here loses no finished run."""
     remarks: list[str] = []
-    pictures = _pictures(directory, remarks) if figures else []
+    notes: list[str] = []
+    pictures = _pictures(directory, remarks, notes) if figures else []
     text = _summary_text(directory, summary, remarks)
     for remark in remarks:
         typer.echo(f"warning: {one_line(remark)}", err=True)
@@ -81,12 +89,12 @@ def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bo
         return
     typer.echo(text)
     typer.echo(f"\nIn {directory}: summary.txt, history.csv, snapshots, figures:")
-    for picture in pictures:
-        typer.echo(f"  {picture}")
+    for line in [*map(str, pictures), *notes]:
+        typer.echo(f"  {line}")
 
 
-def _pictures(directory: Path, remarks: list[str]) -> list[Path]:
-    """The figures of a run, and in `remarks` what is wrong with them."""
+def _pictures(directory: Path, remarks: list[str], notes: list[str]) -> list[Path]:
+    """The figures of a run; in `remarks` what is wrong with them, in `notes` which are empty."""
     from ..figures.plot import draw_run
 
     try:
@@ -95,6 +103,7 @@ def _pictures(directory: Path, remarks: list[str]) -> list[Path]:
         remarks.append(f"no figures: {error or repr(error)}; later: doseki plot {directory}")
         return []
     remarks += drawn.remarks
+    notes += drawn.notes
     return drawn.pictures
 
 

@@ -14,10 +14,12 @@ from ..solver.rigid_bodies import grain_table
 from ..util.finding import Finding
 from .checkpoint import Checkpoint, CheckpointFolder, Position
 from .gauges import GaugeReader, build_gauges
+from .means import Means, build_means
 from .ranks import OneRank
 from .rewind import Rewind
 from .schedule import CheckpointClock, OutputTimes, StopRequests
-from .sensors import build_sensors
+from .sensors import Sensor, build_sensors
+from .threads import ThreadChoice
 
 BURST_SECONDS = 0.2  # wall time between two looks at signals and the progress bar
 FIRST_BURST, LAST_BURST = 1, 1_000_000  # steps
@@ -36,6 +38,12 @@ def history_row(simulation: Simulation, material_names: list[str]) -> dict[str, 
     row["bulk_energy"] = totals["bulk_energy"]
     row["shear_energy"] = totals["shear_energy"]
     row["av_dissipation"] = totals["av_dissipation"]
+    row["gravity_work"], row["wall_work"] = totals["gravity_work"], totals["wall_work"]
+    row["contact_work"], row["scheme_work"] = totals["contact_work"], totals["scheme_work"]
+    row["energy_entered"], row["energy_left"] = totals["energy_entered"], totals["energy_left"]
+    carried = {name: totals[name] for name in ("impulse", "momentum_entered", "momentum_left")}
+    for name, vector in carried.items():
+        row |= {f"{name}_{axis}": p for axis, p in zip(axes, vector, strict=True)}
     row["mass_asked"] = totals["mass_asked"]
     row["mass_entered"] = totals["mass_entered"]
     row["mass_left"] = totals["mass_left"]
@@ -68,13 +76,16 @@ class ActiveRun:
         self.folder = RunFolder(recorder.directory)
         self.checkpoints = CheckpointFolder(self.folder.checkpoints)
         self.position = Position()
+        self.goes_on = False  # the simulation has its first rates already
+        self.threads: ThreadChoice | None = None  # None: their number does not change
         self.rewind = Rewind()
         self.outputs = OutputTimes(scenario.time_out, scenario.time_max)
         self.gauges = [
             (gauge, OutputTimes(gauge.interval, scenario.time_max))
             for gauge in build_gauges(scenario, body_names)
         ]
-        self.sensors = build_sensors([gauge for gauge, _ in self.gauges])
+        readers = [gauge for gauge, _ in self.gauges]
+        self.sensors, self.means = build_sensors(readers), build_means(readers)
         self._started = time.perf_counter()
 
     @property
@@ -109,15 +120,19 @@ class ActiveRun:
 
     def record_gauge(self, gauge: GaugeReader) -> None:
         """Write a sample."""
-        sensor = self.sensors.get(gauge.name)
-        rows = gauge.read(self.simulation) if sensor is None else [sensor.row()]
+        if gauge.name in self.sensors:
+            rows = [self.sensors[gauge.name].row()]
+        elif gauge.name in self.means:
+            rows = self.means[gauge.name].sample(self.simulation)
+        else:
+            rows = gauge.read(self.simulation)
         self.recorder.gauge(gauge.name, gauge.header, rows)
         written = self.position.gauge_rows.get(gauge.name, 0) + len(rows)
         self.position.gauge_rows = self.position.gauge_rows | {gauge.name: written}
 
     def checkpoint(self) -> Checkpoint:
         """A copy of the state and of where the run stands."""
-        sensors = {name: sensor.state for name, sensor in self.sensors.items()}
+        sensors = {name: each.state for name, each in self._with_memory.items()}
         now = {"wall_seconds": self.wall_seconds, "sensors": sensors}
         position = Position(**vars(self.position) | now)
         names = self.scenario.material_names, self.body_names
@@ -148,21 +163,28 @@ class ActiveRun:
 
     def start(self) -> None:
         """Take the first rates; record the initial state, and write the first checkpoint."""
-        self.simulation.start()
+        if not self.goes_on:
+            self.simulation.start()
         self.record_snapshot()
+        self.position.outputs += self.outputs.passed(self.simulation.time)
         self.record_history()
         self._follow()
         for gauge, _ in self.gauges:
             self.record_gauge(gauge)
         self.write_checkpoint()
 
+    @property
+    def _with_memory(self) -> dict[str, Sensor | Means]:
+        """What remembers something of the time before, by name of the gauge."""
+        return {**self.sensors, **self.means}
+
     def go_on_from(self, position: Position) -> None:
         """Stand in the record where a checkpoint did; raises ValueError for one of another run."""
         self.position = position
-        if set(position.sensors) != set(self.sensors):
-            raise ValueError("the gauges with filter_hz are not those of its checkpoint")
-        for name, sensor in self.sensors.items():
-            sensor.state = position.sensors[name]
+        if set(position.sensors) != set(self._with_memory):
+            raise ValueError("the gauges with filter_hz or means are not those of its checkpoint")
+        for name, each in self._with_memory.items():
+            each.state = position.sensors[name]
 
     def advance(self, clock: CheckpointClock, progress: Progress, stop: StopRequests) -> bool:
         """Steps to the end, or to the first look after a stop request; true if it came to the end.
@@ -189,10 +211,13 @@ class ActiveRun:
         """Steps and records; returns how many steps to take next time."""
         simulation, limit = self.simulation, self.limit_at(self.simulation.time)
         samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
-        started, first = time.perf_counter(), simulation.steps
+        started, processor, first = time.perf_counter(), time.process_time(), simulation.steps
         pause = min(limit, pause, self.position.next_history)
         self._step(limit, pause, steps)
-        rate = (simulation.steps - first) / (time.perf_counter() - started)
+        wall, done = time.perf_counter() - started, simulation.steps - first
+        rate = done / wall
+        if self.threads is not None:
+            self.threads.spent(done, wall, time.process_time() - processor)
         if self.outputs.is_due(simulation.time, self.next_output()):
             self.record_snapshot()
         for gauge, planned in samples:

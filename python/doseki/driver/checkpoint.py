@@ -20,9 +20,10 @@ from ..util.files import clear_errors, write_whole
 from ..util.foreign import read_bytes
 from ..util.hdf5 import open_hdf5
 
-VERSION = 2
+VERSION = 3
 KEPT = 2  # files; the older one serves where the newer one is damaged
 DIGEST_BYTES = 64
+AROUND_STATE = "doseki"  # JSON, as bytes
 
 
 Count = Annotated[int, Field(ge=0, le=2**53)]
@@ -95,7 +96,8 @@ def to_bytes(checkpoint: Checkpoint) -> memoryview:
             "material_names": checkpoint.material_names,
             "body_names": checkpoint.body_names,
         }
-        file.attrs["doseki"] = json.dumps(said)
+        # No attribute, which holds 64 kB at most.
+        file[AROUND_STATE] = np.frombuffer(json.dumps(said).encode(), np.uint8)
         for name, values in checkpoint.state.items():
             file.create_dataset(name, data=values)
     digest = hashlib.blake2b(image.getbuffer()).digest()
@@ -115,7 +117,7 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
     if len(data) < 2 * DIGEST_BYTES or hashlib.blake2b(content).digest() != digest:
         raise DamagedCheckpointError("its checksum is wrong")
     with open_hdf5(path, content) as file:
-        said = json.loads(file.attribute("/", "doseki"))
+        said = json.loads(file.numbers(AROUND_STATE).tobytes())
         if said.get("version") != VERSION:
             raise DamagedCheckpointError(f"it has format {said.get('version')}, expected {VERSION}")
         try:
@@ -124,7 +126,7 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
             first = error.errors()[0]
             place = ".".join(map(str, first["loc"]))
             raise file.error(place, f"is wrong: {first['msg']}") from None
-        state = {name: file.numbers(name) for name in file.names()}
+        state = {name: file.numbers(name) for name in file.names() if name != AROUND_STATE}
     for name in ("time", "steps", "lanes"):
         if name not in state or state[name].shape != (1,):
             raise UserError(f'{path}: "{name}" is missing, or not one number')

@@ -29,6 +29,11 @@ class GaugeReader:
         """The first line of its file."""
         return [f"{name} [{unit}]" for name, unit in self.columns.items()]
 
+    @property
+    def mean_columns(self) -> int:
+        """How many of its last columns are means since the sample before."""
+        return len(self.gauge.means(self.setting.dim))
+
     def read(self, simulation: Sampled) -> Rows:
         """A sample of the simulation as it is now; all ranks must take part."""
         return self.gauge.read(simulation, self.setting)

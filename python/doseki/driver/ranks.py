@@ -7,12 +7,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..compiled import load_core
 from ..record.history import SHARES
 from ..record.lock import FolderLock
 from ..scenario.model import Scenario
 from ..solver.build import empty_simulation, filled_simulation
 from ..solver.protocol import Columns, Simulation, SimulationView
 from ..solver.restoring import check_state
+from ..util.cores import allowed_cores
 from ..util.finding import Finding
 
 T = TypeVar("T")
@@ -37,9 +39,9 @@ class OneRank:
         """What `work` gives on rank 0, on all ranks; they all raise what it raises there."""
         return work()
 
-    def threads(self, wish: int | None) -> int | None:
-        """Threads of each rank; None: as many as the core takes by itself."""
-        return wish
+    def threads(self, wish: int | None) -> int:
+        """Threads of each rank: those asked for, or as many as the core takes and may have."""
+        return wish or min(load_core().threads(), allowed_cores())
 
     @contextmanager
     def holding(self, directory: str | Path) -> Iterator[None]:

@@ -31,6 +31,10 @@ class OutputTimes:
         planned = number * self.interval
         return self.last if planned > self.last * (1 - 1e-9) else planned
 
+    def passed(self, simulated: float) -> int:
+        """How many of these times but zero have come by the time `simulated`, s."""
+        return int(simulated / self.interval + 1e-9)
+
     def after(self, simulated: float) -> float:
         """The first of these times that is later than `simulated`, s; inf if there is none."""
         passed = simulated * (1 + self.SAME)

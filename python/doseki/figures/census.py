@@ -11,7 +11,7 @@ from ..measure.census import CLASSES, Census, SpeedDraws
 from ..record.units import unit_in
 from .kinds.histogram import draw_speed_row
 from .kinds.series import draw_curves
-from .layout import chart_grid
+from .layout import chart_grid, figure_legend
 
 COLOURS = ("#bdbdbd", "#fdae61", "#3182bd", "#74c476", "#756bb1", "#636363")  # of CLASSES
 
@@ -35,6 +35,7 @@ def draw_speed_histogram(drawn: SpeedDraws, where: str) -> Figure:
     """All speeds, and what random samples of them look like."""
     figure, grid = chart_grid(1, 2, (4.2, 3.0), f"Speed of the grains, {where}")
     draw_speed_row(grid[0], drawn, "grains")
+    figure_legend(figure, grid.flat)
     return figure
 
 
@@ -43,6 +44,7 @@ def draw_passed(census: Census, sections: Sequence[float], dim: int) -> Figure:
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Grains that have passed")
     curves = {f"x = {section:g} m": census.passed(section) for section in sections}
     draw_curves(grid[0, 0], census.times, curves)
+    figure_legend(figure, grid.flat)
     unit = unit_in("kg", dim)
     grid[0, 0].set(xlabel="time (s)", ylabel=f"passed ({unit} of {census.load_mass:.4g})")
     return figure

@@ -19,6 +19,7 @@ from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..util.files import clear_errors, write_whole, write_whole_text
 from .census import draw_classes, draw_deposit, draw_passed, draw_speed_histogram
+from .text import plain_text
 
 OUTLET, DEPOSIT = "outlet", "deposit"  # windows that are used by default
 
@@ -69,9 +70,10 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
         }
     write_tables(folder, tables)
     where = f"window {name}" if name else "everywhere"
-    _write_figures(folder, run, census, drawn, where, outline, options.sections)
+    with plain_text() as complaints:
+        _write_figures(folder, run, census, drawn, where, outline, options.sections)
     files = f"In {folder}: {', '.join(tables)} (.csv, census.h5), figures"
-    return [*census_lines(census, drawn, where, options.sections), files]
+    return [*census_lines(census, drawn, where, options.sections), files, *complaints]
 
 
 def _outline(census: Census, known: Mapping[str, View]) -> np.ndarray | None:

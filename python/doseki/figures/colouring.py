@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from matplotlib import colormaps, colors
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..measure.quantities import quantity
 from ..measure.views import View, fluid_names, select
 from ..record.quantities import CATEGORIES, check_quantity, quantity_label
 from ..record.reader import Run, Snapshot
-from .layout import PanelGrid
 
 FIXED_COLOUR = "#262626"  # the slope is black, as in the paper
+FIXED_IN_SPACE = "#b3ada3"
 FIXED_BESIDE_SCALE = "#a6a6a6"  # grey, because black is a colour of the scale
 FLUID_COLOURS = ("#3182bd", "#41b6c4", "#54278f")  # water blue, debris red
 SOLID_COLOURS = ("#d7301f", "#fd8d3c", "#8c510a", "#dd3497")
@@ -26,12 +28,23 @@ MAX_ENTRIES = 12
 FEW = 1000  # with more particles than this the colour scale leaves out the outermost 1 %
 
 
+class KeyRoom(Protocol):
+    """A figure with room for keys to the right of panels."""
+
+    figure: Figure
+
+    def beside(self, axes: Axes) -> Axes:
+        """Narrow axes for a colour bar to the right of a panel."""
+
+
 class CategoryColours:
     """One colour for each material or body; fixed particles are black."""
 
     def __init__(self, run: Run, snapshots: Sequence[Snapshot], name: str) -> None:
         """`name` is "material" or "body"."""
         self._name = name
+        # Black surfaces would show no shade.
+        self.fixed_colour = FIXED_COLOUR if run.scenario["dim"] == 2 else FIXED_IN_SPACE
         self.heading = ""
         free, fixed = set(), set()
         for snapshot in snapshots:
@@ -43,21 +56,19 @@ class CategoryColours:
     def rgba(self, snapshot: Snapshot) -> np.ndarray:
         """Colours (N, 4) from 0 to 1."""
         kinds, kind = np.unique(snapshot[self._name], return_inverse=True)
-        table = [colors.to_rgba(self._free.get(name, FIXED_COLOUR)) for name in kinds]
+        table = [colors.to_rgba(self._free.get(name, self.fixed_colour)) for name in kinds]
         colours = np.array(table).reshape(-1, 4)[kind]
-        colours[snapshot["fixed"]] = colors.to_rgba(FIXED_COLOUR)
+        colours[snapshot["fixed"]] = colors.to_rgba(self.fixed_colour)
         return colours
 
     def legend_entries(self) -> list[tuple[str, str]]:
         """(label, colour) of every kind; none when they are too many to name."""
-        fixed = [(f"{kind} (fixed)", FIXED_COLOUR) for kind in self._fixed]
+        fixed = [(f"{kind} (fixed)", self.fixed_colour) for kind in self._fixed]
         entries = [*self._free.items(), *fixed]
         return entries if len(entries) <= MAX_ENTRIES else []
 
-    def add_key(self, grid: PanelGrid, axes: Axes, first: bool) -> None:
-        """Explain the colours to the right of the panel `axes` if it is the `first` of them."""
-        if not first:
-            return
+    def add_key(self, grid: KeyRoom, axes: Axes) -> None:
+        """Explain the colours to the right of the panel `axes`."""
         handles = [Patch(color=colour, label=label) for label, colour in self.legend_entries()]
         axes.legend(
             handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0,
@@ -87,8 +98,8 @@ class ScaleColours:
         values = np.linspace(*self._limits, 5)
         return [(f"{v:.3g}", colors.to_hex(colormaps[SCALE](self._norm(v)))) for v in values]
 
-    def add_key(self, grid: PanelGrid, axes: Axes, first: bool) -> None:
-        """Explain the colours by a bar to the right of the panel `axes`, `first` or not."""
+    def add_key(self, grid: KeyRoom, axes: Axes) -> None:
+        """Explain the colours by a bar to the right of the panel `axes`."""
         bar = grid.figure.colorbar(ScalarMappable(self._norm, SCALE), cax=grid.beside(axes))
         bar.set_label(self.heading, fontsize="small")
 

@@ -20,7 +20,9 @@ MARGIN = 0.02  # of the size of the picture, around all particles
 FEW_CIRCLES = 100
 MAX_CIRCLES = 200_000  # more particles than this are drawn as pixels
 RASTER_WIDTH = 2000
-TRIM = 0.05  # per cent of the particles at each end that may be far from all others
+STRAY = 0.5  # per cent of what moves, at each end, that may be far from all others
+NEAR = 0.1  # of the size of a flow: what is no farther away belongs to it
+ROOM = 0.15  # of the size of the flow, around it, in which walls are shown
 WHITE = (255, 255, 255)
 
 
@@ -48,13 +50,12 @@ def dots(snapshot: Snapshot, view: View, size: str = "grain", material: str | No
         mask &= snapshot["material"] == material
     index = np.flatnonzero(mask)
     index = index[np.lexsort((snapshot["density"][index], ~snapshot["fixed"][index]))]
-    radius = (
-        SUPPORT * snapshot["smoothing_length"] if size == "support" else _grain_radius(snapshot)
-    )
+    radius = SUPPORT * snapshot["smoothing_length"] if size == "support" else grain_radius(snapshot)
     return Dots(index, position[index][:, [0, -1]], radius[index])
 
 
-def _grain_radius(snapshot: Snapshot) -> np.ndarray:
+def grain_radius(snapshot: Snapshot) -> np.ndarray:
+    """Radius (N,) of the circle, or ball, that has the volume of each particle, m."""
     volume = snapshot["mass"] / snapshot["density"]
     if snapshot.dim == 2:
         return np.sqrt(volume / np.pi)
@@ -62,39 +63,66 @@ def _grain_radius(snapshot: Snapshot) -> np.ndarray:
 
 
 def _in_slice(position: np.ndarray, snapshot: Snapshot, view: View) -> np.ndarray:
-    """In 3-D: across the flow within the view, or near the middle where the view has no bounds."""
+    """In 3-D: near the middle of the view, or of all where the view has no bounds."""
     if snapshot.dim == 2 or len(position) == 0:
         return np.ones(len(position), bool)
     across = position[:, 1]
-    if np.all(np.isfinite([view.lower[1], view.upper[1]])):
-        return (across >= view.lower[1]) & (across <= view.upper[1])
-    middle = (across.min() + across.max()) / 2
+    ends = np.clip([across.min(), across.max()], view.lower[1], view.upper[1])
+    middle = ends.mean()
     spacing = np.cbrt(snapshot["mass"] / snapshot["density"])
     return np.abs(across - middle) <= 0.75 * spacing
 
 
 def extent_of(snapshots: Sequence[Snapshot], view: View, size: str = "grain") -> Extent:
-    """The bounds of the view; where these are infinite, what holds the particles."""
-    shown = [d for d in (dots(s, view, size) for s in snapshots) if len(d.index)]
+    """The bounds of the view; where these are infinite, what holds what moves, and walls nearby.
+
+    Drops that fly far from all others are left out.
+    """
+    shown = [(s, d) for s, d in ((s, dots(s, view, size)) for s in snapshots) if len(d.index)]
     low, high = view.lower[[0, -1]], view.upper[[0, -1]]
     if shown:
-        ends = _ends(np.concatenate([d.points for d in shown]))
-        margin = max(d.radius.max() for d in shown) + MARGIN * np.max(ends[1] - ends[0])
+        ends = _ends([(d.points, s["fixed"][d.index]) for s, d in shown])
+        margin = max(d.radius.max() for _, d in shown) + MARGIN * np.max(ends[1] - ends[0])
         low = np.where(np.isfinite(low), low, ends[0] - margin)
         high = np.where(np.isfinite(high), high, ends[1] + margin)
     low, high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 1.0)
     return low[0], high[0], low[1], high[1]
 
 
-def _ends(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest coordinates, without the few particles that fly far from all others."""
-    low, high = np.percentile(points, (TRIM, 100 - TRIM), axis=0)
-    near = 0.1 * (high - low)
+def _ends(clouds: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates of points (n, 2), of which some are fixed (n,)."""
+    walls = np.concatenate([points[fixed] for points, fixed in clouds])
+    free = [ends_of_most(points[~fixed]) for points, fixed in clouds if not fixed.all()]
+    if not free:
+        return walls.min(axis=0), walls.max(axis=0)
+    low, high = np.min([ends[0] for ends in free], axis=0), np.max([e[1] for e in free], axis=0)
+    if len(walls):
+        room = ROOM * np.max(high - low)
+        low = np.minimum(low, np.maximum(walls.min(axis=0), low - room))
+        high = np.maximum(high, np.minimum(walls.max(axis=0), high + room))
+    return low, high
+
+
+def ends_of_most(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates, without the few points that are far from all others."""
+    low, high = np.percentile(points, (STRAY, 100 - STRAY), axis=0)
+    near = NEAR * np.max(high - low)
     least, greatest = points.min(axis=0), points.max(axis=0)
     return (
         np.where(least > low - near, least, low),
         np.where(greatest < high + near, greatest, high),
     )
+
+
+def outside_text(snapshot: Snapshot, view: View, shown: Dots, extent: Extent) -> str:
+    """How many of the particles that move a picture of everything leaves out."""
+    if np.isfinite(view.lower).any() or np.isfinite(view.upper).any():
+        return ""
+    points = shown.points[~snapshot["fixed"][shown.index]]
+    left, right, bottom, top = extent
+    low, high = np.array([left, bottom]), np.array([right, top])
+    beyond = int(np.any((points < low) | (points > high), axis=1).sum())
+    return f" ({beyond} of {len(points)} particles are outside)" if beyond else ""
 
 
 def draw_particles(

@@ -9,7 +9,7 @@ from ..measure.flow import Flow
 from ..record.reader import Run
 from ..record.units import unit_in
 from .kinds.series import draw_curves
-from .layout import chart_grid
+from .layout import chart_grid, figure_legend
 
 MEASURES = (  # attribute of WindowFlow, what it is, its unit in 3-D
     ("fluid_velocity", "mean velocity x of the fluid", "m/s"),
@@ -27,15 +27,20 @@ def draw_flow(run: Run, flow: Flow) -> Figure:
         draw_curves(axes, flow.times, curves)
         axes.set_ylabel(label, fontsize="small")
     grid[-1, 0].set_xlabel("time (s)")
+    figure_legend(figure, grid.flat)
     return figure
 
 
 def _window_panels(run: Run, flow: Flow) -> dict[str, dict[str, np.ndarray]]:
-    """Curves of every window (so that each has one colour throughout) by the label of the axis."""
+    """Curves of every window by the label of the axis, but of those that nothing has reached.
+
+    Each window has one colour throughout.
+    """
+    windows = {name: w for name, w in flow.windows.items() if any(w.fluid_count + w.grain_count)}
     panels = {}
     for attribute, meaning, unit in MEASURES:
-        curves = {name: np.array(getattr(w, attribute)) for name, w in flow.windows.items()}
-        if any(np.any(np.isfinite(curve)) for curve in curves.values()):
+        curves = {name: np.array(getattr(w, attribute)) for name, w in windows.items()}
+        if any(np.any(np.nan_to_num(curve)) for curve in curves.values()):
             label = f"{meaning} ({unit_in(unit, run.scenario['dim'])})"
             panels[label] = curves
     return panels

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,10 +12,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from ..measure.moments import Moment
+from ..record.reader import Run
+
 DPI = 150
 WIDTH, HEIGHT = 8.0, 12.0  # inches for all panels of a row, of a column
 LEFT, BOTTOM, ABOVE, TITLE = 0.95, 0.55, 0.35, 0.35  # inches around the panels
 GAP, KEY_SLOT = 0.25, 1.6  # inches to the right of a panel
+VIEWS_WIDTH, VIEW_GAP = 11.0, 0.8  # inches for views in space, and below each of them
+VIEW_TOP = 0.25  # inches of the gap that are above a view
+FLAT_VIEWS = 9.0  # views that are longer than so many heights stand below each other
+BAR_SHARE = 0.2  # of the width: a scale bar is no longer
+
+SMALL: dict[str, Any] = {"fontsize": "small", "loc": "left"}  # titles of panels
 
 Extent = tuple[float, float, float, float]  # left, right, bottom, top in m
 
@@ -59,6 +70,70 @@ class PanelGrid:
         return self.figure.add_axes(box)
 
 
+class ViewRows:
+    """Rows of three views of one space, each with the proportions of its extent, and keys.
+
+    The first view stands left of the other two, or above them where they are long and flat.
+    """
+
+    def __init__(self, rows: int, extents: Sequence[Extent], title: str) -> None:
+        """Extents of the three views."""
+        wide = np.array([e[1] - e[0] for e in extents])
+        high = np.array([e[3] - e[2] for e in extents])
+        self._flat = bool(wide.sum() > FLAT_VIEWS * high.max())
+        columns = 1 if self._flat else 3
+        self.key_beside = columns - 1  # the panel that keys stand beside
+        scale = min(VIEWS_WIDTH / (wide.max() if self._flat else wide.sum()), 5.0 / high.max())
+        self._sizes = np.stack([wide, high], axis=1) * scale
+        inner = (high.sum() if self._flat else high.max()) * scale
+        self._row = inner + (4 - columns) * VIEW_GAP
+        self._rows, self._title = rows, TITLE if title else 0.1
+        across = (wide.max() if self._flat else wide.sum()) * scale + columns * LEFT
+        height = rows * self._row + self._title
+        self.figure = _figure(across + KEY_SLOT, height)
+        self.figure.suptitle(title, fontsize="medium", wrap=True, y=1 - 0.1 / height, va="top")
+
+    def row(self, number: int) -> list[Axes]:
+        """The axes of a row: slanting view, plan, section."""
+        top = self.figure.get_size_inches()[1] - self._title - number * self._row - VIEW_TOP
+        left, found = LEFT, []
+        for width, height in self._sizes:
+            found.append(self._add(left, top - height, width, height))
+            if self._flat:
+                top -= height + VIEW_GAP
+            else:
+                left += width + LEFT
+        for axes, (width, height) in zip(found, self._sizes, strict=True):
+            axes.xaxis.set_major_locator(MaxNLocator(max(2, int(1.3 * width))))
+            axes.yaxis.set_major_locator(MaxNLocator(max(2, int(2.0 * height))))
+        return found
+
+    def beside(self, axes: Axes) -> Axes:
+        """Narrow axes for a colour bar to the right of a panel."""
+        across, up = self.figure.get_size_inches()
+        box = axes.get_position()
+        return self._add(box.x1 * across + 0.12, box.y0 * up, 0.15, box.height * up)
+
+    def _add(self, left: float, bottom: float, width: float, height: float) -> Axes:
+        across, up = self.figure.get_size_inches()
+        return self.figure.add_axes((left / across, bottom / up, width / across, height / up))
+
+
+def scale_bar(axes: Axes) -> None:
+    """A bar of a round length, m, in the lower left corner of axes of equal units."""
+    left, right = axes.get_xlim()
+    bottom, top = axes.get_ylim()
+    length = nice_length(BAR_SHARE * (right - left))
+    axes.plot([left, left + length], [bottom, bottom], "k-", linewidth=3, gid="scale bar")
+    axes.text(left, bottom + 0.02 * (top - bottom), f"{length:g} m", fontsize="small")
+
+
+def nice_length(longest: float) -> float:
+    """The longest of 1, 2, 5, 10, 20 ... (and 0.5, 0.2 ...) that is no longer than `longest`."""
+    power = 10.0 ** math.floor(math.log10(longest))
+    return max(power * step for step in (1.0, 2.0, 5.0) if power * step <= longest * (1 + 1e-9))
+
+
 def name_axes(axes: Axes, dim: int, rotate: float) -> None:
     """Name the axes of a panel where they have numbers; a prime marks turned axes."""
     prime = "'" if rotate else ""
@@ -82,6 +157,25 @@ def _figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), dpi=DPI)
     FigureCanvasAgg(figure)
     return figure
+
+
+def figure_legend(figure: Figure, panels: Iterable[Axes]) -> None:
+    """One legend for all panels: each name once, to the right of the figure."""
+    handles: dict[str, Any] = {}
+    for axes in panels:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    if handles:
+        figure.legend(
+            list(handles.values()), list(handles), loc="outside right upper", frameon=False,
+            fontsize="small",
+        )  # fmt: skip
+
+
+def moment_text(run: Run, moment: Moment) -> str:
+    """The time of a moment, and what happened then."""
+    time = time_text(float(run.times[moment.index]), float(run.times[-1]))
+    return f"{time}, {moment.name}" if moment.name else time
 
 
 def time_text(time: float, longest: float) -> str:

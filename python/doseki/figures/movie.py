@@ -7,19 +7,18 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 from ..errors import UserError
 from ..measure.views import View, named_window, tilt, whole_space
 from ..record.reader import Run, Snapshot
 from ..util.files import clear_errors, write_whole
-from .colouring import Colouring, colouring
-from .dots import WHITE, dots, extent_of, picture
+from .colouring import colouring
+from .dots import dots, extent_of, picture
 from .layout import time_text
+from .stage import WIDTH, Stage
+from .text import plain_text
 
-WIDTH = 1200  # pixels
-HEADER = 40  # pixels above the particles for time and key
-KEY_LEFT = 140  # pixels to the left of the key
 SAMPLES = 20  # snapshots looked at to choose the limits of the picture and of the colours
 
 
@@ -44,7 +43,8 @@ def make_movie(
         raise UserError(f"{path}: exists and is not overwritten")
     if not len(run):
         raise UserError(f"{run.directory}: the run has no snapshot to show")
-    camera = _Camera(run, colour, window)
+    with plain_text():
+        camera = _Camera(run, colour, window)
     with clear_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, lambda temporary: encode(temporary, camera.frames(), frames_per_second))
@@ -61,6 +61,7 @@ class _Camera:
         samples = [*run[::step], run[-1]]
         self._extent = extent_of(samples, self._view)
         self._colours = colouring(run, samples, colour, self._view)
+        self.stage = Stage(run, self._view, self._extent, self._colours)
 
     def _choose_view(self, window: str | None) -> View:
         if window is not None:
@@ -75,24 +76,7 @@ class _Camera:
         shown = dots(snapshot, self._view)
         rgba = self._colours.rgba(snapshot)[shown.index]
         pixels = picture(shown, rgba, self._extent, WIDTH)
-        height = HEADER + pixels.shape[0]
-        frame = Image.new("RGB", (WIDTH, height + height % 2), WHITE)  # MP4 wants even sizes
-        frame.paste(Image.fromarray(pixels), (0, HEADER))
-        text = time_text(snapshot.time, self._run.times[-1])
-        _write_header(frame, text, self._colours)
-        return frame
-
-
-def _write_header(frame: Image.Image, text: str, colours: Colouring) -> None:
-    draw = ImageDraw.Draw(frame)
-    font = ImageFont.load_default(size=18)
-    draw.text((10, 8), text, "black", font)
-    draw.text((KEY_LEFT, 8), colours.heading, "black", font)
-    left = KEY_LEFT + int(draw.textlength(colours.heading, font)) + 12
-    for label, colour in colours.legend_entries():
-        draw.rectangle((left, 12, left + 16, 28), fill=colour)
-        draw.text((left + 24, 8), label, "black", font)
-        left += 50 + int(draw.textlength(label, font))
+        return self.stage.frame(pixels, time_text(snapshot.time, self._run.times[-1]))
 
 
 def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:

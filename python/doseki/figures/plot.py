@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -11,16 +12,19 @@ from matplotlib.figure import Figure
 
 from ..errors import DosekiError, UserError, one_line
 from ..measure.flow import measure_flow
+from ..measure.moments import moments
 from ..measure.views import tables, tilt, whole_space
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..scenario.tables.figure import Figure as FigureTable
 from ..util.files import clear_errors, write_whole
 from .flow import draw_flow
-from .kinds.moments import spread
+from .kinds.energy import draw_energy
+from .kinds.panels import Panels
 from .kinds.registry import draw
-from .kinds.series import ENERGIES, MASSES, draw_history
-from .kinds.snapshot import Panels, draw_panels
+from .kinds.series import MASSES, draw_history
+from .kinds.snapshot import draw_panels
+from .nothing import NothingToDrawError
 from .text import plain_text
 
 
@@ -31,6 +35,7 @@ class Drawn:
     pictures: list[Path] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # of those that would be empty
 
     @property
     def remarks(self) -> list[str]:
@@ -52,9 +57,10 @@ def draw_run(directory: str | Path) -> Drawn:
     for name, make in _makers(run):
         try:
             with plain_text() as complaints:
-                if (figure := make()) is not None:
-                    drawn.pictures.append(_save(figure, run, name))
+                drawn.pictures.append(_save(make(), run, name))
             drawn.warnings += [f"figure {name}: {text}" for text in complaints]
+        except NothingToDrawError as reason:
+            drawn.notes.append(one_line(f"figure {name} is not drawn: {reason}"))
         except Exception as error:
             # Whatever a picture stumbles over: the run, and the other pictures, do not.
             said = str(error) if isinstance(error, DosekiError) else repr(error)
@@ -71,14 +77,14 @@ def plot_run(directory: str | Path) -> list[Path]:
 
 
 def figures(run: Run) -> Iterator[tuple[str, Figure]]:
-    """Every figure of a run with its name, one after the other."""
+    """Every figure of a run that has something to show with its name, one after the other."""
     for name, make in _makers(run):
-        if (figure := make()) is not None:
-            yield name, figure
+        with suppress(NothingToDrawError):
+            yield name, make()
 
 
-def _makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure | None]]]:
-    """The name of each figure and what draws it, or finds nothing to be drawn.
+def _makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    """The name of each figure and what draws it, or raises NothingToDrawError.
 
     A figure of the scenario replaces a general one of the same name.
     """
@@ -90,31 +96,31 @@ def _makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure | None]]]:
         yield name, partial(draw, run, name, table)
 
 
-def _energy(run: Run) -> Figure | None:
-    known = set(ENERGIES) <= set(run.history)
-    return draw_history(run, ENERGIES, "Energy") if known else None
+def _mass(run: Run) -> Figure:
+    if not set(MASSES) <= set(run.history):
+        raise NothingToDrawError("the history has no ledger of mass")
+    if not any(run.history[column].any() for column in MASSES if column != "mass_inside"):
+        raise NothingToDrawError("no mass enters or leaves")
+    return draw_history(run, MASSES, "Mass ledger")
 
 
-def _mass(run: Run) -> Figure | None:
-    known = set(MASSES) <= set(run.history)
-    return draw_history(run, MASSES, "Mass ledger") if known else None
-
-
-def _flow(run: Run) -> Figure | None:
+def _flow(run: Run) -> Figure:
     flow = measure_flow(run)
-    return draw_flow(run, flow) if flow is not None else None
+    if flow is None:
+        raise NothingToDrawError("there is no fluid")
+    return draw_flow(run, flow)
 
 
 def _overview(run: Run) -> Figure:
-    """The whole domain at the start, in the middle and at the end, gravity pointing down."""
+    """Everything at the start, when the flow arrives, at its peak, and at the end; gravity down."""
     view = whole_space(run.scenario["dim"], rotate=-tilt(run))
     what = Panels(view, ["material"], run.scenario.get("title", ""))
-    return draw_panels(run, spread(run, 3), what)
+    return draw_panels(run, moments(run, view), what)
 
 
-GENERAL: dict[str, Callable[[Run], Figure | None]] = {
+GENERAL: dict[str, Callable[[Run], Figure]] = {
     "overview": _overview,
-    "energy": _energy,
+    "energy": draw_energy,
     "mass": _mass,
     "flow": _flow,
 }

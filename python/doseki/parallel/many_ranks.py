@@ -17,6 +17,7 @@ from ..scenario.model import Scenario
 from ..solver.build import empty_simulation, filled_simulation
 from ..solver.protocol import Columns, Rates, Simulation, SimulationView
 from ..solver.restoring import check_state
+from ..util.cores import allowed_cores
 from ..util.finding import Finding
 from .rank_failure import RankFailure
 from .simulation import RankedSimulation
@@ -75,7 +76,7 @@ class ManyRanks(OneRank):
     def threads(self, wish: int | None) -> int:
         """Those asked for, or an equal share of the cores of this machine."""
         neighbours = self._comm.Split_type(MPI.COMM_TYPE_SHARED)
-        share = len(os.sched_getaffinity(0)) // neighbours.size
+        share = allowed_cores() // neighbours.size
         neighbours.Free()
         return wish or max(1, share)
 

@@ -14,10 +14,13 @@ from .balance import Balance
 from .engines import chosen_engine
 from .transport import Transport
 
-# Of a checkpoint: what each rank has its own part of, added up over the ranks.
+# Of a checkpoint: what each rank has its own part of, added up over the ranks, if at all.
 SUMMED = (
-    "mass_initial", "mass_entered", "mass_left", "av_dissipation", "av_power", "updates",
+    "mass_initial", "entered", "left", "account", "av_dissipation", "av_power", "scheme_work",
+    "updates",
 )  # fmt: skip
+# Of a checkpoint: what only the rank that wrote it can go on with.
+LISTS = ("lists_moving", "lists_fixed", "lists_entries", "lists_position", "stress_record")
 SHORT = 1e-3  # s of work; too short to tell how it is shared
 
 
@@ -189,9 +192,9 @@ class RankedSimulation:
         particles = {name: state[name] for name in self.core.particle_arrays}
         whole = gathered(self.comm, particles)
         found = state | whole
-        for name in SUMMED:
+        for name in filter(state.__contains__, SUMMED):
             found[name] = self.comm.allreduce(state[name])
-        for name in ("lists_moving", "lists_fixed", "lists_entries", "stress_record"):
+        for name in LISTS:
             if name in found:
                 found[name] = found[name][:0]
         found["lanes"] = np.zeros_like(state["lanes"])

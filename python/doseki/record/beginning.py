@@ -9,6 +9,7 @@ from pathlib import Path
 from ..errors import UserError
 from ..util.files import clear_errors, sync, write_whole, write_whole_text
 from ..util.input_file import InputFile
+from ..util.sealed import sealed
 from .folder import RunFolder
 from .lock import holder_of, in_use
 
@@ -42,6 +43,8 @@ def begin(folder: RunFolder, scenario: str, inputs: Sequence[InputFile], overwri
     A new folder gets its name when all of that is in it.
     """
     check_free(folder.path, overwrite)
+    for each in inputs:
+        _check_apart(folder, each)
     if folder.path.is_dir():
         _fill(folder, scenario, inputs)
         return
@@ -67,11 +70,20 @@ def _fill(folder: RunFolder, scenario: str, inputs: Sequence[InputFile]) -> None
             file.unlink()
         folder.snapshots.mkdir(parents=True, exist_ok=True)
         _copy(folder, inputs)
-        write_whole_text(folder.scenario, scenario)
+        write_whole_text(folder.scenario, sealed(scenario))
         names = {each.name for each in inputs}
         stale = [file for file in folder.inputs.glob("*") if file.name not in names]
         for file in [*folder.recorded(), *stale]:
             file.unlink(missing_ok=True)
+
+
+def _check_apart(folder: RunFolder, each: InputFile) -> None:
+    """What a run needs must not be in the record that it replaces; copies of inputs may be."""
+    here = folder.path.resolve()
+    if here in each.path.parents and folder.inputs.resolve() not in each.path.parents:
+        raise UserError(
+            f"{each.path}: is in the folder that is to be overwritten; give another folder"
+        )
 
 
 def _copy(folder: RunFolder, inputs: Sequence[InputFile]) -> None:

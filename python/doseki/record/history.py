@@ -11,7 +11,12 @@ def history_columns(dim: int, material_names: Sequence[str]) -> list[str]:
     """Names of the columns, in order."""
     momentum = [f"momentum_{axis}" for axis in "xyz"[:dim]]
     energies = ["kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation"]
+    work = ["gravity_work", "wall_work", "contact_work", "scheme_work"]
+    carried = ["energy_entered", "energy_left"]
+    for name in ("impulse", "momentum_entered", "momentum_left"):
+        carried += [f"{name}_{axis}" for axis in "xyz"[:dim]]
     masses = ["mass_asked", "mass_entered", "mass_left", "mass_inside", "mass_initial"]
     counts = ["n_particles", *(f"n_{name}" for name in material_names)]
     ranks = ["imbalance", *(f"share_{name}" for name in SHARES)]
-    return ["time", "step", "dt", "mass", *momentum, *energies, *masses, *counts, *ranks]
+    start = ["time", "step", "dt", "mass", *momentum, *energies]
+    return [*start, *work, *carried, *masses, *counts, *ranks]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import tomllib
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -15,9 +16,12 @@ from ..errors import UserError
 from ..util.foreign import read_text, readable
 from ..util.spelling import suggestion
 from . import vtkhdf
+from .between import Between
 from .fields import FIELD_BY_KEY
 from .folder import RunFolder, read_history
 from .particles import FIXED
+
+ROUNDING = 1e-6  # of the time between two snapshots: the same time
 
 
 def load(directory: str | Path) -> Run:
@@ -163,11 +167,49 @@ class Run(Sequence[Snapshot]):
         """Times of the snapshots, s."""
         return np.array([header.time for _, header in self._headers])
 
-    def at(self, time: float) -> Snapshot:
-        """The snapshot nearest to `time`, s; raises UserError when there is none at all."""
+    @overload
+    def at(self, time: float, *, nearest: bool = False) -> Snapshot: ...
+
+    @overload
+    def at(self, time: float, *, interpolate: bool) -> Snapshot | Between: ...
+
+    def at(
+        self, time: float, *, nearest: bool = False, interpolate: bool = False
+    ) -> Snapshot | Between:
+        """The snapshot of `time`, s.
+
+        Between two it is the nearer one, with a warning that says which unless `nearest`; or with
+        `interpolate` the particles between them.  Raises UserError for a time outside the record.
+        """
         if not self._headers:
             raise UserError(f"{self.directory}: the run has no snapshot yet")
-        return self[int(np.argmin(np.abs(self.times - time)))]
+        times = self.times
+        found = int(np.argmin(np.abs(times - time)))
+        rounding = ROUNDING * (times[-1] - times[0]) / len(times)
+        if abs(times[found] - time) <= rounding:
+            return self[found]
+        if not times[0] <= time <= times[-1]:
+            raise UserError(
+                f"{self.directory}: {time:g} s is outside the record, which goes from "
+                f"{times[0]:g} to {times[-1]:g} s"
+            )
+        if interpolate:
+            later = int(np.searchsorted(times, time))
+            ends = times[later - 1], times[later]
+            return Between(time, ends, (self[later - 1], self[later]), self._periods())
+        if not nearest:
+            warnings.warn(
+                f"{self.directory}: no snapshot at {time:g} s, took that of {times[found]:g} s;"
+                " nearest=True takes it without a word, interpolate=True goes between two",
+                stacklevel=2,
+            )
+        return self[found]
+
+    def _periods(self) -> list[tuple[int, float, float]]:
+        """Each periodic axis with the ends of the domain, m."""
+        axes = ["xyz".index(axis) for axis in self.scenario.get("periodic", [])]
+        ends = [self.scenario.get(key, []) for key in ("domain_min", "domain_max")]
+        return [(axis, float(ends[0][axis]), float(ends[1][axis])) for axis in axes]
 
     @cached_property
     def history(self) -> History:

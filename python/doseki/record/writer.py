@@ -14,9 +14,10 @@ import numpy as np
 from ..errors import UserError
 from ..util.files import clear_errors, sync, write_whole, write_whole_text
 from ..util.input_file import InputFile
-from . import vtkhdf
 from .beginning import begin, refuse_links
 from .folder import RunFolder, read_history
+from .snapshot_writer import SnapshotWriter
+from .vtkhdf import Header, read_header
 
 
 class Recorder:
@@ -66,7 +67,7 @@ class Recorder:
         for name, count in gauge_rows.items():
             if len(read_history(folder.gauge(name))[1]) < count:
                 raise UserError(f"{folder.gauge(name)}: rows have gone since the checkpoint")
-        headers = {file: vtkhdf.read_header(file) for file in files}
+        headers = {file: read_header(file) for file in files}
         first = headers[files[0]]
         recorder = cls.__new__(cls)
         recorder._attach(folder, first.material_names, first.body_names, first.dim)
@@ -76,7 +77,7 @@ class Recorder:
                 file.unlink(missing_ok=True)
             for file in files[snapshots:]:
                 file.unlink()
-        recorder._index = [(file.name, headers[file].time) for file in files[:snapshots]]
+        recorder._index = [recorder._entry(file, headers[file].time) for file in files[:snapshots]]
         recorder._write_series()
         _truncate(folder.history, rows)
         recorder._columns = read_history(folder.history)[0]
@@ -95,7 +96,8 @@ class Recorder:
         self._material_names = tuple(material_names)
         self._body_names = tuple(body_names)
         self._dim = dim
-        self._index: list[tuple[str, float]] = []  # file name and time of each snapshot
+        self._index: list[str] = []  # an entry of the series for each snapshot
+        self._snapshots = SnapshotWriter()
         self._columns: list[str] = []
 
     @property
@@ -117,10 +119,10 @@ class Recorder:
         `state` holds every field of fields.FIELDS under its Python name and shape, SI units;
         `time` and `dt` are in s; `grains` holds every field of fields.GRAIN_FIELDS.
         """
-        header = vtkhdf.Header(time, step, dt, self._dim, self._material_names, self._body_names)
+        header = Header(time, step, dt, self._dim, self._material_names, self._body_names)
         file = self._folder.snapshot(len(self._index))
-        write_whole(file, lambda temporary: vtkhdf.write(temporary, state, header, grains))
-        self._index.append((file.name, float(time)))
+        write_whole(file, lambda part: self._snapshots.write(part, state, header, grains))
+        self._index.append(self._entry(file, time))
         self._write_series()
         return file
 
@@ -148,8 +150,9 @@ class Recorder:
                 file.write(_csv(lines))
 
     def sync(self) -> None:
-        """Put the tables safely on the disk, so that a checkpoint never knows more rows."""
-        for path in (self._folder.history, *self._folder.gauges.glob("*.csv")):
+        """Put tables and series safely on the disk, so that a checkpoint never knows more rows."""
+        tables = self._folder.history, self._folder.series, *self._folder.gauges.glob("*.csv")
+        for path in tables:
             with clear_errors(path):
                 sync(path)
 
@@ -158,11 +161,14 @@ class Recorder:
         text = json.dumps(jsonable(summary), indent=2, allow_nan=False) + "\n"
         write_whole_text(self._folder.summary, text)
 
+    def _entry(self, file: Path, time: float) -> str:
+        return json.dumps({"name": f"{self._folder.snapshots.name}/{file.name}", "time": time})
+
     def _write_series(self) -> None:
-        names = self._folder.snapshots.name
-        files = [{"name": f"{names}/{name}", "time": time} for name, time in self._index]
-        index = {"file-series-version": "1.0", "files": files}
-        write_whole_text(self._folder.series, json.dumps(index, indent=1) + "\n")
+        """It can be told from the snapshots, so it need not be on the disk with each of them."""
+        files = ",\n".join(self._index)
+        index = f'{{"file-series-version": "1.0", "files": [\n{files}\n]}}\n'
+        write_whole_text(self._folder.series, index, safely=False)
 
 
 def _truncate(path: Path, count: int) -> None:

@@ -22,13 +22,16 @@ class FinishTime:
     def __init__(self, time_max: float) -> None:
         self.time_max = time_max
         self.started = time.monotonic()
+        self.first: float | None = None  # s simulated when it was first asked
 
     def text(self, simulated: float) -> str:
         """Clock time of the end, with the date when that is not today."""
-        if simulated <= 0.0:
+        if self.first is None:
+            self.first, self.started = simulated, time.monotonic()
+        if simulated <= self.first:
             return "--:--"
         elapsed = time.monotonic() - self.started
-        left = elapsed * (self.time_max - simulated) / simulated
+        left = elapsed * (self.time_max - simulated) / (simulated - self.first)
         end = datetime.now() + timedelta(seconds=min(left, 1e9))
         return end.strftime("%H:%M:%S" if end.date() == datetime.now().date() else "%Y-%m-%d %H:%M")
 

@@ -20,6 +20,7 @@ from ..scenario.load import load_scenario
 from ..scenario.model import Scenario
 from ..scene.build import body_names
 from ..util.files import write_whole_text
+from ..util.sealed import check_seal, sealed
 from ..util.toml_writer import to_toml
 from .runner import RunOptions, carry_out, run_scenario
 
@@ -47,6 +48,7 @@ def resume_run(
     options = options or RunOptions()
     folder = load(directory).folder
     with options.ranks.holding(directory):
+        options.ranks.on_root(lambda: check_seal(folder.scenario))
         checkpoints = CheckpointFolder(folder.checkpoints)
         has_begun = bool(checkpoints.files()) or folder.summary.is_file()
         if not options.ranks.agree(has_begun):
@@ -61,8 +63,8 @@ def resume_run(
         run = _restored(directory, scenario, checkpoint, notes, options.ranks)
         if overrides:
             # The last snapshot may have been made early, at the time_max of then.
-            run.position.outputs = int(checkpoint.time / scenario.time_out + 1e-9) + 1
-            text = scenario.effective_toml(stored=True)
+            run.position.outputs = run.outputs.passed(checkpoint.time) + 1
+            text = sealed(scenario.effective_toml(stored=True))
             options.ranks.on_root(lambda: write_whole_text(folder.scenario, text))
         return carry_out(run, options, fresh=False), notes
 

@@ -13,6 +13,7 @@ from ..assess.trust.report import write_trust
 from ..driver.active_run import ActiveRun, Progress
 from ..driver.ranks import OneRank
 from ..driver.schedule import CheckpointClock, StopRequests
+from ..driver.threads import ThreadChoice
 from ..errors import PhysicsError, ResourceError
 from ..record.beginning import check_free
 from ..record.reader import load
@@ -20,7 +21,9 @@ from ..record.writer import Recorder
 from ..scenario.model import Scenario
 from ..solver.build import load_core
 from ..solver.protocol import SimulationView
+from ..util.cores import chosen_threads
 from ..util.finding import Finding
+from .first_state import first_state
 
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost
 
@@ -92,16 +95,17 @@ def run_scenario(
     """
     options = options or RunOptions()
     with run_folder(directory, options.overwrite, options.ranks):
-        simulation, body_names, warnings = options.ranks.filled_simulation(scenario)
-        names = scenario.material_names, body_names
-        text, inputs = scenario.effective_toml(stored=True), scenario.inputs.values()
+        state = first_state(scenario, options.ranks)
+        names = scenario.material_names, state.body_names
+        text, inputs = scenario.effective_toml(stored=True), scenario.inputs
         recorder = options.ranks.recorder(
             directory,
-            lambda: Recorder(
-                directory, text, *names, scenario.dim, options.overwrite, list(inputs)
-            ),
+            lambda: Recorder(directory, text, *names, scenario.dim, options.overwrite, inputs),
         )
-        run = ActiveRun(scenario, simulation, recorder, body_names, options.ranks, warnings)
+        run = ActiveRun(
+            scenario, state.simulation, recorder, state.body_names, options.ranks, state.warnings
+        )
+        run.goes_on = state.goes_on
         return carry_out(run, options, fresh=True)
 
 
@@ -132,8 +136,9 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
     """Takes a run, `fresh` or restored, to its end; see run_scenario."""
     core, directory = load_core(), run.folder.path
     threads = run.ranks.threads(options.threads)
-    if threads:
-        core.set_threads(threads)
+    core.set_threads(threads)
+    if not (options.threads or chosen_threads() or run.ranks.count > 1):
+        run.threads = ThreadChoice(threads, core.set_threads)
     run.ranks.working_in(directory, run.simulation)
     stop = StopRequests(directory)
     try:
@@ -163,6 +168,8 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         ) from failure
     except ResourceError as error:
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
+    finally:
+        core.set_threads(threads)  # it may have been stepping on fewer
     summary = _summary(run, status)
     run.recorder.close(summary)
     if remark := run.ranks.on_root(lambda: _judge(directory)):

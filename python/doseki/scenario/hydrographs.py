@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,13 +11,14 @@ import numpy as np
 
 from ..errors import UserError
 from ..util.foreign import check_regular_file
-from .particle_files.columns_csv import read_csv_columns
+from .particle_files.columns_csv import numbers_in, read_csv_columns
 from .tables.inflow import Inflow
 from .values.toml_source import Where
-from .values.types import LARGEST, RATE_UNITS, checked_hydrograph
+from .values.types import LARGEST, checked_hydrograph
+from .values.units import RATE, TIME
 
-TIME_UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}
-HEADERS = {"t": TIME_UNITS, "Q": RATE_UNITS}
+HEADERS = {"t": TIME, "Q": RATE}
+EXAMPLE = "t [s],Q [L/s]"
 MAX_BYTES = 20_000_000
 MAX_ROWS = 100_000
 
@@ -75,31 +75,10 @@ def read_hydrograph(path: Path) -> list[list[float]]:
     if path.stat().st_size > MAX_BYTES:
         raise UserError(f"{path}: a hydrograph may have at most {MAX_BYTES // 10**6} MB")
     columns = read_csv_columns(path)
-    t, rate = (_column(columns, name) for name in HEADERS)
+    t, rate = (numbers_in(columns, name, unit, EXAMPLE) for name, unit in HEADERS.items())
     if len(t) > MAX_ROWS:
         raise ValueError(f"{len(t)} rows; at most {MAX_ROWS}, which the run's scenario.toml holds")
     return checked_hydrograph(list(zip(t, rate, strict=True)))
-
-
-def _column(columns: dict[str, np.ndarray], wanted: str) -> list[float]:
-    """The column `wanted` in SI units."""
-    units = HEADERS[wanted]
-    for header, texts in columns.items():
-        found = re.fullmatch(rf"{wanted}\s*(?:[\[(]\s*(\S+)\s*[\])])?", header, re.IGNORECASE)
-        if not found:
-            continue
-        if found[1] is not None and found[1] not in units:
-            raise ValueError(f'unit of "{header}" is not known; allowed: {", ".join(units)}')
-        factor = 1.0 if found[1] is None else units[found[1]]
-        return [factor * _number(str(text), wanted, row) for row, text in enumerate(texts, start=1)]
-    raise ValueError(f'no column {wanted}; expected a header such as "t [s],Q [L/s]"')
-
-
-def _number(text: str, name: str, row: int) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"row {row}: {name} = {text!r} is not a number") from None
 
 
 def _normal_depth(where: Where, name: str, inflow: Inflow, gravity: np.ndarray) -> float:

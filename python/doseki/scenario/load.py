@@ -13,14 +13,17 @@ from pydantic import ValidationError
 from ..util.input_file import digest_of
 from .checks.references import check_names, check_references
 from .checks.tables import check_scenario
+from .earlier import earlier_run
 from .hydrographs import completed_inflows
 from .materials import Material, MaterialError, complete_materials, equation_of_state
 from .model import Scenario, file_of, min_sound_speed, names_in_use
 from .particle_files.reader import ParticleTable, read_particles
+from .reading.copies import with_copies
 from .reading.files import find_scenario, merged_table, read_with_bases, scenario_folder
 from .reading.messages import to_user_error
 from .reading.overrides import apply_overrides
 from .reading.resolve import resolve_table
+from .reading.units import in_own_units
 from .schemes import with_scheme_defaults
 from .tables.root import ScenarioTable
 from .values.toml_source import Where, read_toml
@@ -32,8 +35,10 @@ def load_scenario(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Sc
     """Read, override, evaluate and check a scenario; raises UserError with one clear sentence."""
     sources = read_with_bases(find_scenario(str(name_or_path)))
     where = Where(sources)
-    table = with_scheme_defaults(apply_overrides(merged_table(sources, where), overrides, where))
+    table = apply_overrides(merged_table(sources, where), overrides, where)
+    table = with_scheme_defaults(in_own_units(table, where))
     table, constants = resolve_table(table, where)
+    table = with_copies(table, where)
     try:
         tables = ScenarioTable.model_validate(table, context={"dim": table["dim"]})
     except ValidationError as error:
@@ -69,7 +74,8 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
         "inflow": completed_inflows(tables.inflow, gravity, where),
         "xi": tables.xi or _reduction_factor(tables, gravity, materials, read),
     }
-    scenario = Scenario.made_of(tables, completed, where, materials, constants, read)
+    earlier = None if tables.start is None else earlier_run(tables.start, where)
+    scenario = Scenario.made_of(tables, completed, where, materials, constants, read, earlier)
     check_scenario(scenario)
     return scenario
 

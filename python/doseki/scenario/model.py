@@ -13,6 +13,7 @@ from pydantic import ConfigDict, PrivateAttr
 from ..record.folder import INPUTS
 from ..util.input_file import InputFile, digest_of
 from ..util.toml_writer import to_toml
+from .earlier import Earlier
 from .gauges.gauge import Gauge, Setting
 from .kinematics import Kinematics
 from .materials import MATERIAL_PARAMETERS, Material
@@ -21,7 +22,7 @@ from .schemes import KERNEL_SUPPORT, RESOLVED
 from .tables.root import ScenarioTable
 from .tables.sections import SECTIONS
 from .values.toml_source import Where
-from .values.types import Positive, Vector
+from .values.types import Acceleration, Duration, Positive
 
 
 class Scenario(ScenarioTable):
@@ -35,14 +36,15 @@ class Scenario(ScenarioTable):
 
     model_config = ConfigDict(frozen=True)
 
-    gravity: Vector
-    time_history: Positive
+    gravity: Acceleration
+    time_history: Duration
     xi: Positive
 
     _where: Where = PrivateAttr()
     _materials: Mapping[str, Material] = PrivateAttr()
     _constants: Mapping[str, Any] = PrivateAttr()
     _particle_tables: Mapping[str, ParticleTable] = PrivateAttr()
+    _earlier: Earlier | None = PrivateAttr(None)
 
     @classmethod
     def made_of(
@@ -53,6 +55,7 @@ class Scenario(ScenarioTable):
         materials: Mapping[str, Material],
         constants: Mapping[str, Any],
         particle_tables: Mapping[str, ParticleTable],
+        earlier: Earlier | None = None,
     ) -> Scenario:
         """The scenario of checked `tables`, with the values `completed` that follow from them."""
         fields = ScenarioTable.model_fields.items()
@@ -60,6 +63,7 @@ class Scenario(ScenarioTable):
         made = cls.model_construct(tables.model_fields_set, **values | dict(completed))
         made._where, made._materials = where, materials
         made._constants, made._particle_tables = constants, particle_tables
+        made._earlier = earlier
         return made
 
     @property
@@ -88,6 +92,23 @@ class Scenario(ScenarioTable):
         return self._particle_tables
 
     @property
+    def earlier(self) -> Earlier | None:
+        """The run that it starts from, if it does."""
+        return self._earlier
+
+    @property
+    def begins_at(self) -> float:
+        """Time at which the clock starts, s."""
+        return 0.0 if self._earlier is None else self._earlier.time
+
+    @cached_property
+    def carried(self) -> frozenset[str]:
+        """The tables [body.NAME] whose particles and bodies come from the earlier run."""
+        if self._earlier is None:
+            return frozenset()
+        return frozenset(self.body) & frozenset(self._earlier.section("body"))
+
+    @property
     def support(self) -> float:
         """How far a particle of spacing dp acts, m: H h = 2.5 eta dp (Wendland C2: 2 eta dp)."""
         return KERNEL_SUPPORT[self.kernel] * self.eta * self.dp
@@ -100,6 +121,11 @@ class Scenario(ScenarioTable):
     def min_sound_speed(self) -> float:
         """Smallest unscaled sound speed of the materials that limit the speed of the flow, m/s."""
         return min_sound_speed(self, self.materials, self.material_names)
+
+    @property
+    def is_dry(self) -> bool:
+        """Whether it has no fluid at all."""
+        return all(self.materials[name].law != "fluid" for name in self.material_names)
 
     @property
     def acoustic_timestep(self) -> float:
@@ -150,6 +176,7 @@ class Scenario(ScenarioTable):
             periodic=tuple("xyz".index(axis) for axis in self.periodic),
             domain=domain,
             fixed={name: body.fixed for name, body in self.body.items()},
+            kinematics={name: self.kinematics_of(name).name for name in self.body},
             material_names=self.material_names,
             body_names=body_names,
             named={name: self.names_of_bodies(name) for name in self.body},
@@ -165,12 +192,22 @@ class Scenario(ScenarioTable):
         """The same run with another reduction factor, whatever it follows from in the file."""
         return self.model_copy(update={"xi": xi, "xi_height": None, "speed_max": None})
 
+    @property
+    def inputs(self) -> list[InputFile]:
+        """The files that it needs; raises UserError for one that cannot be read."""
+        return [*self.body_files.values(), *self.start_files]
+
     @cached_property
-    def inputs(self) -> dict[str, InputFile]:
-        """The files that it names, by body; raises UserError for one that cannot be read."""
+    def body_files(self) -> dict[str, InputFile]:
+        """Those that bodies name, by body."""
         given = ((name, body.given("file")) for name, body in self.body.items())
         files = {name: file_of(self.where, name, file) for name, file in given if file is not None}
-        return {name: InputFile(path.resolve(), digest_of(path)) for name, path in files.items()}
+        return {name: _input(path) for name, path in files.items()}
+
+    @cached_property
+    def start_files(self) -> list[InputFile]:
+        """Those of the run that it starts from."""
+        return [] if self._earlier is None else [_input(path) for path in self._earlier.files]
 
     def effective_toml(self, stored: bool = False) -> str:
         """The scenario as TOML that `load_scenario` reads back to the same run.
@@ -181,16 +218,32 @@ class Scenario(ScenarioTable):
         table = self.model_dump(by_alias=True, exclude_none=True, exclude=implied | set(SECTIONS))
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
         given["material"] = {name: self._material_table(name) for name in self.material_names}
-        for name, file in self.inputs.items():
-            path = f"{INPUTS}/{file.name}" if stored else str(file.path)
-            given["body"][name] |= {"file": path, "digest": file.digest}
+        for name, file in self.body_files.items():
+            given["body"][name] |= {"file": _name_of(file, stored), "digest": file.digest}
+        if self._earlier is not None:
+            table["start"] |= {
+                "from": [_name_of(file, stored) for file in self.start_files],
+                "time": self.begins_at,
+                "digests": [file.digest for file in self.start_files],
+            }
         return to_toml(table | {name: given.get(name, {}) for name in SECTIONS})
 
     def _material_table(self, name: str) -> dict[str, Any]:
         """What the scheme has of a material; to_toml leaves out what is None."""
         others = {p.name for p in MATERIAL_PARAMETERS if p.scheme not in (None, self.scheme)}
+        if not self.materials[name].has_sound:
+            others.add("speedsound")
         values = self.materials[name].table().items()
         return {key: value for key, value in values if key not in others | {"name"}}
+
+
+def _input(path: Path) -> InputFile:
+    return InputFile(path.resolve(), digest_of(path))
+
+
+def _name_of(file: InputFile, stored: bool) -> str:
+    """As a scenario names it, or as the one in the folder of a run does."""
+    return f"{INPUTS}/{file.name}" if stored else str(file.path)
 
 
 def file_of(where: Where, name: str, file: str) -> Path:

@@ -12,6 +12,7 @@ SUPPORT = KERNEL_SUPPORT["wendland_c6"]  # H of the paper: a particle acts out t
 RESOLVED_KERNEL, RESOLVED_CFLNUMBER = "wendland_c2", 0.3
 RESOLVED_DEFAULTS: dict[str, object] = {
     "kernel": RESOLVED_KERNEL, "cflnumber": RESOLVED_CFLNUMBER, "cfl_force": 0.25,
+    "skin": "auto",
 }  # fmt: skip
 RESOLVED_ETA = {"wendland_c2": 1.3, "wendland_c6": 1.2}
 

@@ -10,6 +10,15 @@ from .groups import Group
 
 
 @dataclass(frozen=True)
+class ElasticSurface:
+    """Its vertices at rest, not wrapped; in 2-D those of a closed curve, anticlockwise."""
+
+    vertex: np.ndarray  # (m, dim) m
+    carrier: np.ndarray  # (m,) the particle, counted within the body, with which each goes
+    crease: np.ndarray  # (m,) bool: where smooth parts of the curve end
+
+
+@dataclass(frozen=True)
 class ElasticBody:
     """One deformable body: n of the particles of a run."""
 
@@ -21,7 +30,7 @@ class ElasticBody:
     velocity: np.ndarray  # (n, dim) at the start, m/s
     spacing: float  # each particle has spacing^dim of its volume, m
     clamped: np.ndarray  # (n,) bool: does not move
-    surface: np.ndarray  # (n,) bool: touches other bodies
+    surface: ElasticSurface  # which touches other bodies
 
 
 @dataclass(frozen=True)

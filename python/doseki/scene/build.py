@@ -9,11 +9,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import ResourceError
-from ..record.particles import FREE, ParticleSet, concatenate
+from ..record.particles import BOUND, FREE, ParticleSet, concatenate
 from ..scenario.model import Scenario
 from ..util.finding import Finding
 from ..util.memory import available_bytes
 from .bodies import Bodies, ElasticBody
+from .carried import (
+    CarriedOver,
+    carried_over,
+    placed_groups,
+    placed_parts,
+    present,
+)
 from .checks.groups import check_overlaps
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
@@ -45,6 +52,7 @@ class Scene:
     names: list[str]
     bodies: Bodies
     warnings: list[Finding]  # what is allowed but probably not meant
+    stress: np.ndarray | None = None  # (N, 3, 3) deviatoric, Pa; None: none
 
 
 def build_bodies(scenario: Scenario) -> tuple[ParticleSet, list[str]]:
@@ -63,25 +71,49 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     `settle` moves bodies to where they come to rest: from all of them, those that stay last, and
     the names of bodies to all of them.
     """
-    bodies, warnings = bodies_of(scenario), list[Finding]()
+    bodies, warnings = present(scenario, bodies_of(scenario)), list[Finding]()
     _check_size(bodies)
     names = body_names(scenario)
-    parts = {n: body.particles(names) for n, body in bodies.items() if not body.is_of_bodies}
+    carried = carried_over(scenario, names)
+    built = {n: body.particles(names) for n, body in bodies.items() if not body.is_of_bodies}
+    parts = placed_parts(scenario, carried, built)
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
+    made = placed_groups(scenario, carried, made)
     groups = sorted(made, key=lambda group: group.fixed)
     moves = any(not group.fixed for group in groups)
+    loose = concatenate(list(parts.values()), scenario.dim)
+    walls = list(contact_groups(scenario, bodies, names, loose))
     if moves:
-        loose = concatenate(list(parts.values()), scenario.dim)
-        groups += contact_groups(scenario, bodies, names, loose)
+        groups += walls
         warnings += resolution_warnings(bodies, groups)
         check_overlaps(scenario, groups)
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)
             warnings += unsettled
-    particles, rigid = _joined(scenario, bodies, names, parts, groups, moves)
+    solids = groups if moves else [*groups, *walls]
+    whole = {group.name for group in made}
+    whole |= {n for n, body in bodies.items() if body.contact_shape() is not None}
+    parts = {n: _outside(scenario, n, part, solids, whole) for n, part in parts.items()}
+    particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
     check_particles(scenario, particles, names)
-    warnings += find_overlaps(particles, names)
-    return Scene(particles, names, rigid, warnings)
+    warnings += find_overlaps(particles, names, scenario.carried)
+    if carried is None:
+        return Scene(particles, names, rigid, warnings)
+    warnings += carried.findings(moves)
+    return Scene(particles, names, rigid, warnings, carried.stresses(origin))
+
+
+def particles_at_zero(scenario: Scenario, names: list[str]) -> dict[str, ParticleSet]:
+    """The particles of each body as its table has it, before anything has moved or settled."""
+    made = {}
+    for name, body in bodies_of(scenario).items():
+        if body.is_of_bodies:
+            group = body.group()
+            placed, owner = particles_of(group, body.spacing, scenario.dim)
+            made[name] = body.particles_of_bodies(group, names, placed, owner)
+        else:
+            made[name] = body.particles(names)
+    return made
 
 
 def _joined(
@@ -90,33 +122,53 @@ def _joined(
     names: list[str],
     parts: Mapping[str, ParticleSet],
     groups: list[Group],
-    moves: bool,
-) -> tuple[ParticleSet, Bodies]:
-    """The parts in the order of the scenario; fluid makes room for bodies."""
+    carried: CarriedOver | None,
+) -> tuple[ParticleSet, Bodies, np.ndarray]:
+    """The parts in the order of the scenario, what inflows have brought last.
+
+    Also the row of each particle in the snapshot that it comes from, or -1.
+    """
     sets: list[ParticleSet] = []
     tables: list[_PointTable] = []
+    moves = any(not group.fixed for group in groups)
     kept = [group for group in groups if not group.elastic] if moves else []
     first = dict(zip((g.name for g in kept), _first_indices(kept), strict=True))
     elastic: list[ElasticBody] = []
     of_name = {group.name: group for group in reversed(groups)}
-    for name, body in bodies.items():
+    for name in dict.fromkeys([*bodies, *parts]):
         if name in parts:
-            sets.append(_outside(scenario, parts[name], groups))
+            sets.append(parts[name])
             tables.append(_PointTable.of_loose(sets[-1]))
             continue
-        group = of_name[name]
+        if name not in of_name:  # all of its bodies have left
+            continue
+        body, group = bodies[name], of_name[name]
         placed, owner = particles_of(group, body.spacing, scenario.dim)
+        points = body.particles_of_bodies(group, names, placed, owner)
         if group.elastic:
-            elastic += body.elastic_bodies(group, placed, owner, sum(map(len, sets)))
-        sets.append(body.particles_of_bodies(group, names, placed, owner))
+            made = body.elastic_bodies(group, placed, owner, sum(map(len, sets)))
+            if carried is not None and name in scenario.carried:
+                points, made = carried.elastic(name, points, made)
+            elastic += made
+        sets.append(points)
         still = group.fixed or group.elastic
         grain = np.full(len(owner), -1) if still else first[name] + owner
         shaped = np.ones(len(owner), bool)
         tables.append(_PointTable(grain.astype(np.int32), shaped, placed.normal, placed.depth))
     particles = concatenate(sets, scenario.dim)
-    points = _PointTable.joined(tables, scenario.dim)
-    velocity, spin = _velocities(bodies, kept, scenario.dim)
-    return particles, Bodies(kept, velocity, spin, *points, elastic)
+    table = _PointTable.joined(tables, scenario.dim)
+    velocity, spin = _velocities(scenario, bodies, kept, carried)
+    return particles, Bodies(kept, velocity, spin, *table, elastic), _origins(scenario, sets, names)
+
+
+def _origins(scenario: Scenario, sets: list[ParticleSet], names: list[str]) -> np.ndarray:
+    """The `id` of particles that carry over, else -1."""
+    bodies = {each for name in scenario.carried for each in scenario.names_of_bodies(name)}
+    found = [names.index(each) for each in (*bodies, *scenario.inflow)]
+    rows = [
+        np.where(np.isin(part.body, found) & (part.motion != BOUND), part.id, -1) for part in sets
+    ]
+    return np.concatenate([np.zeros(0, np.int64), *rows])
 
 
 class _PointTable(NamedTuple):
@@ -148,11 +200,19 @@ def _first_indices(groups: list[Group]) -> list[int]:
 
 
 def _velocities(
-    bodies: Mapping[str, Body[Any]], groups: list[Group], dim: int
+    scenario: Scenario,
+    bodies: Mapping[str, Body[Any]],
+    groups: list[Group],
+    carried: CarriedOver | None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Velocities (n, dim) and spins (n, 3) of bodies at the start."""
-    velocity, spin = [np.zeros((0, dim))], [np.zeros((0, 3))]
+    velocity, spin = [np.zeros((0, scenario.dim))], [np.zeros((0, 3))]
     for group in groups:
+        if carried is not None and group.name in scenario.carried and not group.fixed:
+            moving, turning = carried.velocities(group.name)
+            velocity.append(moving)
+            spin.append(turning)
+            continue
         body = bodies.get(group.name)
         still = np.zeros_like(group.centre)
         velocity.append(body.velocity_at(group.centre) if body is not None else still)
@@ -161,11 +221,17 @@ def _velocities(
     return np.concatenate(velocity), np.concatenate(spin)
 
 
-def _outside(scenario: Scenario, particles: ParticleSet, groups: list[Group]) -> ParticleSet:
-    """The particles without the free ones that lie inside a body that moves."""
+def _outside(
+    scenario: Scenario, name: str, particles: ParticleSet, groups: list[Group], whole: set[str]
+) -> ParticleSet:
+    """The particles of a body without the free ones that lie inside another, which is `whole`.
+
+    Those that are there already make room for all that is added, and for nothing else.
+    """
+    there = name in scenario.carried or (scenario.earlier is not None and name in scenario.inflow)
     inside = np.zeros(len(particles), bool)
     for group in groups:
-        if not group.fixed:
+        if group.name not in scenario.carried if there else group.name in whole:
             inside |= inside_bodies(scenario, group, particles.position)
     keep = ~inside | (particles.motion != FREE)
     if keep.all():

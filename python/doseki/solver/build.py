@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple, cast
 
@@ -13,12 +14,15 @@ from ..scenario.materials import Material, equation_of_state
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
-from ..scene.build import build_scene
+from ..scene.build import Scene, build_scene
+from ..scene.checks.grain_numbers import check_grain_numbers
 from ..scene.checks.sensors import sensor_findings
+from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..scene.wall_normals import wall_geometry
 from ..util.finding import Finding
 from .protocol import CoreSimulation, Table
+from .relaxing import relaxed
 from .rigid_bodies import add_bodies
 from .settling import CALM_STEPS, settled
 from .wall_motions import wall_motions
@@ -153,6 +157,8 @@ def empty_simulation(
         simulation.add_outflow(list(outflow.min), list(outflow.max))
     for motion in wall_motions(scenario, body_names):
         simulation.move_body(motion)
+    if scenario.earlier is not None:
+        simulation.begin_at(scenario.begins_at)
     return simulation
 
 
@@ -168,22 +174,50 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> Filled:
     """A core simulation of `scenario` with its particles and bodies."""
     make = partial(_dry_simulation, isa=isa)
     scene = build_scene(scenario, partial(settled, make=make))
-    particles, body_names = scene.particles, scene.names
-    build_inflows(scenario, body_names, particles)  # for its checks against the particles
+    body_names = scene.names
+    check_grain_numbers(scenario, scene.bodies)
+    build_inflows(scenario, body_names, scene.particles)  # for its checks against the particles
+    if scenario.relax is not None:
+        _check_relaxing(scenario, scene)
+        still = core_materials(scenario), core_options(scenario, body_names)
+        alone = _new_simulation(scenario, isa, *still)
+        _fill(alone, scenario, scene)
+        scene = replace(scene, particles=relaxed(scene.particles, alone, scenario.relax))
     simulation = empty_simulation(scenario, body_names, isa)
+    of_sensors = _fill(simulation, scenario, scene)
+    return Filled(simulation, body_names, [*scene.warnings, *of_sensors])
+
+
+def _check_relaxing(scenario: Scenario, scene: Scene) -> None:
+    """Refuse to relax among what would move, or what has moved before."""
+    if scenario.earlier is not None:
+        why = "the run begins with a snapshot, whose water is where it was"
+    elif any(not group.fixed for group in scene.bodies.groups) or scene.bodies.elastic:
+        why = "bodies that move would not wait: relax without them, then [start] from that run"
+    else:
+        return
+    raise scenario.where.error(("relax",), f"relax = {scenario.relax:g}: {why}")
+
+
+def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[Finding]:
+    """Particles and bodies into an empty simulation; warnings about sensors."""
+    particles, body_names, bodies = scene.particles, scene.names, scene.bodies
     simulation.add_particles(
         **{name: np.ascontiguousarray(v) for name, v in vars(particles).items()}
     )
-    if scenario.scheme == RESOLVED:
-        normal, depth = wall_geometry(scenario, particles, body_names)
-        bodies = scene.bodies
-        normal[bodies.shaped] = bodies.normal[bodies.shaped]
-        depth[bodies.shaped] = bodies.depth[bodies.shaped]
-        simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
-        add_bodies(simulation, scenario, bodies, body_names)
-        of_sensors = list(sensor_findings(scenario, particles, body_names, normal, depth))
-        return Filled(simulation, body_names, [*scene.warnings, *of_sensors])
-    return Filled(simulation, body_names, scene.warnings)
+    if scene.stress is not None:
+        simulation.set_stresses(scene.stress)
+    if scenario.scheme != RESOLVED:
+        return []
+    normal, depth = wall_geometry(scenario, particles, body_names)
+    normal[bodies.shaped] = bodies.normal[bodies.shaped]
+    depth[bodies.shaped] = bodies.depth[bodies.shaped]
+    simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
+    if scenario.uplift and len(bodies):
+        faces = contact_faces(scenario, particles, bodies, depth)
+        simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)
+    add_bodies(simulation, scenario, bodies, body_names)
+    return list(sensor_findings(scenario, particles, body_names, normal, depth))
 
 
 def build_simulation(

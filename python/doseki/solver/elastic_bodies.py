@@ -30,7 +30,9 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
         "position": np.ascontiguousarray(body.position),
         "velocity": np.ascontiguousarray(body.velocity),
         "clamped": np.ascontiguousarray(body.clamped, np.uint8),
-        "surface": np.ascontiguousarray(body.surface, np.uint8),
+        "vertex": np.ascontiguousarray(body.surface.vertex),
+        "carrier": np.ascontiguousarray(body.surface.carrier, np.int32),
+        "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
     }
 
 

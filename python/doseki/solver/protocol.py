@@ -34,6 +34,17 @@ class Totals(TypedDict):
     bulk_energy: float  # J
     shear_energy: float  # J
     av_dissipation: float  # J, by the artificial viscosity since the start
+    # What they have got since the start: from gravity, walls that do not move by themselves, inflow
+    # layers and contacts; what of it the scheme departs from its sums over pairs by.
+    impulse: list[float]  # kg m/s, of all outer forces
+    gravity_work: float  # J
+    wall_work: float  # J, of walls that have a velocity and of the layers behind inflows
+    contact_work: float  # J, below 0 where contacts damp
+    scheme_work: float  # J, by corrections and shifting
+    momentum_entered: list[float]  # kg m/s
+    momentum_left: list[float]  # kg m/s
+    energy_entered: float  # J, kinetic
+    energy_left: float  # J, kinetic
     mass_initial: float  # kg
     mass_asked: float  # kg, that inflows should have brought
     mass_entered: float  # kg
@@ -49,7 +60,9 @@ class Grains(TypedDict):
     spin: Floats  # (n, 3) rad/s
     orientation: Floats  # (n, 4) quaternions w, x, y, z
     flow_force: Floats  # (n, dim) N; 2-D: N/m
-    contact_force: Floats  # (n, dim) N; 2-D: N/m
+    contact_force: Floats  # (n, dim) N, mean over the last step; 2-D: N/m
+    flow_impulse: Floats  # (n, dim) N s, since the start; 2-D: N s/m
+    contact_impulse: Floats  # the same
     mass: Floats  # (n,) kg; 2-D: kg/m
     radius: Floats  # (n,) m, of the circumscribed ball
     contacts: NDArray[np.int32]  # (n,) bodies that it touches
@@ -227,6 +240,13 @@ class CoreSimulation(Simulation, Protocol):
         """Normals (N, dim) into the fluid and depths (N,), m, of wall particles."""
         ...
 
+    def set_faces(self, *, face: NDArray[np.int32], area: Floats, rows: Floats) -> None:
+        """Faces (N,) between which water stands, their areas (N, dim), m2 (2-D: m), and the
+        pressure force on all rows over that on the first (N,); after set_walls and before
+        bind_points.
+        """
+        ...
+
     def add_shapes(self, shapes: Sequence[Table]) -> None:
         """Balls {radius} or convex shapes {vertices, faces, samples}."""
         ...
@@ -253,6 +273,14 @@ class CoreSimulation(Simulation, Protocol):
 
     def move_body(self, motion: Table) -> None:
         """A prescribed motion of a fixed body."""
+        ...
+
+    def set_stresses(self, deviatoric_stress: Floats) -> None:
+        """Deviatoric stresses (N, 3, 3), Pa, of all particles, where the scheme evolves them."""
+        ...
+
+    def begin_at(self, time: float) -> None:
+        """Set the clock, s, of a run that goes on from another one; after the inflows."""
         ...
 
     def join(self, transport: object) -> None:

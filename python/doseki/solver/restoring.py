@@ -23,8 +23,9 @@ ALIKE = (
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
-        "deformable_surface", "deformable_flow_force", "deformable_acceleration",
+        "deformable_flow_force", "deformable_acceleration",
     ),
+    ("surface_point", "surface_offset", "surface_crease"),
     ("elastic_apart", "deformable_material"),
 )  # fmt: skip
 # An entry of a list: a particle, and in the upper bits through which image of it.
@@ -34,9 +35,9 @@ POSITIVE = {"mass", "smoothing_length", "density", "shape_radius", "body_mass"}
 NOT_NEGATIVE = {
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "least_timestep", "next_timestep", "next_id", "inflow_released", "bodies_moved",
-    "lanes",
+    "lanes", "approach", "lists_reach",
 }  # fmt: skip
-PLACES = {"position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
+PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 # Infinite where nothing limits a step.
 MAY_BE_INFINITE = {"next_timestep", "least_timestep"}
 
@@ -57,8 +58,9 @@ def check_state(simulation: CoreSimulation, state: Arrays, materials: int, bodie
     particles = simulation.particle_arrays
     for group in (particles, *ALIKE):
         _check_lengths(group, state)
-    if len(state.get("stress_record", [])) not in (0, len(state["id"])):
-        raise ValueError("the checkpoint's stress_record has not one row for each particle")
+    for name in ("stress_record", "lists_position"):
+        if len(state.get(name, [])) not in (0, len(state["id"])):
+            raise ValueError(f"the checkpoint's {name} has not one row for each particle")
     for name, values in state.items():
         _check_values(name, values)
     _check_indices(state, materials, bodies)
@@ -174,8 +176,11 @@ def _check_contacts(state: Arrays) -> None:
     facets, samples = (
         state[name][state["body_shape"]] for name in ("shape_facets", "shape_sample_count")
     )
-    points = int(np.where(facets == 0, 1, samples).sum()) + int(state["deformable_surface"].sum())
     a, b = state["contact_a"], state["contact_b"]
+    if len(state["surface_point"]):  # the core knows how many points such surfaces have
+        _expect(a >= 0, "contact_a", "is no point of a body")
+        return
+    points = int(np.where(facets == 0, 1, samples).sum())
     _expect((a >= 0) & (a < points), "contact_a", "is no point of a body")
     _expect((b >= -int((facets > 0).sum())) & (b < points), "contact_b", "is no body")
 
@@ -192,7 +197,8 @@ def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
         "body_named": bodies,
         "elastic_body": len(state["elastic_apart"]),
         "elastic_slot": len(state["elastic_position"]),
+        "surface_point": len(state["elastic_position"]),
         "deformable_material": materials,
         "moving_particles": len(state["id"]) + 1,
-        **dict.fromkeys(("body_fixed", "elastic_clamped", "deformable_surface"), 2),
+        **dict.fromkeys(("body_fixed", "elastic_clamped", "surface_crease"), 2),
     }

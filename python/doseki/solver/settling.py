@@ -57,6 +57,7 @@ def settled(scenario: Scenario, groups: list[Group], names: list[str], make: Mak
     out of the scene.
     """
     waits = {name for name, body in scenario.body.items() if body.given("settle")}
+    waits -= scenario.carried
     there = [replace(g, kinematics=FIXED) for g in groups if g.name not in waits]
     found: dict[str, Group] = {}
     warnings: list[Finding] = []

@@ -13,9 +13,13 @@ from matplotlib.figure import Figure
 
 from ..errors import UserError
 from ..figures.census import draw_classes, draw_speed_histogram
+from ..figures.kinds.moments import spread
+from ..figures.kinds.panels import Panels
 from ..figures.kinds.series import draw_curves
-from ..figures.kinds.snapshot import Panels, draw_panels
-from ..figures.layout import chart_grid
+from ..figures.kinds.snapshot import draw_panels
+from ..figures.layout import chart_grid, figure_legend
+from ..figures.text import plain_text
+from ..measure.moments import Moment
 from ..measure.views import before_flow, named_window, with_flow
 from ..record.reader import Run, load
 from ..record.writer import jsonable
@@ -100,15 +104,20 @@ def compare_runs(folders: Sequence[Path], directory: Path) -> Comparison:
     comparison = Comparison(flumes, tuple(verdicts(flume) for flume in flumes))
     with clear_errors(directory):
         directory.mkdir(parents=True, exist_ok=True)
+    _draw_pictures(flumes, directory)
+    write_whole_text(directory / "comparison.md", _page(comparison))
+    write_whole_text(directory / "comparison.json", json.dumps(_table(comparison), indent=1) + "\n")
+    return comparison
+
+
+@plain_text()
+def _draw_pictures(flumes: Sequence[FlumeRun], directory: Path) -> None:
     pictures = {"water": _water_figure(flumes), "passed": _passed_figure(flumes)}
     for flume in flumes:
         pictures |= {f"{flume.scheme}-{key}": f for key, f in _figures(flume).items()}
     for key, figure in pictures.items():
         path = directory / f"{key}.png"
         write_whole(path, partial(figure.savefig, format="png"))
-    write_whole_text(directory / "comparison.md", _page(comparison))
-    write_whole_text(directory / "comparison.json", json.dumps(_table(comparison), indent=1) + "\n")
-    return comparison
 
 
 def _scheme(run: Run) -> str:
@@ -145,14 +154,13 @@ def _figures(flume: FlumeRun) -> dict[str, Figure]:
     """The figures of the paper for one run."""
     run = flume.run
     outlet, debris = named_window(run, OUTLET), named_window(run, LOAD)
-    before, during = run[before_flow(run, outlet)], run[with_flow(run, outlet)]
-    spread = [run[0], run[len(run) // 2], run[-1]]
+    before, during = before_flow(run, outlet), with_flow(run, outlet)
     both = Panels(outlet, ["material", "velocity_x"], flume.scheme)
     return {
         "fig5": draw_speed_histogram(flume.speeds, f"{flume.scheme}: slope end"),
-        "fig6": draw_panels(run, [before], both),
-        "fig7": draw_panels(run, [during], both),
-        "fig8": draw_panels(run, spread, Panels(debris, ["material"], flume.scheme)),
+        "fig6": draw_panels(run, [Moment(before, "before the flow")], both),
+        "fig7": draw_panels(run, [Moment(during, "with the flow")], both),
+        "fig8": draw_panels(run, spread(run, 3), Panels(debris, ["material"], flume.scheme)),
         "classes": draw_classes(flume.census),
     }
 
@@ -161,6 +169,7 @@ def _water_figure(flumes: Sequence[FlumeRun]) -> Figure:
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Mean velocity of the water at the slope end")
     for flume in flumes:
         draw_curves(grid[0, 0], flume.flow.times, {flume.scheme: flume.water})
+    figure_legend(figure, grid.flat)
     grid[0, 0].axhspan(*_band(SPEED), alpha=0.15, color="black")
     grid[0, 0].set(xlabel="time (s)", ylabel="m/s; grey: measured")
     return figure
@@ -171,6 +180,7 @@ def _passed_figure(flumes: Sequence[FlumeRun]) -> Figure:
     for flume in flumes:
         share = flume.census.passed(0.0) / flume.census.load_mass
         draw_curves(grid[0, 0], flume.census.times, {flume.scheme: share})
+    figure_legend(figure, grid.flat)
     grid[0, 0].set(xlabel="time (s)", ylabel="share", ylim=(0, 1.02))
     return figure
 

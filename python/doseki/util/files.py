@@ -23,25 +23,28 @@ def clear_errors(path: Path) -> Iterator[None]:
         raise kind(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+def write_whole(path: Path, write: Callable[[Path], object], safely: bool = True) -> None:
     """Let `write` make a temporary file, put it safely on the disk, then give it its name.
 
-    Readers, and a run that is killed, never see half a file.
+    Readers, and a run that is killed, never see half a file. Not `safely`, it takes a few
+    milliseconds less, and may be gone when the machine goes down.
     """
     temporary = path.with_name(f".{path.name}.part")
     with clear_errors(path):
         try:
             write(temporary)
-            sync(temporary)
+            if safely:
+                sync(temporary)
             temporary.replace(path)
-            sync(path.parent)
+            if safely:
+                sync(path.parent)
         finally:
             temporary.unlink(missing_ok=True)
 
 
-def write_whole_text(path: Path, text: str) -> None:
+def write_whole_text(path: Path, text: str, safely: bool = True) -> None:
     """The same for a text in UTF-8."""
-    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"), safely)
 
 
 def sync(path: Path) -> None:

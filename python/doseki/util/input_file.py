@@ -34,8 +34,8 @@ class InputFile:
     @property
     def name(self) -> str:
         """Its name in the folder of a run: files of different content have different ones."""
-        stem = re.sub(r"[^\w.-]", "_", self.path.stem)[:40].removesuffix(f"-{self.digest}")
-        return f"{stem}-{self.digest}{self.path.suffix[:10]}"
+        stem = re.sub(r"[^\w.-]", "_", self.path.stem).removesuffix(f"-{self.digest}")
+        return f"{stem[:40]}-{self.digest}{self.path.suffix[:10]}"
 
     def copy_to(self, path: Path) -> None:
         """Copy it; raises UserError where its content is another by now."""

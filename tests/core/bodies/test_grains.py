@@ -41,6 +41,35 @@ radius = 0.005
 centre = {{ d2 = [0.0101, 0], d3 = [0.0101, 0, 0] }}
 """
 
+# A block that comes down flat, and touches at 40 points at once.
+FLAT = """\
+dim = 2
+scheme = "resolved"
+speed_max = 1
+dp = 0.005
+time_max = 1
+time_out = 1
+gravity = [0, 0]
+
+[material.basalt]
+restitution = 0.2
+
+[body.block]
+shape = "box"
+material = "basalt"
+min = [-0.05, 0.0002]
+max = [0.05, 0.1002]
+velocity = [0, -0.1]
+
+[body.bed]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, 1]
+min = [-0.2, -0.03]
+max = [0.2, 0]
+"""
+
 # Water in a periodic box around a body so large that no water is out of its reach.
 CROWDED = """\
 dim = 2
@@ -142,6 +171,12 @@ def test_balls_part_with_their_restitution(tmp_path, dim, law, restitution):
     assert speed[1] - speed[0] == pytest.approx(3 * restitution, rel=0.02)
     assert speed.sum() == pytest.approx(3, rel=1e-13)
     assert 0 < grains["worst_overlap"] < 0.01
+
+
+def test_a_block_that_lands_flat_leaves_no_faster_than_it_came(tmp_path):
+    grains = to(built(tmp_path, FLAT), 0.01).grains()
+    (rebound,) = np.asarray(grains["velocity"])[~np.asarray(grains["fixed"]), 1]
+    assert 0 <= rebound < 0.2 * 0.1
 
 
 def test_water_and_bodies_keep_their_momentum(tmp_path):

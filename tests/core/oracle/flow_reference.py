@@ -269,7 +269,7 @@ class FlowReference:
             "height": r_n - self.depth,
             "v_dot_r": -2 * approach * dot(corrected_r, n),
             "jump": factor[..., None] * sliding - 2 * approach[..., None] * n,
-            "power": scale * (mu[..., 0] * dot(sliding, v) + extra * approach * r_n),
+            "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(pairs.r_ij, v)),
         }
 
     def _dissipation(self, approach: np.ndarray, rho: np.ndarray) -> np.ndarray:
@@ -294,6 +294,7 @@ class FlowReference:
         friction = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * dp ** (self.dim - 1)
         drag = (rough * friction * np.linalg.norm(u, axis=1))[:, None] * u
         self.wall_force += drag
+        self.power_to_rough_walls = dot(drag, self.v_w).sum()
         self.traction = -drag / filled[:, None]
 
     # Fluid
@@ -303,10 +304,11 @@ class FlowReference:
         self._take_gradients(contact)
         self._measure_surface()
         force, rate, power = self._pair_sums()
-        force += contact["force"].sum(axis=1) + (self.fw.W[..., None] * self.traction).sum(axis=1)
+        drag = (self.fw.W[..., None] * self.traction).sum(axis=1)
+        force += contact["force"].sum(axis=1) + drag
         rate += (self.V_w * self.fw.F * contact["v_dot_r"]).sum(axis=1)
-        power += contact["power"].sum(axis=1)
-        self.power = (self.volume * power).sum()
+        power += contact["power"].sum(axis=1) - dot(drag, self.v)
+        self.power = (self.volume * power).sum() - self.power_to_rough_walls
         self.acceleration = force / self.rho[:, None] + self.gravity
         self.density_rate = self.rho * rate
         if self.options.shifting:
@@ -336,8 +338,10 @@ class FlowReference:
         force += self._exchange(rho)
         jump = self.p[:, None] - self.p[None]
         jump = jump - dot(self._mean(self.old_gradient), pairs.r_ij)
-        rate = (VF * (dot(v, corrected_r) + jump * pairs.r / (rho * self.c))).sum(axis=1)
-        return force, rate, (VF * (extra * v_r - dot(viscous, v))).sum(axis=1)
+        levelled = 0.5 * jump * pairs.r / (rho * self.c)
+        rate = (VF * (dot(v, corrected_r) + levelled)).sum(axis=1)
+        levelling = 0.5 * levelled * (self.p[:, None] - self.p[None])
+        return force, rate, (VF * (extra * v_r - dot(viscous, v) - levelling)).sum(axis=1)
 
     def _exchange(self, rho: np.ndarray) -> np.ndarray:
         """Force over volume by which neighbours make up for each other's shifting."""
@@ -424,8 +428,9 @@ class FlowReference:
     def _set_timestep(self) -> None:
         speed = np.linalg.norm(self.v, axis=1)
         force = np.linalg.norm(self.acceleration, axis=1)
+        stretch = np.abs(self.B).sum(axis=2).max(axis=1)  # of the gradients that pairs have seen
         limits = [
-            self.options.cflnumber * self.h / (self.c + speed),
+            self.options.cflnumber * self.h / (self.c * stretch + speed),
             self.options.cfl_force * np.sqrt(self.h / force),
             self.h**2 * self.rho / (8 * np.maximum(self.mu, 1e-300)),
         ]

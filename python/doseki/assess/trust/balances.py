@@ -1,4 +1,8 @@
-"""Checks of what a run must conserve: energy and momentum."""
+"""Checks of what a run must conserve: energy and momentum.
+
+A run of the resolved scheme keeps an account of what goes in and out (ledger.py); of others it
+follows from positions and from the time alone, where nothing but gravity acts.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from ...record.particles import BOUND, DRIVEN, FREE
 from ...record.reader import Run
 from ...scenario.materials import Material, complete_materials
 from ..sound_speed import sound_speed_from
+from .ledger import ledger_of
 from .snapshots import Seen, gravity_of, is_resolved
 from .verdicts import Check, judged, unknown
 
@@ -24,6 +29,8 @@ ENERGIES = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
 def energy_check(run: Run, seen: Seen) -> Check:
     """Kinetic + elastic + dissipated energy against start + work of gravity."""
     name = "energy balance"
+    if (ledger := ledger_of(run)) is not None:
+        return ledger.energy_check(name, ENERGY)
     why = incomplete(run, seen, name) or loses_sight(run.scenario) or works_on(run, seen)
     if not why and BOUND in seen.motions:
         why = "what contacts of bodies take is not recorded"
@@ -76,6 +83,8 @@ def works_on(run: Run, seen: Seen) -> str:
 def momentum_check(run: Run, seen: Seen) -> Check:
     """Momentum against that of the start and the impulse of gravity, m g t."""
     name = "momentum"
+    if (ledger := ledger_of(run)) is not None:
+        return ledger.momentum_check(name, RESOLVED_MOMENTUM)
     why = incomplete(run, seen, name)
     if not why and seen.motions - {FREE, BOUND}:
         why = "walls take part: not checked"

@@ -21,7 +21,9 @@ from .checks import (
     overlap_check,
 )
 from .deformable import deformable_checks
-from .snapshots import look
+from .ledger import ledger_of
+from .snapshots import is_resolved, look
+from .tension import tension_check
 from .verdicts import BAD, DOUBTFUL, GOOD, NOT_AVAILABLE, Check, overall
 
 
@@ -34,10 +36,12 @@ def trust_checks(run: Run) -> list[Check]:
         mach_check(seen, *given),
         density_check(seen, tension, *given, scheme),
         energy_check(run, seen),
+        *([ledger.numerical_check()] if (ledger := ledger_of(run)) is not None else []),
         momentum_check(run, seen),
         depth_check(run, seen),
         contact_check(seen, *given),
         *deformable_checks(run, seen),
+        *([tension_check(seen.tension)] if is_resolved(scenario) else []),
         *([overlap_check(run, seen)] if seen.overlap else []),
     ]
 

@@ -14,6 +14,7 @@ from ...record.reader import Run, Snapshot
 from ...scenario.materials import Material, complete_materials
 from ...scenario.schemes import RESOLVED, UETA2022
 from ..warnings import MIN_ACROSS_GRAIN
+from .tension import Hanging, hanging
 
 COLUMN = 4  # spacings, width of the columns in which depths are measured
 
@@ -36,6 +37,7 @@ class Seen:
     body_energy: list[float] = field(default_factory=list)
     angular_momentum: list[np.ndarray] = field(default_factory=list)
     angular_scale: list[float] = field(default_factory=list)
+    tension: list[Hanging] = field(default_factory=list)  # resolved scheme
     walls_go: bool = False  # whether a fixed particle has a velocity
 
 
@@ -55,6 +57,8 @@ def look(run: Run) -> Seen:
         if is_of_deformable_bodies(snapshot):
             _look_at_deformable(seen, snapshot, gravity)
         seen.potential.append(float(-(snapshot["mass"][free] @ along)))
+        hangs = hanging(run.scenario, snapshot, materials) if is_resolved(run.scenario) else None
+        seen.tension += [hangs] if hangs is not None else []
         if free.any():
             _look_at_free(seen, run.scenario, snapshot, free, materials)
             _look_at_grains(seen, snapshot, free & np.isin(snapshot["body"], single), materials)

@@ -14,10 +14,12 @@ from ...record.reader import GaugeRecord, Run
 from ...scenario.gauges.gauge import Gauge
 from ...scenario.tables.figure import GaugeFigure
 from ...util.spelling import suggestion
-from ..layout import chart_grid
+from ..layout import chart_grid, figure_legend
 from .series import draw_curves
 
 PROFILES = 4  # drawn, where no times are given
+NAMED = 12  # curves at most that have a name
+TALL, LOW, MANY = 2.4, 1.4, 6  # inches of a panel; of one of more than so many
 
 
 def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
@@ -31,24 +33,36 @@ def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
         raise UserError(f"{run.directory}: no gauge {table.gauge!r}{known}")
     record, gauge = run.gauges[table.gauge], gauges[table.gauge]
     shown = table.columns or gauge.curves(run.scenario["dim"])
-    figure, grid = chart_grid(len(shown), 1, (7.0, 2.4), table.title or table.gauge)
+    height = TALL if len(shown) <= MANY else LOW
+    figure, grid = chart_grid(len(shown), 1, (7.0, height), table.title or table.gauge)
     for axes, column in zip(grid[:, 0], shown, strict=True):
         label = f"{column.replace('_', ' ')} ({record.units[column]})"
         if gauge.is_profile:
             _draw_profiles(axes, record, column, table.times)
             axes.set_xlabel(label)
         else:
-            draw_curves(axes, record["time"], {"": record[column]})
+            _draw_over_time(axes, record, column, gauge.series)
             axes.set_ylabel(label)
     if not gauge.is_profile:
         grid[-1, 0].set_xlabel("time (s)")
+    figure_legend(figure, grid[:1, 0])
     return figure
+
+
+def _draw_over_time(axes: Axes, record: GaugeRecord, column: str, series: str | None) -> None:
+    """One curve, or one for each value of the column `series`."""
+    if series is None:
+        draw_curves(axes, record["time"], {"": record[column]})
+        return
+    each = [(value, record[series] == value) for value in np.unique(record[series])]
+    for value, rows in each:
+        name = f"{series} {value:g}" if 1 < len(each) <= NAMED else ""
+        draw_curves(axes, record["time"][rows], {name: record[column][rows]})
 
 
 def _draw_profiles(axes: Axes, record: GaugeRecord, column: str, times: Sequence[float]) -> None:
     for time, rows in _profiles(record, times):
         axes.plot(record[column][rows], record["height"][rows], label=f"{time:.3g} s")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize="small")
     axes.grid(alpha=0.3)
     axes.set_ylabel("height (m)")
 

@@ -11,11 +11,13 @@ from matplotlib.figure import Figure
 
 from ...measure import numbers as measure
 from ...measure.census import SpeedDraws, draw_speeds
+from ...measure.moments import Moment
 from ...measure.views import View, named_window, select, whole_space
 from ...record.reader import Run, Snapshot
 from ...scenario.tables.figure import HistogramFigure
-from ..layout import chart_grid, time_text
-from .moments import caption, chosen
+from ..layout import SMALL, chart_grid, figure_legend, moment_text
+from ..nothing import NothingToDrawError
+from .moments import chosen
 
 ALL_COLOUR, SAMPLE_COLOUR = "#d7301f", "#8c8c8c"
 
@@ -50,25 +52,28 @@ class SpeedHistogram:
 def draw_histogram(run: Run, name: str, table: HistogramFigure) -> Figure:
     """The figure [figure.NAME] of speeds at some moments."""
     view = named_window(run, table.window)
-    snapshots = chosen(run, table, view)
-    title = caption(run, table, view, snapshots)
+    moments = chosen(run, table, view)
+    title = table.title or view.title
     what = SpeedHistogram(view, table.material, table.bin_width, table.sample, title)
-    return draw_rows(run, snapshots, what)
+    return draw_rows(run, moments, what)
 
 
-def draw_rows(run: Run, snapshots: Sequence[Snapshot], what: SpeedHistogram) -> Figure:
-    """A row for each snapshot: all grains in the window; random samples of them as in the paper."""
-    figure, grid = chart_grid(len(snapshots), 2, (4.2, 3.0), what.title)
-    for row, snapshot in zip(grid, snapshots, strict=True):
-        drawn = draw_speeds(what.speeds(snapshot), what.bin_width, what.sample)
-        time = time_text(snapshot.time, run.times[-1])
-        name = what.material or "particles"
-        if len(drawn.speeds) == 0:
-            row[0].text(0.0, 0.5, f"{time}: no {name} in the window")
-            row[0].set_axis_off()
-            row[1].set_axis_off()
-            continue
+def draw_rows(run: Run, moments: Sequence[Moment], what: SpeedHistogram) -> Figure:
+    """A row for each moment: all grains in the window; random samples of them as in the paper.
+
+    Moments at which there are none have no row. Raises NothingToDrawError where none has one.
+    """
+    name = what.material or "particles"
+    found = [(moment, what.speeds(run[moment.index])) for moment in moments]
+    found = [(moment, speeds) for moment, speeds in found if len(speeds)]
+    if not found:
+        raise NothingToDrawError(f"there is no {name} at these times")
+    figure, grid = chart_grid(len(found), 2, (4.2, 3.0), what.title)
+    for row, (moment, speeds) in zip(grid, found, strict=True):
+        drawn = draw_speeds(speeds, what.bin_width, what.sample)
+        time = moment_text(run, moment)
         draw_speed_row(row, drawn, f"{name} per {what.bin_width:g} m/s", f"{time}: ")
+    figure_legend(figure, grid[0])
     return figure
 
 
@@ -78,10 +83,9 @@ def draw_speed_row(row: Sequence[Axes], drawn: SpeedDraws, name: str, when: str 
     every.stairs(drawn.counts, drawn.edges, fill=True, color=ALL_COLOUR, alpha=0.85)
     if len(drawn.speeds):
         mean = float(drawn.speeds.mean())
-        label = f"mean {mean:.2f} m/s"
-        every.axvline(mean, color="black", label=label, linewidth=1, linestyle="--")
-        every.legend(fontsize="small", frameon=False)
-    every.set_title(f"{when}all {len(drawn.speeds)}", fontsize="small", loc="left")
+        every.axvline(mean, color="black", label="mean", linewidth=1, linestyle="--")
+        when += f"mean {mean:.2f} m/s, "
+    every.set_title(f"{when}all {len(drawn.speeds)}", **SMALL)
     every.set_ylabel(name)
     _draw_samples(sampled, drawn)
     for axes in row:
@@ -89,15 +93,14 @@ def draw_speed_row(row: Sequence[Axes], drawn: SpeedDraws, name: str, when: str 
 
 
 def _draw_samples(axes: Axes, drawn: SpeedDraws) -> None:
-    axes.stairs(drawn.mean, drawn.edges, fill=True, color=SAMPLE_COLOUR, label="mean of them")
+    axes.stairs(drawn.mean, drawn.edges, fill=True, color=SAMPLE_COLOUR, label="mean of samples")
     some = drawn.mean > 0
     centres = (drawn.edges[1:] + drawn.edges[:-1])[some] / 2
     # A bin that few samples reach has its mean above 95 % of them.
     band = np.clip([(drawn.mean - drawn.low)[some], (drawn.high - drawn.mean)[some]], 0.0, None)
     axes.errorbar(
         centres, drawn.mean[some], band, fmt="none", color="black", capsize=2,
-        linewidth=1, label="5 % to 95 % of them",
+        linewidth=1, label="5 % to 95 % of samples",
     )  # fmt: skip
-    axes.set_title(f"random samples of {drawn.size}", fontsize="small", loc="left")
+    axes.set_title(f"random samples of {drawn.size}", **SMALL)
     axes.set_ylabel(f"number of {drawn.size}")
-    axes.legend(fontsize="small", frameon=False)

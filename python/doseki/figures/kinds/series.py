@@ -13,9 +13,8 @@ from ...record.reader import Run
 from ...record.units import unit_in
 from ...scenario.tables.figure import SeriesFigure
 from ...util.spelling import suggestion
-from ..layout import chart_grid
+from ..layout import chart_grid, figure_legend
 
-ENERGIES = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
 MASSES = ("mass_asked", "mass_entered", "mass_inside", "mass_left")
 KINDS = {  # part of a column's name: what it measures, unit in 3-D
     "energy": ("energy", "J"),
@@ -41,21 +40,20 @@ def draw_history(run: Run, columns: Sequence[str], title: str) -> Figure:
     figure, grid = chart_grid(1, 1, (7.0, 3.2), title)
     curves = {column.replace("_", " "): run.history[column] for column in columns}
     draw_curves(grid[0, 0], run.history["time"], curves)
+    figure_legend(figure, grid.flat)
     grid[0, 0].set_ylabel(axis_label(columns, run.scenario["dim"]))
     grid[0, 0].set_xlabel("time (s)")
     return figure
 
 
 def draw_curves(axes: Axes, times: np.ndarray, curves: Mapping[str, np.ndarray]) -> None:
-    """Named curves over time with a legend beside them; a curve called "" is not named."""
-    for number, (name, values) in enumerate(curves.items()):
-        axes.plot(times, values, STYLES[number % len(STYLES)], label=name, linewidth=1.5)
+    """Named curves over time, for a legend of the figure; a curve called "" is not named."""
+    for number, (name, values) in enumerate(curves.items(), start=len(axes.lines)):
+        style = STYLES[number % len(STYLES)]
+        axes.plot(
+            times, values, style, color=f"C{number}" if name else "black", label=name, linewidth=1.5
+        )
     axes.grid(alpha=0.3)
-    if any(curves):
-        axes.legend(
-            loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, frameon=False,
-            fontsize="small",
-        )  # fmt: skip
 
 
 def axis_label(columns: Sequence[str], dim: int) -> str:

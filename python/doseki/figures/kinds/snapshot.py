@@ -3,72 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import product
 
 from matplotlib.figure import Figure
 
-from ...measure.views import View, named_window
-from ...record.reader import Run, Snapshot
+from ...measure.moments import Moment
+from ...measure.views import named_window
+from ...record.reader import Run
 from ...scenario.tables.figure import SnapshotFigure
 from ..colouring import colouring
-from ..dots import dots, draw_particles, extent_of
-from ..layout import Extent, PanelGrid, name_axes, time_text
-from .moments import caption, chosen
+from ..dots import dots, draw_particles, extent_of, outside_text
+from ..layout import SMALL, Extent, PanelGrid, moment_text, name_axes
+from .moments import chosen
+from .panels import Panels
+from .spatial import draw_spatial
 
 FEW = 2000  # a run of no more particles is also drawn with the support, as Figs. 3 and 4
 FLAT = 0.5  # panels flatter than this stand one below the other
-SIZES = {"grain": "to scale", "support": "circles of radius H h"}
-
-
-@dataclass(frozen=True)
-class Panels:
-    """What is drawn: quantities as colours, and circles by `sizes` (see dots.dots)."""
-
-    view: View
-    colours: Sequence[str]
-    title: str = ""
-    sizes: Sequence[str] = ("grain",)
-    material: str | None = None
-
-    def panel_title(self, time: str, size: str) -> str:
-        """The time, and how the particles are drawn where there is a choice."""
-        return f"{time}, {SIZES[size]}" if len(self.sizes) > 1 else time
 
 
 def draw_snapshots(run: Run, name: str, table: SnapshotFigure) -> Figure:
     """The figure [figure.NAME] of particles at some moments."""
     view = named_window(run, table.window)
-    snapshots = chosen(run, table, view)
-    few = table.window is None and max(len(s["id"]) for s in snapshots) <= FEW
+    moments = chosen(run, table, view)
+    few = table.window is None and max(len(run[m.index]["id"]) for m in moments) <= FEW
     sizes = ("support", "grain") if few else ("grain",)
-    title = caption(run, table, view, snapshots)
-    what = Panels(view, table.colour, title, sizes, table.material)
-    return draw_panels(run, snapshots, what)
+    what = Panels(view, table.colour, table.title or view.title, sizes, table.material)
+    return draw_panels(run, moments, what)
 
 
-def draw_panels(run: Run, snapshots: Sequence[Snapshot], what: Panels) -> Figure:
-    """One row for each snapshot, one column for each colour and size.
+def draw_panels(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
+    """One row for each moment, one column for each colour and size; in 3-D see draw_spatial.
 
     Panels that are flat stand below each other, colour after colour.
     """
+    if run.scenario["dim"] == 3:
+        return draw_spatial(run, moments, what)
+    snapshots = [run[moment.index] for moment in moments]
     extent = extent_of(snapshots, what.view, what.sizes[0])
     kinds = list(product(what.colours, what.sizes))
     columns = len(what.sizes) if _is_flat(extent) else len(kinds)
-    panels = list(product(snapshots, kinds))
+    panels = list(product(zip(moments, snapshots, strict=True), kinds))
     key_after = [column % len(what.sizes) == len(what.sizes) - 1 for column in range(columns)]
     grid = PanelGrid(len(panels) // columns, key_after, extent, what.title)
     colours = {name: colouring(run, snapshots, name, what.view) for name in what.colours}
-    for number, (snapshot, (name, size)) in enumerate(panels):
+    for number, ((moment, snapshot), (name, size)) in enumerate(panels):
         row, column = divmod(number, columns)
         axes = grid.panel(row, column)
         shown = dots(snapshot, what.view, size, what.material)
         draw_particles(axes, snapshot, shown, colours[name], extent)
         name_axes(axes, snapshot.dim, what.view.rotate)
-        title = what.panel_title(time_text(snapshot.time, run.times[-1]), size)
-        axes.set_title(title, fontsize="small", loc="left")
-        if key_after[column]:
-            colours[name].add_key(grid, axes, first=number < len(kinds))
+        title = what.panel_title(moment_text(run, moment), size)
+        axes.set_title(title + outside_text(snapshot, what.view, shown, extent), **SMALL)
+        if key_after[column] and number < len(kinds):
+            colours[name].add_key(grid, axes)
     return grid.figure
 
 

@@ -80,6 +80,10 @@ class _Still:
         """All particles."""
         return self._fields
 
+    def grains(self) -> State:
+        """None: they are particles, too."""
+        return {}
+
     def sample(self, low: Sequence[float], high: Sequence[float]) -> State:
         """Those in a box: of a sorted axis only what can be in it is looked at."""
         near = slice(
@@ -108,6 +112,7 @@ def _setting(run: Run, snapshot: Snapshot) -> Setting:
         periodic=tuple("xyz".index(axis) for axis in scenario.get("periodic", [])),
         domain=None if low is None or high is None else (low, high),
         fixed={},
+        kinematics={},
         material_names=snapshot.material_names,
         body_names=snapshot.body_names,
         named={},

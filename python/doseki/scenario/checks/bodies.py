@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kinematics import SINGLE
+from ..kinematics import ELASTIC, SINGLE
 from ..model import Scenario
 from ..schemes import RESOLVED
 from ..tables.body import BodyTable
@@ -22,6 +22,8 @@ def check_bodies(scenario: Scenario) -> None:
         _check_shaped(scenario, name, body)
         if scenario.kinematics_of(name).is_whole:
             _check_whole(scenario, name, body)
+    for name in scenario.material_names:
+        _check_sound(scenario, name)
 
 
 def _check_file(scenario: Scenario, name: str, body: BodyTable) -> None:
@@ -118,3 +120,23 @@ def _check_whole(scenario: Scenario, name: str, body: BodyTable) -> None:
                 f"body.{name}.{key}: a body that moves as a whole has none; remove it, or use the "
                 "scheme ueta2022",
             )
+
+
+def _check_sound(scenario: Scenario, name: str) -> None:
+    """A solid without a sound speed can be rigid or fixed, where nothing else follows from it."""
+    material = scenario.materials[name]
+    if material.has_sound:
+        return
+    stiff = material.young_modulus is not None
+    ways = [scenario.kinematics_of(body) for body, t in scenario.body.items() if t.material == name]
+    why = None
+    if scenario.scheme != RESOLVED:
+        why = f"the scheme {scenario.scheme} computes with it"
+    elif ELASTIC in ways and not stiff:
+        why = "the stiffness of elastic bodies follows from it, or from young_modulus"
+    elif scenario.contact.stiffness == "material" and not stiff:
+        why = "the stiffness of contacts follows from it, or from young_modulus"
+    if why is not None:
+        raise scenario.where.error(
+            ("material", name), f"material.{name}.speedsound is missing: {why}"
+        )

@@ -10,6 +10,7 @@ from .effort import check_effort
 from .gauges import check_figures, check_gauges
 from .meaning import check_meaning
 from .motions import check_motions
+from .start import check_start
 
 MAX_OUTPUTS = 1e6
 
@@ -28,6 +29,7 @@ def check_scenario(scenario: Scenario) -> None:
     check_motions(scenario)
     check_gauges(scenario)
     check_figures(scenario)
+    check_start(scenario)
 
 
 def _check_outputs(scenario: Scenario) -> None:

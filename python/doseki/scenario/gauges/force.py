@@ -11,7 +11,7 @@ from pydantic import Field
 from ...record.particles import FIXED
 from ...record.units import unit_in
 from ..schemes import UETA2022
-from ..values.types import BodyNames, Vector
+from ..values.types import BodyNames, Position
 from .gauge import Gauge, Rows, Sampled, Setting
 
 
@@ -20,7 +20,7 @@ class ForceGauge(Gauge):
 
     kind: Literal["force"]
     bodies: BodyNames = Field(description="names of fixed bodies")
-    about: Vector | None = Field(None, description="point of the moment, m; default: the origin")
+    about: Position | None = Field(None, description="point of the moment, m; default: the origin")
 
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""

@@ -9,8 +9,9 @@ from typing import ClassVar, Protocol
 import numpy as np
 from pydantic import Field
 
+from ..array import Array
 from ..table import Part
-from ..values.types import OptionalMaterialName, Positive, Vector
+from ..values.types import Duration, OptionalMaterialName, Position
 
 State = Mapping[str, np.ndarray]  # fields of particles by name, as record.fields has them
 Rows = list[list[float]]
@@ -29,6 +30,9 @@ class Sampled(Protocol):
     def state(self) -> State:
         """Fields of all particles, and the force (N, dim) on each; none beyond rank 0."""
 
+    def grains(self) -> Mapping[str, object]:
+        """The rigid bodies, as solver.protocol.Grains has them; on all ranks."""
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -42,6 +46,7 @@ class Setting:
     periodic: tuple[int, ...]  # axes
     domain: tuple[np.ndarray, np.ndarray] | None  # lower and upper corner, where there is one
     fixed: Mapping[str, bool]  # whether the bodies of a table [body.NAME] are
+    kinematics: Mapping[str, str]  # names of how they move (scenario.kinematics)
     material_names: Sequence[str]  # that the field `material` indexes
     body_names: Sequence[str]  # that the field `body` indexes
     named: Mapping[str, Sequence[str]]  # bodies that a table stands for
@@ -61,7 +66,7 @@ class Setting:
         return state["material"] == (names.index(material) if material in names else -1)
 
     def is_of_bodies(self, tables: Sequence[str], state: State) -> np.ndarray:
-        """Mask (N,) of the particles of the bodies that tables [body.NAME] stand for."""
+        """Mask (N,) of what is of the bodies that tables [body.NAME] stand for."""
         names = [name for table in tables for name in self.named[table]]
         return np.isin(state["body"], [self.body_names.index(name) for name in names])
 
@@ -72,7 +77,7 @@ class Gauge(Part):
     is_profile: ClassVar[bool] = False  # a sample has one row for each `height`
 
     kind: str
-    interval: Positive | None = Field(None, description="s between samples; default: time_out")
+    interval: Duration | None = Field(None, description="s between samples; default: time_out")
 
     @property
     def place(self) -> np.ndarray | None:
@@ -84,9 +89,21 @@ class Gauge(Part):
         """Of the low-pass, Hz, that its reading goes through at each step; None: it has none."""
         return None
 
+    @property
+    def series(self) -> str | None:
+        """The column by which several rows of one time are told apart; None: a row each time."""
+        return None
+
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
         raise NotImplementedError
+
+    def means(self, dim: int) -> list[str]:
+        """Its last columns, where these are means since the sample before.
+
+        `read` gives their integrals over time, since the start.
+        """
+        return []
 
     def curves(self, dim: int) -> list[str]:
         """The columns that a figure draws where none are named."""
@@ -104,10 +121,11 @@ class Gauge(Part):
 class FlowGauge(Gauge):
     """One that looks at what moves near a point."""
 
-    position: Vector = Field(description="where it stands, m")
+    position: Position = Field(description="where it stands, m")
     material: OptionalMaterialName = Field(
         None, description="look only at this material; default: all that moves"
     )
+    array: Array | None = Field(None, description="copies; each is a gauge NAME.1, NAME.2 ...")
 
     @property
     def place(self) -> np.ndarray:

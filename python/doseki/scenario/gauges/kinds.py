@@ -9,6 +9,7 @@ from .discharge import Discharge
 from .force import ForceGauge
 from .gauge import Gauge
 from .mass_centre import MassCentre
+from .motion import Motion
 from .pressure import PressureGauge
 from .surface_height import SurfaceHeight
 from .velocity_profile import VelocityProfile
@@ -22,6 +23,7 @@ GAUGES = Kinds.by_word(
     Discharge,
     ForceGauge,
     MassCentre,
+    Motion,
 )
 
 if TYPE_CHECKING:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from ..schemes import RESOLVED
 from ..values.types import Direction, Length, Positive
+from ..values.units import AREA, FREQUENCY, LENGTH, Measured
 from .face import Face
 from .gauge import FlowGauge, Rows, Sampled, Setting
 from .near import REACH, Neighbourhood, particles_in
@@ -20,13 +21,13 @@ class PressureGauge(FlowGauge):
 
     kind: Literal["pressure"]
     radius: Length | None = Field(None, description="of the mean, m; default: 3 dp")
-    area: Positive | None = Field(
+    area: Annotated[Positive, Measured(AREA, plane=LENGTH)] | None = Field(
         None, description="of a sensor in the wall, m2 of a disc; 2-D: its length, m"
     )
     direction: Direction | None = Field(
         None, description="with `area`: normal of its face, into the flow; default: the wall's"
     )
-    filter_hz: Positive | None = Field(
+    filter_hz: Annotated[Positive, Measured(FREQUENCY)] | None = Field(
         None, description="bandwidth of the sensor, Hz: a Butterworth low-pass of second order"
     )
 

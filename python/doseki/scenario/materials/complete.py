@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from .laws import EQUATIONS_OF_STATE, RHEOLOGIES, Law, owners, parameters_of
 from .material import BUILT_IN, DEFAULTS, MATERIAL_PARAMETERS, Material
+
+# m/s, of solids without one: beside fluids, only the speed at which a run is given up follows.
+NOMINAL_SOUND = 3000.0
 
 
 class MaterialError(ValueError):
@@ -57,6 +61,9 @@ def _over(base: Material | None, name: str, table: Mapping[str, Any]) -> Materia
         return base.with_values({**table, "name": name})
     values = DEFAULTS | {"law": None} | dict(table)
     optional = {p.name for p in MATERIAL_PARAMETERS if p.optional}
+    has_sound = values["law"] != "solid" or values["speedsound"] is not None
+    if not has_sound:
+        values["speedsound"] = NOMINAL_SOUND
     missing = [key for key, value in values.items() if value is None and key not in optional]
     if missing:
         raise MaterialError(
@@ -64,7 +71,7 @@ def _over(base: Material | None, name: str, table: Mapping[str, Any]) -> Materia
             f"a new material needs {', '.join(sorted(missing))}, or based_on = a known material",
         )
     needed = {key: values.pop(key) for key in ("rho0", "speedsound", "shear_modulus", "nu", "law")}
-    return Material(name=name, **needed).with_values(values)
+    return replace(Material(name=name, **needed).with_values(values), has_sound=has_sound)
 
 
 def _objections(material: Material, eos: str | None) -> Iterator[str]:

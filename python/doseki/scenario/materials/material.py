@@ -19,6 +19,21 @@ def _strength(name: str, unit: str, doc: str, below: float = LIMIT) -> MaterialP
     )
 
 
+def _tension(
+    name: str, doc: str, default: float, least: float | None = None, most: float | None = None
+) -> MaterialParameter:
+    return MaterialParameter(
+        name,
+        "Pa",
+        f"{doc} (fluids)",
+        least=least,
+        most=most,
+        default=default,
+        law="fluid",
+        scheme=RESOLVED,
+    )
+
+
 _COMMON = (
     MaterialParameter("rho0", "kg/m3", "reference density", above=0.0),
     MaterialParameter("speedsound", "m/s", "sound speed at the reference density", above=0.0),
@@ -27,6 +42,13 @@ _COMMON = (
     ),
     MaterialParameter(
         "nu", "m2/s", "kinematic viscosity (fluids)", least=0.0, default=0.0, law="fluid"
+    ),
+    _tension("cavitation_pressure", "gauge pressure at which it tears", most=0.0, default=-9.9e4),
+    _tension(
+        "air_entry_suction",
+        "suction that pores between bodies hold until air enters",
+        least=0.0,
+        default=0.0,
     ),
     _strength("yield_strength", "Pa", "yield strength of von Mises; 0: none (solids)"),
     _strength("cohesion", "Pa", "cohesion of Drucker and Prager (solids)"),
@@ -123,21 +145,27 @@ class Material:
     rolling_friction: float = _default("rolling_friction")
     young_modulus: float | None = None
     poisson_ratio: float | None = None
+    cavitation_pressure: float = _default("cavitation_pressure")
+    air_entry_suction: float = _default("air_entry_suction")
     yield_strength: float = _default("yield_strength")
     cohesion: float = _default("cohesion")
     friction_angle: float = _default("friction_angle")
     rheology: str = "newtonian"
+    has_sound: bool = True  # False: of a solid that was given no sound speed, and may be rigid
     of_laws: Mapping[str, float] = field(default_factory=_defaults_of_laws)
 
     def with_values(self, values: Mapping[str, Any]) -> Material:
         """The material with other values; keys are those of a scenario's table."""
         of_laws = {**self.of_laws, **{k: v for k, v in values.items() if k in _OF_LAWS}}
         others = {key: value for key, value in values.items() if key not in _OF_LAWS}
+        if values.get("speedsound") is not None:
+            others["has_sound"] = True
         return replace(self, of_laws=of_laws, **others)
 
     def table(self) -> dict[str, Any]:
         """All values by the keys of a scenario's table, and the name."""
         values = asdict(self)
+        del values["has_sound"]
         return values | values.pop("of_laws")
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 
 from ...errors import UserError
 from ...util.foreign import open_regular
+from ..values.units import Unit
 
 ROWS_AT_ONCE = 100_000
 MAX_COLUMNS = 64
@@ -32,6 +34,32 @@ def read_csv_columns(path: Path) -> dict[str, np.ndarray]:
             raise UserError(f"{path}: neither HDF5 nor a CSV text in UTF-8") from None
         except csv.Error as error:
             raise UserError(f"{path}: not a CSV file: {error}") from None
+
+
+def numbers_in(
+    columns: dict[str, np.ndarray], wanted: str, unit: Unit, example: str
+) -> list[float]:
+    """The column `wanted` in a unit's own word; its header may name another, as in "t [min]".
+
+    Raises ValueError, which names `example` as a header, without it or where it is no column of
+    numbers.
+    """
+    for header, texts in columns.items():
+        found = re.fullmatch(rf"{wanted}\s*(?:[\[(]\s*(\S+)\s*[\])])?", header, re.IGNORECASE)
+        if not found:
+            continue
+        factor = unit.factor(found[1]) if found[1] is not None else 1.0
+        if factor is None:
+            raise ValueError(f'unit of "{header}" is not known; allowed: {", ".join(unit.factors)}')
+        return [factor * _number(str(text), wanted, row) for row, text in enumerate(texts, start=1)]
+    raise ValueError(f'no column {wanted}; expected a header such as "{example}"')
+
+
+def _number(text: str, name: str, row: int) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"row {row}: {name} = {text!r} is not a number") from None
 
 
 class _Lines:

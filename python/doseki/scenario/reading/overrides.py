@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from collections.abc import Sequence
 from typing import Any
@@ -20,6 +21,9 @@ from ..tables.sections import (
 )
 from ..values.expressions import is_expression
 from ..values.toml_source import KeyPath, Where
+from ..values.units import quantity
+
+FRACTION = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?\s*/\s*[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
 
 
 def apply_overrides(
@@ -42,11 +46,11 @@ def apply_overrides(
 
 
 def _parse(text: str) -> Any:
-    """The value as TOML would read it; anything else is a word."""
+    """The value as TOML would read it; a fraction is an expression, anything else a word."""
     try:
         parsed = tomllib.loads(f"value = {text}")
     except (tomllib.TOMLDecodeError, RecursionError, ValueError):
-        return text
+        return f"= {text}" if FRACTION.fullmatch(text) else text
     return parsed["value"] if set(parsed) == {"value"} else text
 
 
@@ -118,7 +122,8 @@ def _put_parameter(parameters: dict[str, Any], name: str, value: Any) -> None:
 
 
 def _kind(value: Any) -> str:
-    """What a value is, in words; expressions and 2-D/3-D choices stand for numbers."""
+    """What a value is, in words; expressions, quantities and choices stand for numbers."""
     if isinstance(value, bool):
         return "true or false"
-    return "a word" if isinstance(value, str) and not is_expression(value) else "a number"
+    is_word = isinstance(value, str) and not is_expression(value) and quantity(value) is None
+    return "a word" if is_word else "a number"

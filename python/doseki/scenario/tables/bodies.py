@@ -11,22 +11,30 @@ from ..kinematics import SINGLE, Kinematics
 from ..table import Kinds, Only
 from ..values.types import (
     Digest,
+    Duration,
     Grading,
     Length,
     Mass,
+    MaterialName,
     OptionalMaterialName,
+    ParticleMass,
+    Position,
     Positive,
     Vector,
 )
+from ..values.units import LENGTH, Measured
 from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
+from .motion import Motion
+
+Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 
 
 class Box(LatticeBody):
     """Particles at min + (k + 1/2) dp, round(length/dp) of them along each side."""
 
     shape: Literal["box"]
-    min: Vector = Field(description="lower corner before rotation, m")
-    max: Vector = Field(description="upper corner before rotation, m")
+    min: Position = Field(description="lower corner before rotation, m")
+    max: Position = Field(description="upper corner before rotation, m")
     count: int | None = Field(
         None, gt=0, description="keep this many particles, filled row by row from below"
     )
@@ -42,6 +50,11 @@ class Box(LatticeBody):
             raise ValueError("wetted_by and where exclude each other: a wetted box is whole")
         return self
 
+    def filled_size(self, dp: float) -> np.ndarray:
+        """Its sides (dim,), m, in whole particles, of spacing `dp` where it has none of its own."""
+        spacing = self.dp or dp
+        return np.asarray(spacing * np.rint((self.max - self.min) / spacing))
+
     def layers(self, dp: float) -> int | None:
         """Particles of spacing `dp`, m, across its thinnest side."""
         return round(float(np.min(self.max - self.min)) / (self.dp or dp))
@@ -53,7 +66,7 @@ class Disc(LatticeBody):
     can_be_single: ClassVar[bool] = True
 
     shape: Literal["disc", "sphere"]
-    centre: Vector = Field(description="its centre, m")
+    centre: Position = Field(description="its centre, m")
     radius: Length = Field(description="its radius, m")
     fill: Literal["lattice", "single"] = Field(
         "lattice", description="lattice: particles nearer than radius; single: one with its mass"
@@ -89,8 +102,8 @@ class Grains(TurnedBody):
     can_be_single: ClassVar[bool] = True
 
     shape: Literal["disc", "sphere"]
-    min: Vector = Field(description="lower corner of the box before rotation, m")
-    max: Vector = Field(description="upper corner of the box before rotation, m")
+    min: Position = Field(description="lower corner of the box before rotation, m")
+    max: Position = Field(description="upper corner of the box before rotation, m")
     d: Length | None = Field(None, description="diameter, m; excludes grading")
     grading: Grading | None = Field(
         None, description="[[d, share], ...] in m and parts of the mass; excludes d"
@@ -117,7 +130,7 @@ class Grains(TurnedBody):
         "touch would leave water no way between them",
     )
     random_seed: int = Field(1, ge=0, description="of the packing")
-    settle: bool | Positive = Field(
+    settle: bool | Duration = Field(
         False,
         description="settle dry under gravity before the start, between the sides of "
         "the box: true, until at rest, or s",
@@ -158,7 +171,9 @@ class Polygon(TurnedBody):
     is_solid: ClassVar[bool] = True
 
     shape: Literal["polygon"]
-    vertices: list[Vector] = Field(description="its corners in order, m", min_length=3)
+    vertices: Annotated[list[Vector], Measured(LENGTH)] = Field(
+        description="its corners in order, m", min_length=3
+    )
 
 
 class Mesh(TurnedBody):
@@ -173,7 +188,7 @@ class Mesh(TurnedBody):
         None, description="BLAKE2b of the file, 32 hexadecimal digits; another one is refused"
     )
     scale: Positive = Field(1.0, description="m per unit of the file")
-    centre: Vector | None = Field(
+    centre: Position | None = Field(
         None, description="where its centre of mass is put, m; default: where the file has it"
     )
 
@@ -185,8 +200,10 @@ class Points(ShapedBody):
     must_be_single: ClassVar[bool] = True
 
     shape: Literal["points"]
-    position: list[Vector] = Field(description="one vector per particle, m", min_length=1)
-    mass: Positive = Field(description="mass of each particle, kg (2-D: kg/m)")
+    position: Annotated[list[Vector], Measured(LENGTH)] = Field(
+        description="one vector per particle, m", min_length=1
+    )
+    mass: ParticleMass = Field(description="mass of each particle, kg (2-D: kg/m)")
 
 
 class ParticleFile(BodyTable):
@@ -203,6 +220,35 @@ class ParticleFile(BodyTable):
     material: OptionalMaterialName = Field(
         None, description="where the file has no column `material`"
     )
+
+
+class Tank(BodyTable):
+    """Fixed walls outside an inner box: a body NAME.-x, NAME.+x ... for each side."""
+
+    shape: Literal["tank"]
+    fixed: bool = Field(True, description="always true: it moves only as `motion` says")
+    material: MaterialName = Field(description="name of its material")
+    min: Position = Field(description="lower corner of the space inside, m")
+    max: Position = Field(description="upper corner of the space inside, m")
+    thickness: Length | None = Field(
+        None, description="of the walls, m; default: as many layers as the kernel sees"
+    )
+    open: list[Side] | None = Field(
+        None, description='sides without a wall, such as ["-x", "+y"]; default: the top'
+    )
+    motion: Motion | None = Field(None, description="prescribed motion")
+    wall: Literal["no_slip", "free_slip", "rough"] = Field(
+        "no_slip", description="resolved scheme: how fluid meets it"
+    )
+    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
+
+    @model_validator(mode="after")
+    def _has_room(self) -> Tank:
+        if not self.fixed:
+            raise ValueError("a tank is fixed")
+        if not np.all(self.min < self.max):
+            raise ValueError("every entry of min must be below that of max")
+        return self
 
 
 GRAINS = "grains"
@@ -225,6 +271,7 @@ BODIES = Kinds(
         "stl": Mesh,
         "points": Points,
         "file": ParticleFile,
+        "tank": Tank,
         GRAINS: Grains,
     },
     special=_packed,

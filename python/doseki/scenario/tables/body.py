@@ -6,11 +6,24 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from ..array import Array
 from ..kinematics import ELASTIC, FIXED, PARTICLES, RIGID, SINGLE, Kinematics
 from ..materials import ELASTIC_DEFAULTS, HYPERELASTIC_LAWS
 from ..schemes import RESOLVED
 from ..table import Only, Part
-from ..values.types import Length, MaterialName, Positive, ScalarField, Vector, VelocityField
+from ..values.types import (
+    Angle,
+    DisplacementField,
+    Length,
+    MaterialName,
+    ParticleMass,
+    Position,
+    ScalarField,
+    Spin,
+    Vector,
+    VelocityField,
+)
+from ..values.units import PRESSURE, Measured
 from .motion import Motion
 
 if TYPE_CHECKING:
@@ -65,12 +78,13 @@ class ShapedBody(BodyTable):
     of_particles: ClassVar[tuple[str, ...]] = ("pressure",)
 
     material: MaterialName = Field(description="name of its material")
-    pressure: ScalarField | None = Field(
+    pressure: Annotated[ScalarField, Measured(PRESSURE)] | None = Field(
         None,
         description="initial pressure, Pa; a number or an expression of x, y, z; particles keep "
         "their volume",
     )
     fixed: bool = Field(False, description="true: interacts but moves only as `motion` says")
+    array: Array | None = Field(None, description="copies; each is a body NAME.1, NAME.2 ...")
     motion: Annotated[Motion | None, Only(fixed=True)] = Field(
         None, description="prescribed motion of a fixed body"
     )
@@ -94,7 +108,7 @@ class ShapedBody(BodyTable):
     clamped: ScalarField | None = Field(
         None, description="elastic: points do not move where this expression of x, y, z is above 0"
     )
-    displacement: VelocityField | None = Field(
+    displacement: DisplacementField | None = Field(
         None,
         description="elastic: where points start less where they are without stress, m; "
         "expressions of x, y, z there",
@@ -116,7 +130,7 @@ class ShapedBody(BodyTable):
         description="elastic: springs over the shear modulus; default "
         f"{ELASTIC_DEFAULTS['hourglass']}",
     )
-    spin: float | Vector | None = Field(
+    spin: Spin | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
     )
 
@@ -142,11 +156,11 @@ class TurnedBody(ShapedBody):
     """A body that can be rotated."""
 
     dp: Length | None = Field(None, description="particle spacing, m (default: the run's)")
-    rotate: float = Field(0.0, description="degrees, from the first axis towards the last")
+    rotate: Angle = Field(0.0, description="degrees, from the first axis towards the last")
     rotate_axis: Annotated[Vector | None, Only(dim=3)] = Field(
         None, description="3-D: axis of a right-handed rotation"
     )
-    pivot: Vector | None = Field(
+    pivot: Position | None = Field(
         None,
         description="point about which it is rotated, m; default: `min` of a box, the centre of a "
         "disc, sphere or stl, the centre of mass of a polygon",
@@ -172,7 +186,7 @@ class LatticeBody(TurnedBody):
         "count",
     )
 
-    mass_per_particle: Positive | None = Field(
+    mass_per_particle: ParticleMass | None = Field(
         None, description="kg (2-D: kg/m); default rho0 dp^dim"
     )
     jitter: float = Field(

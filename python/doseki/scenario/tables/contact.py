@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from ..table import Table
-from ..values.types import Positive
+from ..values.types import Speed
 
 
 class Contact(Table):
@@ -17,7 +17,7 @@ class Contact(Table):
     overlap: float = Field(
         0.01, gt=0, le=0.1, description="largest overlap over the diameter, for softened contacts"
     )
-    speed: Positive | None = Field(
+    speed: Speed | None = Field(
         None, description="largest speed of approach, m/s; default: speed_max"
     )
     stiffness: Literal["softened", "material"] = Field(

@@ -15,15 +15,17 @@ from ...util.spelling import suggestion
 from ..gauges.gauge import Gauge
 from ..table import Kinds, Part
 from ..values.types import (
+    LARGEST,
+    SMALLEST,
     Direction,
     GaugeName,
-    Length,
     OptionalMaterialName,
     OptionalWindowName,
+    Position,
     Title,
-    Vector,
     dimension,
 )
+from ..values.units import SPEED, TIME, Measured
 
 
 def _known_quantities(names: list[str], info: ValidationInfo) -> list[str]:
@@ -38,7 +40,8 @@ def _known_quantities(names: list[str], info: ValidationInfo) -> list[str]:
 Quantities = Annotated[
     list[str], Field(min_length=1, max_length=8), AfterValidator(_known_quantities)
 ]
-Times = Annotated[list[float], Field(max_length=24)]  # panels on a page
+Times = Annotated[list[float], Field(max_length=24), Measured(TIME)]  # panels on a page
+BinWidth = Annotated[float, Field(ge=SMALLEST, le=LARGEST), Measured(SPEED)]
 MAX_BINS = 2000
 
 
@@ -72,9 +75,10 @@ class FigureOfSnapshots(Figure):
     times: Times = Field(
         default_factory=list, description="s; nearest snapshots; default: see `when`"
     )
-    when: Literal["all", "first", "last", "before_flow", "with_flow"] = Field(
+    when: Literal["all", "events", "first", "last", "before_flow", "with_flow"] = Field(
         "last",
-        description="which snapshots, where no times are given: before_flow is the last one with "
+        description="which snapshots, where no times are given: events are the start, the arrival "
+        "of the flow, its peak (of kinetic energy) and the end; before_flow is the last one with "
         "no fluid in the window, with_flow the first one with fluid across all of it",
     )
     material: OptionalMaterialName = Field(None, description="count or draw only this material")
@@ -100,7 +104,7 @@ class HistogramFigure(FigureOfSnapshots):
     """How fast particles are at some moments."""
 
     kind: Literal["histogram"]
-    bin_width: Length = Field(0.1, description="of the bins, m/s")
+    bin_width: BinWidth = Field(0.1, description="of the bins, m/s")
     sample: int = Field(30, gt=0, le=1_000_000, description="size of a random sample of particles")
 
     def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:
@@ -157,8 +161,8 @@ class DepthFigure(Figure):
     """The depth of the flow along a line, over time: an x-t diagram."""
 
     kind: Literal["xt"]
-    start: Vector = Field(description="where the line begins on the bed, m")
-    end: Vector = Field(description="where the line ends, m")
+    start: Position = Field(description="where the line begins on the bed, m")
+    end: Position = Field(description="where the line ends, m")
     direction: Direction | None = Field(None, description="upwards; default: against gravity")
     material: OptionalMaterialName = Field(
         None, description="depth of this material; default: of all that moves"

@@ -5,17 +5,18 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from ..array import Array
 from ..table import Part
 from ..values.types import (
     Depth,
     Direction,
+    Duration,
     Hydrograph,
+    Instant,
     Length,
     MaterialName,
-    NonNegative,
-    Positive,
+    Position,
     Rate,
-    Vector,
 )
 
 
@@ -30,14 +31,15 @@ class Inflow(Part):
         " Q; excludes rate",
     )
     width: Length = Field(description="m; a 2-D run enters rate/width")
-    position: Vector = Field(description="bottom point of the section, m")
+    position: Position = Field(description="bottom point of the section, m")
     direction: Direction = Field(description="direction of the flow")
     depth: Depth = Field(
         description='m, extent along the section\'s upward normal, or "normal": of uniform flow'
     )
     ks: Length | None = Field(None, description="roughness of the bed in the normal depth, m")
-    start: NonNegative = Field(0.0, description="s")
-    duration: Positive | None = Field(None, description="s; a hydrograph has its own")
+    start: Instant = Field(0.0, description="s")
+    duration: Duration | None = Field(None, description="s; a hydrograph has its own")
+    array: Array | None = Field(None, description="copies; each is an inflow NAME.1, NAME.2 ...")
     jitter: float = Field(
         0.0, ge=0, lt=0.5, description="random displacement along each axis, in spacings"
     )

@@ -8,12 +8,15 @@ from pydantic import Field, create_model
 
 from ..materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
 from ..table import Only, Table
+from ..values.units import Measured, unit_named
 
 
 def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
     description = f"{parameter.doc}, {parameter.unit}".removesuffix(", ")
+    unit = unit_named(parameter.unit)
+    number = float if unit is None else Annotated[float, Measured(unit)]
     return (
-        Annotated[float | None, Only(scheme=parameter.scheme)],
+        Annotated[number | None, Only(scheme=parameter.scheme)],
         Field(
             None,
             gt=parameter.above,

@@ -6,22 +6,22 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ..table import Table
-from ..values.types import NonNegative, Positive, Vector
+from ..values.types import Duration, Instant, Position, Spin, Velocity
 
 
 class Motion(Table):
     """A prescribed motion of a fixed body."""
 
-    velocity: Vector | None = Field(None, description="m/s; default: none")
-    angular_velocity: float | Vector | None = Field(
+    velocity: Velocity | None = Field(None, description="m/s; default: none")
+    angular_velocity: Spin | None = Field(
         None, description="rad/s, anticlockwise; 3-D: a vector; default: none"
     )
-    pivot: Vector | None = Field(
+    pivot: Position | None = Field(
         None, description="point about which it turns, which goes with it, m"
     )
-    start: NonNegative = Field(0.0, description="when it begins to move, s")
-    stop: Positive | None = Field(None, description="when it stands still again, s")
-    removed_at: Positive | None = Field(None, description="when the body vanishes, s")
+    start: Instant = Field(0.0, description="when it begins to move, s")
+    stop: Duration | None = Field(None, description="when it stands still again, s")
+    removed_at: Duration | None = Field(None, description="when the body vanishes, s")
 
     @model_validator(mode="after")
     def _fits_together(self) -> Motion:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field, model_validator
 
+from ..array import Array
 from ..table import Part
-from ..values.types import Corner
+from ..values.types import Angle, Corner
 
 
 class Region(Part):
@@ -25,11 +26,13 @@ class Region(Part):
 class Outflow(Region):
     """A region in which free particles are removed and counted."""
 
+    array: Array | None = Field(None, description="copies; each is an outflow NAME.1, NAME.2 ...")
+
 
 class Window(Region):
     """A region that figures and histograms look at."""
 
     title: str = Field("", description="caption")
-    rotate: float = Field(
+    rotate: Angle = Field(
         0.0, description="degrees about the origin, from the first axis towards the last"
     )

@@ -10,7 +10,20 @@ from ..gauges.kinds import GaugeTable
 from ..materials import EQUATIONS_OF_STATE, laws_of
 from ..schemes import RESOLVED, UETA2022
 from ..table import Only, Table
-from ..values.types import Axis, Length, NonNegative, Positive, Skin, Title, Vector
+from ..values.types import (
+    Acceleration,
+    Angle,
+    Axis,
+    Duration,
+    Length,
+    NonNegative,
+    Position,
+    Positive,
+    Skin,
+    Speed,
+    Title,
+)
+from ..values.units import ACCELERATION, FREQUENCY, Measured
 from .bodies import AnyBody
 from .contact import Contact
 from .figure import FigureTable
@@ -18,6 +31,7 @@ from .inflow import Inflow
 from .material import MaterialTable
 from .parameter import Parameter
 from .region import Outflow, Window
+from .start import Start
 
 if TYPE_CHECKING:
     EquationOfState = str
@@ -35,9 +49,9 @@ class ScenarioTable(Table):
     description: str = Field("", description="what it is and where it comes from")
     dim: Literal[2, 3] = Field(description="number of space dimensions")
     dp: Length = Field(description="particle spacing, m")
-    time_max: Positive = Field(description="end of the run, s")
-    time_out: Positive = Field(description="time between snapshots, s")
-    time_history: Positive | None = Field(None, description="s between history rows")
+    time_max: Duration = Field(description="end of the run, s")
+    time_out: Duration = Field(description="time between snapshots, s")
+    time_history: Duration | None = Field(None, description="s between history rows")
     scheme: Literal["ueta2022", "resolved"] = Field("ueta2022", description="the list of terms")
     kernel: Literal["wendland_c2", "wendland_c6"] = Field(
         "wendland_c6", description="W; the resolved scheme has wendland_c2 by default"
@@ -56,14 +70,22 @@ class ScenarioTable(Table):
     shifting: Annotated[bool, OF_RESOLVED] = Field(
         True, description="resolved: keep particles evenly spread"
     )
-    speed_max: Positive | None = Field(
+    relax: Annotated[Duration | None, OF_RESOLVED] = Field(
+        None, description="resolved: s for which fluid comes to rest before the run begins"
+    )
+    uplift: Annotated[bool, OF_RESOLVED] = Field(
+        True, description="resolved: water presses on bodies in gaps where no particle fits"
+    )
+    speed_max: Speed | None = Field(
         None, description="highest speed expected, m/s: sound speed 10 times that; excludes xi"
     )
     precision: Literal["double", "float"] = Field("double", description="of the pair arithmetic")
-    gravity: Vector | None = Field(None, description="m/s2; excludes slope")
-    slope: float | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
-    g: Positive = Field(9.8, description="gravity on a slope and in eq. 19, m/s2")
-    attraction: Annotated[NonNegative, OF_RESOLVED] = Field(
+    gravity: Acceleration | None = Field(None, description="m/s2; excludes slope")
+    slope: Angle | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
+    g: Annotated[Positive, Measured(ACCELERATION)] = Field(
+        9.8, description="gravity on a slope and in eq. 19, m/s2"
+    )
+    attraction: Annotated[NonNegative, Measured(FREQUENCY), OF_RESOLVED] = Field(
         0.0, description="resolved: B of a force -B^2 x per mass towards the origin, 1/s"
     )
     eta: float = Field(1.2, ge=0.8, le=3, description="smoothing length over spacing (eq. 10)")
@@ -93,9 +115,10 @@ class ScenarioTable(Table):
     )
     skin: Skin = Field(0.05, description='margin of the lists over the support, or "auto"')
     periodic: list[Axis] = Field(default_factory=list, description="periodic axes")
-    domain_min: Vector | None = Field(None, description="lower corner of the periodic domain, m")
-    domain_max: Vector | None = Field(None, description="upper corner of the periodic domain, m")
+    domain_min: Position | None = Field(None, description="lower corner of the periodic domain, m")
+    domain_max: Position | None = Field(None, description="upper corner of the periodic domain, m")
     contact: Annotated[Contact, OF_RESOLVED] = Field(default_factory=Contact)
+    start: Start | None = None
     parameters: dict[str, Parameter] = Field(default_factory=dict)
     material: dict[str, MaterialTable] = Field(default_factory=dict)
     body: dict[str, AnyBody] = Field(default_factory=dict)

@@ -35,10 +35,18 @@ SECTIONS: dict[str, type[Table] | Kinds] = {
     for name, field in ScenarioTable.model_fields.items()
     if get_origin(field.annotation) is dict
 }
+
+
+def _single_table(annotation: Any) -> type[Table] | None:
+    """The table that a key holds, or may hold."""
+    kinds = [annotation, *get_args(annotation)]
+    return next((k for k in kinds if isinstance(k, type) and issubclass(k, Table)), None)
+
+
 SINGLE_TABLES: dict[str, type[Table]] = {  # of which a scenario has one
-    name: field.annotation
+    name: kind
     for name, field in ScenarioTable.model_fields.items()
-    if isinstance(field.annotation, type) and issubclass(field.annotation, Table)
+    if get_origin(field.annotation) is not dict and (kind := _single_table(field.annotation))
 }
 
 

@@ -154,8 +154,9 @@ def _of_numbers(operation: Function) -> Function:
     """The operation, refused for anything but numbers and arrays (no "a" * 10**9)."""
 
     def checked(*operands: Any) -> Any:
-        if not all(isinstance(x, int | float | np.ndarray) for x in operands):
-            raise ExpressionError("arithmetic needs numbers")
+        for x in operands:
+            if not isinstance(x, int | float | np.ndarray):
+                raise ExpressionError(f"arithmetic needs numbers, not {repr(x)[:60]}")
         return operation(*operands)
 
     return checked

@@ -85,18 +85,29 @@ class Where:
     def __init__(self, sources: Sequence[TomlSource]) -> None:
         self._sources = sources  # the scenario first, then the files it extends
         self._options: dict[KeyPath, str] = {}
+        self._written: dict[KeyPath, KeyPath] = {}
 
     def folder(self, keys: KeyPath) -> Path:
         """To what a file name given at `keys` is relative: that file, or here for an option."""
+        keys = self._as_written(keys)
         return Path() if self._option(keys) else self._deepest(keys).path.parent
 
     def note_override(self, keys: KeyPath, option: str) -> None:
         """Remember that --set gave this key, under the name `option`."""
         self._options[keys] = option
 
+    def note_copy(self, keys: KeyPath, written: KeyPath) -> None:
+        """Remember that the table at `keys` was made of the one that stands at `written`."""
+        self._written[keys] = written
+
     def error(self, keys: KeyPath, message: str) -> UserError:
         """A UserError about `keys`, which names the file and line, or the option, to look at."""
-        return UserError(f"{self._place(keys)}: {message}")
+        return UserError(f"{self._place(self._as_written(keys))}: {message}")
+
+    def _as_written(self, keys: KeyPath) -> KeyPath:
+        """Where the file has the value at `keys`."""
+        written = self._written.get(keys[:2])
+        return keys if written is None else (*written, *keys[2:])
 
     def _place(self, keys: KeyPath) -> str:
         if option := self._option(keys):

@@ -1,9 +1,8 @@
-"""Kinds of values in a scenario file: bounded numbers, vectors, rates with a unit."""
+"""Kinds of values in a scenario file: bounded numbers in their units, vectors, names."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
@@ -13,11 +12,23 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, Va
 
 from ...util.input_file import DIGEST
 from .expressions import is_expression
+from .units import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_SPEED,
+    LENGTH,
+    LINE_MASS,
+    MASS,
+    RATE,
+    SPEED,
+    TIME,
+    Measured,
+    MeasuredColumns,
+)
 
 # A length beyond these is a slip of the keyboard, and would overflow further on.
 SMALLEST, LARGEST = 1e-12, 1e12
-RATE_UNITS = {"m3/s": 1.0, "m^3/s": 1.0, "L/s": 1e-3, "l/s": 1e-3}
-MASS_UNITS = {"kg": 1.0, "g": 1e-3, "t": 1e3}
+INFINITIES = ("inf", "+inf", "-inf")
 
 
 def dimension(info: ValidationInfo) -> int:
@@ -47,7 +58,7 @@ def _number_or_expression(value: Any) -> Any:
 
 def _bound(value: Any) -> Any:
     """TOML can write inf; the strings "inf" and "-inf" mean the same."""
-    return float(value) if value in ("inf", "+inf", "-inf") else value
+    return float(value) if value in INFINITIES else value
 
 
 def _not_nan(value: float) -> float:
@@ -60,29 +71,6 @@ def _not_zero(vector: np.ndarray) -> np.ndarray:
     if not np.any(vector):
         raise ValueError("the direction must not be the zero vector")
     return vector
-
-
-def _rate(value: Any) -> Any:
-    """A rate in m3/s from a number, or from a string with its unit such as "3 L/s"."""
-    wrong = 'a rate is a number in m3/s or a string such as "3 L/s" or "0.003 m3/s"'
-    return _with_unit(value, RATE_UNITS, wrong)
-
-
-def _mass(value: Any) -> Any:
-    """A mass in kg from a number, or from a string with its unit such as "20 kg"."""
-    return _with_unit(value, MASS_UNITS, 'a mass is a number in kg or a string such as "20 kg"')
-
-
-def _with_unit(value: Any, units: dict[str, float], wrong: str) -> Any:
-    if not isinstance(value, str):
-        return value
-    found = re.fullmatch(r"\s*([-+.\deE]+)\s*(\S+)\s*", value)
-    if not found or found[2] not in units:
-        raise ValueError(wrong)
-    try:
-        return float(found[1]) * units[found[2]]
-    except ValueError:
-        raise ValueError(f"{found[1]!r} is not a number") from None
 
 
 def _grading(rows: list[list[float]]) -> list[list[float]]:
@@ -108,7 +96,7 @@ def _hydrograph(value: Any) -> str | list[list[float]]:
         isinstance(row, list) and len(row) == 2 for row in value
     ):
         raise ValueError("must be a list of [t, Q] pairs, or the path of a CSV file")
-    return checked_hydrograph([(t, _rate(rate)) for t, rate in value])
+    return checked_hydrograph([(t, rate) for t, rate in value])
 
 
 def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
@@ -157,15 +145,25 @@ class RefersTo:
 Positive = Annotated[float, Field(gt=0)]
 Title = Annotated[str, Field(max_length=300), AfterValidator(_one_line)]
 Digest = Annotated[str, AfterValidator(_digest)]
-Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Length = Annotated[float, Field(ge=SMALLEST, le=LARGEST), Measured(LENGTH)]
+Duration = Annotated[float, Field(gt=0), Measured(TIME)]
+Instant = Annotated[float, Field(ge=0), Measured(TIME)]
+Speed = Annotated[float, Field(gt=0), Measured(SPEED)]
+Angle = Annotated[float, Measured(ANGLE)]
+ParticleMass = Annotated[float, Field(gt=0), Measured(MASS, plane=LINE_MASS)]
 Coordinate = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 NonNegative = Annotated[float, Field(ge=0)]
-VelocityField = Annotated[
+VectorField = Annotated[
     list[Any], AfterValidator(_of_dimension), AfterValidator(_numbers_or_expressions)
 ]
+VelocityField = Annotated[VectorField, Measured(SPEED)]
+DisplacementField = Annotated[VectorField, Measured(LENGTH)]
 ScalarField = Annotated[Any, AfterValidator(_number_or_expression)]
 Bound = Annotated[
-    float, Field(allow_inf_nan=True), BeforeValidator(_bound), AfterValidator(_not_nan)
+    float,
+    Field(allow_inf_nan=True),
+    BeforeValidator(_bound),
+    AfterValidator(_not_nan),
 ]
 MaterialName = Annotated[str, RefersTo("material")]
 BodyNames = Annotated[list[str], RefersTo("body"), Field(min_length=1)]
@@ -176,6 +174,10 @@ OptionalMaterialName = Annotated[str | None, RefersTo("material")]
 # Lists in the file, arrays (dim,) in a scenario.
 if TYPE_CHECKING:
     Vector: TypeAlias = np.ndarray
+    Position: TypeAlias = np.ndarray
+    Velocity: TypeAlias = np.ndarray
+    Acceleration: TypeAlias = np.ndarray
+    Spin: TypeAlias = float | np.ndarray
     Direction: TypeAlias = np.ndarray
     Corner: TypeAlias = np.ndarray
 else:
@@ -185,12 +187,21 @@ else:
         PlainSerializer(np.ndarray.tolist, return_type=list),
     )
     Vector = Annotated[list[Coordinate], *_AS_ARRAY]
+    Position = Annotated[Vector, Measured(LENGTH)]
+    Velocity = Annotated[Vector, Measured(SPEED)]
+    Acceleration = Annotated[Vector, Measured(ACCELERATION)]
+    Spin = Annotated[float | Vector, Measured(ANGULAR_SPEED)]
     Direction = Annotated[Vector, AfterValidator(_not_zero)]
-    Corner = Annotated[list[Bound], *_AS_ARRAY]
-Rate = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_rate)]
-Mass = Annotated[float, Field(gt=0, le=LARGEST), BeforeValidator(_mass)]
-Grading = Annotated[list[list[float]], Field(min_length=1), AfterValidator(_grading)]
-Depth = Annotated[float | str, AfterValidator(_depth)]
-Hydrograph = Annotated[Any, AfterValidator(_hydrograph)]
+    Corner = Annotated[list[Bound], *_AS_ARRAY, Measured(LENGTH, words=INFINITIES)]
+Rate = Annotated[float, Field(gt=0, le=LARGEST), Measured(RATE)]
+Mass = Annotated[float, Field(gt=0, le=LARGEST), Measured(MASS)]
+Grading = Annotated[
+    list[list[float]],
+    Field(min_length=1),
+    AfterValidator(_grading),
+    MeasuredColumns((LENGTH, None)),
+]
+Depth = Annotated[float | str, AfterValidator(_depth), Measured(LENGTH, words=("normal",))]
+Hydrograph = Annotated[Any, AfterValidator(_hydrograph), MeasuredColumns((TIME, RATE))]
 Axis = Literal["x", "y", "z"]
 Skin = Annotated[float | str, AfterValidator(_skin)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,10 +29,16 @@ class Overlap(Finding):
         )
 
 
-def find_overlaps(particles: ParticleSet, names: list[str]) -> list[Overlap]:
-    """One for each pair of bodies (or body with itself) that has overlapping particles."""
+def find_overlaps(
+    particles: ParticleSet, names: list[str], known: Set[str] = frozenset()
+) -> list[Overlap]:
+    """One for each pair of bodies (or body with itself) that has overlapping particles.
+
+    Among those `known` nothing is looked for: they have moved already.
+    """
     found = _overlapping_bodies(particles).items()
-    return [Overlap(names[first], names[second], count) for (first, second), count in found]
+    pairs = [(names[first], names[second], count) for (first, second), count in found]
+    return [Overlap(a, b, count) for a, b, count in pairs if not known >= {a, b}]
 
 
 def _overlapping_bodies(particles: ParticleSet) -> dict[tuple[int, int], int]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Generic, TypeVar
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...record.particles import BOUND, FIXED, FREE, ParticleSet
 from ...scenario.tables.body import ShapedBody
-from ..bodies import ElasticBody
-from ..groups import UPRIGHT, Group
+from ..bodies import ElasticBody, ElasticSurface
+from ..groups import UPRIGHT, Group, matrices
 from ..periodic import wrapped
 from ..shapes import Particles, Shape
 from .body import Body
@@ -125,7 +126,7 @@ class Shaped(Body[S], Generic[S]):
             own = np.flatnonzero(owner == k)
             volume = group.shapes[group.shape[k]].measure / len(own)
             spacing = volume ** (1 / self.dim)
-            surface = placed.depth[own] < spacing
+            surface = self._surface(group, k, placed.position[own], placed.depth[own] < spacing)
             made.append(
                 ElasticBody(
                     self.name,
@@ -140,6 +141,17 @@ class Shaped(Body[S], Generic[S]):
                 )
             )
         return made
+
+    def _surface(
+        self, group: Group, k: int, rest: np.ndarray, outermost: np.ndarray
+    ) -> ElasticSurface:
+        """That of body k, whose particles are at `rest`; in 3-D its `outermost` ones."""
+        if self.dim == 3:
+            carrier = np.flatnonzero(outermost)
+            return ElasticSurface(rest[carrier], carrier, np.zeros(len(carrier), bool))
+        curve = group.shapes[group.shape[k]].curve(self.spacing)
+        vertex = group.centre[k] + curve.vertex @ matrices(group.orientation, 2)[k].T
+        return ElasticSurface(vertex, cKDTree(rest).query(vertex)[1], curve.crease)
 
     def wall(self, position: np.ndarray, particles: ParticleSet) -> tuple[np.ndarray, np.ndarray]:
         """See Body: along the given normal, by the gradient of `where`, or from the shape."""

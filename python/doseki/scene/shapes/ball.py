@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from ..lattices import ROUNDING, ball_measure
-from .particles import Particles, alike, from_centre
+from .balance import balanced
+from .particles import Curve, Particles, alike, from_centre
 
 
 @dataclass(frozen=True)
@@ -69,21 +71,22 @@ class Ball:
         """A disc as rings of 6, 12, 18 ... particles around one, a hexagonal lattice that is bent.
 
         Any two such discs meet point to point along x. Balls of the diameter of a particle in the
-        outermost ring touch the circle from inside.
+        outermost ring touch the circle from inside. All but the two outermost rings lie so that an
+        even stress is in balance.
         """
         if self.dim == 3:
             ball = self.particles(dp)
             return ball._replace(share=alike(len(ball.share)))
-        number = max(1, round(self.radius / dp))
-        share = self.measure / (3 * number * (number + 1) + 1)  # area of each
-        step = (self.radius - 0.5 * np.sqrt(share)) / number
-        angles = [2 * np.pi * np.arange(6 * k) / (6 * k) for k in range(1, number + 1)]
-        rings = [
-            k * step * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-            for k, angle in enumerate(angles, start=1)
-        ]
-        position = np.concatenate([np.zeros((1, 2)), *rings])
+        position = self.radius * _even_rings(max(1, round(self.radius / dp)))
         return from_centre(position, self.radius, alike(len(position)))
+
+    def curve(self, dp: float) -> Curve:
+        """The circle, with a vertex for each particle of the outermost ring; off by 1e-6."""
+        number = 6 * max(1, round(self.radius / dp))
+        angle = 2 * np.pi * np.arange(number) / number
+        radius = self.radius * 3 / (2 + np.cos(angle[1]))
+        vertex = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return Curve(vertex, np.zeros(number, bool))
 
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""
@@ -97,6 +100,32 @@ class Ball:
     def table(self, dp: float) -> dict[str, Any]:
         """The shape as the core reads it."""
         return {"radius": self.radius}
+
+
+@lru_cache(maxsize=16)
+def _even_rings(number: int) -> np.ndarray:
+    """Particles (n, 2) of so many rings in a disc of radius 1."""
+    spacing = np.sqrt(np.pi / (3 * number * (number + 1) + 1))
+    step = (1 - 0.5 * spacing) / number
+    ring = np.repeat(np.arange(number + 1), [1, *(6 * k for k in range(1, number + 1))])
+    place = np.arange(len(ring)) - (3 * ring * (ring - 1) + 1)
+    angle = np.pi / 3 * place / np.maximum(ring, 1)
+    out = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+    def symmetrised(shift: np.ndarray) -> np.ndarray:
+        """The mean over the six sectors and their mirror images."""
+        along = (shift * out).sum(axis=1)
+        across = shift[:, 1] * out[:, 0] - shift[:, 0] * out[:, 1]
+        along[0] = across[0] = 0.0
+        for k in range(1, number + 1):
+            of_ring = slice(3 * k * (k - 1) + 1, 3 * k * (k + 1) + 1)
+            for part, sign in ((along, 1), (across, -1)):
+                mean = part[of_ring].reshape(6, k).mean(axis=0)
+                part[of_ring] = np.tile(0.5 * (mean + sign * np.roll(mean[::-1], 1)), 6)
+        return along[:, None] * out + across[:, None] * np.stack([-out[:, 1], out[:, 0]], axis=1)
+
+    rings = step / spacing * ring[:, None] * out
+    return spacing * balanced(rings, ring < number - 1, symmetrised)
 
 
 def _ring_radii(outermost: float, dp: float) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .frame import own_frame
 from .outline import BULGE, FLAT, Outline, outline_of
-from .particles import EDGE, Particles, alike, nearest_faces
+from .particles import EDGE, Curve, Particles, alike, nearest_faces
 
 SAME_DEPTH = 1e-6  # dp
 LEAST = 0.3  # of a particle's volume: particles that would have less are left out
@@ -84,6 +84,16 @@ class Convex:
         """Those of a rigid body with equal shares."""
         rigid = self.particles(dp)
         return rigid._replace(share=alike(len(rigid.share)))
+
+    def curve(self, dp: float) -> Curve:
+        """The corners of a polygon, and vertices above the middles of particles along its sides."""
+        vertex, crease = [], []
+        for start, end in self.vertices[self.faces]:
+            parts = max(round(float(np.linalg.norm(end - start)) / dp), 1)
+            share = np.concatenate([[0.0], (np.arange(parts) + 0.5) / parts])[:, None]
+            vertex.append(start + share * (end - start))
+            crease.append(np.arange(parts + 1) == 0)
+        return Curve(np.concatenate(vertex), np.concatenate(crease))
 
     def single(self) -> Particles:
         """One particle in the centre."""

@@ -19,6 +19,13 @@ class Particles(NamedTuple):
     share: np.ndarray  # (N,) of the mass
 
 
+class Curve(NamedTuple):
+    """What controls the uniform cubic B-spline that is the surface of a shape in 2-D."""
+
+    vertex: np.ndarray  # (n, 2) anticlockwise, m
+    crease: np.ndarray  # (n,) bool: corners
+
+
 def alike(number: int) -> np.ndarray:
     """Equal shares of so many particles."""
     return np.full(number, 1.0 / number)

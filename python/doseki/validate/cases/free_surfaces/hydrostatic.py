@@ -1,4 +1,4 @@
-"""Water at rest in a tank, upright and on a slope of 20 degrees."""
+"""Water at rest in a tank: upright, around a disc, and on a slope of 20 degrees."""
 
 from __future__ import annotations
 
@@ -114,6 +114,15 @@ CASES = (
             "water a tenth too heavy",
             "dp/dz / rho g",
             lambda n: at_rest("hydrostatic")(n, "material.water.rho0=1100"),
+        ),
+    ),
+    case(
+        "hydrostatic-disc",
+        "Water at rest in a tank around a disc",
+        Control(
+            "no rest before the run",
+            "L2(p) / rho g H",
+            lambda n: at_rest("hydrostatic-disc")(n, "relax=1e-9"),
         ),
     ),
     case(

@@ -1,0 +1,30 @@
+#pragma once
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// What gravity and contacts gave to the rigid bodies in a step; 2-D: per metre.
+template <int D>
+struct BodyStep {
+    Vec<double, D> impulse{};                       // [N s]
+    double gravity_work = 0.0, contact_work = 0.0;  // [J]
+};
+
+/// Sums over the rigid bodies that move.
+template <int D>
+struct BodySums {
+    Vec<double, D> momentum{}, moment{};  // sum of m v, of m x
+    double kinetic_energy = 0.0;
+
+    /// What came between an earlier moment and this one, in which nothing but gravity and contacts
+    /// acted.
+    BodyStep<D> since(const BodySums& before, const Vec<double, D>& gravity) const {
+        BodyStep<D> step;
+        step.impulse = momentum - before.momentum;
+        step.gravity_work = dot(gravity, moment - before.moment);
+        step.contact_work = kinetic_energy - before.kinetic_energy - step.gravity_work;
+        return step;
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,20 @@
+#pragma once
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// What a scheme does to free particles beside what pairs of them exchange, as last evaluated; of
+/// the particles of this rank, 2-D: per metre.
+template <int D>
+struct SchemeWork {
+    Vec<double, D> layer_force{};  // on free particles, of the driven layers behind inflows [N]
+    double layer_power = 0.0;      // of what drives those layers [W]
+    double power = 0.0;  // that shifting, the relaxation of density, walls and films make [W]
+
+    void add(const SchemeWork& other) {
+        layer_force = layer_force + other.layer_force;
+        layer_power += other.layer_power, power += other.power;
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,76 @@
+#pragma once
+#include "base/parallel.hpp"
+#include "model/body_step.hpp"
+#include "model/particles.hpp"
+#include "model/scheme_work.hpp"
+
+namespace doseki {
+
+/// What free particles and bodies that move have got since the start from what is around them;
+/// 2-D: per metre.
+template <int D>
+struct Account {
+    /// Of gravity, walls, contacts with fixed bodies and the layers behind inflows [N s].
+    Vec<double, D> impulse{};
+    double gravity_work = 0.0;  // the potential that was released [J]
+    double wall_work = 0.0;     // of walls that have a velocity and of those layers [J]
+    double contact_work = 0.0;  // of contacts of bodies: less than nothing where they damp [J]
+    double scheme_work = 0.0;   // see SchemeWork::power [J]
+
+    /// Half a step of the forces on walls and of `scheme`, before the step or after it.
+    void add_forces(const Particles<D>& particles, const SchemeWork<D>& scheme, double half_dt) {
+        const Push push = sum<Push>(particles, push_of);
+        impulse = impulse + half_dt * (scheme.layer_force - push.force);
+        wall_work += half_dt * (scheme.layer_power - push.power);
+        scheme_work += half_dt * scheme.power;
+    }
+
+    /// A step of gravity, with the velocities that particles are moved with.
+    template <class State>
+    void add_weight(const State& particles, const Vec<double, D>& gravity, double dt) {
+        const Weight weight = sum<Weight>(particles, weight_of<State>);
+        impulse = impulse + (dt * weight.mass) * gravity;
+        gravity_work += dt * dot(gravity, weight.momentum);
+    }
+
+    void add(const BodyStep<D>& step) {
+        impulse = impulse + step.impulse;
+        gravity_work += step.gravity_work, contact_work += step.contact_work;
+    }
+
+private:
+    struct Push {  // of the fluid on fixed walls
+        Vec<double, D> force{};
+        double power = 0.0;
+
+        Push operator+(const Push& other) const {
+            return {force + other.force, power + other.power};
+        }
+    };
+    struct Weight {  // of free particles
+        double mass = 0.0;
+        Vec<double, D> momentum{};
+
+        Weight operator+(const Weight& other) const {
+            return {mass + other.mass, momentum + other.momentum};
+        }
+    };
+
+    template <class Sum, class State>
+    static Sum sum(const State& particles, Sum (*of)(const State&, std::size_t)) {
+        return reduce(particles.size(), Sum{}, std::plus<Sum>{},
+                      [&](std::size_t p) { return of(particles, p); });
+    }
+
+    static Push push_of(const Particles<D>& particles, std::size_t p) {
+        if (!particles.is_fixed(p) || !particles.wall.in_use) return {};
+        return {particles.wall.force[p], dot(particles.wall.force[p], particles.velocity[p])};
+    }
+    template <class State>
+    static Weight weight_of(const State& particles, std::size_t p) {
+        if (!particles.is_free(p)) return {};
+        return {particles.mass[p], particles.mass[p] * particles.transport_velocity(p)};
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,95 @@
+"""The account that a run of the resolved scheme keeps of energy and momentum."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...record.reader import Run
+from .snapshots import gravity_of, is_resolved
+from .verdicts import Check, judged, unknown
+
+HELD = ("kinetic_energy", "bulk_energy", "shear_energy")
+GIVEN = ("gravity_work", "wall_work", "contact_work", "scheme_work", "energy_entered")
+TAKEN = ("av_dissipation", "energy_left")
+NUMERICAL = (0.01, 0.05)  # work of corrections over the largest energy that took part
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Energies and momenta of the history, row by row; energies in J, 2-D: J/m."""
+
+    run: Run
+    unknown: str  # what is not recorded of this run; empty where all is
+
+    def _column(self, name: str) -> np.ndarray:
+        values = self.run.history[name]
+        return values - values[0]
+
+    def _vector(self, name: str) -> np.ndarray:
+        axes = "xyz"[: self.run.scenario["dim"]]
+        return np.array([self._column(f"{name}_{axis}") for axis in axes]).T
+
+    @property
+    def largest(self) -> float:
+        """The largest of the energies that took part."""
+        moved = [self._column(name) for name in (*GIVEN, *TAKEN)]
+        held = [self.run.history[name] for name in HELD]
+        return max(float(np.max(np.abs(values))) for values in (*held, *moved))
+
+    def energy_residual(self) -> np.ndarray:
+        """Energy that is there, less that of the start and what came and went: (rows,)."""
+        kept = np.sum([self._column(name) for name in (*HELD, *TAKEN)], axis=0)
+        return np.asarray(kept - np.sum([self._column(name) for name in GIVEN], axis=0))
+
+    def energy_check(self, name: str, limits: tuple[float, float]) -> Check:
+        """Held + dissipated + left against start + works + entered."""
+        if self.unknown:
+            return unknown(name, limits, self.unknown)
+        residual, largest = float(np.max(np.abs(self.energy_residual()))), self.largest
+        details = {what: float(self._column(what)[-1]) for what in (*GIVEN, *TAKEN)}
+        counted = "all rows of the history, with what gravity, walls, inflows, contacts of bodies"
+        counted += " and corrections of the scheme gave, and viscosity, friction and outflows took"
+        remedy = "lower dp: walls and bodies of few particles make or take energy; raise speed_max"
+        value = residual / largest if largest else residual
+        return judged(name, value, limits, counted, remedy, residual=residual, **details)
+
+    def numerical_check(self) -> Check:
+        """Work of shifting and of the relaxation of density."""
+        name = "energy of corrections"
+        work, largest = float(np.max(np.abs(self._column("scheme_work")))), self.largest
+        counted = "largest work of shifting and of the relaxation of density"
+        remedy = "lower dp; shifting = false tells what shifting takes"
+        value = work / largest if largest else work
+        return judged(name, value, NUMERICAL, counted, remedy, work=work, largest=largest)
+
+    def momentum_check(self, name: str, limits: tuple[float, float]) -> Check:
+        """Momentum against start + impulses of outer forces + entered - left."""
+        if self.unknown:
+            return unknown(name, limits, self.unknown)
+        history = self.run.history
+        carried = self._vector("momentum_entered") - self._vector("momentum_left")
+        given = self._vector("impulse") + carried
+        residual = np.linalg.norm(self._vector("momentum") - given, axis=1)
+        drift = float(residual.max())
+        weight = np.linalg.norm(gravity_of(self.run.scenario)) * history["mass"]
+        moving = math.sqrt(2 * float(np.max(history["mass"]) * np.max(history["kinetic_energy"])))
+        scale = max(moving, float(np.sum(weight[1:] * np.diff(history["time"]))))
+        counted = "all rows of the history, less the impulses of gravity, walls, inflows and fixed"
+        counted += " bodies, and what entered and left carried; over the impulse of the weight"
+        value = drift / scale if scale else drift
+        return judged(name, value, limits, counted, "lower dp", drift=drift, scale=scale)
+
+
+def ledger_of(run: Run) -> Ledger | None:
+    """The account of a run; None where its scheme or its record has none, or too few rows."""
+    history, scenario = run.history, run.scenario
+    if not is_resolved(scenario) or "gravity_work" not in history or len(history["time"]) < 2:
+        return None
+    bodies = [body for body in scenario.get("body", {}).values() if body.get("enabled", True)]
+    if any(body.get("kinematics") == "elastic" for body in bodies):
+        return None
+    why = "the work of the attraction is not recorded" if scenario.get("attraction", 0.0) else ""
+    return Ledger(run, why)

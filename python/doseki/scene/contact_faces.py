@@ -1,0 +1,123 @@
+"""Faces of walls and bodies between which water stands where no particle fits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compiled import load_core
+from ..record.particles import FIXED, ParticleSet
+from ..scenario.model import Scenario
+from .bodies import Bodies
+from .periodic import nearest_image, periods
+
+NO_FACE, FIXED_FACE, FIRST_BODY = 0, 1, 2  # numbers of the core's faces
+
+
+class ContactFaces(NamedTuple):
+    """Of each particle: which face it belongs to, and how large its part of it is."""
+
+    face: np.ndarray  # (N,) int32: none, that of all fixed bodies, or FIRST_BODY + index of a body
+    area: np.ndarray  # (N, dim) outwards, m2 (2-D: m): what its own body leaves of its kernel
+    rows: np.ndarray  # (N,) pressure force on all rows of the face over that on the first
+
+
+def contact_faces(
+    scenario: Scenario, particles: ParticleSet, bodies: Bodies, depth: np.ndarray
+) -> ContactFaces:
+    """The faces of all rigid bodies and fixed walls: their first row, less than dp deep.
+
+    `depth` (N,) below the surface, m.
+    """
+    n = len(particles)
+    face, area = np.full(n, NO_FACE, np.int32), np.zeros((n, scenario.dim))
+    rows = np.ones(n)
+    first_row = depth < scenario.dp
+    face[first_row & (particles.motion == FIXED)] = FIXED_FACE
+    of_body = first_row & (bodies.grain >= 0)
+    face[of_body] = FIRST_BODY + bodies.grain[of_body]
+    volume = particles.mass / particles.density
+    for members, offset in _members(scenario, particles, bodies):
+        pairs = _Pairs.of(offset, scenario)
+        area[members] = pairs.areas(volume[members])
+        rows[members] = pairs.rows(area[members], first_row[members])
+    return ContactFaces(face, area, rows)
+
+
+def _members(
+    scenario: Scenario, particles: ParticleSet, bodies: Bodies
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Of each body: indices of its particles, and their positions about its centre, m."""
+    bound = np.flatnonzero(bodies.grain >= 0)
+    order = bound[np.argsort(bodies.grain[bound], kind="stable")]
+    ends = np.flatnonzero(np.diff(bodies.grain[order])) + 1
+    period = periods(scenario)
+    for members in np.split(order, ends) if len(order) else []:
+        apart = particles.position[members] - particles.position[members[0]]
+        yield members, nearest_image(apart, period)
+
+
+class _Pairs(NamedTuple):
+    """Pairs of particles of one body: indices, the vector from i to j, and F of the kernel."""
+
+    particles: int
+    i: np.ndarray
+    j: np.ndarray
+    apart: np.ndarray  # (n, dim), m
+    factor: np.ndarray
+
+    @classmethod
+    def of(cls, position: np.ndarray, scenario: Scenario) -> _Pairs:
+        """All that the kernel reaches."""
+        from scipy.spatial import cKDTree
+
+        i, j = cKDTree(position).query_pairs(scenario.support, output_type="ndarray").T
+        apart = position[j] - position[i]
+        factor = _gradient_factor(scenario, np.linalg.norm(apart, axis=1))
+        return cls(len(position), i, j, apart, factor)
+
+    def areas(self, volume: np.ndarray) -> np.ndarray:
+        """Area vectors (particles, dim): -2 V_i sum V F r over what is not the body.
+
+        A kernel that is full has none, so that this is the opposite of the sum over the body
+        itself; those of a whole body add up to nothing.
+        """
+        share = (2 * volume[self.i] * volume[self.j] * self.factor)[:, None] * self.apart
+        area = np.zeros((self.particles, self.apart.shape[1]))
+        np.add.at(area, self.i, share)
+        np.add.at(area, self.j, -share)
+        return area
+
+    def rows(self, area: np.ndarray, first: np.ndarray) -> np.ndarray:
+        """1 + the areas of deeper particles over the own one, each at its neighbours in the first
+        row.
+        """
+        size, total = np.linalg.norm(area, axis=1), np.zeros(self.particles)
+        below = [(self.i, self.j), (self.j, self.i)]  # deep one, one of the first row
+        for deep, top in below:
+            np.add.at(total, deep, np.where(first[top], -self.factor, 0.0))
+        total = np.where(total > 0, total, np.inf)
+        added = np.zeros(self.particles)
+        for deep, top in below:
+            taken = np.where(first[top] & ~first[deep], -self.factor * (size / total)[deep], 0.0)
+            np.add.at(added, top, taken)
+        return 1 + added / np.where(first & (size > 0), size, np.inf)
+
+
+def _gradient_factor(scenario: Scenario, r: np.ndarray) -> np.ndarray:
+    """F of the scheme's kernel at distances r, m, scaled by its moment on a lattice (eq. 25)."""
+    dp, dim = scenario.dp, scenario.dim
+    reach = int(scenario.support / dp) + 1
+    axes = [dp * np.arange(-reach, reach + 1.0)] * dim
+    lattice = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, dim)
+    around = _plain_factor(scenario, np.linalg.norm(lattice, axis=1))
+    return _plain_factor(scenario, r) / (-(dp**dim) * float(around @ lattice[:, 0] ** 2))
+
+
+def _plain_factor(scenario: Scenario, r: np.ndarray) -> np.ndarray:
+    physics = getattr(load_core().physics, "two" if scenario.dim == 2 else "three")
+    kernel = physics.kernel if scenario.kernel == "wendland_c6" else physics.wendland_c2
+    _, factor = kernel([r.tolist(), [1 / scenario.support] * len(r)])
+    return np.asarray(factor)

@@ -1,0 +1,44 @@
+"""Fluid that comes to rest among fixed bodies before a run starts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..compiled import load_core
+from ..errors import PhysicsError
+from ..record.particles import FREE, ParticleSet
+from .protocol import CoreSimulation
+
+STEPS = 8  # between two looks at the kinetic energy: a small part of any oscillation
+
+
+def relaxed(particles: ParticleSet, simulation: CoreSimulation, seconds: float) -> ParticleSet:
+    """The particles where the free ones come to, and their density, in so many seconds.
+
+    `simulation` holds the particles and is yet to be started.  All velocities are removed at each
+    peak of the kinetic energy (kinetic damping: Cundall, 1976), where a column that sinks into the
+    gaps of its start passes its equilibrium.  Raises PhysicsError where that fails.
+    """
+    still = np.zeros_like(particles.velocity)
+    simulation.start()
+    energy = 0.0
+    try:
+        while simulation.time < seconds:
+            simulation.advance(limit=seconds, pause=seconds, max_steps=STEPS)
+            before, energy = energy, simulation.totals()["kinetic_energy"]
+            if energy < before:
+                simulation.restore(simulation.checkpoint() | {"velocity": still})
+                energy = 0.0
+    except load_core().PhysicsFailure as failure:
+        raise PhysicsError(f"relax: {failure}") from None
+    state, free = simulation.state(), particles.motion == FREE
+    order = np.argsort(particles.id)
+    position, density = particles.position.copy(), particles.density.copy()
+    position[order], density[order] = state["position"], state["density"]
+    return replace(
+        particles,
+        position=np.where(free[:, None], position, particles.position),
+        density=np.where(free, density, particles.density),
+    )

@@ -1,0 +1,36 @@
+"""Texts whose last line holds a digest of the others, so that a change by hand is noticed."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+
+from ..errors import UserError
+from .foreign import read_text
+
+SEAL = "# BLAKE2b of the lines above: "
+
+
+def sealed(text: str) -> str:
+    """The text and its seal, a comment."""
+    whole = text if text.endswith("\n") else text + "\n"
+    return f"{whole}{SEAL}{_digest(whole)}\n"
+
+
+def check_seal(path: Path) -> None:
+    """Raise UserError where a file has been changed since it was sealed.
+
+    One without a seal is taken as it is.
+    """
+    text = read_text(path)
+    found = re.search(rf"^{SEAL}([0-9a-f]*)\s*\Z", text, re.MULTILINE)
+    if found and found[1] != _digest(text[: found.start()]):
+        raise UserError(
+            f"{path}: has been changed by hand since the run wrote it; bring it back (what may "
+            "change is changed by --set), or remove its last line to go on with it as it is"
+        )
+
+
+def _digest(text: str) -> str:
+    return hashlib.blake2b(text.encode("utf-8"), digest_size=16).hexdigest()

@@ -1,0 +1,91 @@
+"""A block on a bed under water: its uplift, the depth at which it floats, its friction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...case import Case, Control, Criterion, Curve, Outcome, Value, within
+from ...running import Running
+
+UPLIFT, FLOATS, FRICTION = "uplift", "depth at which it floats", "friction on a tilted bed"
+WATER, STONE = 1000.0, 2000.0  # kg/m3
+SIDE = 0.1  # m, of the block
+SUBMERGED, SHALLOW = 1.5, 0.7  # depth of the water over the side of the block
+SLOPE, COEFFICIENT = 25.0, 0.3  # degrees; the block slides
+SETTLED, SAMPLES = 0.5, 60  # share of a run after which the film has its pressure
+
+
+def block(across: float, *overrides: str) -> Outcome:
+    """The forces of water on a block that stands in it, and of the bed on one that slides."""
+    times, upward = standing(across, SUBMERGED, *overrides)
+    low_times, low = standing(across, SHALLOW, *overrides)
+    late = times > SETTLED * times[-1]
+    uplift, shallow = float(upward[late].mean()), float(low[late].mean())
+    values = {
+        UPLIFT: Value(uplift, 1.0),
+        # Water of this depth carries what that of the second one weighs.
+        FLOATS: Value(SHALLOW, SHALLOW * shallow),
+        FRICTION: Value(sliding(across, *overrides), 1.0),
+    }
+    measured = [Curve("under water", times, upward), Curve("0.7 deep", low_times, low)]
+    return Outcome(values, measured, [Curve("Archimedes", times, np.ones(len(times)))])
+
+
+def standing(across: float, depth: float, *overrides: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and the upward force of the water over the weight of what the block displaces."""
+    given = f"across={across:g}", f"side={SIDE:g}", f"depth={depth * SIDE:g}"
+    run = Running("block-under-water", *given, *overrides)
+    gravity = np.asarray(run.scenario.gravity)
+    displaced = WATER * SIDE**run.scenario.dim * min(depth, 1.0)
+    times = np.linspace(0, run.scenario.time_max, SAMPLES + 1)[1:]
+    force = np.array([flow_force(run, time) for time in times])
+    return times, -(force @ gravity) / (displaced * float(gravity @ gravity))
+
+
+def sliding(across: float, *overrides: str) -> float:
+    """Friction of a block that slides under water, over that of its submerged weight.
+
+    From its motion: what its momentum, its weight and the water leave for the contact.
+    """
+    tilted = f"tilt={SLOPE:g}", f"friction={COEFFICIENT:g}", f"density={STONE:g}"
+    run = Running("block-under-water", f"across={across:g}", f"side={SIDE:g}", *tilted, *overrides)
+    volume, gravity = SIDE**run.scenario.dim, np.asarray(run.scenario.gravity)
+    times = np.linspace(SETTLED * run.scenario.time_max, run.scenario.time_max, SAMPLES)
+    run.advance(times[0])
+    start = moving_body(run, "velocity")
+    water = np.mean([flow_force(run, time) for time in times[1:]], axis=0)
+    rate = STONE * volume * (moving_body(run, "velocity") - start) / (times[-1] - times[0])
+    contact = rate - STONE * volume * gravity - water
+    return float(-contact[0] / (COEFFICIENT * (WATER - STONE) * volume * gravity[-1]))
+
+
+def flow_force(run: Running, time: float) -> np.ndarray:
+    """Force of the water on the block at `time`, N (2-D: N/m)."""
+    run.advance(time)
+    return moving_body(run, "flow_force")
+
+
+def moving_body(run: Running, field: str) -> np.ndarray:
+    """A field of the one body that moves."""
+    grains = run.grains()
+    return np.array(grains[field][~grains["fixed"]][0])
+
+
+UNDER_WATER = Case(
+    name="grains-under-water",
+    title="A block on a bed under water",
+    across="side/dp",
+    resolutions=(10, 20, 30),
+    run=block,
+    criteria=(
+        Criterion(UPLIFT, (within(0.03),), "Archimedes, though no particle fits under the block"),
+        Criterion(FLOATS, (within(0.03),), "Archimedes: its draught, over the side", unit=""),
+        Criterion(FRICTION, (within(0.03),), "that of its submerged weight"),
+    ),
+    axes=("time (s)", "upward force / weight of water displaced"),
+    controls=(
+        Control("no water between faces", UPLIFT, lambda n: block(n, "uplift=false")),
+        Control("no water between faces", FRICTION, lambda n: block(n, "uplift=false")),
+    ),
+)
+CASES = (UNDER_WATER,)

@@ -1,0 +1,180 @@
+"""Open scenes: what will fall for ever is named before the run, with the side where it gets out."""
+
+from __future__ import annotations
+
+import pytest
+
+from doseki.assess.open_sides import open_sides
+from doseki.scenario.load import list_scenarios, load_scenario
+from doseki.scenario.start import start_text
+from doseki.scene.build import build_bodies
+
+NAMES = [name for name, _, _ in list_scenarios()]
+HEAD = """\
+dim = 2
+dp = 0.02
+time_max = {time}
+time_out = 0.1
+scheme = "resolved"
+speed_max = 3
+gravity = [0, -9.8]
+"""
+TANK = """
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.4, 0.3]
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [-0.06, -0.06]
+max = [1.06, 0]
+[body.left]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [-0.06, 0]
+max = [0, {left}]
+[body.right]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [1, 0]
+max = [1.06, {right}]
+"""
+BLOCK = """
+[body.block]
+shape = "box"
+material = "basalt"
+min = [{x}, 0.4]
+max = [{y}, 0.5]
+"""
+INFLOW = """
+[inflow.river]
+material = "water"
+rate = "20 L/s"
+width = 1
+position = [{x}, 0.1]
+direction = [1, 0]
+depth = 0.1
+duration = 1
+"""
+BELOW = '\n[outflow.below]\nmin = ["-inf", "-inf"]\nmax = [{end}, -0.5]\n'
+GRAINS = """
+[body.grains]
+shape = "disc"
+material = "basalt"
+d = 0.04
+packing = 0.5
+count = 12
+min = [{x}, 0.4]
+max = [{y}, 0.9]
+"""
+
+
+@pytest.fixture
+def opened(tmp_path):
+    """What is said of a scene."""
+
+    def find(tables, time=2.0, settings=()):
+        path = tmp_path / "case.toml"
+        path.write_text(HEAD.format(time=time) + tables)
+        return told(str(path), settings)
+
+    return find
+
+
+def told(path, settings=()):
+    scenario = load_scenario(path, settings)
+    particles, names = build_bodies(scenario)
+    return [str(f) for f in open_sides(scenario, vars(particles), dict(enumerate(names)))]
+
+
+def tank(left=0.5, right=0.5):
+    return TANK.format(left=left, right=right)
+
+
+def test_a_tank_that_holds_its_water_is_closed(opened):
+    assert opened(tank()) == []
+    assert opened(tank(left=0.3, right=0.3)) == []
+
+
+@pytest.mark.parametrize(
+    ("walls", "side"),
+    [((0.5, 0.1), "+x"), ((0.1, 0.5), "-x"), ((0.2, 0.2), "-x and +x")],
+)
+def test_walls_lower_than_the_water_are_named(opened, walls, side):
+    found = opened(tank(*walls))
+    assert len(found) == 1
+    assert f"water: the scene is open at its side {side}; " in found[0]
+    assert "add a wall, or an [outflow.NAME]" in found[0]
+
+
+def test_the_sides_turn_with_the_scene(opened):
+    turned = [f"body.{name}.rotate=-90" for name in ("water", "floor", "left", "right")]
+    pivots = [f"body.{name}.pivot=[0, 0]" for name in ("water", "floor", "left", "right")]
+    settings = [*turned, *pivots, "gravity=[-9.8, 0]"]
+    assert opened(tank(), settings=settings) == []
+    assert "open at its side -y;" in opened(tank(right=0.1), settings=settings)[0]
+
+
+def test_a_scene_without_a_floor_is_open_below(opened):
+    assert "open below;" in opened(tank(), settings=["body.floor.enabled=false"])[0]
+
+
+def test_what_an_outflow_catches_is_not_lost(opened):
+    assert opened(tank(right=0.1) + BELOW.format(end='"inf"')) == []
+    assert len(opened(tank(right=0.1) + BELOW.format(end=0.5))) == 1
+
+
+def test_what_gets_nowhere_in_the_run_is_not_lost(opened):
+    assert opened(tank(right=0.1), time=0.05) == []
+
+
+def test_an_inflow_needs_a_floor(opened):
+    assert opened(tank() + INFLOW.format(x=0.5)) == []
+    found = opened(tank() + INFLOW.format(x=1.5))
+    assert len(found) == 1
+    assert found[0].startswith("river: the scene is open at its side +x and below;")
+
+
+def test_a_wall_that_vanishes_holds_nothing(opened):
+    gate = tank().replace("[1, 0]\n", "[1, 0]\nmotion = { removed_at = 1 }\n")
+    assert "open at its side +x;" in opened(gate)[0]
+
+
+def test_a_block_falls_beside_the_floor_alone(opened):
+    block = BLOCK
+    assert opened(tank() + block.format(x=0.9, y=1.0)) == []
+    found = opened(tank() + block.format(x=1.5, y=1.6))
+    assert found[0].startswith("block: no wall is below it and it falls for ever")
+    assert opened(tank() + block.format(x=1.5, y=1.6) + BELOW.format(end='"inf"')) == []
+
+
+def test_grains_count_each(opened):
+    grains = GRAINS
+    assert opened(tank() + grains.format(x=0.5, y=0.9)) == []
+    assert opened(tank() + grains.format(x=1.1, y=1.5))[0].startswith("grains: no wall is below")
+
+
+def test_nothing_falls_without_gravity_or_along_a_periodic_axis(opened):
+    no_floor = ["body.floor.enabled=false"]
+    assert opened(tank(), settings=[*no_floor, "gravity=[0, 0]"]) == []
+    ends = ["domain_min=[-1, -1]", "domain_max=[2, 1]"]
+    assert opened(tank(), settings=[*no_floor, *ends, 'periodic=["y"]']) == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_no_shipped_scenario_raises_an_alarm(name, dim):
+    assert told(name, [f"dim={dim}", *(["dp=0.02"] if dim == 3 and "flume" in name else [])]) == []
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("dry", [False, True])
+def test_nor_does_one_to_start_from(tmp_path, dim, dry):
+    path = tmp_path / "start.toml"
+    path.write_text(start_text(dim, dry))
+    assert told(str(path)) == []

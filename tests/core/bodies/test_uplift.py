@@ -1,0 +1,124 @@
+"""Water between faces that are too near for a particle: uplift, friction, and none of it dry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.validate.cases.grains.under_water import (
+    SUBMERGED,
+    flow_force,
+    moving_body,
+    sliding,
+    standing,
+)
+from doseki.validate.running import Running
+
+from ..flows import Flows, advance
+
+BLOCK = "block-under-water"
+CLOSE = 0.03
+# A tank with a block on its floor and one on dry ground beyond its wall.
+BESIDE = """\
+dim = 2
+scheme = "resolved"
+speed_max = 1
+dp = 0.01
+time_max = 1
+time_out = 1
+gravity = [0, -9.81]
+
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.2, 0.1]
+pressure = "= 1000*9.81*(0.1 - y)"
+
+[body.dry]
+shape = "box"
+material = "basalt"
+min = [0.26, 0]
+max = [0.32, 0.06]
+
+[body.bed]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, 1]
+min = [-0.03, -0.03]
+max = [0.4, 0]
+
+[body.left]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [1, 0]
+min = [-0.03, 0]
+max = [0, 0.15]
+
+[body.right]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [-1, 0]
+min = [0.2, 0]
+max = [0.23, 0.15]
+"""
+
+
+def uplift(*overrides: str, depth: float = SUBMERGED, dim: int = 2, across: int = 10) -> float:
+    """Upward force on a block in water, late, over the weight of the water it displaces."""
+    times, force = standing(across, depth, f"dim={dim}", "time_max=0.2", *overrides)
+    return float(force[times > 0.1].mean())
+
+
+def test_a_block_on_a_bed_has_its_uplift():
+    assert uplift() == pytest.approx(1, abs=CLOSE)
+
+
+def test_without_water_between_faces_it_has_not():
+    assert uplift("uplift=false") < -0.4  # water presses on its top alone
+
+
+@pytest.mark.minutes
+@pytest.mark.parametrize("depth", [SUBMERGED, 4 / 6])
+def test_the_same_in_3d_and_where_it_stands_out_of_the_water(depth):
+    assert uplift(depth=depth, dim=3, across=6) == pytest.approx(1, abs=CLOSE)
+
+
+@pytest.mark.parametrize(("density", "floats"), [(0.97, True), (1.03, False)])
+def test_it_floats_once_the_water_is_as_deep_as_archimedes_says(density, floats):
+    given = f"depth={0.08}", f"density={800 * density}"
+    run = Running(BLOCK, "across=10", *given)
+    before = moving_body(run, "centre")[1]
+    run.advance(0.4)
+    rise = moving_body(run, "centre")[1] - before
+    dp = run.scenario.dp
+    assert (rise > 0.1 * dp) if floats else (abs(rise) < 0.02 * dp)
+
+
+def test_friction_on_a_tilted_bed_is_that_of_the_submerged_weight():
+    assert sliding(12) == pytest.approx(1, abs=CLOSE)
+
+
+def test_the_bed_bears_the_opposite_of_what_lifts_the_block():
+    """All walls and the block together carry the water, no more."""
+    run = Running(BLOCK, "across=10")
+    force = [state["force"][:, 1].sum() for state in run.sampled(np.linspace(0.15, 0.25, 41))]
+    water = run.of_body(run.state(), "water")["mass"].sum() * 9.81
+    assert -np.mean(force) == pytest.approx(water, rel=0.01)
+
+
+def test_a_mirror_image_gives_the_mirrored_force():
+    width = 0.3
+    left, right = (Running(BLOCK, f"place={x:g}") for x in (0.12, width - 0.12))
+    one, other = (flow_force(run, 0.02) for run in (left, right))
+    assert one * [-1, 1] == pytest.approx(other, rel=1e-6, abs=1e-6 * np.abs(one).max())
+
+
+def test_what_lies_dry_feels_nothing(tmp_path):
+    simulation = Flows(tmp_path)(BESIDE)
+    advance(simulation, 200)
+    grains = simulation.grains()
+    assert not np.any(np.asarray(grains["flow_force"])[~np.asarray(grains["fixed"])])
