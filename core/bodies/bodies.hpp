@@ -77,9 +77,11 @@ public:
         rigid_particles_.set_velocities(particles, rigid, ahead);
     }
 
-    /// Removes the rigid bodies whose centre is in the box and marks their particles in `removed`.
-    template <class Box>
-    void drain(const Particles<D>& particles, const Box& box, std::vector<std::uint8_t>& removed);
+    /// Removes the rigid bodies whose centre is in the region and marks their particles in
+    /// `removed`.
+    template <class Region>
+    void drain(const Particles<D>& particles, const Region& region,
+               std::vector<std::uint8_t>& removed);
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
 
@@ -189,11 +191,11 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
 }
 
 template <int D>
-template <class Box>
-void Bodies<D>::drain(const Particles<D>& particles, const Box& box,
+template <class Region>
+void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
                       std::vector<std::uint8_t>& removed) {
     if (!any_moves()) return;
-    const std::vector<std::uint8_t> leaves = rigid.remove_inside(box);
+    const std::vector<std::uint8_t> leaves = rigid.remove_inside(region);
     if (std::find(leaves.begin(), leaves.end(), 1) != leaves.end()) moved_ = margin_;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::int32_t k = rigid_body_of(particles, p);

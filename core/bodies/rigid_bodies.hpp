@@ -69,12 +69,12 @@ public:
     };
     WallStep follow_walls(const MovingWalls<D>& walls, double t, double dt);
 
-    /// Removes the free bodies whose centre is in the box, and tells which.
-    template <class Box>
-    std::vector<std::uint8_t> remove_inside(const Box& box) {
+    /// Removes the free bodies whose centre is in the region, and tells which.
+    template <class Region>
+    std::vector<std::uint8_t> remove_inside(const Region& region) {
         std::vector<std::uint8_t> leaves(size(), 0);
         for (std::size_t k = 0; k < size(); ++k)
-            if (is_free(k) && box.contains(states_[k].centre))
+            if (is_free(k) && region.contains(states_[k].centre))
                 leaves[k] = 1, states_[k].removed = 1;
         return leaves;
     }

@@ -3,10 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "base/box.hpp"
 #include "base/parallel.hpp"
 #include "base/vec.hpp"
 #include "model/domain.hpp"
@@ -23,8 +23,10 @@ namespace doseki {
 template <int D>
 class ListWear {
 public:
+    explicit ListWear(const Domain<D>& domain) : domain_(domain) {}
+
     /// Lists that reach `reach` [m] were built for particles at these positions.
-    void start(const Domain<D>& domain, std::span<const Vec<double, D>> position, double reach);
+    void start(std::span<const Vec<double, D>> position, double reach);
 
     /// Bound on the approach of any two particles that are not neighbours [m].
     double approach(std::span<const Vec<double, D>> position) const;
@@ -38,32 +40,15 @@ public:
     }
 
 private:
-    /// Of displacements.
-    struct Range {
-        Vec<double, D> low, high;
-
-        static Range none() {
-            Range range;
-            range.low.component.fill(std::numeric_limits<double>::infinity());
-            range.high.component.fill(-std::numeric_limits<double>::infinity());
-            return range;
-        }
-        void include(const Vec<double, D>& below, const Vec<double, D>& above) {
-            for (int a = 0; a < D; ++a) {
-                low[a] = std::min(low[a], below[a]);
-                high[a] = std::max(high[a], above[a]);
-            }
-        }
-        bool is_empty() const { return low[0] > high[0]; }
-        Vec<double, D> width() const { return high - low; }
-    };
+    using Range = Box<D>;  // of displacements
     using Cell = std::array<std::int64_t, D>;
 
-    void size_cells(const Domain<D>& domain, std::span<const Vec<double, D>> position);
+    void size_cells(std::span<const Vec<double, D>> position);
     std::size_t place(const Cell& cell) const;
     std::size_t place(const Vec<double, D>& x) const;
     Range around(std::size_t place, std::span<const Range> ranges) const;
 
+    Domain<D> domain_;
     double reach_ = 0.0;
     std::vector<Vec<double, D>> start_;
     Vec<double, D> origin_, cell_size_;
@@ -74,13 +59,14 @@ private:
 /// As many cells as there are particles at most: a periodic direction gets wider ones, any other
 /// direction puts cells that lie far apart together.
 template <int D>
-void ListWear<D>::size_cells(const Domain<D>& domain, std::span<const Vec<double, D>> position) {
+void ListWear<D>::size_cells(std::span<const Vec<double, D>> position) {
     constexpr double max_cells = 1048576.0;
-    Range occupied = Range::none();
-    for (const Vec<double, D>& x : position) occupied.include(x, x);
+    auto occupied = Box<D>::nowhere();
+    for (const Vec<double, D>& x : position) occupied.add(x);
     for (int a = 0; a < D; ++a) {
-        const double length = domain.periodic[a] ? domain.length(a) : occupied.width()[a];
-        const double count = std::floor(length / (2.0 * reach_)) + (domain.periodic[a] ? 0.0 : 1.0);
+        const double length = domain_.periodic[a] ? domain_.length(a) : occupied.size()[a];
+        const double count =
+            std::floor(length / (2.0 * reach_)) + (domain_.periodic[a] ? 0.0 : 1.0);
         cells_[a] = static_cast<std::int64_t>(std::clamp(count, 1.0, max_cells));
     }
     auto product = [this] {
@@ -93,9 +79,10 @@ void ListWear<D>::size_cells(const Domain<D>& domain, std::span<const Vec<double
         most = (most + 1) / 2;
     }
     for (int a = 0; a < D; ++a) {
-        const bool periodic = domain.periodic[a];
-        origin_[a] = periodic ? domain.low[a] : occupied.low[a];
-        cell_size_[a] = periodic ? domain.length(a) / static_cast<double>(cells_[a]) : 2.0 * reach_;
+        const bool periodic = domain_.periodic[a];
+        origin_[a] = periodic ? domain_.low[a] : occupied.low[a];
+        cell_size_[a] =
+            periodic ? domain_.length(a) / static_cast<double>(cells_[a]) : 2.0 * reach_;
     }
 }
 
@@ -121,11 +108,10 @@ std::size_t ListWear<D>::place(const Vec<double, D>& x) const {
 }
 
 template <int D>
-void ListWear<D>::start(const Domain<D>& domain, std::span<const Vec<double, D>> position,
-                        double reach) {
+void ListWear<D>::start(std::span<const Vec<double, D>> position, double reach) {
     reach_ = reach;
     start_.assign(position.begin(), position.end());
-    size_cells(domain, position);
+    size_cells(position);
     std::vector<std::uint32_t> place_of(position.size());
     for_each_particle(position.size(), [&](std::size_t p) {
         place_of[p] = static_cast<std::uint32_t>(place(position[p]));
@@ -144,7 +130,7 @@ void ListWear<D>::start(const Domain<D>& domain, std::span<const Vec<double, D>>
 template <int D>
 auto ListWear<D>::around(std::size_t place_of_cell, std::span<const Range> ranges) const -> Range {
     constexpr int neighbours = D == 2 ? 9 : 27;
-    Range range = Range::none();
+    Range range = Range::nowhere();
     for (int code = 0; code < neighbours; ++code) {
         Cell cell;
         std::size_t rest = place_of_cell;
@@ -153,25 +139,23 @@ auto ListWear<D>::around(std::size_t place_of_cell, std::span<const Range> range
             cell[a] = static_cast<std::int64_t>(rest % n) + digits % 3 - 1;
             rest /= n;
         }
-        const Range& there = ranges[place(cell)];
-        range.include(there.low, there.high);
+        range.add(ranges[place(cell)]);
     }
     return range;
 }
 
 template <int D>
 double ListWear<D>::approach(std::span<const Vec<double, D>> position) const {
-    std::vector<Range> ranges(first_.size() - 1, Range::none());
+    std::vector<Range> ranges(first_.size() - 1, Range::nowhere());
     for_each_particle(ranges.size(), [&](std::size_t c) {
         for (std::uint32_t k = first_[c]; k < first_[c + 1]; ++k) {
             const std::uint32_t p = members_[k];
-            const Vec<double, D> moved = position[p] - start_[p];
-            ranges[c].include(moved, moved);
+            ranges[c].add(position[p] - start_[p]);
         }
     });
     const double square = reduce(ranges.size(), 0.0, maximum, [&](std::size_t c) {
         if (ranges[c].is_empty()) return 0.0;
-        const Vec<double, D> width = around(c, ranges).width();
+        const Vec<double, D> width = around(c, ranges).size();
         return dot(width, width);
     });
     return std::sqrt(square);

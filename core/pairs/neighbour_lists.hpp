@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/box.hpp"
 #include "base/error.hpp"
 #include "base/vec.hpp"
 #include "model/domain.hpp"
@@ -92,8 +93,8 @@ private:
     struct Grid {
         bool fixed = false;
         std::uint32_t first = 0, last = 0;
-        double support = 0.0;          // largest R of the class
-        Vec<double, D> low{}, high{};  // of its particles
+        double support = 0.0;  // largest R of the class
+        Box<D> bounds{};       // of its particles
         Vec<double, D> cell_size{};
         Vec<double, D> origin{};
         std::array<std::int64_t, D> cells{};  // power of two, except in periodic directions

@@ -33,8 +33,8 @@ void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double ra
 template <int D>
 bool Neighbours<D>::is_beyond(const Grid& grid, const Bounds& bounds, double radius) const {
     for (int a = 0; a < D; ++a)
-        if (!domain_.periodic[a] &&
-            (grid.low[a] > bounds.high[a] + radius || grid.high[a] < bounds.low[a] - radius))
+        if (!domain_.periodic[a] && (grid.bounds.low[a] > bounds.high[a] + radius ||
+                                     grid.bounds.high[a] < bounds.low[a] - radius))
             return true;
     return false;
 }

@@ -75,15 +75,8 @@ std::uint32_t Neighbours<D>::key_of(const Grid& grid, const Vec<double, D>& x) c
 template <int D>
 void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> position,
                               std::span<const std::uint32_t> members) const {
-    constexpr double far = std::numeric_limits<double>::max();
-    Vec<double, D> low, high;
-    low.component.fill(far), high.component.fill(-far);
-    for (std::uint32_t p : members)
-        for (int a = 0; a < D; ++a) {
-            low[a] = std::min(low[a], position[p][a]);
-            high[a] = std::max(high[a], position[p][a]);
-        }
-    grid.low = low, grid.high = high;
+    grid.bounds = Box<D>::nowhere();
+    for (const std::uint32_t p : members) grid.bounds.add(position[p]);
     std::array<std::int64_t, D> cells;
     for (int a = 0; a < D; ++a) {
         const double size = 0.5 * grid.support;
@@ -93,9 +86,9 @@ void Neighbours<D>::size_grid(Grid& grid, std::span<const Vec<double, D>> positi
             grid.origin[a] = domain_.low[a];
             grid.cell_size[a] = domain_.length(a) / static_cast<double>(cells[a]);
         } else {
-            const double count = std::min((high[a] - low[a]) / size + 1.0, 1048576.0);
+            const double count = std::min(grid.bounds.size()[a] / size + 1.0, 1048576.0);
             cells[a] = std::bit_ceil(static_cast<std::uint64_t>(count));
-            grid.origin[a] = low[a];
+            grid.origin[a] = grid.bounds.low[a];
             grid.cell_size[a] = size;
         }
     }

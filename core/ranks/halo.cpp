@@ -20,7 +20,7 @@ auto Halo<D>::all_bounds(std::span<const Vec<double, D>> position, std::span<con
 
 /// Distance between two boxes, through the nearest image.
 template <int D>
-double Halo<D>::gap(const Box& one, const Box& other) const {
+double Halo<D>::gap(const Box<D>& one, const Box<D>& other) const {
     double square = 0.0;
     for (int a = 0; a < D; ++a) {
         auto apart = [&](double shift) {
@@ -58,7 +58,7 @@ void Halo<D>::find_exports(std::span<const Vec<double, D>> position,
             continue;
         std::vector<std::uint32_t> exported;
         for (std::size_t p = 0; p < position.size(); ++p) {
-            const Box& box = is_fixed[p] && !fixed_meet ? theirs.moving : theirs.all;
+            const Box<D>& box = is_fixed[p] && !fixed_meet ? theirs.moving : theirs.all;
             if (!(gap({position[p], position[p]}, box) <
                   std::max(support[p], theirs.support) + skin))
                 continue;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstring>
 #include <initializer_list>
-#include <limits>
 
+#include "base/box.hpp"
 #include "model/fault.hpp"
 #include "pairs/neighbour_lists.hpp"
 #include "ranks/exchange.hpp"
@@ -92,24 +92,9 @@ public:
     double messages_sent() const { return messages_sent_; }
 
 private:
-    struct Box {
-        Vec<double, D> low, high;
-
-        static Box nowhere() {
-            Box box;
-            box.low.component.fill(std::numeric_limits<double>::infinity());
-            box.high.component.fill(-std::numeric_limits<double>::infinity());
-            return box;
-        }
-        void add(const Vec<double, D>& x) {
-            for (int a = 0; a < D; ++a)
-                low[a] = std::min(low[a], x[a]), high[a] = std::max(high[a], x[a]);
-        }
-    };
-
     /// Where the particles of a rank are.
     struct Bounds {
-        Box moving = Box::nowhere(), all = Box::nowhere();
+        Box<D> moving = Box<D>::nowhere(), all = Box<D>::nowhere();
         double support = 0.0;
     };
     static_assert(sizeof(Bounds) == (4 * D + 1) * sizeof(double));
@@ -131,7 +116,7 @@ private:
     std::vector<Bounds> all_bounds(std::span<const Vec<double, D>> position,
                                    std::span<const double> support,
                                    std::span<const std::uint8_t> is_fixed) const;
-    double gap(const Box& one, const Box& other) const;
+    double gap(const Box<D>& one, const Box<D>& other) const;
     Peer& peer_of(int rank);
 
     template <class F>

@@ -31,7 +31,7 @@ public:
     static_assert(doseki::Backend<Backend, D>);
 
     RunLists(const Domain<D>& domain, double skin, bool adapts)
-        : given_skin_(skin), adapts_(adapts), domain_(domain), lists_(domain), halo_(domain) {}
+        : given_skin_(skin), adapts_(adapts), lists_(domain), wear_(domain), halo_(domain) {}
 
     const Lists& lists() const { return lists_; }
     /// The other ranks and the ghosts that they send.
@@ -85,7 +85,7 @@ public:
         if constexpr (Archive::loading) {
             expect_fit(built.empty() || built.size() == state.size(), "lists_position");
             expect_fit(built.empty() || reach > 0.0, "lists_reach");
-            if (!built.empty()) wear_.start(domain_, built, reach);
+            if (!built.empty()) wear_.start(built, reach);
         }
     }
 
@@ -101,20 +101,19 @@ private:
         return fixed;
     }
     /// Whether walls of any rank have faces that may meet.
-    bool has_faces(const State& state) const {
+    bool faces_meet(const State& state) const {
         const auto& faces = state.wall.face;
         const bool own = std::any_of(faces.begin(), faces.end(),
                                      [](std::int32_t face) { return face != Face::none; });
         return halo_.ranks.largest(own ? 1.0 : 0.0) > 0.0;
     }
-    std::vector<std::int32_t> faces(const State& state);
+    std::vector<std::int32_t> faces_with_ghosts(const State& state);
     double cheapest_skin(double min_support, std::int64_t steps) const;
     void append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
                        std::vector<double>& support);
 
     double given_skin_;
     bool adapts_;
-    Domain<D> domain_;
     Lists lists_;
     ListWear<D> wear_;  // of a run on one rank
     Halo<D> halo_;
@@ -163,11 +162,12 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
     const double own_support = support.empty() ? std::numeric_limits<double>::max()
                                                : *std::min_element(support.begin(), support.end());
     min_support_ = halo_.ranks.smallest(own_support);
+    const bool faces_meet = this->faces_meet(state);
     skin_ = cheapest_skin(min_support_, steps);
     skin_width_ = skin_ * min_support_;
     if (!halo_.alone()) {
         const auto timing = halo_.ranks.clock.measure(Share::halo);
-        halo_.find_exports(state.position, support, fixed, skin_width_, has_faces(state));
+        halo_.find_exports(state.position, support, fixed, skin_width_, faces_meet);
     }
     {
         const auto timing = phases.measure(Phase::sort);
@@ -182,20 +182,19 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
     const auto timing = phases.measure(Phase::list_build);
     const std::span<const Vec<double, D>> position =
         halo_.alone() ? std::span<const Vec<double, D>>(state.position) : with_ghosts;
-    const std::vector<std::int32_t> faces = this->faces(state);
+    const auto faces = faces_meet ? faces_with_ghosts(state) : std::vector<std::int32_t>{};
     Backend::build_lists(lists_, position, std::span<const double>(support), skin_width_,
                          std::span<const std::int32_t>(faces));
     if (halo_.alone())
-        wear_.start(domain_, state.position,
+        wear_.start(state.position,
                     skin_width_ + *std::max_element(support.begin(), support.end()));
     moved_ = 0.0, approach_ = 0.0, news_ = true, rebuild_step_ = steps;
     ++rebuilds_;
 }
 
-/// Faces of the particles here, sorted, and of their ghosts after them; empty where there are none.
+/// Faces of the particles here, sorted, and of their ghosts after them.
 template <class Scheme>
-std::vector<std::int32_t> RunLists<Scheme>::faces(const State& state) {
-    if (!has_faces(state)) return {};
+std::vector<std::int32_t> RunLists<Scheme>::faces_with_ghosts(const State& state) {
     std::vector<std::int32_t> faces(state.wall.face);
     faces.resize(state.size() + halo_.ghosts(), Face::none);
     halo_.start({halo_column(faces)});
