@@ -85,7 +85,6 @@ public:
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
 
-    template <class Archive>
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored particles are points of these bodies.
     void expect_points(const Particles<D>& particles) const {
@@ -147,14 +146,13 @@ private:
 };
 
 template <int D>
-template <class Archive>
 void Bodies<D>::serialise(Archive& archive) {
     rigid.serialise(archive);
     rigid_particles_.serialise(archive);
     archive("bodies_moved", moved_);
     deformable.serialise(archive, gravity_);
     contacts_.serialise(archive);
-    if constexpr (Archive::loading) {
+    if (archive.loads()) {
         rigid_particles_.expect_points_of(rigid.size());
         prepare_contacts();
         contacts_.restore(contact_);

@@ -8,6 +8,7 @@
 #include "bodies/contact_law.hpp"
 #include "bodies/contact_search.hpp"
 #include "bodies/overlap.hpp"
+#include "model/archive.hpp"
 
 namespace doseki {
 
@@ -42,7 +43,6 @@ public:
                 f(contact.body_a, contact.body_b, contact.overlap / contact.law.diameter);
     }
 
-    template <class Archive>
     void serialise(Archive& archive) {
         std::vector<std::int32_t> a, b;
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);

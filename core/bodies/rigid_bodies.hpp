@@ -113,13 +113,12 @@ public:
         return energy;
     }
 
-    template <class Archive>
     void serialise(Archive& archive) {
         RigidBodyColumns<D> columns;
-        if constexpr (!Archive::loading) columns = RigidBodyColumns<D>(shapes, bodies_);
+        if (!archive.loads()) columns = RigidBodyColumns<D>(shapes, bodies_);
         columns.serialise(archive);
         archive("bodies", states_);
-        if constexpr (Archive::loading) restore(columns);
+        if (archive.loads()) restore(columns);
     }
 
 private:

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "bodies/shape.hpp"
+#include "model/archive.hpp"
 
 namespace doseki {
 
@@ -68,7 +69,6 @@ struct RigidBodyColumns {
         }
     }
 
-    template <class Archive>
     void serialise(Archive& archive) {
         archive("shape_radius", radius), archive("shape_corners", corners),
             archive("shape_samples", samples);

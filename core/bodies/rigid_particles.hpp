@@ -45,10 +45,7 @@ public:
     /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
     void set_velocities(Particles<D>& particles, const RigidBodies<D>& bodies, double ahead) const;
 
-    template <class Archive>
-    void serialise(Archive& archive) {
-        archive("body_points", points_);
-    }
+    void serialise(Archive& archive) { archive("body_points", points_); }
     std::size_t size() const { return points_.size(); }
     /// Throws std::invalid_argument unless the points are those of so many bodies.
     void expect_points_of(std::size_t bodies) const {

@@ -54,11 +54,10 @@ struct Inflow {
         return min(speed.stop(), speed.time_at((static_cast<double>(released) + 0.5) * spacing));
     }
 
-    template <class Archive>
     void serialise(Archive& archive) {
         archive("inflow_released", released), archive("inflow_open", open),
             archive("inflow_closed", closed);
-        if constexpr (Archive::loading) expect_fit(released >= 0, "inflow_released");
+        if (archive.loads()) expect_fit(released >= 0, "inflow_released");
     }
 
     /// Stands where it would at time t had it been there from the start; before it has opened.
@@ -135,8 +134,7 @@ public:
 
     /// Carries out all events up to time t; true if particles came or changed their motion, so that
     /// neighbours must be sorted anew. Particles to remove are left in `removed`.
-    template <class State>
-    bool inject(State& particles, double t);
+    bool inject(Particles<D>& particles, double t);
 
     /// Gives driven particles the mean velocity from t to t + dt, so that a drift takes them
     /// exactly as far as the table of their inflow says; nothing to do for one of constant speed.
@@ -160,20 +158,16 @@ public:
     std::vector<std::uint8_t> removed;
 
     /// What changes during a run; `removed` is empty between steps.
-    template <class Archive>
     void serialise(Archive& archive);
 
 private:
     template <class Speed>
     void set_speeds(Particles<D>& particles, Speed&& speed_of) const;
-    template <class State>
-    void add_layer(State& particles, const Inflow<D>& inflow, std::int64_t k, double t);
-    template <class State>
-    void release(State& particles, Inflow<D>& inflow, double t);
+    void add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k, double t);
+    void release(Particles<D>& particles, Inflow<D>& inflow, double t);
 };
 
 template <int D>
-template <class Archive>
 void OpenBoundaries<D>::serialise(Archive& archive) {
     archive("mass_initial", ledger.initial), archive("mass_asked", ledger.requested);
     archive("entered", ledger.inflow), archive("left", ledger.outflow);
@@ -197,8 +191,7 @@ void OpenBoundaries<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) co
 }
 
 template <int D>
-template <class State>
-void OpenBoundaries<D>::add_layer(State& particles, const Inflow<D>& inflow, std::int64_t k,
+void OpenBoundaries<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k,
                                   double t) {
     if (!adds) {
         next_id += static_cast<std::int64_t>(inflow.layer.size());
@@ -224,8 +217,7 @@ void OpenBoundaries<D>::add_layer(State& particles, const Inflow<D>& inflow, std
 }
 
 template <int D>
-template <class State>
-void OpenBoundaries<D>::release(State& particles, Inflow<D>& inflow, double t) {
+void OpenBoundaries<D>::release(Particles<D>& particles, Inflow<D>& inflow, double t) {
     for (; inflow.advance(inflow.released, t) >= 0.0; ++inflow.released)
         add_layer(particles, inflow, inflow.released + inflow.buffer_layers, t);
     for (std::size_t p = 0; p < particles.size(); ++p) {
@@ -241,8 +233,7 @@ void OpenBoundaries<D>::release(State& particles, Inflow<D>& inflow, double t) {
 }
 
 template <int D>
-template <class State>
-bool OpenBoundaries<D>::inject(State& particles, double t) {
+bool OpenBoundaries<D>::inject(Particles<D>& particles, double t) {
     bool changed = false;
     for (Inflow<D>& inflow : inflows) {
         if (t < inflow.next_event()) continue;

@@ -1,7 +1,8 @@
 #pragma once
-// A simulation of one scheme, dimension and precision as its caller sees it.
+// A simulation of one dimension and kind of lists, of any scheme, as its caller sees it.
 
 #include <memory>
+#include <numeric>
 
 #include "base/phase_timer.hpp"
 #include "interface/any_simulation.hpp"
@@ -10,24 +11,26 @@
 #include "interface/boundaries.hpp"
 #include "interface/options.hpp"
 #include "interface/particles.hpp"
-#include "pairs/pair_counter.hpp"
 #include "run/simulation.hpp"
 
 namespace doseki {
 
-template <class SchemeOf>
+template <class Lists>
 class Adapter final : public AnySimulation {
-    using Sim = Simulation<SchemeOf>;
-    static constexpr int D = SchemeOf::dim;
+    static constexpr int D = Lists::dim;
     using Corner = std::vector<double>;
 
 public:
-    explicit Adapter(Setup<D> setup)
-        : sim_(std::move(setup.materials), setup.options, setup.domain) {}
+    Adapter(const SchemeKind<Lists>& scheme, Setup<D> setup)
+        : sim_(scheme.make(std::move(setup.materials), setup.options), setup.options,
+               setup.domain) {}
 
-    static std::unique_ptr<AnySimulation> make(const std::vector<NamedValues>& materials,
+    static std::unique_ptr<AnySimulation> make(const std::string& scheme,
+                                               const std::string& precision,
+                                               const std::vector<NamedValues>& materials,
                                                const NamedValues& options) {
-        return std::make_unique<Adapter>(Setup<D>::read(materials, options));
+        return std::make_unique<Adapter>(SchemeKind<Lists>::of(scheme, precision),
+                                         Setup<D>::read(materials, options));
     }
 
     void add_particles(const NamedValues& columns) override {
@@ -65,10 +68,8 @@ public:
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
     void set_stresses(const NamedValues& columns) override {
-        if constexpr (requires { sim_.particles.deviatoric_stress; })
-            if (sim_.particles.has_strength)
-                sim_.particles.deviatoric_stress =
-                    ParticleTables<D>::deviators(columns, sim_.particles.size());
+        if (auto* const stress = sim_.scheme().own_fields().deviatoric_stress)
+            stress->assign(ParticleTables<D>::deviators(columns, sim_.particles.size()));
     }
     void begin_at(double time) override { sim_.begin_at(time); }
     void join(std::unique_ptr<Exchange> exchange) override {
@@ -104,11 +105,10 @@ public:
             table["normal"] = ParticleTables<D>::column(wall.normal, order);
             table["grain"] = BodyTables<D>::rigid_body_of(sim_.bodies, sim_.particles, order);
         }
-        if constexpr (requires { sim_.particles.velocity_gradient; }) {
-            const auto& fluid = sim_.particles;
-            table["surface"] = ParticleTables<D>::column(fluid.surface, order);
-            table["velocity_gradient"] = ParticleTables<D>::column(fluid.velocity_gradient, order);
-        }
+        const OwnFields<D> own = sim_.scheme().own_fields();
+        if (own.surface) table["surface"] = ParticleTables<D>::column(*own.surface, order);
+        if (own.velocity_gradient)
+            table["velocity_gradient"] = ParticleTables<D>::column(*own.velocity_gradient, order);
         return table;
     }
 
@@ -116,11 +116,9 @@ public:
         const auto order = ParticleTables<D>::id_order(sim_.particles);
         NamedValues table = ParticleTables<D>::rates(sim_.particles, order);
         table["deviatoric_stress_rate"] = ParticleTables<D>::stresses(
-            order, [this](std::size_t p) { return sim_.particles.stress_rate(p); });
+            order, [this](std::size_t p) { return sim_.scheme().stress_rate(p); });
         NewArray<double> balsara({order.size()});
-        if constexpr (requires { sim_.scheme().balsara(0); })
-            for (std::size_t k = 0; k < order.size(); ++k)
-                balsara[k] = sim_.scheme().balsara(order[k]);
+        for (std::size_t k = 0; k < order.size(); ++k) balsara[k] = sim_.scheme().balsara(order[k]);
         table["balsara"] = balsara, table["timestep"] = sim_.next_timestep();
         table["av_power"] = sim_.scheme().dissipated_power();
         return table;
@@ -174,7 +172,7 @@ public:
     }
 
     NamedValues neighbour_counts() const override {
-        const auto counts = PairCounter(sim_.scheme(), sim_.neighbours()).counts();
+        const auto counts = sim_.scheme().pair_counts(sim_.neighbours());
         const auto order = ParticleTables<D>::id_order(sim_.particles);
         NewArray<std::int64_t> id({order.size()}), count({order.size()});
         for (std::size_t k = 0; k < order.size(); ++k) {
@@ -201,19 +199,16 @@ public:
 
     NamedValues checkpoint() override {
         SavingArchive archive;
-        int width = Sim::width;
+        int width = sim_.scheme().width();
         archive("lanes", width);
         sim_.serialise(archive);
         return archive.arrays;
     }
 
     std::vector<std::string> particle_arrays() const override {
-        SavingArchive archive;
-        typename SchemeOf::State none(sim_.scheme().materials());
-        none.for_each_field(archive);
-        std::vector<std::string> names;
-        for (const auto& [name, array] : archive.arrays) names.push_back(name);
-        return names;
+        NamingArchive archive;
+        sim_.particles.serialise(archive);
+        return archive.names;
     }
 
     bool restore(const NamedValues& arrays) override {
@@ -225,7 +220,7 @@ public:
             sim_.renew_order();
             return false;
         }
-        if (width == Sim::width) {
+        if (width == sim_.scheme().width()) {
             sim_.expect_lists();
             return true;
         }
@@ -248,13 +243,11 @@ public:
         return table;
     }
     double interacting_pairs() const override {
-        return PairCounter(sim_.scheme(), sim_.neighbours()).interacting_pairs();
+        const std::vector<double> counts = sim_.scheme().pair_counts(sim_.neighbours());
+        return std::accumulate(counts.begin(), counts.end(), 0.0);
     }
     double bare_pair_rate(double seconds) const override {
-        if constexpr (requires { sim_.scheme().bare_pair_rate(sim_.neighbours(), seconds); })
-            return sim_.scheme().bare_pair_rate(sim_.neighbours(), seconds);
-        else
-            throw std::invalid_argument("the scheme has no bare rate");
+        return sim_.scheme().bare_pair_rate(sim_.neighbours(), seconds);
     }
 
 private:
@@ -264,13 +257,13 @@ private:
 
     PointStates<D> states() const {
         return [this](std::size_t p) -> PointState<D> {
-            return {sim_.scheme().equation_of_state(sim_.particles, p),
-                    sim_.scheme().deviator(sim_.particles, p), sim_.particles.stress(p)};
+            return {sim_.scheme().equation_of_state(p), sim_.scheme().deviator(p),
+                    sim_.scheme().stress(p)};
         };
     }
 
     std::unique_ptr<Exchange> exchange_;
-    Sim sim_;
+    Simulation<Lists> sim_;
 };
 
 }  // namespace doseki

@@ -91,16 +91,15 @@ public:
     virtual double bare_pair_rate(double seconds) const = 0;
 };
 
-/// Makes simulations of one scheme, dimension and precision. Each announces itself.
+/// Makes simulations of one dimension. Each announces itself.
 class SimulationKind {
 public:
-    using Make = std::unique_ptr<AnySimulation>(const std::vector<NamedValues>& materials,
+    using Make = std::unique_ptr<AnySimulation>(const std::string& scheme,
+                                                const std::string& precision,
+                                                const std::vector<NamedValues>& materials,
                                                 const NamedValues& options);
 
-    SimulationKind(std::string scheme, int dim, std::string precision, Make& make)
-        : scheme_(std::move(scheme)), dim_(dim), precision_(std::move(precision)), make_(make) {
-        all().push_back(this);
-    }
+    SimulationKind(int dim, Make& make) : dim_(dim), make_(make) { all().push_back(this); }
 
     /// Throws std::invalid_argument where there is no such kind.
     static std::unique_ptr<AnySimulation> make(const std::string& scheme, int dim,
@@ -108,11 +107,8 @@ public:
                                                const std::vector<NamedValues>& materials,
                                                const NamedValues& options) {
         for (const SimulationKind* kind : all())
-            if (kind->scheme_ == scheme && kind->dim_ == dim && kind->precision_ == precision)
-                return kind->make_(materials, options);
-        throw std::invalid_argument("no simulation of scheme \"" + scheme + "\" in " +
-                                    std::to_string(dim) + " dimensions and " + precision +
-                                    " precision");
+            if (kind->dim_ == dim) return kind->make_(scheme, precision, materials, options);
+        throw std::invalid_argument("no simulation in " + std::to_string(dim) + " dimensions");
     }
 
 private:
@@ -121,9 +117,7 @@ private:
         return kinds;
     }
 
-    std::string scheme_;
     int dim_;
-    std::string precision_;
     Make& make_;
 };
 

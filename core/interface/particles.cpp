@@ -63,8 +63,8 @@ void ParticleTables<D>::set_walls(Particles<D>& particles, const NamedValues& co
     if (column.rows() != particles.size())
         throw std::invalid_argument("walls: one row for each particle");
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
-    particles.wall.normal = normal;
-    particles.wall.depth.assign(depth.begin(), depth.end());
+    particles.wall.normal.assign(normal);
+    particles.wall.depth.assign(depth);
 }
 
 template <int D>
@@ -77,9 +77,9 @@ void ParticleTables<D>::set_faces(Particles<D>& particles, const NamedValues& co
     if (column.rows() != particles.size())
         throw std::invalid_argument("faces: one row for each particle");
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
-    particles.wall.face.assign(face.begin(), face.end());
-    particles.wall.area = area;
-    particles.wall.rows.assign(rows.begin(), rows.end());
+    particles.wall.face.assign(face);
+    particles.wall.area.assign(area);
+    particles.wall.rows.assign(rows);
 }
 
 template <int D>

@@ -13,16 +13,14 @@
 #include <variant>
 #include <vector>
 
+#include "model/archive.hpp"
+
 namespace doseki {
 
 /// Numbers in rows: a view of someone's memory, valid during a call, or with an owner for as long
 /// as it lives.
 struct Array {
-    using Numbers = std::variant<const double*, const float*, const std::int64_t*,
-                                 const std::uint64_t*, const std::int32_t*, const std::uint32_t*,
-                                 const std::int16_t*, const std::uint8_t*, const bool*>;
-
-    Numbers numbers;
+    NumberPointer numbers;
     std::vector<std::size_t> shape;
     std::shared_ptr<const void> owner;
 

@@ -3,8 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.hpp"
+#include "base/field.hpp"
 #include "base/vec.hpp"
+#include "model/archive.hpp"
 
 namespace doseki {
 
@@ -23,10 +24,6 @@ struct Tag {
     std::int16_t material;
     Motion motion;
 };
-
-/// One quantity of all particles, in the order of storage.
-template <class T>
-using Field = std::vector<T>;
 
 /// Numbers of the faces of walls. Those of a body share one: fluid films lie between two that
 /// differ.
@@ -65,10 +62,22 @@ struct WallState {
 
 /// The state that every scheme has, one field per quantity, sorted in space by Neighbours.
 /// Everything is double: the precision of a run is that of its pair sums. A scheme's own State
-/// derives from this and adds what else it keeps of a particle.
+/// derives from this and adds what else it keeps of a particle; StateOf makes one of it that others
+/// can grow, sort, send and save.
 template <int D>
 struct Particles {
     static constexpr int dim = D;
+
+    Particles() = default;
+    Particles(const Particles&) = delete;
+    Particles& operator=(const Particles&) = delete;
+    virtual ~Particles() = default;
+
+    /// All fields, those of the scheme among them.
+    virtual std::vector<NamedField> fields() = 0;
+    virtual void serialise(Archive& archive) = 0;
+    /// A particle that an inflow has just added, whose common fields are set.
+    virtual void enter(std::size_t p) = 0;
 
     Field<Vec<double, D>> position;      // [m]
     Field<Vec<double, D>> velocity;      // [m/s]
@@ -116,30 +125,30 @@ protected:
     }
 };
 
-// A State lists its fields, those of Particles among them, in for_each_field(f(name, field)); from
-// that one list derive growth, sorting, migration and checkpoints.
-
+/// The state of a scheme, which lists its fields, those of Particles among them, in
+/// for_each_field(f(name, field)); what others do with all of them follows from that one list.
 template <class State>
-void resize(State& state, std::size_t n) {
-    state.for_each_field([n](const char*, auto& field) { field.resize(n); });
+struct StateOf final : State {
+    using State::State;
+
+    std::vector<NamedField> fields() override {
+        std::vector<NamedField> fields;
+        this->for_each_field(
+            [&fields](const char* name, auto& field) { fields.push_back({name, &field}); });
+        return fields;
+    }
+    void serialise(Archive& archive) override { this->for_each_field(archive); }
+};
+
+template <int D>
+void resize(Particles<D>& particles, std::size_t n) {
+    for (const NamedField& field : particles.fields()) field.memory->resize(n);
 }
 
 /// New particle k is old particle order[k]; particles not named are gone.
-template <class State>
-void reorder(State& state, std::span<const std::uint32_t> order) {
-    state.for_each_field([order](const char*, auto& field) {
-        std::remove_reference_t<decltype(field)> sorted(order.size());
-        for_each_particle(order.size(), [&](std::size_t k) { sorted[k] = field[order[k]]; });
-        field.swap(sorted);
-    });
-}
-
-template <class State>
-std::size_t bytes_of(State& state) {
-    std::size_t bytes = 0;
-    state.for_each_field(
-        [&bytes](const char*, const auto& field) { bytes += field.capacity() * sizeof(field[0]); });
-    return bytes;
+template <int D>
+void reorder(Particles<D>& particles, std::span<const std::uint32_t> order) {
+    for (const NamedField& field : particles.fields()) field.memory->reorder(order);
 }
 
 }  // namespace doseki

@@ -10,6 +10,7 @@
 #include "base/box.hpp"
 #include "base/error.hpp"
 #include "base/vec.hpp"
+#include "model/archive.hpp"
 #include "model/domain.hpp"
 #include "pairs/list_storage.hpp"
 
@@ -36,6 +37,8 @@ struct ListEntry {
 template <int D>
 class Neighbours {
 public:
+    static constexpr int dim = D;
+
     explicit Neighbours(const Domain<D>& domain) : domain_(domain) { fill_image_shifts(); }
 
     /// Order in which particles are to be stored: moving ones before fixed ones, and among each
@@ -77,7 +80,6 @@ public:
     void expect_fit_of(int width, std::span<const std::uint8_t> is_fixed) const;
 
     /// The lists as they are; the grids are used only while lists are built.
-    template <class Archive>
     void serialise(Archive& archive);
 
 private:
@@ -169,13 +171,12 @@ private:
 };
 
 template <int D>
-template <class Archive>
 void Neighbours<D>::serialise(Archive& archive) {
     FlatLists flat;
-    if constexpr (!Archive::loading) flat = flatten();
+    if (!archive.loads()) flat = flatten();
     archive("lists_moving", flat.moving), archive("lists_fixed", flat.fixed);
     archive("lists_entries", flat.entries), archive("moving_particles", moving_);
-    if constexpr (Archive::loading) unflatten(flat);
+    if (archive.loads()) unflatten(flat);
 }
 
 // Compiled once, in neighbours.cpp.

@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "base/box.hpp"
+#include "base/field.hpp"
 #include "model/fault.hpp"
 #include "pairs/neighbour_lists.hpp"
 #include "ranks/exchange.hpp"
@@ -20,18 +21,16 @@ struct HaloColumn {
 };
 
 template <class Record>
-HaloColumn halo_column(std::vector<Record>& records, HaloColumn::Of of = HaloColumn::all,
+HaloColumn halo_column(Field<Record>& records, HaloColumn::Of of = HaloColumn::all,
                        std::size_t first = 0) {
-    static_assert(std::is_trivially_copyable_v<Record>);
     return {reinterpret_cast<std::byte*>(records.data()), sizeof(Record), sizeof(Record), first,
             of};
 }
 
 /// The same of one member of each record.
 template <class Record, class Member>
-HaloColumn halo_column(std::vector<Record>& records, Member Record::* member, HaloColumn::Of of,
+HaloColumn halo_column(Field<Record>& records, Member Record::* member, HaloColumn::Of of,
                        std::size_t first) {
-    static_assert(std::is_trivially_copyable_v<Member>);
     std::byte* const data =
         records.empty() ? nullptr : reinterpret_cast<std::byte*>(&(records.data()->*member));
     return {data, sizeof(Record), sizeof(Member), first, of};

@@ -10,31 +10,30 @@
 namespace doseki {
 
 /// All fields of some particles, field by field.
-template <class State>
-Bytes pack(State& particles, std::span<const std::uint32_t> chosen) {
+template <int D>
+Bytes pack(Particles<D>& particles, std::span<const std::uint32_t> chosen) {
     Bytes bytes;
-    particles.for_each_field([&](const char*, auto& field) {
-        static_assert(std::is_trivially_copyable_v<std::remove_reference_t<decltype(field[0])>>);
+    for (const auto& [name, memory] : particles.fields())
         for (const std::uint32_t p : chosen) {
-            const auto* const value = reinterpret_cast<const std::byte*>(&field[p]);
-            bytes.insert(bytes.end(), value, value + sizeof(field[p]));
+            const std::byte* const value = memory->element(p);
+            bytes.insert(bytes.end(), value, value + memory->element_size());
         }
-    });
     return bytes;
 }
 
 /// Appends particles that pack() made bytes of.
-template <class State>
-void unpack(State& particles, const Bytes& bytes) {
+template <int D>
+void unpack(Particles<D>& particles, const Bytes& bytes) {
     std::size_t each = 0;
-    particles.for_each_field([&](const char*, auto& field) { each += sizeof(field[0]); });
+    for (const auto& [name, memory] : particles.fields()) each += memory->element_size();
     const std::size_t first = particles.size(), n = bytes.size() / each;
     resize(particles, first + n);
     const std::byte* from = bytes.data();
-    particles.for_each_field([&](const char*, auto& field) {
-        if (n > 0) std::memcpy(static_cast<void*>(&field[first]), from, n * sizeof(field[0]));
-        from += n * sizeof(field[0]);
-    });
+    for (const auto& [name, memory] : particles.fields()) {
+        const std::size_t size = n * memory->element_size();
+        if (n > 0) std::memcpy(memory->element(first), from, size);
+        from += size;
+    }
 }
 
 template <int D>
@@ -48,9 +47,8 @@ std::vector<double> coordinates_of(const Particles<D>& particles,
 }
 
 /// Sends every particle to its owner.
-template <class State>
-void migrate(State& particles, Exchange& exchange) {
-    constexpr int D = State::dim;
+template <int D>
+void migrate(Particles<D>& particles, Exchange& exchange) {
     const std::vector<double> region = exchange.region();
     std::vector<std::uint32_t> leaving, staying;
     for (std::uint32_t p = 0; p < particles.size(); ++p) {

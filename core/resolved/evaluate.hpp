@@ -30,7 +30,7 @@ void Resolved<D, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& h
         sum_all<WendlandC6<D>>(state, lists, halo);
     else
         sum_all<WendlandC2<D>>(state, lists, halo);
-    reduce_summaries(halo.ranks);
+    reduce_summaries();
     const std::int64_t left = is_poisoned_run() ? survivor<double>(state.acceleration) : -1;
     if (left >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(left));
     fault_ = traced_to_its_source(fault_, state, model_->materials);
@@ -196,7 +196,7 @@ void Resolved<D, Backend>::sum_fluid(State& state, const Lists& lists, Halo<D>& 
 }
 
 template <int D, class Backend>
-void Resolved<D, Backend>::reduce_summaries(const Ranks& ranks) {
+void Resolved<D, Backend>::reduce_summaries() {
     // What enters next may be the first fluid there is.
     const Options<D>& options = model_->options;
     timestep_ = options.cflnumber * options.eta * options.flow.dp / model_->constants.c;

@@ -75,17 +75,14 @@ public:
     /// sound speed is the one of the scheme, that at rest.
     ThermodynamicState<double> equation_of_state(const State& state, std::size_t p) const;
 
-    template <class Archive>
     void serialise(Archive& archive) {
         archive("next_timestep", timestep_), archive("av_power", power_),
             archive("scheme_work", work_);
     }
 
     std::size_t bytes() const {
-        return motion_.capacity() * sizeof(MotionRecord<double, D>) +
-               fluid_.capacity() * sizeof(FluidRecord<D>) +
-               wall_.capacity() * sizeof(WallRecord<D>) +
-               summary_.capacity() * sizeof(FlowSummary<D>);
+        return motion_.bytes_held() + fluid_.bytes_held() + wall_.bytes_held() +
+               summary_.bytes_held();
     }
 
 private:
@@ -101,7 +98,7 @@ private:
     void sum_walls(State& state, const Lists& lists, const FlowRecords<D>& records);
     template <class Kernel>
     void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<D>& records);
-    void reduce_summaries(const Ranks& ranks);
+    void reduce_summaries();
 
     std::shared_ptr<const ResolvedModel<D>> model_;
     CoordinateFrame<double, D> frame_;

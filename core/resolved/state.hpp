@@ -34,9 +34,8 @@ struct ResolvedState : Particles<D> {
     Deviator<double, D> stress(std::size_t) const { return {}; }
     Deviator<double, D> stress_rate(std::size_t) const { return {}; }
 
-    /// A particle that an inflow has just added, whose common fields are set. It counts as one of
-    /// the surface, which takes no tension, until it has been summed over.
-    void enter(std::size_t p) { surface[p] = 1.0; }
+    /// It counts as one of the surface, which takes no tension, until it has been summed over.
+    void enter(std::size_t p) override { surface[p] = 1.0; }
     void kick(std::size_t, double) {}
     /// With which a particle moves.
     Vec<double, D> transport_velocity(std::size_t p) const { return this->velocity[p] + shift[p]; }

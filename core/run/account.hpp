@@ -6,6 +6,17 @@
 
 namespace doseki {
 
+/// Mass and momentum of particles, with the velocities that they are moved with.
+template <int D>
+struct Weight {
+    double mass = 0.0;
+    Vec<double, D> momentum{};
+
+    Weight operator+(const Weight& other) const {
+        return {mass + other.mass, momentum + other.momentum};
+    }
+};
+
 /// What free particles and bodies that move have got since the start from what is around them;
 /// 2-D: per metre.
 template <int D>
@@ -19,16 +30,15 @@ struct Account {
 
     /// Half a step of the forces on walls and of `scheme`, before the step or after it.
     void add_forces(const Particles<D>& particles, const SchemeWork<D>& scheme, double half_dt) {
-        const Push push = sum<Push>(particles, push_of);
+        const Push push = reduce(particles.size(), Push{}, std::plus<Push>{},
+                                 [&particles](std::size_t p) { return push_of(particles, p); });
         impulse = impulse + half_dt * (scheme.layer_force - push.force);
         wall_work += half_dt * (scheme.layer_power - push.power);
         scheme_work += half_dt * scheme.power;
     }
 
-    /// A step of gravity, with the velocities that particles are moved with.
-    template <class State>
-    void add_weight(const State& particles, const Vec<double, D>& gravity, double dt) {
-        const Weight weight = sum<Weight>(particles, weight_of<State>);
+    /// A step of gravity on the free particles.
+    void add_weight(const Weight<D>& weight, const Vec<double, D>& gravity, double dt) {
         impulse = impulse + (dt * weight.mass) * gravity;
         gravity_work += dt * dot(gravity, weight.momentum);
     }
@@ -47,29 +57,10 @@ private:
             return {force + other.force, power + other.power};
         }
     };
-    struct Weight {  // of free particles
-        double mass = 0.0;
-        Vec<double, D> momentum{};
-
-        Weight operator+(const Weight& other) const {
-            return {mass + other.mass, momentum + other.momentum};
-        }
-    };
-
-    template <class Sum, class State>
-    static Sum sum(const State& particles, Sum (*of)(const State&, std::size_t)) {
-        return reduce(particles.size(), Sum{}, std::plus<Sum>{},
-                      [&](std::size_t p) { return of(particles, p); });
-    }
 
     static Push push_of(const Particles<D>& particles, std::size_t p) {
         if (!particles.is_fixed(p) || !particles.wall.in_use) return {};
         return {particles.wall.force[p], dot(particles.wall.force[p], particles.velocity[p])};
-    }
-    template <class State>
-    static Weight weight_of(const State& particles, std::size_t p) {
-        if (!particles.is_free(p)) return {};
-        return {particles.mass[p], particles.mass[p] * particles.transport_velocity(p)};
     }
 };
 

@@ -3,6 +3,7 @@
 
 #include "model/material.hpp"
 #include "model/particles.hpp"
+#include "run/any_scheme.hpp"
 
 namespace doseki {
 
@@ -17,21 +18,22 @@ struct Totals {
     std::vector<std::int64_t> count;  // free particles per material
 };
 
-template <class Scheme>
-Totals<Scheme::dim> totals(const typename Scheme::State& particles, const Scheme& scheme) {
+template <class Lists>
+Totals<Lists::dim> totals(AnyScheme<Lists>& scheme) {
+    const Particles<Lists::dim>& particles = scheme.particles();
     const std::vector<Material>& materials = scheme.materials();
-    Totals<Scheme::dim> sum;
+    Totals<Lists::dim> sum;
     sum.count.assign(materials.size(), 0);
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const Tag& tag = particles.tag[p];
         if (tag.motion == Motion::driven) continue;
         const double m = particles.mass[p], rho = particles.density[p];
-        const auto eos = scheme.equation_of_state(particles, p);
+        const auto eos = scheme.equation_of_state(p);
         // Where tension is clamped away there is no force, hence no energy.
         if (rho >= materials[tag.material].rho0 || eos.pressure < 0.0)
             sum.bulk_energy += m * eos.bulk_energy;
         if (tag.motion == Motion::fixed) continue;
-        sum.shear_energy += scheme.shear_energy(particles, p);
+        sum.shear_energy += scheme.shear_energy(p);
         sum.mass += m;
         sum.momentum = sum.momentum + m * particles.velocity[p];
         if (tag.motion != Motion::bound)

@@ -1,6 +1,7 @@
 #pragma once
 #include "base/parallel.hpp"
 #include "model/particles.hpp"
+#include "run/account.hpp"
 
 namespace doseki {
 
@@ -26,6 +27,16 @@ double drift(State& state, double dt) {
         return dot(v, v);
     });
     return dt * sqrt(fastest);
+}
+
+/// Of the free particles.
+template <class State>
+Weight<State::dim> weight(const State& state) {
+    using Sum = Weight<State::dim>;
+    return reduce(state.size(), Sum{}, std::plus<Sum>{}, [&](std::size_t p) -> Sum {
+        if (!state.is_free(p)) return {};
+        return {state.mass[p], state.mass[p] * state.transport_velocity(p)};
+    });
 }
 
 }  // namespace doseki

@@ -15,23 +15,26 @@
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "ranks/migration.hpp"
+#include "run/any_scheme.hpp"
 
 namespace doseki {
 
 /// The neighbour lists of a run and what keeps them true: the skin, how far particles have gone
 /// since the last build, and the ghosts of other ranks. Lists hold as long as no two particles can
 /// have come nearer by more than the skin.
-template <class Scheme>
+template <class Lists>
 class RunLists {
 public:
-    static constexpr int D = Scheme::dim;
-    using State = typename Scheme::State;
-    using Backend = typename Scheme::Backend;
-    using Lists = typename Backend::template Lists<D>;
-    static_assert(doseki::Backend<Backend, D>);
+    static constexpr int D = Lists::dim;
+    using State = Particles<D>;
 
-    RunLists(const Domain<D>& domain, double skin, bool adapts)
-        : given_skin_(skin), adapts_(adapts), lists_(domain), wear_(domain), halo_(domain) {}
+    RunLists(AnyScheme<Lists>& scheme, const Domain<D>& domain, double skin, bool adapts)
+        : scheme_(scheme),
+          given_skin_(skin),
+          adapts_(adapts),
+          lists_(domain),
+          wear_(domain),
+          halo_(domain) {}
 
     const Lists& lists() const { return lists_; }
     /// The other ranks and the ghosts that they send.
@@ -69,20 +72,18 @@ public:
     template <class Supports>
     void rebuild(State& state, const Supports& supports, std::int64_t steps, PhaseTimer& phases);
 
-    template <class Archive>
     void serialise_wear(Archive& archive) {
         archive("rebuilds", rebuilds_), archive("moved", moved_);
         archive("skin_width", skin_width_), archive("skin", skin_);
         archive("rebuild_step", rebuild_step_), archive("approach", approach_);
     }
-    template <class Archive>
     void serialise_lists(Archive& archive, const State& state) {
         lists_.serialise(archive);
         lists_.set_size(state.size());
         double reach = wear_.reach();
         std::vector<Vec<double, D>> built(wear_.positions().begin(), wear_.positions().end());
         archive("lists_reach", reach), archive("lists_position", built);
-        if constexpr (Archive::loading) {
+        if (archive.loads()) {
             expect_fit(built.empty() || built.size() == state.size(), "lists_position");
             expect_fit(built.empty() || reach > 0.0, "lists_reach");
             if (!built.empty()) wear_.start(built, reach);
@@ -91,7 +92,7 @@ public:
 
     /// Throws std::invalid_argument unless the lists are those of particles stored as these are.
     void expect_fit_of(const State& state) const {
-        lists_.expect_fit_of(Backend::width, wall_flags(state));
+        lists_.expect_fit_of(scheme_.width(), wall_flags(state));
     }
 
 private:
@@ -107,11 +108,12 @@ private:
                                      [](std::int32_t face) { return face != Face::none; });
         return halo_.ranks.largest(own ? 1.0 : 0.0) > 0.0;
     }
-    std::vector<std::int32_t> faces_with_ghosts(const State& state);
+    Field<std::int32_t> faces_with_ghosts(const State& state);
     double cheapest_skin(double min_support, std::int64_t steps) const;
     void append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
                        std::vector<double>& support);
 
+    AnyScheme<Lists>& scheme_;
     double given_skin_;
     bool adapts_;
     Lists lists_;
@@ -128,8 +130,8 @@ private:
     double cut_busy_ = 0.0;  // of the clock, when cutting was last considered [s]
 };
 
-template <class Scheme>
-void RunLists<Scheme>::cut_space(const State& state, PhaseTimer& phases) {
+template <class Lists>
+void RunLists<Lists>::cut_space(const State& state, PhaseTimer& phases) {
     if (halo_.alone()) return;
     const auto timing = halo_.ranks.clock.measure(Share::balance);
     Exchange& exchange = halo_.ranks.exchange();
@@ -138,25 +140,29 @@ void RunLists<Scheme>::cut_space(const State& state, PhaseTimer& phases) {
     if (!exchange.wants_cuts(busy)) return;
     std::vector<std::uint32_t> everyone(state.size());
     std::iota(everyone.begin(), everyone.end(), 0u);
-    const auto costs = particle_costs(lists_.clusters(), Backend::width, lists_.moving(),
-                                      state.size(), phases, thread_count(), Scheme::cost_of_lists);
+    const auto cost_of_lists = [this](const ListWords& words, const PassSeconds& seconds) {
+        return scheme_.cost_of_lists(words, seconds);
+    };
+    const auto costs =
+        particle_costs(lists_.clusters(), static_cast<std::size_t>(scheme_.width()),
+                       lists_.moving(), state.size(), phases, thread_count(), cost_of_lists);
     exchange.cut(coordinates_of(state, everyone), costs);
     phases.restart(true);
 }
 
 /// From what the lists that end now have lasted.
-template <class Scheme>
-double RunLists<Scheme>::cheapest_skin(double min_support, std::int64_t steps) const {
+template <class Lists>
+double RunLists<Lists>::cheapest_skin(double min_support, std::int64_t steps) const {
     const std::int64_t lasted = steps - rebuild_step_;
     if (!adapts_ || skin_ == 0.0) return given_skin_;
     if (lasted == 0) return skin_;
     return CheapestSkin<D>::at(approach_ / (static_cast<double>(lasted) * min_support));
 }
 
-template <class Scheme>
+template <class Lists>
 template <class Supports>
-void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int64_t steps,
-                               PhaseTimer& phases) {
+void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64_t steps,
+                              PhaseTimer& phases) {
     std::vector<double> support = supports();
     const std::vector<std::uint8_t> fixed = wall_flags(state);
     const double own_support = support.empty() ? std::numeric_limits<double>::max()
@@ -171,7 +177,7 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
     }
     {
         const auto timing = phases.measure(Phase::sort);
-        const auto order = Backend::sort(
+        const auto order = scheme_.sort(
             lists_, ParticlesToSort<D>{state.position, support, fixed, halo_.exported()});
         reorder(state, order);
         halo_.renumber(order);
@@ -182,9 +188,9 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
     const auto timing = phases.measure(Phase::list_build);
     const std::span<const Vec<double, D>> position =
         halo_.alone() ? std::span<const Vec<double, D>>(state.position) : with_ghosts;
-    const auto faces = faces_meet ? faces_with_ghosts(state) : std::vector<std::int32_t>{};
-    Backend::build_lists(lists_, position, std::span<const double>(support), skin_width_,
-                         std::span<const std::int32_t>(faces));
+    const Field<std::int32_t> faces = faces_meet ? faces_with_ghosts(state) : Field<std::int32_t>{};
+    scheme_.build_lists(lists_, position, std::span<const double>(support), skin_width_,
+                        std::span<const std::int32_t>(faces));
     if (halo_.alone())
         wear_.start(state.position,
                     skin_width_ + *std::max_element(support.begin(), support.end()));
@@ -193,19 +199,20 @@ void RunLists<Scheme>::rebuild(State& state, const Supports& supports, std::int6
 }
 
 /// Faces of the particles here, sorted, and of their ghosts after them.
-template <class Scheme>
-std::vector<std::int32_t> RunLists<Scheme>::faces_with_ghosts(const State& state) {
-    std::vector<std::int32_t> faces(state.wall.face);
-    faces.resize(state.size() + halo_.ghosts(), Face::none);
+template <class Lists>
+Field<std::int32_t> RunLists<Lists>::faces_with_ghosts(const State& state) {
+    Field<std::int32_t> faces = state.wall.face;
+    static_assert(Face::none == 0, "a field grows by zeros");
+    faces.resize(state.size() + halo_.ghosts());
     halo_.start({halo_column(faces)});
     halo_.finish();
     return faces;
 }
 
 /// Positions and supports of the particles here, sorted, and of their ghosts after them.
-template <class Scheme>
-void RunLists<Scheme>::append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
-                                     std::vector<double>& support) {
+template <class Lists>
+void RunLists<Lists>::append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
+                                    std::vector<double>& support) {
     const auto timing = halo_.ranks.clock.measure(Share::halo);
     position.assign(state.position.begin(), state.position.end());
     const auto ghosts = halo_.announce(position, support, wall_flags(state));

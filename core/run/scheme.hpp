@@ -20,7 +20,7 @@ namespace doseki {
 /// `State`: Particles and the scheme's own fields, all listed in for_each_field(f(name, field)).
 template <class State>
 concept SchemeState = std::derived_from<State, Particles<State::dim>> &&
-                      std::constructible_from<State, const std::vector<Material>&> &&
+                      std::constructible_from<StateOf<State>, const std::vector<Material>&> &&
                       requires(State& state, const State& known, std::size_t p, double dt) {
                           state.for_each_field([](const char*, auto&) {});
                           state.enter(p);     // a particle that an inflow has just added

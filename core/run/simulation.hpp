@@ -2,44 +2,44 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "bodies/bodies.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
 #include "run/account.hpp"
+#include "run/any_scheme.hpp"
 #include "run/diagnostics.hpp"
 #include "run/failure.hpp"
-#include "run/integrate.hpp"
 #include "run/lists.hpp"
-#include "run/scheme.hpp"
 
 namespace doseki {
 
-/// A run: state, right-hand side (the scheme) and clock. Owned by Python, which says until when to
-/// go on.
-template <class SchemeOf>
+/// A run: right-hand side (the scheme, which has the state) and clock. Owned by Python, which says
+/// until when to go on.
+template <class Lists>
 class Simulation {
-    static_assert(Scheme<SchemeOf>, "see run/scheme.hpp for what a scheme must have");
-
 public:
-    static constexpr int D = SchemeOf::dim;
-    static constexpr int width = SchemeOf::Backend::width;
-    using State = typename SchemeOf::State;
+    static constexpr int D = Lists::dim;
 
-    Simulation(std::vector<Material> materials, const Options<D>& options, const Domain<D>& domain)
-        : particles(materials),
-          bodies(domain, options.gravity, options.contact, contact_properties(materials),
-                 averaging_time(materials, options)),
+    Simulation(std::unique_ptr<AnyScheme<Lists>> scheme, const Options<D>& options,
+               const Domain<D>& domain)
+        : scheme_(std::move(scheme)),
+          particles(scheme_->particles()),
+          bodies(domain, options.gravity, options.contact, contact_properties(materials()),
+                 averaging_time(materials(), options)),
           options_(options),
           domain_(domain),
-          lists_(domain, options.skin, options.auto_skin),
-          scheme_(std::move(materials), options) {
-        for (const Material& material : scheme_.materials())
-            sound_speed_ = max(sound_speed_, material.c0);
+          lists_(*scheme_, domain, options.skin, options.auto_skin) {
+        for (const Material& material : materials()) sound_speed_ = max(sound_speed_, material.c0);
     }
 
-    State particles;
+private:
+    std::unique_ptr<AnyScheme<Lists>> scheme_;
+
+public:
+    Particles<D>& particles;
     OpenBoundaries<D> open_boundaries;
     MovingWalls<D> moving_walls;
     Bodies<D> bodies;
@@ -93,23 +93,22 @@ public:
         std::int64_t p = -1;
         for (std::size_t q = 0; q < particles.size(); ++q)
             if (particles.tag[q].id == id) p = static_cast<std::int64_t>(q);
-        return scheme_.force_terms(particles, lists_.lists(), lists_.halo(), p);
+        return scheme_->force_terms(lists_.lists(), lists_.halo(), p);
     }
 
     /// What must be kept for the run to go on as if it had not been interrupted.
-    template <class Archive>
     void serialise(Archive& archive) {
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
         archive("least_timestep", min_timestep_);
         archive("account", account_);
         lists_.serialise_wear(archive);
-        particles.for_each_field(archive);
-        if constexpr (Archive::loading) expect_particles();
+        particles.serialise(archive);
+        if (archive.loads()) expect_particles();
         open_boundaries.serialise(archive);
         bodies.serialise(archive);
-        if constexpr (Archive::loading) bodies.expect_points(particles);
-        scheme_.serialise(archive);
+        if (archive.loads()) bodies.expect_points(particles);
+        scheme_->serialise(archive);
         lists_.serialise_lists(archive, particles);
     }
 
@@ -117,7 +116,7 @@ public:
     /// with sums in another order.
     void renew_lists() {
         rebuild_lists();
-        for (int n = 0; n < SchemeOf::first_evaluations; ++n) evaluate(0.0);
+        for (int n = 0; n < scheme_->first_evaluations(); ++n) evaluate(0.0);
     }
 
     /// Throws std::invalid_argument where restored lists are not those of clusters of this width.
@@ -128,7 +127,7 @@ public:
 
     double time() const { return time_; }
     double last_timestep() const { return last_dt_; }
-    double next_timestep() const { return min(scheme_.timestep(), bodies.timestep()); }
+    double next_timestep() const { return min(scheme_->timestep(), bodies.timestep()); }
     /// By viscosity, of the particles of this rank, as are updates() and totals().
     double dissipation() const { return dissipation_; }
     const Account<D>& account() const { return account_; }
@@ -137,15 +136,15 @@ public:
     /// Particles stepped, summed over the steps.
     std::int64_t updates() const { return updates_; }
     const auto& neighbours() const { return lists_.lists(); }
-    const SchemeOf& scheme() const { return scheme_; }
+    AnyScheme<Lists>& scheme() const { return *scheme_; }
     const Options<D>& options() const { return options_; }
-    PhaseTimer& phases() { return scheme_.phases(); }
+    PhaseTimer& phases() { return scheme_->phases(); }
     const Halo<D>& halo() const { return lists_.halo(); }
     /// Margin of the lists over the smallest support radius, as a fraction of it.
     double skin() const { return lists_.skin(); }
 
     Totals<D> totals() const {
-        Totals<D> sum = doseki::totals(particles, scheme_);
+        Totals<D> sum = doseki::totals(*scheme_);
         if (halo().ranks.rank() > 0) return sum;  // every rank has all bodies
         sum.kinetic_energy += bodies.kinetic_energy();
         sum.shear_energy += bodies.deformable.strain_energy();
@@ -154,8 +153,7 @@ public:
 
     /// Bytes held per particle: state, records, lists.
     double bytes_per_particle() const {
-        const std::size_t bytes =
-            lists_.bytes() + scheme_.bytes() + bytes_of(const_cast<State&>(particles));
+        const std::size_t bytes = lists_.bytes() + scheme_->bytes() + scheme_->state_bytes();
         return static_cast<double>(bytes) /
                static_cast<double>(max<std::size_t>(1, particles.size()));
     }
@@ -181,16 +179,16 @@ private:
     /// That the fields of a restored state fit one another and the materials and bodies of the run.
     void expect_particles() {
         const std::size_t n = particles.size(), walls = options_.flow.walls.size();
-        particles.for_each_field(
-            [n](const char* name, const auto& field) { expect_fit(field.size() == n, name); });
+        for (const auto& [name, memory] : particles.fields()) expect_fit(memory->size() == n, name);
         for (const Tag& tag : particles.tag) {
-            expect_index(tag.material, scheme_.materials().size(), "material");
+            expect_index(tag.material, materials().size(), "material");
             expect_fit(tag.body >= 0, "body");
             if (walls > 0) expect_index(tag.body, walls, "body");
             expect_fit(tag.motion <= Motion::bound, "motion");
         }
     }
 
+    const std::vector<Material>& materials() const { return scheme_->materials(); }
     Ranks& ranks() { return lists_.halo().ranks; }
 
     void step(double limit);
@@ -209,8 +207,7 @@ private:
 
     Options<D> options_;
     Domain<D> domain_;
-    RunLists<SchemeOf> lists_;
-    SchemeOf scheme_;
+    RunLists<Lists> lists_;
     double time_ = 0.0, last_dt_ = 0.0;
     double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
     double dissipation_ = 0.0;
@@ -222,14 +219,14 @@ private:
 
 /// Kick, drift, kick. The velocities that the second evaluation sees are those predicted for the
 /// end of the step.
-template <class SchemeOf>
-void Simulation<SchemeOf>::step(double limit) {
+template <class Lists>
+void Simulation<Lists>::step(double limit) {
     const auto timing = ranks().clock.measure_total();
     const double before = time_, end = min(limit, next_event()),
-                 dt = min(next_timestep(), end - before), power = scheme_.dissipated_power();
+                 dt = min(next_timestep(), end - before), power = scheme_->dissipated_power();
 
     kick(0.5 * dt);
-    account_.add_forces(particles, scheme_.work(), 0.5 * dt);
+    account_.add_forces(particles, scheme_->work(), 0.5 * dt);
     const double own_moved = drift(dt), moved = ranks().largest(own_moved);
     time_ = dt < end - before ? before + dt : end;
     if (moved > max_mach * sound_speed_ * dt)
@@ -239,67 +236,67 @@ void Simulation<SchemeOf>::step(double limit) {
     open_boundaries.impose_velocity(particles, time_);
     update_lists(before, moved);
     evaluate(0.5 * dt);
-    account_.add_forces(particles, scheme_.work(), 0.5 * dt);
+    account_.add_forces(particles, scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
-    scheme_.end_step(particles);
+    scheme_->end_step();
     bodies.set_velocities(particles, 0.0);
 
-    dissipation_ += 0.5 * dt * (power + scheme_.dissipated_power());
+    dissipation_ += 0.5 * dt * (power + scheme_->dissipated_power());
     last_dt_ = dt;
     ++steps_;
     updates_ += static_cast<std::int64_t>(particles.size());
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::kick(double half_dt) {
+template <class Lists>
+void Simulation<Lists>::kick(double half_dt) {
     const auto timing = phases().measure(Phase::integrate);
-    doseki::kick(particles, half_dt);
+    scheme_->kick(half_dt);
     bodies.kick(half_dt);
 }
 
 /// Returns the largest distance that a particle went.
-template <class SchemeOf>
-double Simulation<SchemeOf>::drift(double dt) {
+template <class Lists>
+double Simulation<Lists>::drift(double dt) {
     const auto timing = phases().measure(Phase::integrate);
     open_boundaries.impose_mean_velocity(particles, time_, dt);
     const BodyStep<D> of_bodies = bodies.advance(moving_walls, time_, dt);
     if (ranks().rank() == 0) account_.add(of_bodies);  // every rank has all bodies
-    account_.add_weight(particles, options_.gravity, dt);
-    return max(max(doseki::drift(particles, dt), moving_walls.move(particles, time_, dt)),
+    account_.add_weight(scheme_->weight(), options_.gravity, dt);
+    return max(max(scheme_->drift(dt), moving_walls.move(particles, time_, dt)),
                bodies.place(particles));
 }
 
 /// The next time that a step must meet exactly.
-template <class SchemeOf>
-double Simulation<SchemeOf>::next_event() const {
+template <class Lists>
+double Simulation<Lists>::next_event() const {
     const double inflow = open_boundaries.next_event();
     return min(moving_walls.next_event(time_),
                inflow > time_ ? inflow : std::numeric_limits<double>::infinity());
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::update_lists(double before, double moved) {
+template <class Lists>
+void Simulation<Lists>::update_lists(double before, double moved) {
     const bool worn = lists_.wear(particles, moved);
     bool changed = open_boundaries.inject(particles, time_);
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
     if (changed || worn) rebuild_lists();
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::evaluate(double half_dt) {
+template <class Lists>
+void Simulation<Lists>::evaluate(double half_dt) {
     evaluated_at_ = time_;
-    scheme_.evaluate(particles, lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
+    scheme_->evaluate(lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
     bodies.gather(particles, ranks());
-    if (const Fault& fault = scheme_.fault(); fault.rank != Fault::none)
+    if (const Fault& fault = scheme_->fault(); fault.rank != Fault::none)
         fail(fault.rank == Fault::density ? FailureKind::density : FailureKind::not_finite,
              fault.particle);
-    if (scheme_.timestep() < min_timestep_ &&
-        ranks().largest(static_cast<double>(scheme_.limiting_particle())) >= 0.0)
-        fail(FailureKind::timestep, scheme_.limiting_particle());
+    if (scheme_->timestep() < min_timestep_ &&
+        ranks().largest(static_cast<double>(scheme_->limiting_particle())) >= 0.0)
+        fail(FailureKind::timestep, scheme_->limiting_particle());
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::rebuild_lists() {
+template <class Lists>
+void Simulation<Lists>::rebuild_lists() {
     const std::int64_t lost = lost_particle(particles, domain_);
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
     wrap_positions();
@@ -311,11 +308,11 @@ void Simulation<SchemeOf>::rebuild_lists() {
     lists_.send_to_owners(particles);
     lists_.rebuild(particles, [this] { return support_radii(); }, steps_, phases());
     min_timestep_ = min_relative_timestep * options_.cflnumber * lists_.min_support() /
-                    (scheme_.kernel_support() * sound_speed_);
+                    (scheme_->kernel_support() * sound_speed_);
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::wrap_positions() {
+template <class Lists>
+void Simulation<Lists>::wrap_positions() {
     for (int a = 0; a < D; ++a) {
         if (!domain_.periodic[a]) continue;
         const double length = domain_.length(a);
@@ -324,15 +321,15 @@ void Simulation<SchemeOf>::wrap_positions() {
     }
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::remove_outflow() {
+template <class Lists>
+void Simulation<Lists>::remove_outflow() {
     open_boundaries.remove_outflow(particles, [this](const Outflow<D>& outflow, auto& removed) {
         bodies.drain(particles, outflow, removed);
     });
 }
 
-template <class SchemeOf>
-void Simulation<SchemeOf>::drop_removed() {
+template <class Lists>
+void Simulation<Lists>::drop_removed() {
     std::vector<std::uint32_t> kept;
     for (std::uint32_t p = 0; p < particles.size(); ++p)
         if (!open_boundaries.removed[p]) kept.push_back(p);
@@ -341,27 +338,27 @@ void Simulation<SchemeOf>::drop_removed() {
 }
 
 /// As large as they may become before the next sort.
-template <class SchemeOf>
-std::vector<double> Simulation<SchemeOf>::support_radii() const {
+template <class Lists>
+std::vector<double> Simulation<Lists>::support_radii() const {
     std::vector<double> support(particles.size());
     const bool grows = options_.h_mode == SmoothingLengthMode::eq10;
     for (std::size_t p = 0; p < support.size(); ++p) {
         double h = particles.smoothing_length[p];
         if (grows) {
-            const double rho0 = scheme_.materials()[particles.tag[p].material].rho0;
+            const double rho0 = materials()[particles.tag[p].material].rho0;
             h = max(h, 1.25 * options_.eta * std::pow(particles.mass[p] / rho0, 1.0 / D));
         }
-        support[p] = scheme_.kernel_support() * h;
+        support[p] = scheme_->kernel_support() * h;
     }
     return support;
 }
 
 /// Throws the same on all ranks; `p` is -1 on those that have not the particle to blame.
-template <class SchemeOf>
-void Simulation<SchemeOf>::fail(FailureKind kind, std::int64_t p) {
+template <class Lists>
+void Simulation<Lists>::fail(FailureKind kind, std::int64_t p) {
     const FailureSite own = p < 0 ? FailureSite{} : site_of(particles, static_cast<std::size_t>(p));
     const FailureSite site = first_site(ranks(), own);
-    throw PhysicsFailure(described(site, D, time_, steps_ + 1, scheme_.materials()), kind, site);
+    throw PhysicsFailure(described(site, D, time_, steps_ + 1, materials()), kind, site);
 }
 
 }  // namespace doseki

@@ -143,8 +143,8 @@ template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::sum_momentum(State& particles, const Lists& lists, Halo<D>& halo) {
     constexpr std::size_t width = Backend::width;
     const auto clusters = lists.clusters().first((lists.moving() + width - 1) / width);
-    std::fill(particles.acceleration.begin() + static_cast<std::ptrdiff_t>(lists.moving()),
-              particles.acceleration.end(), Vec<double, D>{});
+    std::fill(particles.acceleration.begin() + lists.moving(), particles.acceleration.end(),
+              Vec<double, D>{});
 
     auto accelerate = [&](std::size_t p, const MomentumAccumulators<double, D>& sums) {
         if (!particles.is_free(p)) {

@@ -93,16 +93,13 @@ public:
     double bare_pair_rate(const Lists& lists, double seconds) const;
 
     /// Stress records are kept from step to step where nothing is near (see compute).
-    template <class Archive>
     void serialise(Archive& archive) {
         archive("stress_record", stress_), archive("next_timestep", timestep_),
             archive("av_power", av_power_);
     }
 
     std::size_t bytes() const {
-        return motion_.capacity() * sizeof(MotionRecord<real, D>) +
-               stress_.capacity() * sizeof(StressRecord<real, D>) +
-               summary_.capacity() * sizeof(ClusterSummary);
+        return motion_.bytes_held() + stress_.bytes_held() + summary_.bytes_held();
     }
 
 private:

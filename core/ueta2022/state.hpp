@@ -34,8 +34,7 @@ struct Ueta2022State : Particles<D> {
         return has_strength ? deviatoric_stress_rate[p] : Deviator<double, D>{};
     }
 
-    /// A particle that an inflow has just added, whose common fields are set.
-    void enter(std::size_t p) {
+    void enter(std::size_t p) override {
         if (has_strength) deviatoric_stress[p] = deviatoric_stress_rate[p] = {};
     }
     /// Half a step of the scheme's own fields.

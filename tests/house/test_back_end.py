@@ -27,3 +27,11 @@ def test_openmp_is_in_one_file():
 def test_nanobind_is_where_python_is():
     elsewhere = [file for file in SOURCES if file.parent.name != "python"]
     assert lines_with(r"nanobind", elsewhere) == []
+
+
+def test_how_fields_are_stored_only_they_know():
+    """Others see elements, and bytes where they do the same with all fields."""
+    field = (CORE / "base" / "field.hpp").read_text(encoding="utf-8")
+    shown = re.sub(r"^(private|protected):.*?^(?=public:|};)", "", field, flags=re.M | re.S)
+    assert "class Field " in shown
+    assert "std::vector" not in shown

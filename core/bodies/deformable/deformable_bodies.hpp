@@ -93,14 +93,13 @@ public:
         return smallest;
     }
 
-    template <class Archive>
     void serialise(Archive& archive, const Vec<double, D>& gravity) {
         solids_.serialise(archive, gravity);
         surfaces_.serialise(archive, solids_);
         archive("deformable_normal", normal_), archive("deformable_material", material_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
-        if constexpr (Archive::loading) {
+        if (archive.loads()) {
             const std::size_t n = solids_.size();
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && material_.size() == solids_.bodies(),

@@ -38,7 +38,6 @@ public:
     /// Takes the forces of the contacts.
     void collect(ContactBodies<D>& contact, TotalLagrangian<D>& solids) const;
 
-    template <class Archive>
     void serialise(Archive& archive, const TotalLagrangian<D>& solids) {
         std::vector<std::uint32_t> point;
         std::vector<Vec<double, D>> offset;
@@ -48,7 +47,7 @@ public:
                 crease.push_back(vertex.crease);
         archive("surface_point", point), archive("surface_offset", offset),
             archive("surface_crease", crease);
-        if constexpr (Archive::loading) {
+        if (archive.loads()) {
             expect_fit(offset.size() == point.size() && crease.size() == point.size(),
                        "surface_point");
             vertices_.clear();

@@ -104,10 +104,9 @@ public:
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
     /// alone.
-    template <class Archive>
     void serialise(Archive& archive, const Vec<double, D>& gravity) {
         std::vector<double> numbers;
-        if constexpr (!Archive::loading)
+        if (!archive.loads())
             for (const DeformableBody& body : bodies_) {
                 const auto of_body = body.numbers();
                 numbers.insert(numbers.end(), of_body.begin(), of_body.end());
@@ -121,7 +120,7 @@ public:
         std::vector<Mat<double, D>> deformations = deformation_;
         archive("elastic_acceleration", accelerations),
             archive("elastic_deformation", deformations);
-        if constexpr (Archive::loading) {
+        if (archive.loads()) {
             expect_whole(numbers.size(), accelerations.size(), deformations.size());
             const auto slots = slot_;
             bodies_.clear();
