@@ -1,8 +1,8 @@
 // Simulations as Python sees them: one class for every scheme, dimension and precision.
 
 #include <nanobind/nanobind.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "base/error.hpp"
@@ -15,12 +15,15 @@ namespace {
 
 class PythonSimulation {
     using Corner = std::vector<double>;
+    /// Kind, id of the particle to blame and its position; -1 and nothing where it is none.
+    using Failure = std::tuple<std::string, std::int64_t, std::vector<double>>;
 
 public:
     PythonSimulation(const std::string& scheme, int dim, const std::string& precision,
                      const nb::list& materials, const nb::dict& options)
         : core_(SimulationKind::make(scheme, dim, precision, to_tables(materials),
-                                     to_table(options))) {}
+                                     to_table(options))),
+          dim_(dim) {}
 
     void add_particles(const nb::kwargs& columns) { core_->add_particles(to_table(columns)); }
     void set_walls(const nb::kwargs& columns) { core_->set_walls(to_table(columns)); }
@@ -52,7 +55,7 @@ public:
     void advance(double limit, double pause, std::int64_t max_steps) {
         guarded([&] { core_->advance(limit, pause, max_steps); });
     }
-    std::pair<std::string, std::int64_t> failure() const { return failure_; }
+    const Failure& failure() const { return failure_; }
 
     nb::dict state() const { return to_python(core_->state()); }
     nb::dict rates() const { return to_python(core_->rates()); }
@@ -77,17 +80,23 @@ private:
     /// Python's exceptions carry only a text; what else a failure says is kept here.
     template <class F>
     void guarded(F&& work) {
-        failure_ = {"", -1};
+        failure_ = no_failure();
         try {
             work();
         } catch (const PhysicsFailure& failure) {
-            failure_ = {name_of(failure.kind), failure.site.id};
+            const auto& x = failure.site.position;
+            failure_ = {name_of(failure.kind),
+                        failure.site.id,
+                        {x.begin(), x.begin() + (failure.site.id < 0 ? 0 : dim_)}};
             throw;
         }
     }
 
+    static Failure no_failure() { return {"", -1, {}}; }
+
     std::unique_ptr<AnySimulation> core_;
-    std::pair<std::string, std::int64_t> failure_{"", -1};
+    int dim_;
+    Failure failure_ = no_failure();
 };
 
 using P = PythonSimulation;
@@ -168,7 +177,8 @@ void bind_progress(Class& c) {
                      [](const P& p) { return p.core().entries_per_particle(); })
         .def_prop_ro("has_bodies", [](const P& p) { return p.core().has_bodies(); })
         .def_prop_ro("particle_arrays", [](const P& p) { return p.core().particle_arrays(); })
-        .def_prop_ro("failure", &P::failure);
+        .def_prop_ro("failure", &P::failure,
+                     nb::sig("def failure(self) -> doseki.solver.protocol.CoreFailure"));
 }
 
 void bind_work(Class& c) {

@@ -1,5 +1,9 @@
 """The errors a user can meet; each carries the exit code of the command line."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 LONGEST = 1000  # characters of a message
 
 
@@ -29,14 +33,16 @@ class PhysicsError(DosekiError):
     """The computed state went wrong (a non-finite value, a lost particle).
 
     `kind` is the core's word for it, explained in assess.failure; `particle` is the id of the one
-    to blame, -1 where it is none.
+    to blame and `position` where it was (dim,), m: -1 and empty where it is none.
     """
 
     exit_code = 3
 
-    def __init__(self, message: str, kind: str = "", particle: int = -1) -> None:
+    def __init__(
+        self, message: str, kind: str = "", particle: int = -1, position: Sequence[float] = ()
+    ) -> None:
         super().__init__(message)
-        self.kind, self.particle = kind, particle
+        self.kind, self.particle, self.position = kind, particle, tuple(position)
 
 
 class ResourceError(DosekiError):

@@ -9,7 +9,15 @@ import numpy as np
 from mpi4py import MPI
 
 from ..record.history import SHARES
-from ..solver.protocol import Columns, CoreSimulation, ForceTerms, Grains, Rates, Totals
+from ..solver.protocol import (
+    Columns,
+    CoreFailure,
+    CoreSimulation,
+    ForceTerms,
+    Grains,
+    Rates,
+    Totals,
+)
 from .balance import Balance
 from .engines import chosen_engine
 from .transport import Transport
@@ -72,7 +80,7 @@ class RankedSimulation:
         return self.core.has_bodies
 
     @property
-    def failure(self) -> tuple[str, int]:
+    def failure(self) -> CoreFailure:
         """See Simulation."""
         return self.core.failure
 

@@ -123,11 +123,11 @@ def run_folder(directory: str | Path, overwrite: bool, ranks: OneRank) -> Iterat
 def _explained(run: ActiveRun, message: str) -> Failure:
     """What happened to a run, which is taken back to the last good step and recorded there."""
     simulation = run.simulation
-    kind, particle = simulation.failure
+    kind, particle, position = simulation.failure
     state, time, steps = simulation.state(), simulation.time, simulation.steps
     rewound = run.step_back()
     run.record_snapshot()
-    failure = Failure(kind, particle, message, state, time, steps, rewound)
+    failure = Failure(kind, particle, position, message, state, time, steps, rewound)
     explain_failure(run, failure)
     return failure
 
@@ -165,6 +165,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
             f" more: doseki explain {directory}",
             explained.kind,
             explained.particle,
+            explained.position,
         ) from failure
     except ResourceError as error:
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None

@@ -12,6 +12,8 @@ Floats = NDArray[np.float64]
 Columns = dict[str, np.ndarray]  # arrays of one length by name
 Arrays = Mapping[str, np.ndarray]  # the same as an argument
 Table = Mapping[str, object]  # an argument whose keys and values the core checks
+# Kind, id of the particle to blame and its position, m; -1 and empty where it is none.
+CoreFailure = tuple[str, int, Sequence[float]]
 
 
 class Rates(TypedDict):
@@ -146,8 +148,8 @@ class Simulation(SimulationView, Protocol):
         ...
 
     @property
-    def failure(self) -> tuple[str, int]:
-        """Kind, and id of the particle, of the failure of the last call; "" and -1 without one."""
+    def failure(self) -> CoreFailure:
+        """Why the last call failed; its kind is "" where it did not."""
         ...
 
     def start(self) -> None:

@@ -73,6 +73,10 @@ def test_the_broken_particle_is_named_not_its_neighbour(block, broken, number):
     copy.restore(arrays)
     with pytest.raises(load_core().PhysicsFailure, match=rf"particle {number} \(water\)"):
         copy.advance(limit=1.0, pause=1.0, max_steps=3)
-    found, particle = copy.failure
+    found, particle, position = copy.failure
     assert particle == number
+    last = simulation.state()["position"][number]
+    assert len(position) == scenario.dim
+    if np.isfinite(position).all():
+        np.testing.assert_allclose(position, last, atol=scenario.support)
     assert found in (kind, "outside", "speed")

@@ -65,6 +65,7 @@ def assert_complete(failed, kind):
     assert report["kind"] == kind
     assert report["particle"]["material"] == "basalt"
     assert len(report["particle"]["position"]) == 2
+    assert list(failed.error.position) == report["became"]["position"]
     assert report["neighbours"][0]["distance"] <= report["neighbours"][1]["distance"]
     assert report["advice"] in failed.paragraph
     assert report["advice"] in str(failed.error)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,6 +47,7 @@ class Failure:
 
     kind: str
     particle: int  # id, or -1
+    position: Sequence[float]  # of the particle, m; empty without one
     message: str
     state: dict[str, np.ndarray]  # when it was noticed, in the middle of a step
     time: float
