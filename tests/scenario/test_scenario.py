@@ -1,5 +1,6 @@
 """What a scenario means: gravity, xi, materials, choices by dimension, extension, round trip."""
 
+import copy
 import tomllib
 
 import numpy as np
@@ -119,6 +120,21 @@ def test_a_loaded_scenario_does_not_change(write):
     for table, key in ((scenario, "xi"), (scenario.body["block"], "material")):
         with pytest.raises(ValidationError, match="frozen"):
             setattr(table, key, None)
+
+
+def test_dictionaries_of_a_loaded_scenario_do_not_change(write):
+    scenario = load_scenario(write())
+    for tables in (scenario.body, scenario.gauge, scenario.materials, scenario.constants):
+        for change in (
+            lambda tables=tables: tables.update(other=1),
+            lambda tables=tables: tables.__setitem__("other", 1),
+            lambda tables=tables: tables.pop("block", None),
+            lambda tables=tables: tables.clear(),
+        ):
+            with pytest.raises(TypeError, match="does not change"):
+                change()
+    copied = copy.deepcopy(scenario)
+    assert copied.effective_toml() == scenario.effective_toml()
 
 
 def test_another_xi_makes_another_scenario(write):

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import ConfigDict, PrivateAttr
 
 from ..record.folder import INPUTS
+from ..util.frozen import frozen
 from ..util.input_file import InputFile, digest_of
 from ..util.toml_writer import to_toml
 from .earlier import Earlier
@@ -30,8 +31,8 @@ class Scenario(ScenarioTable):
 
     The tables of the file are `parameters`, `body`, `inflow`, `outflow`, `gauge`, `window` and
     `figure`, dictionaries by name.  `gravity` is an array (dim,) also where the file gives a
-    slope, and `xi` a number also where it gives a height.  Nothing of it changes once it is made;
-    `with_xi` makes another one.
+    slope, and `xi` a number also where it gives a height.  Nothing of it changes once it is made,
+    nor do its dictionaries; `with_xi` makes another one.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -60,9 +61,12 @@ class Scenario(ScenarioTable):
         """The scenario of checked `tables`, with the values `completed` that follow from them."""
         fields = ScenarioTable.model_fields.items()
         values = {field.alias or name: getattr(tables, name) for name, field in fields}
-        made = cls.model_construct(tables.model_fields_set, **values | dict(completed))
-        made._where, made._materials = where, materials
-        made._constants, made._particle_tables = constants, particle_tables
+        values |= completed
+        made = cls.model_construct(
+            tables.model_fields_set, **{name: frozen(value) for name, value in values.items()}
+        )
+        made._where, made._materials = where, frozen(materials)
+        made._constants, made._particle_tables = frozen(constants), frozen(particle_tables)
         made._earlier = earlier
         return made
 
