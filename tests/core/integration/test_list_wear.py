@@ -13,7 +13,7 @@ from doseki.scenario.schemes import SUPPORT
 from ..simulations import FIXED, WATER, Simulations
 
 DP = 0.01
-SIZE = {2: 0.4, 3: 0.2}  # of the periodic box [m]
+SIZE = {2: 0.4, 3: 0.16}  # of the periodic box [m]: three cells of ListWear and more
 FAST = 20.0  # m/s
 RADIUS = SUPPORT * 1.2 * DP  # of support [m]
 SKIN = 0.1 * RADIUS

@@ -202,7 +202,7 @@ def _turning_point(grains: object) -> float:
         ("one_noS", XI, {"strength": False}),
         ("one_noAV_noS", XI, {"alpha": 0.0, "strength": False}),
         ("one_h", XI, {"h_mode": "eq10"}),
-        pytest.param("one_xi1", 1.0, {}, marks=pytest.mark.minutes),
+        pytest.param("one_xi1", 1.0, {}, marks=pytest.mark.full),
     ],
 )
 def test_recorded_collisions(row: str, xi: float, options: dict) -> None:
