@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 
-from doseki.record import snapshot_writer
+from doseki.record import snapshot_writer, writer
 from doseki.record.fields import FIELDS, GRAIN_FIELDS
 from doseki.record.snapshot_writer import SnapshotWriter
 from doseki.record.vtkhdf import Header, read_field, read_grains, read_header
@@ -89,14 +89,33 @@ def test_large_files_are_packed_and_say_the_same(tmp_path, monkeypatch):
 
 
 def test_only_the_first_of_many_snapshots_builds_a_file(tmp_path, record_run, monkeypatch):
-    built, synced = [], []
-    image, sync = snapshot_writer._image, files.sync
+    built, image = [], snapshot_writer._image
     monkeypatch.setattr(
         snapshot_writer, "_image", lambda *given: built.append(given) or image(*given)
     )
-    monkeypatch.setattr(files, "sync", lambda path: synced.append(path.name) or sync(path))
     record_run(tmp_path / "run", times=(0.0, 1.0, 2.0, 3.0))
     assert len(built) == 1
-    # Each file and its name; not the index of all, which is written with each of them.
-    assert sum(name == "snapshots" for name in synced) == 4
-    assert not any("series" in name for name in synced)
+
+
+@pytest.mark.parametrize("end", ["sync", "close"])
+def test_snapshots_wait_for_the_disk_once_before_a_checkpoint_and_at_the_end(
+    tmp_path, record_run, monkeypatch, end
+):
+    synced, sync = [], files.sync
+    for module in (files, writer):
+        monkeypatch.setattr(module, "sync", lambda path: synced.append(path.name) or sync(path))
+    recorder, _ = record_run(tmp_path / "run", times=(0.0, 1.0, 2.0, 3.0))
+    of_snapshots = sorted(file.name for file in (tmp_path / "run" / "snapshots").iterdir())
+    assert not {*of_snapshots, "snapshots"} & {*synced}
+    for _ in range(2):
+        recorder.sync() if end == "sync" else recorder.close({})
+    assert [name for name in synced if name in of_snapshots] == of_snapshots
+    assert synced.count("snapshots") == 1
+
+
+def test_a_record_is_reopened_whatever_became_of_later_snapshots(tmp_path, record_run):
+    record_run(tmp_path / "run", times=(0.0, 1.0, 2.0))
+    last = sorted((tmp_path / "run" / "snapshots").iterdir())[-1]
+    last.write_bytes(b"")
+    writer.Recorder.reopen(tmp_path / "run", 2, 2)
+    assert not last.exists()

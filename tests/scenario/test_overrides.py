@@ -38,6 +38,18 @@ def test_each_kind_of_key(write):
     assert (scenario.title, scenario.time_max) == ("hello", 0.2)
 
 
+def test_tables_in_the_tables_of_parts(write):
+    array = BLOCK + "array = { count = [2, 1], step = [10, 0] }\n"
+    path = write("", array)
+    assert len(load_scenario(path, ["body.block.array.count=[2, 2]"]).body) == 4
+    assert len(load_scenario(path, ["body.block.array.step=[11, 0]"]).body) == 2
+    given = ["body.block.array.mirror=x", "body.block.array.at=-4"]
+    mirrored = load_scenario(write(), given)
+    assert len(mirrored.body) == 2
+    turned = load_scenario(path, ["body.block.array={ turns = 3, about = [9, 9], angle = 20 }"])
+    assert len(turned.body) == 3
+
+
 def test_a_key_replaces_its_rival(write):
     scenario = load_scenario(write("xi = 0.1\nslope = 20"), ["xi_height=2", "gravity=[0, -1]"])
     assert scenario.xi == pytest.approx(10 * (2 * 1 * 2) ** 0.5 / 1400)
@@ -59,6 +71,11 @@ def test_a_key_replaces_its_rival(write):
         ("bodi.block.velocity=[0, 0]", "no table bodi; did you mean body?"),
         ("body.block.velocty=[0, 0]", "body.block.velocty is not a known key; did you mean veloc"),
         ("body.block=3", "expected body.block.KEY=value"),
+        ("body.block.arrai.count=3", "no table body.block.arrai; did you mean body.block.array?"),
+        ("body.block.velocity.x=3", "no table body.block.velocity"),
+        ("body.block.array.count=[2, 1]", "count goes with step, which is missing"),
+        ("body.block.array.cuont=3", "did you mean count?"),
+        ("body.block.array.count.x=3", "expected body.block.KEY=value"),
         ("material.watr.rho0=1", "did you mean material.water?"),
         ("dp=1" + "0" * 400, "--set dp: dp = 1000"),
     ],

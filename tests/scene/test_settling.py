@@ -8,6 +8,7 @@ import pytest
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import filled_simulation
+from doseki.solver.settling import IDLE, PATIENCE, Watch
 
 TOP = 'scheme = "resolved"\nspeed_max = 10\ngravity = [0, -9.81]'
 FLOOR = """
@@ -81,6 +82,30 @@ def test_settling_for_some_time(write):
     _, simulation = grains_of(write, FLOOR + LOAD.replace("true", "0.1"))
     fallen = mine(packed)["centre"][:, 1] - mine(simulation)["centre"][:, 1]
     assert 0.03 < fallen.max() < 0.5 * 9.81 * 0.1**2 + 0.01
+
+
+def test_what_comes_no_nearer_to_rest_is_ended_with_a_message(write):
+    downhill = TOP.replace("[0, -9.81]", "[9, -4]") + PERIODIC
+    few = LOAD.replace("count = 40", "count = 8").replace("packing = 0.7", "packing = 0.3")
+    scenario = load_scenario(write(top=downhill, tables=TROUGH + few), ["dp=0.2"])
+    told = []
+    (warning,) = filled_simulation(scenario, tell=told.append).warnings
+    assert warning.place == "load"
+    assert 0 < warning.idle < warning.time < warning.idle * PATIENCE / IDLE
+    assert "brought no grain nearer to rest" in str(warning)
+    assert "rolling_friction" in str(warning)
+    assert all(text.startswith("body.load settles: ") for text in told)
+    assert len(set(told)) > 10
+
+
+def test_falling_and_calming_are_progress():
+    watch = Watch(diameter=1.0)
+    for time, speed, height in [(0, 0, 5), (1, 3, 4), (2, 4, 2), (3, 1, 2), (4, 0.5, 2.1)]:
+        watch.see(time, np.array([speed]), np.array([height]))
+    assert watch.idle == 0
+    watch.see(5, np.array([0.49]), np.array([2.05]))
+    watch.see(6, np.array([0.5]), np.array([2.0]))
+    assert watch.idle == 2
 
 
 @pytest.mark.parametrize(

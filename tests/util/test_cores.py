@@ -9,10 +9,11 @@ import sys
 
 import pytest
 
+from doseki.cli.main import main
 from doseki.util import cores
 from doseki.util.cores import SharedCores, int_of, quota, shared_cores
 
-from ..run.channel import environment
+from ..run.channel import channel_text, environment
 
 
 def groups(tmp_path, membership, **files):
@@ -110,3 +111,18 @@ print(before, after, os.environ.get("GOMP_SPINCOUNT", ""))
         check=True,
     )
     assert done.stdout == f"False True {expected}\n"
+
+
+def test_run_and_resume_say_so(tmp_path, monkeypatch, capsys):
+    scenario = tmp_path / "channel.toml"
+    scenario.write_text(channel_text())
+    monkeypatch.setattr(os, "getloadavg", lambda: (50.0, 50.0, 50.0))
+    for words in (
+        ["run", str(scenario), "-o", str(tmp_path / "run"), "--set", "time_max=0.002"],
+        ["resume", str(tmp_path / "run"), "--set", "time_max=0.003"],
+    ):
+        with pytest.raises(SystemExit) as end:
+            main([*words, "--threads", "1", "--no-figures"])
+        assert not end.value.code
+        said = capsys.readouterr().err.splitlines()
+        assert len([line for line in said if "the cores are not this run's own" in line]) == 1

@@ -15,6 +15,7 @@ from ..solver.build import filled_simulation, load_core
 from ..solver.protocol import SimulationView
 from ..util.finding import Finding
 from ..util.memory import available_bytes
+from ..util.telling import Tell, say_nothing
 from .cost import Estimate, estimate
 from .estimates import flow_depths, grain_spacings, mach_number
 from .summary import duration_text
@@ -23,13 +24,13 @@ from .warnings import findings, thorough_findings
 WIDTH = 18
 
 
-def check_scenario(scenario: Scenario, threads: int | None = None) -> str:
+def check_scenario(scenario: Scenario, threads: int | None = None, tell: Tell = say_nothing) -> str:
     """The report of `doseki check`; raises UserError or PhysicsError for what cannot start."""
     core = load_core()
     if threads:
         core.set_threads(threads)
     try:
-        simulation, body_names, warnings = filled_simulation(scenario)
+        simulation, body_names, warnings = filled_simulation(scenario, tell=tell)
         simulation.start()
         state = simulation.state()
         expected = estimate(scenario, simulation, body_names)

@@ -61,7 +61,14 @@ def run(
     with run_folder(directory, overwrite, team):
         with progress_bar(loaded.title, loaded.time_max) as progress:
             options = RunOptions(
-                threads, overwrite, progress, tell, checkpoint_every, checkpoint_minutes, team
+                threads,
+                overwrite,
+                progress,
+                tell,
+                checkpoint_every,
+                checkpoint_minutes,
+                team,
+                progress.tell,
             )
             summary = run_scenario(loaded, directory, options)
         if team.is_root:
@@ -133,9 +140,12 @@ def check(
     See also: doseki list names the shipped ones, doseki explain says why a run failed.
     """
     from ..assess.preflight import check_scenario
+    from ..run.progress import work_shown
     from ..scenario.load import load_scenario
 
-    typer.echo(check_scenario(load_scenario(scenario, settings or []), threads))
+    with work_shown() as tell:
+        report = check_scenario(load_scenario(scenario, settings or []), threads, tell)
+    typer.echo(report)
 
 
 def resume(
@@ -173,7 +183,10 @@ def resume(
                 checkpoint_every=checkpoint_every,
                 checkpoint_minutes=checkpoint_minutes,
                 ranks=team,
+                tell=progress.tell,
             )
+            for line in _about_cores(threads) if team.is_root else ():
+                typer.echo(line, err=True)
             summary, notes = resume_run(directory, settings or [], options, until)
         for note in notes:
             typer.echo(f"warning: {note}", err=True)

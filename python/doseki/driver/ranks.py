@@ -16,6 +16,7 @@ from ..solver.protocol import Columns, Simulation, SimulationView
 from ..solver.restoring import check_state
 from ..util.cores import allowed_cores
 from ..util.finding import Finding
+from ..util.telling import Tell, say_nothing
 
 T = TypeVar("T")
 
@@ -66,9 +67,11 @@ class OneRank:
         """The recorder that `make` makes on rank 0, or one that leaves the writing to it."""
         return make()
 
-    def filled_simulation(self, scenario: Scenario) -> tuple[Simulation, list[str], list[Finding]]:
+    def filled_simulation(
+        self, scenario: Scenario, tell: Tell = say_nothing
+    ) -> tuple[Simulation, list[str], list[Finding]]:
         """A simulation that is yet to be started, the names of its bodies, and warnings."""
-        return filled_simulation(scenario)
+        return filled_simulation(scenario, tell=tell)
 
     def restored_simulation(
         self, scenario: Scenario, body_names: list[str], state: Columns

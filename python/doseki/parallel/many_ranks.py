@@ -19,6 +19,7 @@ from ..solver.protocol import Columns, Rates, Simulation, SimulationView
 from ..solver.restoring import check_state
 from ..util.cores import allowed_cores
 from ..util.finding import Finding
+from ..util.telling import Tell, say_nothing
 from .rank_failure import RankFailure
 from .simulation import RankedSimulation
 from .watchdog import Watchdog
@@ -85,13 +86,13 @@ class ManyRanks(OneRank):
         return RankedRecorder(self, Path(directory), make)
 
     def filled_simulation(
-        self, scenario: Scenario
+        self, scenario: Scenario, tell: Tell = say_nothing
     ) -> tuple[RankedSimulation, list[str], list[Finding]]:
         """A simulation that rank 0 has filled; when it starts, particles go to their owners.
 
         Bodies that move are on every rank, so that those ranks are filled as well.
         """
-        told = Told.of(lambda: filled_simulation(scenario)) if self.is_root else Told()
+        told = Told.of(lambda: filled_simulation(scenario, tell=tell)) if self.is_root else Told()
         said = None
         if told.value:
             core, names, warnings = told.value

@@ -24,7 +24,8 @@ class Recorder:
     """Writes the folder of a run: scenario, snapshots, history, summary.
 
     Each snapshot is whole or absent, each history row is written at once: a run that is killed
-    leaves a folder that can be loaded.  Every method raises ResourceError when the disk is full
+    leaves a folder that can be loaded.  Where the machine goes down, what was written since the
+    last `sync` may be gone.  Every method raises ResourceError when the disk is full
     and UserError when it may not be written to.
     """
 
@@ -67,7 +68,8 @@ class Recorder:
         for name, count in gauge_rows.items():
             if len(read_history(folder.gauge(name))[1]) < count:
                 raise UserError(f"{folder.gauge(name)}: rows have gone since the checkpoint")
-        headers = {file: read_header(file) for file in files}
+        # Later ones are written anew: what a machine that went down has made of them is no matter.
+        headers = {file: read_header(file) for file in files[: max(1, snapshots)]}
         first = headers[files[0]]
         recorder = cls.__new__(cls)
         recorder._attach(folder, first.material_names, first.body_names, first.dim)
@@ -98,6 +100,7 @@ class Recorder:
         self._dim = dim
         self._index: list[str] = []  # an entry of the series for each snapshot
         self._snapshots = SnapshotWriter()
+        self._unsafe: list[Path] = []  # snapshots that may not be on the disk yet
         self._columns: list[str] = []
 
     @property
@@ -121,7 +124,9 @@ class Recorder:
         """
         header = Header(time, step, dt, self._dim, self._material_names, self._body_names)
         file = self._folder.snapshot(len(self._index))
-        write_whole(file, lambda part: self._snapshots.write(part, state, header, grains))
+        # Waiting for the disk each time would take longer than all else about a small snapshot.
+        write_whole(file, lambda part: self._snapshots.write(part, state, header, grains), False)
+        self._unsafe.append(file)
         self._index.append(self._entry(file, time))
         self._write_series()
         return file
@@ -150,16 +155,25 @@ class Recorder:
                 file.write(_csv(lines))
 
     def sync(self) -> None:
-        """Put tables and series safely on the disk, so that a checkpoint never knows more rows."""
+        """Put the record safely on the disk: a checkpoint never knows more than is there."""
         tables = self._folder.history, self._folder.series, *self._folder.gauges.glob("*.csv")
+        self._sync_snapshots()
         for path in tables:
             with clear_errors(path):
                 sync(path)
 
     def close(self, summary: Mapping[str, Any]) -> None:
         """Write `summary` (numbers, words, lists and dicts of them): the run has ended."""
+        self._sync_snapshots()
         text = json.dumps(jsonable(summary), indent=2, allow_nan=False) + "\n"
         write_whole_text(self._folder.summary, text)
+
+    def _sync_snapshots(self) -> None:
+        names = [self._folder.snapshots] if self._unsafe else []
+        for path in [*self._unsafe, *names]:
+            with clear_errors(path):
+                sync(path)
+        self._unsafe.clear()
 
     def _entry(self, file: Path, time: float) -> str:
         return json.dumps({"name": f"{self._folder.snapshots.name}/{file.name}", "time": time})

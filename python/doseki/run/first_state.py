@@ -16,6 +16,7 @@ from ..scene.build import body_names
 from ..solver.protocol import Simulation
 from ..util.finding import Finding
 from ..util.foreign import read_bytes
+from ..util.telling import Tell, say_nothing
 
 # Keys of a body that are no part of its state: how fluid meets it, and what it does from now on.
 NOT_OF_STATE = {"wall", "ks", "motion", "file"}
@@ -47,7 +48,7 @@ class UnusedCheckpoint(Finding):
         return f"{self.place}: the checkpoint cannot be used ({self.why}), only the snapshot"
 
 
-def first_state(scenario: Scenario, ranks: OneRank) -> FirstState:
+def first_state(scenario: Scenario, ranks: OneRank, tell: Tell = say_nothing) -> FirstState:
     """The state with which a run begins; raises UserError where the scenario allows none.
 
     Where the earlier run of the scenario has a checkpoint at that time and the bodies are the same,
@@ -61,7 +62,7 @@ def first_state(scenario: Scenario, ranks: OneRank) -> FirstState:
                 return _gone_on(scenario, earlier, _changed(own, earlier) <= OF_RECORD, ranks)
             except (DamagedCheckpointError, UserError, ValueError) as error:
                 doubts.append(UnusedCheckpoint("start", str(error)))
-    simulation, names, warnings = ranks.filled_simulation(scenario)
+    simulation, names, warnings = ranks.filled_simulation(scenario, tell)
     return FirstState(simulation, names, [*warnings, *doubts], False)
 
 

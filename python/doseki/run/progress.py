@@ -5,13 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, TaskProgressColumn, TextColumn
 from rich.progress import Progress as RichProgress
 
 from ..driver.active_run import Progress
+from ..util.telling import Tell
 
 LOG_SECONDS = 15.0  # between lines where there is no terminal
 
@@ -36,7 +39,19 @@ class FinishTime:
         return end.strftime("%H:%M:%S" if end.date() == datetime.now().date() else "%Y-%m-%d %H:%M")
 
 
-def _bar(progress: RichProgress, title: str, time_max: float) -> Progress:
+@dataclass(frozen=True)
+class Display:
+    """Shows how far a run has come, and before it the work that goes before its first step."""
+
+    update: Progress
+    tell: Tell
+
+    def __call__(self, simulated: float, timestep: float, step: int) -> None:
+        """Show time, s, time step, s, and number of steps."""
+        self.update(simulated, timestep, step)
+
+
+def _bar(progress: RichProgress, title: str, time_max: float) -> Display:
     task = progress.add_task(title, total=time_max, finish="--:--", at="")
     finish = FinishTime(time_max)
 
@@ -44,29 +59,51 @@ def _bar(progress: RichProgress, title: str, time_max: float) -> Progress:
         at = f"t = {simulated:.4g}/{time_max:g} s, dt = {timestep:.2e} s, step {step}"
         progress.update(task, completed=simulated, finish=finish.text(simulated), at=at)
 
-    return update
+    def tell(text: str) -> None:
+        progress.update(task, at=text)
+
+    return Display(update, tell)
 
 
-def _lines(console: Console, time_max: float) -> Progress:
-    finish = FinishTime(time_max)
+def log_lines(console: Console) -> Tell:
+    """Prints a text where the last one was printed some time ago."""
     last = time.monotonic()
 
-    def update(simulated: float, timestep: float, step: int) -> None:
+    def tell(text: str) -> None:
         nonlocal last
-        if time.monotonic() - last < LOG_SECONDS:
-            return
-        last = time.monotonic()
-        console.print(
+        if time.monotonic() - last >= LOG_SECONDS:
+            last = time.monotonic()
+            console.print(text, highlight=False, markup=False)
+
+    return tell
+
+
+def _lines(console: Console, time_max: float) -> Display:
+    finish = FinishTime(time_max)
+    tell = log_lines(console)
+
+    def update(simulated: float, timestep: float, step: int) -> None:
+        tell(
             f"{100 * simulated / time_max:5.1f} %  t = {simulated:.4g} s  dt = {timestep:.2e} s"
-            f"  step {step}  finish time {finish.text(simulated)}",
-            highlight=False,
+            f"  step {step}  finish time {finish.text(simulated)}"
         )
 
-    return update
+    return Display(update, tell)
 
 
 @contextmanager
-def progress_bar(title: str, time_max: float) -> Iterator[Progress]:
+def work_shown() -> Iterator[Tell]:
+    """What shows on standard error how far the work has come that goes before a first step."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield log_lines(console)
+        return
+    with console.status("") as status:
+        yield lambda text: status.update(escape(text))
+
+
+@contextmanager
+def progress_bar(title: str, time_max: float) -> Iterator[Display]:
     """A function of (time, timestep, step) that shows the progress on standard error."""
     console = Console(stderr=True)
     if not console.is_terminal:

@@ -23,6 +23,7 @@ from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.cores import chosen_threads
 from ..util.finding import Finding
+from ..util.telling import Tell, say_nothing
 from .first_state import first_state
 
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost
@@ -55,6 +56,7 @@ class RunOptions:
     checkpoint_every: float | None = None  # s of simulated time
     checkpoint_minutes: float = CHECKPOINT_MINUTES  # of wall time
     ranks: OneRank = field(default_factory=OneRank)
+    tell: Tell = field(default=say_nothing)  # how far the work before the first step has come
 
 
 def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
@@ -95,7 +97,7 @@ def run_scenario(
     """
     options = options or RunOptions()
     with run_folder(directory, options.overwrite, options.ranks):
-        state = first_state(scenario, options.ranks)
+        state = first_state(scenario, options.ranks, options.tell)
         names = scenario.material_names, state.body_names
         text, inputs = scenario.effective_toml(stored=True), scenario.inputs
         recorder = options.ranks.recorder(

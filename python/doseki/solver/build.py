@@ -21,6 +21,7 @@ from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..scene.wall_normals import wall_geometry
 from ..util.finding import Finding
+from ..util.telling import Tell, say_nothing
 from .protocol import CoreSimulation, Table
 from .relaxing import relaxed
 from .rigid_bodies import add_bodies
@@ -170,10 +171,15 @@ class Filled(NamedTuple):
     warnings: list[Finding]
 
 
-def filled_simulation(scenario: Scenario, isa: str | None = None) -> Filled:
-    """A core simulation of `scenario` with its particles and bodies."""
+def filled_simulation(
+    scenario: Scenario, isa: str | None = None, tell: Tell = say_nothing
+) -> Filled:
+    """A core simulation of `scenario` with its particles and bodies.
+
+    `tell` hears how far grains have settled and water relaxed, which may take long.
+    """
     make = partial(_dry_simulation, isa=isa)
-    scene = build_scene(scenario, partial(settled, make=make))
+    scene = build_scene(scenario, partial(settled, make=make, tell=tell))
     body_names = scene.names
     check_grain_numbers(scenario, scene.bodies)
     build_inflows(scenario, body_names, scene.particles)  # for its checks against the particles
@@ -182,7 +188,7 @@ def filled_simulation(scenario: Scenario, isa: str | None = None) -> Filled:
         still = core_materials(scenario), core_options(scenario, body_names)
         alone = _new_simulation(scenario, isa, *still)
         _fill(alone, scenario, scene)
-        scene = replace(scene, particles=relaxed(scene.particles, alone, scenario.relax))
+        scene = replace(scene, particles=relaxed(scene.particles, alone, scenario.relax, tell))
     simulation = empty_simulation(scenario, body_names, isa)
     of_sensors = _fill(simulation, scenario, scene)
     return Filled(simulation, body_names, [*scene.warnings, *of_sensors])

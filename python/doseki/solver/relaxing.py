@@ -9,12 +9,15 @@ import numpy as np
 from ..compiled import load_core
 from ..errors import PhysicsError
 from ..record.particles import FREE, ParticleSet
+from ..util.telling import Tell, say_nothing
 from .protocol import CoreSimulation
 
 STEPS = 8  # between two looks at the kinetic energy: a small part of any oscillation
 
 
-def relaxed(particles: ParticleSet, simulation: CoreSimulation, seconds: float) -> ParticleSet:
+def relaxed(
+    particles: ParticleSet, simulation: CoreSimulation, seconds: float, tell: Tell = say_nothing
+) -> ParticleSet:
     """The particles where the free ones come to, and their density, in so many seconds.
 
     `simulation` holds the particles and is yet to be started.  All velocities are removed at each
@@ -27,6 +30,7 @@ def relaxed(particles: ParticleSet, simulation: CoreSimulation, seconds: float) 
     try:
         while simulation.time < seconds:
             simulation.advance(limit=seconds, pause=seconds, max_steps=STEPS)
+            tell(f"water relaxes: {simulation.time:.3g} s of {seconds:.3g} s")
             before, energy = energy, simulation.totals()["kinetic_energy"]
             if energy < before:
                 simulation.restore(simulation.checkpoint() | {"velocity": still})

@@ -21,14 +21,17 @@ from ..scene.kinds.body import Body
 from ..scene.kinds.registry import body_of
 from ..scene.periodic import wrapped
 from ..util.finding import Finding
+from ..util.telling import Tell, say_nothing
 from .protocol import CoreSimulation
 from .rigid_bodies import add_bodies
 
 # At rest: the fastest grain goes at this part of sqrt(g d) or slower.
 REST = 1e-3
-# Falls from the top of everything to its bottom after which a packing is taken as it is.
-PATIENCE = 10.0
-FOREVER = 10**9  # steps
+# Falls from the top of everything to its bottom after which a packing is taken as it is, and after
+# which it is where it has come no nearer to rest.
+PATIENCE, IDLE = 10.0, 2.0
+NEARER = 0.9  # of the kinetic energy before: what counts as nearer to rest
+STEPS = 2000  # between two looks at how far it is
 MOST_STEPS = 3e8  # of contacts, in which a packing may come to rest
 CALM_STEPS = 12  # in a contact, at most
 
@@ -41,15 +44,50 @@ class StillMoving(Finding):
 
     time: float  # s, spent settling
     speed: float  # m/s, of the fastest grain
+    idle: float  # s, at the end, in which nothing came nearer to rest
 
     def __str__(self) -> str:
+        if self.idle:
+            return (
+                f"{self.place}: settling is ended after {self.time:.3g} s, of which the last "
+                f"{self.idle:.3g} s brought no grain nearer to rest: the fastest has "
+                f"{self.speed:.2g} m/s (what rolls for ever needs rolling_friction); all start at "
+                "rest from where they are"
+            )
         return (
             f"{self.place}: after {self.time:.3g} s of settling the fastest grain still has "
             f"{self.speed:.2g} m/s; all start at rest from where they are"
         )
 
 
-def settled(scenario: Scenario, groups: list[Group], names: list[str], make: Make) -> Settled:
+class Watch:
+    """How long nothing has come nearer to rest: neither lower than ever, nor slower since then."""
+
+    def __init__(self, diameter: float) -> None:
+        """Of grains whose least `diameter`, m, says what counts as lower."""
+        self.time = self.last = 0.0
+        self._lower = REST * diameter
+        self._calmest = self._lowest = np.inf
+
+    def see(self, time: float, speed: np.ndarray, height: np.ndarray) -> None:
+        """Take note of the speeds, m/s, and heights, m, of the grains at a time, s."""
+        self.time = time
+        energy, level = float((speed**2).mean()), float(height.mean())
+        is_lower = level < self._lowest - self._lower
+        if is_lower:
+            self._lowest = level
+        if is_lower or energy < NEARER * self._calmest:
+            self._calmest, self.last = energy, time
+
+    @property
+    def idle(self) -> float:
+        """Since then, s."""
+        return self.time - self.last
+
+
+def settled(
+    scenario: Scenario, groups: list[Group], names: list[str], make: Make, tell: Tell = say_nothing
+) -> Settled:
     """The groups, with the grains of each [body.NAME] that settles where they come to rest.
 
     One body after the other in the order of the scenario, held by the sides of its box: those
@@ -62,7 +100,7 @@ def settled(scenario: Scenario, groups: list[Group], names: list[str], make: Mak
     found: dict[str, Group] = {}
     warnings: list[Finding] = []
     for group in sorted((g for g in groups if g.name in waits), key=_order(scenario)):
-        found[group.name], unrest = _at_rest(scenario, group, there, names, make)
+        found[group.name], unrest = _at_rest(scenario, group, there, names, make, tell)
         warnings += unrest
         there.append(replace(found[group.name], kinematics=FIXED))
     return Settled([found.get(group.name, group) for group in groups], warnings)
@@ -74,42 +112,69 @@ def _order(scenario: Scenario) -> Callable[[Group], int]:
 
 
 def _at_rest(
-    scenario: Scenario, group: Group, there: list[Group], names: list[str], make: Make
+    scenario: Scenario, group: Group, there: list[Group], names: list[str], make: Make, tell: Tell
 ) -> tuple[Group, list[Finding]]:
     """The group at rest, and a warning where it was still moving when patience ended."""
     body = body_of(scenario, group.name)
-    gravity = float(np.linalg.norm(scenario.gravity))
-    if gravity == 0:
+    if not np.any(scenario.gravity):
         raise body.error(".settle: there is no gravity", "settle")
+    low, high = _extent(scenario, [group, *there])
+    scales = _Scales.of(scenario, group, high - low)
+    settle = body.table.given("settle")
+    end = PATIENCE * scales.fall if settle is True else settle
+    _check_effort(scenario, body, scales.diameter, end)
     simulation = make(scenario, names)
     thickness = 2 * max(shape.reach for shape in group.shapes)
     _fill(simulation, scenario, [group, *there, *body.sides(thickness)], names)
     simulation.start()
-    low, high = _extent(scenario, [group, *there])
-    diameter = 2 * min(shape.reach for shape in group.shapes)
-    pause, slow = np.sqrt(diameter / gravity), REST * np.sqrt(gravity * diameter)
-    settle = body.table.given("settle")
-    end = PATIENCE * np.sqrt(2 * (high - low) / gravity) if settle is True else settle
-    _check_effort(scenario, body, diameter, end)
-    fastest = np.inf
-    while simulation.time < end and (fastest > slow or settle is not True):
-        until = min(simulation.time + pause, end)
-        try:
-            simulation.advance(limit=until, pause=until, max_steps=FOREVER)
-        except load_core().PhysicsFailure as failure:
-            raise PhysicsError(f"body.{group.name}: settling fails: {failure}") from None
+    fastest, watch = np.inf, Watch(scales.diameter)
+    while simulation.time < end and (fastest > scales.slow or settle is not True):
+        _advance(simulation, min(simulation.time + scales.pause, end), group.name, end, tell)
         bodies, mine = simulation.grains(), slice(len(group))
         centre, orientation = bodies["centre"][mine], bodies["orientation"][mine]
-        group = replace(group, centre=centre, orientation=orientation)
-        fastest = float(np.linalg.norm(bodies["velocity"][mine], axis=1).max())
-        if _height(scenario, group.centre).min() < 2 * low - high:
-            raise body.error(
-                ".settle: grains fall out of the scene: put a body under all of their box", "settle"
-            )
-    warnings: list[Finding] = []
-    if settle is True and fastest > slow:
-        warnings.append(StillMoving(group.name, end, fastest))
-    return replace(group, centre=wrapped(scenario, group.centre)), warnings
+        group = replace(group, centre=wrapped(scenario, centre), orientation=orientation)
+        # Wrapped: where a periodic axis slopes, what slides along it for ever comes no lower.
+        height = _height(scenario, group.centre)
+        speed = np.linalg.norm(bodies["velocity"][mine], axis=1)
+        fastest = float(speed.max())
+        if height.min() < 2 * low - high:
+            why = ".settle: grains fall out of the scene: put a body under all of their box"
+            raise body.error(why, "settle")
+        watch.see(simulation.time, speed, height)
+        if settle is True and watch.idle > IDLE * scales.fall:
+            break
+    if settle is not True or fastest <= scales.slow:
+        return group, []
+    idle = watch.idle if watch.idle > IDLE * scales.fall else 0.0
+    return group, [StillMoving(group.name, simulation.time, fastest, idle)]
+
+
+@dataclass(frozen=True)
+class _Scales:
+    """What settling is measured by."""
+
+    diameter: float  # m, of the smallest grain
+    pause: float  # s, in which it falls by half of that
+    fall: float  # s, from the top of everything to its bottom
+    slow: float  # m/s, at rest
+
+    @classmethod
+    def of(cls, scenario: Scenario, group: Group, height: float) -> _Scales:
+        """For grains in a scene of some height, m."""
+        gravity = float(np.linalg.norm(scenario.gravity))
+        diameter = 2 * min(shape.reach for shape in group.shapes)
+        pause, fall = np.sqrt(diameter / gravity), np.sqrt(2 * height / gravity)
+        return cls(diameter, float(pause), float(fall), REST * np.sqrt(gravity * diameter))
+
+
+def _advance(simulation: CoreSimulation, until: float, name: str, end: float, tell: Tell) -> None:
+    """Step to a time, s, saying now and then how far it is; raises PhysicsError where it fails."""
+    try:
+        while simulation.time < until:
+            simulation.advance(limit=until, pause=until, max_steps=STEPS)
+            tell(f"body.{name} settles: {simulation.time:.3g} s of at most {end:.3g} s")
+    except load_core().PhysicsFailure as failure:
+        raise PhysicsError(f"body.{name}: settling fails: {failure}") from None
 
 
 def _check_effort(scenario: Scenario, body: Body[Any], diameter: float, end: float) -> None:

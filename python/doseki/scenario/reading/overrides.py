@@ -23,6 +23,8 @@ from ..values.expressions import is_expression
 from ..values.toml_source import KeyPath, Where
 from ..values.units import quantity
 
+# Tables in those of bodies, inflows and gauges, which a setting may also begin.
+INNER_TABLES = ("array", "motion")
 FRACTION = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?\s*/\s*[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
 
 
@@ -82,7 +84,14 @@ def _find_in_section(key: str, keys: tuple[str, ...], table: dict[str, Any]) -> 
     if keys[1] not in known:
         near = suggestion(f"{keys[0]}.{keys[1]}", {f"{keys[0]}.{name}" for name in known})
         raise UserError(f"--set {key}: no table {keys[0]}.{keys[1]}{near}")
-    if len(keys) != 3:
+    part = table.get(keys[0], {}).get(keys[1], {})
+    inner = part.get(keys[2]) if len(keys) == 4 and isinstance(part, dict) else None
+    if len(keys) == 4 and not isinstance(inner, dict) and keys[2] not in INNER_TABLES:
+        known = {*INNER_TABLES, *(k for k, v in part.items() if isinstance(v, dict))}
+        above = ".".join(keys[:2])
+        near = suggestion(f"{above}.{keys[2]}", {f"{above}.{name}" for name in known})
+        raise UserError(f"--set {key}: no table {above}.{keys[2]}{near}")
+    if len(keys) not in (3, 4):
         raise UserError(f"--set {key}: expected {keys[0]}.{keys[1]}.KEY=value")
     return keys
 
