@@ -7,7 +7,7 @@ what gauges read, nor when is ignored, and no key may be.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -88,9 +88,13 @@ def outcome(path: str, settings: Settings) -> str:
 
 
 def ignored(
-    path: str, prefix: str, keys: Iterable[str], values: Mapping[str, Sequence[str]]
+    path: str,
+    prefix: str,
+    keys: Iterable[str],
+    values: Mapping[str, Sequence[str]],
+    outcome: Callable[[str, Settings], str] = outcome,
 ) -> str:
-    """The keys under `prefix` that change nothing and are not refused.
+    """The keys under `prefix` that change nothing, as `outcome` tells, and are not refused.
 
     `values` has for each key what it is set to, or that and, after " with ", other settings that it
     needs.  A key without a value fails: whoever adds one says here how it shows.  A value that the
