@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from doseki.errors import UserError
+from doseki.figures import movie, stage
 from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
 from doseki.figures.dots import dots, extent_of
 from doseki.figures.kinds.histogram import SpeedHistogram, draw_speed_row
@@ -26,6 +27,8 @@ from doseki.measure.quantities import quantity
 from doseki.measure.views import View, named_window, whole_space
 from doseki.record.quantities import quantity_label
 from doseki.record.reader import load
+
+from ..synthetic_runs import make_plain_state
 
 
 def test_splat_paints_discs_at_their_places_and_later_over_earlier():
@@ -194,11 +197,50 @@ def test_a_figure_that_was_made_impossible_by_hand_is_named(two_grains):
 @pytest.mark.parametrize(("colour", "window"), [("material", None), ("velocity_x", "end")])
 def test_gif_has_one_frame_per_snapshot(flow_folder, tmp_path, colour, window):
     run = load(flow_folder)
-    with Image.open(make_movie(run, tmp_path / "m.gif", colour, window)) as movie:
-        assert movie.n_frames == len(run)
-        first = np.asarray(movie.convert("RGB"))
-        movie.seek(len(run) - 1)
-        assert np.any(np.asarray(movie.convert("RGB")) != first)
+    with Image.open(make_movie(run, tmp_path / "m.gif", colour, window)) as frames:
+        assert frames.n_frames == len(run)
+        first = np.asarray(frames.convert("RGB"))
+        frames.seek(len(run) - 1)
+        assert np.any(np.asarray(frames.convert("RGB")) != first)
+
+
+def test_movies_of_space_show_surfaces_from_the_side(tmp_path, record_run, monkeypatch):
+    """A block of water in front of a stone: it covers the stone, and axes and bar are there."""
+    monkeypatch.setattr(movie, "WIDTH", 120)
+    monkeypatch.setattr(stage, "WIDTH", 120)
+
+    def state(time):
+        grid = np.stack(np.meshgrid(*[np.arange(0.0, 1.0, 0.1)] * 3), axis=-1).reshape(-1, 3)
+        stone = grid[(grid[:, 1] > 0.45) & (grid[:, 2] < 0.5)]
+        water = grid[grid[:, 1] < 0.45] + [time, 0, 0]
+        kind = np.repeat([0, 1], [len(water), len(stone)])
+        return make_plain_state(np.concatenate([water, stone]), np.zeros((len(kind), 3)), kind)
+
+    window = "\n[window.all]\nmin = [-9.0, -9.0, -9.0]\nmax = [9.0, 9.0, 9.0]\n"
+    record_run(tmp_path / "run", dim=3, times=(0.0, 2.0), state_at=state, tables=window)
+    camera = movie._Camera(load(tmp_path / "run"), "material", "all")
+    first, last = (np.asarray(frame, int) for frame in camera.frames())
+    (axes,) = camera.stage.figure.axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (m)", "z (m)")
+    assert [each.get_gid() for each in camera.stage.figure.artists] == ["scale bar"]
+    left, right, bottom, top = (*axes.get_xlim(), *axes.get_ylim())
+    box = axes.get_position()
+    column = round((box.x0 + box.width * (0.5 - left) / (right - left)) * first.shape[1])
+    row = round((1 - box.y0 - box.height * (0.25 - bottom) / (top - bottom)) * first.shape[0])
+    stone, covered = last[row, column], first[row, column]
+    assert stone[0] > 2 * stone[2]
+    assert covered[2] > stone[2] + 20
+    assert covered[0] > covered[2] / 3
+
+
+def test_a_movie_of_nothing_is_refused(tmp_path, record_run):
+    def nothing(_time):
+        return make_plain_state(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, int))
+
+    record_run(tmp_path / "run", dim=3, times=(0.0,), state_at=nothing)
+    with pytest.raises(UserError, match="no movie: there are no particles"):
+        make_movie(load(tmp_path / "run"), tmp_path / "m.gif")
+    assert "overview" not in [path.stem for path in plot_run(tmp_path / "run")]
 
 
 def test_mp4_needs_ffmpeg(flow_folder, tmp_path, monkeypatch):

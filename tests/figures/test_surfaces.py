@@ -77,3 +77,19 @@ def test_a_plane_of_many_balls_is_even():
     rough = Balls(position, plane.radius, plane.colour, np.zeros(n, bool), plane.clear)
     bumpy = render(rough, ALONG_Y, EXTENT, 200)[30:-30, 30:-30, 0]
     assert np.ptp(smooth) < 12 < np.ptp(bumpy)
+
+
+def test_faces_are_smooth_up_to_their_edges():
+    """A plane of balls, and a step of it towards the viewer: neither has dark bands."""
+    at = np.arange(-1.2, 1.21, 0.1)
+    x, z = (grid.ravel() for grid in np.meshgrid(at, at))
+    y = np.where(x < 0.0, 0.0, -1.0)
+    n = len(x)
+    plane = Balls(
+        np.stack([x, y, z], axis=1), np.full(n, 0.05), np.ones((n, 3)), np.ones(n, bool),
+        np.zeros(n, bool),
+    )  # fmt: skip
+    picture = render(plane, ALONG_Y, EXTENT, 200)[100, :, 0].astype(int)
+    edge = int(np.argmax(np.abs(np.diff(picture))))
+    near = np.r_[picture[edge - 30 : edge - 3], picture[edge + 5 : edge + 30]]
+    assert np.ptp(near) < 0.1 * near.max()

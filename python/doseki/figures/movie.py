@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
 from ..errors import UserError
@@ -16,9 +17,13 @@ from ..util.files import clear_errors, write_whole
 from .colouring import colouring
 from .dots import dots, extent_of, picture
 from .layout import time_text
+from .nothing import NothingToDrawError
+from .space import Space, balls_of, seen_extent
 from .stage import WIDTH, Stage
+from .surfaces import Camera, render
 from .text import plain_text
 
+SIDEWAYS = np.array([0.0, 1.0, 0.0])  # away from the viewer
 SAMPLES = 20  # snapshots looked at to choose the limits of the picture and of the colours
 
 
@@ -32,7 +37,8 @@ def make_movie(
     """Write every snapshot as one frame into `path`, which ends in .gif or .mp4.
 
     `colour` names a quantity (see quantities.py), `window` a window of the scenario (default:
-    everything, gravity pointing down).  Raises UserError for another ending, a file that exists,
+    everything, gravity pointing down).  3-D runs are seen from the side, as shaded surfaces behind
+    translucent water.  Raises UserError for another ending, a file that exists,
     an unknown colour or window, and an .mp4 without ffmpeg.
     """
     path = Path(path)
@@ -44,7 +50,10 @@ def make_movie(
     if not len(run):
         raise UserError(f"{run.directory}: the run has no snapshot to show")
     with plain_text():
-        camera = _Camera(run, colour, window)
+        try:
+            camera = _Camera(run, colour, window)
+        except NothingToDrawError as reason:
+            raise UserError(f"{run.directory}: no movie: {reason}") from None
     with clear_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, lambda temporary: encode(temporary, camera.frames(), frames_per_second))
@@ -59,7 +68,12 @@ class _Camera:
         self._view = self._choose_view(window)
         step = max(1, len(run) // SAMPLES)
         samples = [*run[::step], run[-1]]
-        self._extent = extent_of(samples, self._view)
+        self._side: Camera | None = None
+        if run.scenario["dim"] == 3:
+            self._side, self._space = Camera.looking(SIDEWAYS), Space.around(samples, self._view)
+            self._extent = seen_extent(self._space, samples, self._side)
+        else:
+            self._extent = extent_of(samples, self._view)
         self._colours = colouring(run, samples, colour, self._view)
         self.stage = Stage(run, self._view, self._extent, self._colours)
 
@@ -73,10 +87,16 @@ class _Camera:
         return (self._frame(snapshot) for snapshot in self._run)
 
     def _frame(self, snapshot: Snapshot) -> Image.Image:
+        pixels = self._pixels(snapshot)
+        return self.stage.frame(pixels, time_text(snapshot.time, self._run.times[-1]))
+
+    def _pixels(self, snapshot: Snapshot) -> np.ndarray:
+        if self._side is not None:
+            balls = balls_of(self._run, snapshot, self._colours, self._space, self._side)
+            return render(balls, self._side, self._extent, WIDTH)
         shown = dots(snapshot, self._view)
         rgba = self._colours.rgba(snapshot)[shown.index]
-        pixels = picture(shown, rgba, self._extent, WIDTH)
-        return self.stage.frame(pixels, time_text(snapshot.time, self._run.times[-1]))
+        return picture(shown, rgba, self._extent, WIDTH)
 
 
 def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:

@@ -6,7 +6,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, grey_closing
+from scipy.ndimage import (
+    distance_transform_edt,
+    find_objects,
+    gaussian_filter,
+    grey_closing,
+    label,
+    maximum_filter,
+    minimum_filter,
+)
 
 from .layout import Extent
 
@@ -15,6 +23,7 @@ SMOOTH = 1.0  # radii over which the surface of many balls is smoothed
 LIGHT = np.array([-0.45, 0.55, 0.70])  # to the right, upwards, towards the viewer
 AMBIENT = 0.45
 STEEPEST = 3.0  # slope of a surface; edges have any
+JUMP = 9.0  # pixels in depth, over three pixels: steeper than any surface
 OVER_SOLID, OVER_NOTHING = 0.40, 0.75  # how much of what is behind water it covers
 NOTHING = -1
 
@@ -133,15 +142,32 @@ def _shade(depth: np.ndarray, there: np.ndarray, reach: float) -> np.ndarray:
     deepest = depth[there].max()
     surface = np.where(there, depth, deepest)
     if reach > 0:
-        # Gaps between balls are filled up to their tops. Beside an edge the mean would be of both
-        # its sides.
+        # Gaps between balls are filled up to their tops.
         filled = -grey_closing(-surface, 2 * math.ceil(reach) + 1)
-        weight = gaussian_filter(there.astype(float), reach)
-        mean = gaussian_filter(np.where(there, filled, 0.0), reach) / np.maximum(weight, 1e-6)
-        inside = np.clip(2.5 - np.abs(mean - filled) / reach, 0.0, 1.0)
-        surface = inside * mean + (1 - inside) * filled
+        surface = _smoothed(filled, there, reach)
     down, across = np.gradient(surface)
     slopes = np.clip(np.stack([across, -down], axis=-1), -STEEPEST, STEEPEST)
     facing = slopes @ LIGHT[:2] + LIGHT[2]
     facing /= np.sqrt(1 + (slopes**2).sum(axis=-1)) * np.linalg.norm(LIGHT)
     return AMBIENT + (1 - AMBIENT) * np.clip(facing, 0.0, 1.0)
+
+
+def _smoothed(surface: np.ndarray, there: np.ndarray, reach: float) -> np.ndarray:
+    """The mean of each face over `reach` pixels, but not over its edges, where others are behind.
+
+    A face is what hangs together without a jump in depth.  Small ones stay as they are.
+    """
+    jump = maximum_filter(surface, 3) - minimum_filter(surface, 3)
+    face, count = label(there & (jump < max(reach, JUMP)))
+    if not count:
+        return surface
+    nearest = distance_transform_edt(face == 0, return_distances=False, return_indices=True)
+    face = np.where(there, face[tuple(nearest)], 0)
+    sizes, found = np.bincount(face.ravel(), minlength=count + 1), surface.copy()
+    for number, box in enumerate(find_objects(face), 1):
+        if box is not None and sizes[number] > (2 * reach) ** 2:
+            mine = face[box] == number
+            weight = gaussian_filter(mine.astype(float), reach, mode="constant")
+            mean = gaussian_filter(np.where(mine, surface[box], 0.0), reach, mode="constant")
+            found[box][mine] = mean[mine] / weight[mine]
+    return found

@@ -1,0 +1,125 @@
+"""What of a 3-D run is drawn, as a camera sees it: grains, structures and water as balls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measure.views import View, fluid_names
+from ..record.reader import Run, Snapshot
+from .colouring import Colouring
+from .dots import ROOM, ends_of_most, grain_radius
+from .layout import Extent
+from .nothing import NothingToDrawError
+from .surfaces import Balls, Camera
+
+HIDES = 0.2  # a wall hides what is behind it where it is turned so much towards the viewer
+ROUND = ("disc", "sphere")
+
+
+@dataclass(frozen=True)
+class Space:
+    """What of the space is drawn: a box around what moves, corners (3,), and walls near it."""
+
+    view: View
+    low: np.ndarray
+    high: np.ndarray
+
+    @classmethod
+    def around(cls, snapshots: Sequence[Snapshot], view: View) -> Space:
+        """The box around what moves at some moments, within the view.
+
+        Raises NothingToDrawError where there is no particle at any of them.
+        """
+        ends = []
+        for snapshot in (each for each in snapshots if len(each["id"])):
+            position = view.coordinates(snapshot["position"])
+            moves = ~snapshot["fixed"] & view.contains(snapshot["position"])
+            ends.append(ends_of_most(position[moves] if moves.any() else position))
+        if not ends:
+            raise NothingToDrawError("there are no particles")
+        low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
+        return cls(view, np.maximum(low, view.lower), np.minimum(high, view.upper))
+
+    def is_near(self, position: np.ndarray) -> np.ndarray:
+        """Mask (N,) of what is in the box, or not far from it."""
+        room = ROOM * float(np.max(self.high - self.low))
+        inside: np.ndarray = (position > self.low - room) & (position < self.high + room)
+        return np.all(inside, axis=1)
+
+    def shows(self, snapshot: Snapshot, position: np.ndarray, away: np.ndarray) -> np.ndarray:
+        """Mask (N,) of what is drawn: walls near what moves, but none between it and the viewer."""
+        shown = self.view.contains(snapshot["position"])
+        shown &= ~snapshot["fixed"] | self.is_near(position)
+        before = np.zeros(len(position), bool)
+        for axis, towards in enumerate(away):
+            if abs(towards) > HIDES:
+                end = self.low[axis] if towards > 0 else self.high[axis]
+                before |= np.sign(towards) * (position[:, axis] - end) < 0
+        return shown & ~(before & snapshot["fixed"])
+
+
+def balls_of(
+    run: Run,
+    snapshot: Snapshot,
+    colours: Colouring,
+    space: Space,
+    camera: Camera,
+    material: str | None = None,
+) -> Balls:
+    """What is drawn of a snapshot, of one material where it is given: a round grain is one ball."""
+    position = space.view.coordinates(snapshot["position"])
+    shown = space.shows(snapshot, position, camera.away)
+    if material is not None:
+        shown &= snapshot["material"] == material
+    free = ~snapshot["fixed"]
+    clear = np.isin(snapshot["material"], sorted(fluid_names(run))) & free
+    radius, grain = grain_radius(snapshot), snapshot["grain"]
+    alone = free & ~clear & (grain < 0)
+    # A round grain is one ball, in place of the first of its particles.
+    first = _first_of_each(grain, _is_round(run, snapshot))
+    if len(first):
+        table = snapshot.grains
+        position[first] = space.view.coordinates(table["position"])[grain[first]]
+        radius[first] = 0.5 * table["diameter"][grain[first]]
+        shown &= ~_is_round(run, snapshot)[grain] | (grain < 0)
+        shown[first] = space.shows(snapshot, position, camera.away)[first]
+        alone[first] = True
+    rgba = colours.rgba(snapshot)
+    return Balls(
+        position[shown], radius[shown], rgba[shown, :3], ~alone[shown], clear[shown]
+    )  # fmt: skip
+
+
+def _is_round(run: Run, snapshot: Snapshot) -> np.ndarray:
+    """Which of the bodies that move are balls (n,), and of none in the end for grain -1."""
+    tables = run.scenario.get("body", {})
+    names = snapshot.grains.get("body", np.zeros(0, str))
+    round_ones = [tables.get(str(name), {}).get("shape") in ROUND for name in names]
+    return np.array([*round_ones, False])
+
+
+def _first_of_each(grain: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Index of the first particle of each body that is `chosen`; the last of them is none."""
+    bodies, first = np.unique(grain, return_index=True)
+    return first[(bodies >= 0) & chosen[bodies]]
+
+
+def seen_extent(space: Space, snapshots: Sequence[Snapshot], camera: Camera) -> Extent:
+    """What holds all that is drawn, as the camera sees it."""
+    low, high = [], []
+    for snapshot in snapshots:
+        position = space.view.coordinates(snapshot["position"])
+        shown = space.shows(snapshot, position, camera.away) & space.is_near(position)
+        if not shown.any():
+            continue
+        points = camera.project(position[shown])
+        low.append(points.min(axis=0))
+        high.append(points.max(axis=0))
+    if not low:
+        raise NothingToDrawError("there is nothing to see")
+    first, last = np.min(low, axis=0), np.max(high, axis=0)
+    margin = 0.03 * float(np.max(last - first))
+    return first[0] - margin, last[0] + margin, first[1] - margin, last[1] + margin
