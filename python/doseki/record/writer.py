@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import time as clock
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -18,6 +19,8 @@ from .beginning import begin, refuse_links
 from .folder import RunFolder, read_history
 from .snapshot_writer import SnapshotWriter
 from .vtkhdf import Header, read_header
+
+SERIES_SECONDS = 1.0  # after which the index of snapshots follows them, while a run goes on
 
 
 class Recorder:
@@ -99,6 +102,7 @@ class Recorder:
         self._body_names = tuple(body_names)
         self._dim = dim
         self._index: list[str] = []  # an entry of the series for each snapshot
+        self._series_at = -math.inf  # s, by the clock, when it was last written
         self._snapshots = SnapshotWriter()
         self._unsafe: list[Path] = []  # snapshots that may not be on the disk yet
         self._columns: list[str] = []
@@ -128,7 +132,9 @@ class Recorder:
         write_whole(file, lambda part: self._snapshots.write(part, state, header, grains), False)
         self._unsafe.append(file)
         self._index.append(self._entry(file, time))
-        self._write_series()
+        # Taking the place of a file makes the system write at once, which takes milliseconds.
+        if clock.monotonic() - self._series_at > SERIES_SECONDS:
+            self._write_series()
         return file
 
     def history(self, row: Mapping[str, float]) -> None:
@@ -158,6 +164,7 @@ class Recorder:
         """Put the record safely on the disk: a checkpoint never knows more than is there."""
         tables = self._folder.history, self._folder.series, *self._folder.gauges.glob("*.csv")
         self._sync_snapshots()
+        self._write_series()
         for path in tables:
             with clear_errors(path):
                 sync(path)
@@ -165,6 +172,7 @@ class Recorder:
     def close(self, summary: Mapping[str, Any]) -> None:
         """Write `summary` (numbers, words, lists and dicts of them): the run has ended."""
         self._sync_snapshots()
+        self._write_series()
         text = json.dumps(jsonable(summary), indent=2, allow_nan=False) + "\n"
         write_whole_text(self._folder.summary, text)
 
@@ -183,6 +191,7 @@ class Recorder:
         files = ",\n".join(self._index)
         index = f'{{"file-series-version": "1.0", "files": [\n{files}\n]}}\n'
         write_whole_text(self._folder.series, index, safely=False)
+        self._series_at = clock.monotonic()
 
 
 def _truncate(path: Path, count: int) -> None:

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import io
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -67,11 +71,12 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
     """
     try:
         content = read_bytes(file, LARGEST_STL)
-        with readable(file, " as STL"):
+        with readable(file, " as STL"), _quiet():
             mesh = _closed_mesh(file, content, scale)
     except UserError as error:
         raise ShapeError(str(error)) from None
-    shape, centre = _from_mesh(mesh)
+    with _quiet():
+        shape, centre = _from_mesh(mesh)
     normal, distance = shape.planes
     beyond = float((shape.vertices @ normal.T - distance).max())
     if beyond > BULGE * shape.reach:
@@ -79,6 +84,19 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
             f"the surface in {file} is not convex (by {beyond:.3g} m); cut it into convex bodies"
         )
     return shape, centre
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep what is said of a file that somebody has damaged to the sentence that refuses it."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.disable(before)
 
 
 def _closed_mesh(file: Path, content: bytes, scale: float) -> Any:
