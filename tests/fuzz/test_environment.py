@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import itertools
+import os
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from tests.run.channel import doseki_command, environment
 
+from doseki.compiled import load_core
+from doseki.errors import UserError
+from doseki.util.cores import int_of, shared_cores
+
+from .examples import examples
 from .test_command_line import GOOD
 
 VARIABLES = {
@@ -56,6 +66,39 @@ def test_a_variable(good, tmp_path, name, value):
 @pytest.mark.parametrize(("name", "value"), CASES)
 def test_every_variable(good, tmp_path, name, value):
     assert_clear(run_with(good, tmp_path, name, value))
+
+
+NAMES = (
+    *VARIABLES, "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK", "SLURM_NTASKS", "PMIX_RANK",
+    "OMP_NUM_THREADS", "LINES", "FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE", "DOSEKI_DECOMPOSITION",
+)  # fmt: skip
+NUMBERS = st.one_of(st.integers(), st.floats(), st.integers(0, 4)).map(str)
+TEXTS = st.text(st.characters(blacklist_categories=["Cs"], blacklist_characters="\x00"))
+
+
+@examples(100, 10_000)
+@given(
+    variables=st.dictionaries(st.sampled_from(NAMES), NUMBERS | TEXTS, min_size=1, max_size=4),
+    words=st.sampled_from([*[("explain", "/nowhere")] * 8, ("list",), ("--help",)]),
+)
+def test_any_environment(variables, words):
+    """What each command reads of it first, in this process."""
+    from .test_command_line import run
+
+    said = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stderr(said):
+        with contextlib.redirect_stdout(io.StringIO()):
+            for name, value in variables.items():
+                patch.setenv(name, value)
+            code = run(*words)
+        threads = int_of(os.environ.get("OMP_NUM_THREADS"))
+        assert threads is None or threads > 0
+        shared_cores()
+        with contextlib.suppress(UserError):
+            load_core(variables.get("DOSEKI_ISA"))
+    assert code in (0, 2, 4)
+    assert "mistake in doseki" not in said.getvalue()
+    assert "Traceback" not in said.getvalue()
 
 
 @pytest.mark.parametrize("command", ["list", "check"])

@@ -13,7 +13,7 @@ from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
 from ..solver.build import filled_simulation, load_core
 from ..solver.protocol import SimulationView
-from ..util.finding import Finding
+from ..util.finding import Finding, sentences
 from ..util.memory import available_bytes
 from ..util.telling import Tell, say_nothing
 from .cost import Estimate, estimate
@@ -41,7 +41,7 @@ def check_scenario(scenario: Scenario, threads: int | None = None, tell: Tell = 
     lines = [scenario.title or "scenario", ""]
     lines += [*_particles(scenario, state, body_names), *_costs(expected)]
     lines += [*_resolution(scenario, state, body_names)]
-    doubts = thorough_findings(scenario, state, body_names, warnings)
+    doubts = sentences(thorough_findings(scenario, state, body_names, warnings))
     lines += ["", *(f"warning: {doubt}" for doubt in doubts)] if doubts else ["", "no warnings"]
     return "\n".join(lines)
 
@@ -63,7 +63,7 @@ def brief_check(
         f"{len(simulation):,} particles, {_size(memory)}, first timestep {dt:.3g} s: about"
         f" {steps:,.0f} steps"
     )
-    doubts = findings(scenario, state, body_names, warnings)
+    doubts = sentences(findings(scenario, state, body_names, warnings))
     return [head, *(f"warning: {doubt}" for doubt in doubts)]
 
 

@@ -22,7 +22,7 @@ from ..scenario.model import Scenario
 from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.cores import chosen_threads
-from ..util.finding import Finding
+from ..util.finding import Finding, sentences
 from ..util.telling import Tell, say_nothing
 from .first_state import first_state
 
@@ -80,7 +80,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "list_entries_per_particle": simulation.entries_per_particle,
         "ledger_residual": balance,
         "largest_overlap": simulation.grains()["worst_overlap"],
-        "warnings": [str(warning) for warning in run.warnings],
+        "warnings": sentences(run.warnings),
         **last,
     }
 

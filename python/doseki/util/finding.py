@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -15,3 +16,26 @@ class Finding(ABC):
     @abstractmethod
     def __str__(self) -> str:
         """One sentence, with the remedy where there is one."""
+
+
+def sentences(findings: Iterable[Finding]) -> list[str]:
+    """What findings say; what they say alike of copies NAME.1, NAME.2 ... is said once."""
+    places: dict[tuple[str, str], list[str]] = {}
+    for finding in findings:
+        text, stem = str(finding), _stem(finding.place)
+        rest = text.removeprefix(f"{finding.place}:") if stem else text
+        places.setdefault((stem if rest != text else "", rest), []).append(finding.place)
+    return [
+        f"{names[0]}{_others(len(names) - 1)}:{rest}" if stem else rest
+        for (stem, rest), names in places.items()
+    ]
+
+
+def _stem(place: str) -> str:
+    """NAME of NAME.1; nothing for what is no copy."""
+    stem, _, number = place.rpartition(".")
+    return stem if number.isdigit() else ""
+
+
+def _others(count: int) -> str:
+    return f" and {count} of its copies" if count else ""

@@ -1,0 +1,28 @@
+"""What is said alike of many copies is said once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from doseki.util.finding import Finding, sentences
+
+
+@dataclass(frozen=True)
+class Doubt(Finding):
+    what: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.what}" if self.place else self.what
+
+
+def test_copies_are_told_of_together():
+    found = [Doubt(f"stone.{k}", "is small") for k in range(1, 13)]
+    found += [Doubt("stone.3", "touches nothing"), Doubt("water", "is thin"), Doubt("", "is open")]
+    found += [Doubt("rock.1", "is small"), Doubt("water", "is thin")]
+    assert sentences(found) == [
+        "stone.1 and 11 of its copies: is small",
+        "stone.3: touches nothing",
+        "water: is thin",
+        "is open",
+        "rock.1: is small",
+    ]
