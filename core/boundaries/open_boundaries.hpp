@@ -151,9 +151,9 @@ public:
     }
 
     /// Marks in `removed` the free particles inside an outflow, and what `remove_bodies(outflow,
-    /// removed)` marks there.
+    /// removed)` marks there; true if there is any.
     template <class RemoveBodies>
-    void remove_outflow(const Particles<D>& particles, const RemoveBodies& remove_bodies);
+    bool remove_outflow(const Particles<D>& particles, const RemoveBodies& remove_bodies);
 
     std::vector<std::uint8_t> removed;
 
@@ -260,15 +260,18 @@ bool OpenBoundaries<D>::inject(Particles<D>& particles, double t) {
 
 template <int D>
 template <class RemoveBodies>
-void OpenBoundaries<D>::remove_outflow(const Particles<D>& particles,
+bool OpenBoundaries<D>::remove_outflow(const Particles<D>& particles,
                                        const RemoveBodies& remove_bodies) {
+    bool any = false;
     removed.resize(particles.size(), 0);
     for (const Outflow<D>& outflow : outflows) remove_bodies(outflow, removed);
     for (std::size_t p = 0; p < particles.size(); ++p) {
         for (const Outflow<D>& outflow : outflows)
             if (particles.is_free(p) && outflow.contains(particles.position[p])) removed[p] = 1;
         if (removed[p] && particles.is_counted(p)) ledger.outflow.add(particles, p);
+        any |= removed[p] != 0;
     }
+    return any;
 }
 
 }  // namespace doseki

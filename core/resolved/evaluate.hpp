@@ -21,9 +21,9 @@ Resolved<D, Backend>::Resolved(std::vector<Material> materials, const Options<D>
 
 template <int D, class Backend>
 void Resolved<D, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt,
-                                    bool new_lists) {
+                                    bool) {
     fluid_count_ = lists.moving();
-    if (new_lists && model_->options.flow.turbulence == Turbulence::mixing_length)
+    if (steps_since_depths_ == 0 && model_->options.flow.turbulence == Turbulence::mixing_length)
         set_mixing_lengths(state, lists, halo.ranks);
     pack(state, halo, half_dt);
     if (model_->options.flow.wide_kernel)

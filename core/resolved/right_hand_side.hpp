@@ -43,14 +43,14 @@ public:
 
     /// Fills the rates of `state`, whose density and velocity are half a step behind: the values
     /// predicted with the old rates over `half_dt` are what enters the sums. Sets timestep() and
-    /// dissipated_power(). `new_lists`: they were built since the last call.
-    void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists);
+    /// dissipated_power(). Nothing depends on whether lists are new.
+    void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool);
 
     /// See Ueta2022::force_terms.
     ForceTerms<D> force_terms(const State& state, const Lists& lists, Halo<D>&,
                               std::int64_t p) const;
 
-    void end_step(State&) const {}
+    void end_step(State&) { steps_since_depths_ = (steps_since_depths_ + 1) % depth_interval; }
 
     /// Wall particles are in the first pass, fluid particles in the second.
     static WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) {
@@ -78,6 +78,7 @@ public:
     void serialise(Archive& archive) {
         archive("next_timestep", timestep_), archive("av_power", power_),
             archive("scheme_work", work_);
+        archive("steps_since_depths", steps_since_depths_);
     }
 
     std::size_t bytes() const {
@@ -86,6 +87,11 @@ public:
     }
 
 private:
+    /// Steps for which depths of the flow and mixing lengths hold: particles go a fraction of their
+    /// spacing meanwhile. When lists are built does not matter, for that follows the skin and the
+    /// ranks.
+    static constexpr std::int64_t depth_interval = 8;
+
     FlowRecords<D> records(const State& state) const;
     void set_mixing_lengths(State& state, const Lists& lists, const Ranks& ranks);
     void pack(State& state, const Halo<D>& halo, double half_dt);
@@ -112,6 +118,7 @@ private:
     SchemeWork<D> work_;
     Fault fault_;
     std::int64_t limiting_ = -1;
+    std::int64_t steps_since_depths_ = 0;
 };
 
 }  // namespace doseki

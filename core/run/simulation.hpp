@@ -77,6 +77,7 @@ public:
         open_boundaries.inject(particles, time_);
         bodies.start(particles);
         bodies.set_velocities(particles, 0.0);
+        remove_outflow();
         renew_lists();
     }
 
@@ -161,6 +162,9 @@ public:
 private:
     /// Abort limits: Mach number, and dt relative to the acoustic dt at rest.
     static constexpr double max_mach = 10.0, min_relative_timestep = 1e-4;
+    /// Steps between looks for what has left. When lists are built does not matter, for that
+    /// follows the skin and the ranks.
+    static constexpr std::int64_t outflow_interval = 16;
 
     static auto contact_properties(const std::vector<Material>& materials) {
         std::vector<ContactProperties> contact;
@@ -200,7 +204,7 @@ private:
 
     void rebuild_lists();
     void wrap_positions();
-    void remove_outflow();
+    bool remove_outflow();
     void drop_removed();
     std::vector<double> support_radii() const;
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
@@ -279,6 +283,7 @@ void Simulation<Lists>::update_lists(double before, double moved) {
     const bool worn = lists_.wear(particles, moved);
     bool changed = open_boundaries.inject(particles, time_);
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
+    if ((steps_ + 1) % outflow_interval == 0) changed |= remove_outflow();
     if (changed || worn) rebuild_lists();
 }
 
@@ -300,7 +305,6 @@ void Simulation<Lists>::rebuild_lists() {
     const std::int64_t lost = lost_particle(particles, domain_);
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
     wrap_positions();
-    remove_outflow();
     lists_.cut_space(particles, phases());
     drop_removed();
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
@@ -321,20 +325,26 @@ void Simulation<Lists>::wrap_positions() {
     }
 }
 
+/// True where any rank has particles that left.
 template <class Lists>
-void Simulation<Lists>::remove_outflow() {
-    open_boundaries.remove_outflow(particles, [this](const Outflow<D>& outflow, auto& removed) {
-        bodies.drain(particles, outflow, removed);
-    });
+bool Simulation<Lists>::remove_outflow() {
+    if (open_boundaries.outflows.empty()) return false;
+    const bool any =
+        open_boundaries.remove_outflow(particles, [this](const Outflow<D>& outflow, auto& removed) {
+            bodies.drain(particles, outflow, removed);
+        });
+    return ranks().largest(any ? 1.0 : 0.0) > 0.0;
 }
 
 template <class Lists>
 void Simulation<Lists>::drop_removed() {
+    auto& removed = open_boundaries.removed;
+    removed.resize(particles.size(), 0);
     std::vector<std::uint32_t> kept;
     for (std::uint32_t p = 0; p < particles.size(); ++p)
-        if (!open_boundaries.removed[p]) kept.push_back(p);
+        if (!removed[p]) kept.push_back(p);
     if (kept.size() < particles.size()) reorder(particles, kept);
-    open_boundaries.removed.clear();
+    removed.clear();
 }
 
 /// As large as they may become before the next sort.
