@@ -1,4 +1,4 @@
-"""Water at rest in a tank: upright, around a disc, and on a slope of 20 degrees."""
+"""Water at rest in a tank: upright, around a disc, over a step, and on a slope of 20 degrees."""
 
 from __future__ import annotations
 
@@ -123,6 +123,15 @@ CASES = (
             "no rest before the run",
             "L2(p) / rho g H",
             lambda n: at_rest("hydrostatic-disc")(n, "relax=1e-9"),
+        ),
+    ),
+    case(
+        "hydrostatic-step",
+        "Water at rest in a tank with a step",
+        Control(
+            "a step whose side faces upwards",
+            "KE / rho g H2",
+            lambda n: at_rest("hydrostatic-step")(n, "body.step.normal=[0, 1]"),
         ),
     ),
     case(
