@@ -5,10 +5,25 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.record.particles import FIXED
 from doseki.scenario.load import load_scenario
-from doseki.scene.build import build_bodies
+from doseki.scene.build import build_bodies, build_scene
 from doseki.scene.wall_normals import wall_geometry
 
+BALL = """
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0, 0]
+max = [1, 1, 1]
+
+[body.disc]
+shape = "sphere"
+material = "basalt"
+fixed = true
+centre = [3, 0, 0]
+radius = 0.5
+"""
 FAST = 'scheme = "resolved"\nspeed_max = 2'
 WATER = """
 [body.water]
@@ -85,16 +100,38 @@ def test_a_block_on_a_floor_has_no_face_below(geometry):
     np.testing.assert_allclose(depth, gaps.min(axis=0), atol=1e-12)
 
 
-def test_a_disc_faces_outwards(geometry):
-    disc = (
-        '\n[body.disc]\nshape = "disc"\nmaterial = "basalt"\nfixed = true\n'
-        "centre = [4, 1]\nradius = 0.5\n"
-    )
-    x, n, depth = geometry("disc", WATER + disc)
+DISC = """
+[body.disc]
+shape = "disc"
+material = "basalt"
+fixed = true
+centre = [4, 1]
+radius = 0.5
+"""
+
+
+def test_a_disc_that_is_cut_faces_outwards(geometry):
+    x, n, depth = geometry("disc", WATER + DISC + "jitter = 0.1\n")
     out = x - [4, 1]
     distance = np.linalg.norm(out, axis=1)
     np.testing.assert_allclose(depth, 0.5 - distance, atol=1e-12)
     np.testing.assert_allclose(n * distance[:, None], out, atol=1e-12)
+
+
+@pytest.mark.parametrize(("dim", "measure"), [(2, np.pi / 4), (3, np.pi / 6)])
+def test_a_fixed_ball_is_as_large_as_one_that_moves(write, dim, measure):
+    tables = WATER + DISC if dim == 2 else BALL
+    scenario = load_scenario(write(top=FAST, tables=tables), [f"dim={dim}"])
+    scene = build_scene(scenario)
+    particles, mine = scene.particles, scene.particles.body == scene.names.index("disc")
+    volume = particles.mass[mine] / particles.density[mine]
+    assert volume.sum() == pytest.approx(measure)
+    assert (particles.motion[mine] == FIXED).all()
+    assert scene.bodies.shaped[mine].all()
+    out = particles.position[mine] - scenario.body["disc"].centre
+    distance = np.linalg.norm(out, axis=1)
+    np.testing.assert_allclose(scene.bodies.depth[mine], 0.5 - distance, atol=1e-12)
+    np.testing.assert_allclose(scene.bodies.normal[mine] * distance[:, None], out, atol=1e-12)
 
 
 @pytest.mark.parametrize("angle", [30, -70])
@@ -167,25 +204,15 @@ max = [1, 1, 0]
 rotate = 20
 rotate_axis = [0, 1, 0]
 pivot = [0, 0, 0]
-
-[body.ball]
-shape = "sphere"
-material = "basalt"
-fixed = true
-centre = [3, 0, 0]
-radius = 0.45
 """
     path = write(top=FAST, tables=tables)
     scenario = load_scenario(path, ["dim=3"])
     particles, names = build_bodies(scenario)
     normal, depth = wall_geometry(scenario, particles, names)
-    floor, ball = (particles.body == names.index(name) for name in ("floor", "ball"))
+    floor = particles.body == names.index("floor")
     up = np.array([np.sin(np.radians(20)), 0, np.cos(np.radians(20))])
     np.testing.assert_allclose(normal[floor], np.broadcast_to(up, (floor.sum(), 3)), atol=1e-12)
     np.testing.assert_allclose(depth[floor], -(particles.position[floor] @ up), atol=1e-12)
-    out = particles.position[ball] - [3, 0, 0]
-    np.testing.assert_allclose(depth[ball], 0.45 - np.linalg.norm(out, axis=1), atol=1e-12)
-    np.testing.assert_allclose((normal[ball] * out).sum(axis=1), np.linalg.norm(out, axis=1))
 
 
 def test_carved_from_a_box(geometry):

@@ -25,7 +25,7 @@ def wall_geometry(
     for name, body in bodies_of(scenario).items():
         own = [names.index(each) for each in scenario.names_of_bodies(name)]
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
-        if of_it.any() and not body.table.is_solid:
+        if of_it.any() and not body.is_of_bodies:
             facing, below = body.wall(made.position(name, of_it), made.around(name))
             normal[of_it] = made.turned(name, facing)
             depth[of_it] = below

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...record.particles import ParticleSet
 from ...scenario.kinematics import FIXED, SINGLE
+from ...scenario.schemes import RESOLVED
 from ...scenario.tables.bodies import Disc
 from ..groups import Group
 from ..lattices import ball_measure, disc_lattice
@@ -18,9 +19,26 @@ from .lattice import Lattice
 class DiscBody(Lattice[Disc]):
     """A disc or sphere, on a lattice or as one particle."""
 
+    @property
+    def is_of_bodies(self) -> bool:
+        """Water meets a ball at its surface whether it moves or not: a whole one of a solid is one.
+
+        A lattice cut along a circle has up to a tenth less area, and less buoyancy.
+        """
+        return super().is_of_bodies or (self.table.fixed and self._is_round)
+
+    @property
+    def _is_round(self) -> bool:
+        """Whether the table asks for a whole ball of a solid, and nothing of a lattice."""
+        table = self.table
+        given = (table.mass_per_particle, table.normal, table.where, table.pressure)
+        cut = table.fill != "lattice" or table.jitter > 0 or any(x is not None for x in given)
+        solid = self.scenario.materials[table.material].law == "solid"
+        return solid and self.scenario.scheme == RESOLVED and not cut
+
     def count(self) -> float:
         """On a lattice, the number of its bounding box."""
-        if self.kinematics.is_whole:
+        if self.is_of_bodies:
             if self.kinematics is SINGLE:
                 return 1
             return ball_measure(self.table.radius, self.dim) / self.spacing**self.dim + 1

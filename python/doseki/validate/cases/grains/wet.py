@@ -1,4 +1,4 @@
-"""Grains that do not stick, discs that settle in a liquid, and the drag on one."""
+"""Grains that do not stick, discs that settle or are held in a liquid, and the drag on one."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ....driver.gauges import build_gauges
 from ...case import Case, Control, Criterion, Curve, Outcome, Value, within
 from ...running import Running
 
@@ -13,6 +14,7 @@ G = 9.81
 FALL, LAG = "fall / (g t^2/2)", "difference between grains"
 SPEED, LIGHT = "terminal speed, steel", "terminal speed, stone"
 STREAM = "mean speed"
+LIFT = "lift over Archimedes"
 LATE = 0.5  # share of the run after which the disc has its speed
 LIQUID, DIAMETER, WIDTH = 1000.0, 0.01, 0.04  # kg/m3, m, m between the walls
 STEEL, STONE = (8000.0, 2.6e-3), (2000.0, 1e-3)  # density of the disc, viscosity of the liquid
@@ -37,6 +39,26 @@ def printed(_across: float) -> Outcome:
     run.advance(0.1)
     fall = before - run.mean("position", "grains")[1]
     return Outcome({FALL: Value(float(fall / (9.8 * run.time**2 / 2)), 1.0)})
+
+
+def hold(across: float, *overrides: str) -> Outcome:
+    """What still water carries of a disc that is held in it, over two breaths of the column."""
+    run = Running("held-disc", f"across={across:g}", *overrides)
+    (gauge,) = build_gauges(run.scenario, run.body_names)
+    times = np.linspace(0, run.scenario.time_max, 101)[1:]
+    lift = []
+    for time in times:
+        run.advance(time)
+        lift.append(gauge.read(run.simulation)[0][2])
+    displaced = math.pi / 4 * DIAMETER**2 * LIQUID * G
+    share = np.array(lift) / displaced
+    sound = float(run.of_body(run.state(), "liquid")["sound_speed"].max())
+    breath = 4 * run.constant("height") / sound
+    return Outcome(
+        {LIFT: Value(float(share[times > times[-1] - 2 * breath].mean()), 1.0)},
+        [Curve("", times, share)],
+        [Curve("Archimedes", times, np.ones(len(times)))],
+    )
 
 
 def settle(across: float) -> Outcome:
@@ -160,4 +182,22 @@ DRAG = Case(
     axes=("time (s)", "mean speed (m/s)"),
     controls=(Control("free slip", STREAM, lambda n: stream(n, "wall=free_slip")),),
 )
-CASES = (HANG, SETTLING, DRAG)
+BUOYANCY = Case(
+    name="grains-buoyancy",
+    title="A disc is held in still water",
+    across="d/dp",
+    resolutions=(8, 12, 16),
+    run=hold,
+    criteria=(
+        Criterion(
+            LIFT,
+            (within(0.02), within(0.01), within(0.01)),
+            "1 % at 12 particles across; a lattice cut along the circle had 0.91 at 8",
+        ),
+    ),
+    axes=("time (s)", "lift / weight of water displaced"),
+    controls=(
+        Control("a lattice cut along the circle", LIFT, lambda n: hold(n, "body.disc.jitter=1e-9")),
+    ),
+)
+CASES = (HANG, SETTLING, DRAG, BUOYANCY)
