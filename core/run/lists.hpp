@@ -76,6 +76,7 @@ public:
         archive("rebuilds", rebuilds_), archive("moved", moved_);
         archive("skin_width", skin_width_), archive("skin", skin_);
         archive("rebuild_step", rebuild_step_), archive("approach", approach_);
+        archive("min_support", min_support_);
     }
     void serialise_lists(Archive& archive, const State& state) {
         lists_.serialise(archive);

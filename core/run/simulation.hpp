@@ -102,6 +102,7 @@ public:
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
         archive("least_timestep", min_timestep_);
+        archive("moved_since_outflow", moved_since_outflow_);
         archive("account", account_);
         lists_.serialise_wear(archive);
         particles.serialise(archive);
@@ -162,9 +163,9 @@ public:
 private:
     /// Abort limits: Mach number, and dt relative to the acoustic dt at rest.
     static constexpr double max_mach = 10.0, min_relative_timestep = 1e-4;
-    /// Steps between looks for what has left. When lists are built does not matter, for that
-    /// follows the skin and the ranks.
-    static constexpr std::int64_t outflow_interval = 16;
+    /// How far a particle goes, in supports, between two looks for what has left. When lists are
+    /// built does not matter, for that follows the skin and the ranks.
+    static constexpr double outflow_distance = 0.2;
 
     static auto contact_properties(const std::vector<Material>& materials) {
         std::vector<ContactProperties> contact;
@@ -216,8 +217,9 @@ private:
     double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
     double dissipation_ = 0.0;
     Account<D> account_;
-    double sound_speed_ = 0.0;   // of the stiffest material at rest [m/s]
-    double min_timestep_ = 0.0;  // [s]
+    double moved_since_outflow_ = 0.0;  // the fastest of each step, summed [m]
+    double sound_speed_ = 0.0;          // of the stiffest material at rest [m/s]
+    double min_timestep_ = 0.0;         // [s]
     std::int64_t steps_ = 0, updates_ = 0;
 };
 
@@ -283,7 +285,11 @@ void Simulation<Lists>::update_lists(double before, double moved) {
     const bool worn = lists_.wear(particles, moved);
     bool changed = open_boundaries.inject(particles, time_);
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
-    if ((steps_ + 1) % outflow_interval == 0) changed |= remove_outflow();
+    moved_since_outflow_ += moved;
+    if (moved_since_outflow_ >= outflow_distance * lists_.min_support()) {
+        moved_since_outflow_ = 0.0;
+        changed |= remove_outflow();
+    }
     if (changed || worn) rebuild_lists();
 }
 

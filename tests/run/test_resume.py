@@ -102,7 +102,8 @@ def test_the_last_two_checkpoints_are_kept(channel_file, tmp_path):
 def test_resume_on_the_command_line(channel_file, uninterrupted, tmp_path):
     run_channel(channel_file, tmp_path / "run", progress=stop_at(tmp_path / "run", 0.02))
     done = doseki_command("resume", tmp_path / "run", "--threads", 1)
-    assert (done.returncode, done.stderr) == (0, "")
+    said = [line for line in done.stderr.splitlines() if "cores are not" not in line]
+    assert (done.returncode, said) == (0, [])
     assert "status            done" in done.stdout
     assert_same_record(tmp_path / "run", uninterrupted)
 

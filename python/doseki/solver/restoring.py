@@ -35,7 +35,7 @@ POSITIVE = {"mass", "smoothing_length", "density", "shape_radius", "body_mass"}
 NOT_NEGATIVE = {
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "least_timestep", "next_timestep", "next_id", "inflow_released", "bodies_moved",
-    "lanes", "approach", "lists_reach",
+    "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 # Infinite where nothing limits a step.

@@ -14,7 +14,7 @@ ELASTIC = 'kinematics = "elastic"\n'
 FIXED = "fixed = true\n"
 SUBJECTS = {  # tables [body.subject]: what they say beside material
     "box": ('shape = "box"\nmin = [0.6, @00]\nmax = [1.0, @10.4]\n', "box"),
-    "ball": ('shape = "{ball}"\ncentre = [0.9, @10.25]\nradius = 0.25\n', "disc"),
+    "ball": ('shape = "{ball}"\ncentre = [0.87, @10.25]\nradius = 0.25\n', "disc"),
     "one": ('shape = "{ball}"\ncentre = [0.7, @10.1]\nradius = 0.1\nfill = "single"\n', "disc"),
     "packed": (
         'shape = "{ball}"\nd = 0.2\nmin = [0.6, @00]\nmax = [1.3, @+0.5]\n'
