@@ -101,7 +101,6 @@ public:
     void serialise(Archive& archive) {
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
-        archive("least_timestep", min_timestep_);
         archive("moved_since_outflow", moved_since_outflow_);
         archive("account", account_);
         lists_.serialise_wear(archive);
@@ -194,6 +193,11 @@ private:
     }
 
     const std::vector<Material>& materials() const { return scheme_->materials(); }
+    /// The smallest step [s] that a run goes on with.
+    double least_timestep() const {
+        return min_relative_timestep * options_.cflnumber * lists_.min_support() /
+               (scheme_->kernel_support() * sound_speed_);
+    }
     Ranks& ranks() { return lists_.halo().ranks; }
 
     void step(double limit);
@@ -219,7 +223,6 @@ private:
     Account<D> account_;
     double moved_since_outflow_ = 0.0;  // the fastest of each step, summed [m]
     double sound_speed_ = 0.0;          // of the stiffest material at rest [m/s]
-    double min_timestep_ = 0.0;         // [s]
     std::int64_t steps_ = 0, updates_ = 0;
 };
 
@@ -301,7 +304,7 @@ void Simulation<Lists>::evaluate(double half_dt) {
     if (const Fault& fault = scheme_->fault(); fault.rank != Fault::none)
         fail(fault.rank == Fault::density ? FailureKind::density : FailureKind::not_finite,
              fault.particle);
-    if (scheme_->timestep() < min_timestep_ &&
+    if (scheme_->timestep() < least_timestep() &&
         ranks().largest(static_cast<double>(scheme_->limiting_particle())) >= 0.0)
         fail(FailureKind::timestep, scheme_->limiting_particle());
 }
@@ -317,8 +320,6 @@ void Simulation<Lists>::rebuild_lists() {
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
     lists_.rebuild(particles, [this] { return support_radii(); }, steps_, phases());
-    min_timestep_ = min_relative_timestep * options_.cflnumber * lists_.min_support() /
-                    (scheme_->kernel_support() * sound_speed_);
 }
 
 template <class Lists>

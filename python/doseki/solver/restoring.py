@@ -34,12 +34,12 @@ INDEX_MASK = 2**INDEX_BITS - 1
 POSITIVE = {"mass", "smoothing_length", "density", "shape_radius", "body_mass"}
 NOT_NEGATIVE = {
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
-    "skin_width", "least_timestep", "next_timestep", "next_id", "inflow_released", "bodies_moved",
+    "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 # Infinite where nothing limits a step.
-MAY_BE_INFINITE = {"next_timestep", "least_timestep"}
+MAY_BE_INFINITE = {"next_timestep"}
 
 
 def check_state(simulation: CoreSimulation, state: Arrays, materials: int, bodies: int) -> None:
