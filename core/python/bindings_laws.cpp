@@ -177,6 +177,7 @@ void bind_shape(nb::module_& m) {
 void bind_laws(nb::module_& m, nb::module_& two, nb::module_& three) {
     m.attr("rheologies") = names_of<Rheology>();
     m.attr("equations_of_state") = names_of<EquationOfState>();
+    m.attr("least_relative_density") = least_relative_density;
     m.attr("hyperelastic_laws") = names_of<Hyperelastic>();
     bind_fluids(m);
     bind_contact(m);

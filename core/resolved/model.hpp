@@ -22,16 +22,13 @@ inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest =
 /// Densities below which a fluid expands no further: what tears apart leaves a void, not water
 /// under tension.
 struct MinDensity {
-    /// Of rho0, whatever the fluid could bear: the scheme is one of weak compressibility.
-    static constexpr double of_scheme = 0.98;
-
     double in_flow;
     double at_bodies;  // that move: where they part, air comes in or water from the third dimension
 
     static MinDensity of(const Material& fluid) {
         auto at = [&fluid](double pressure) {
             const double rho0 = fluid.rho0;
-            return density_of(fluid.laws->eos, pressure, of_scheme * rho0, rho0);
+            return density_of(fluid.laws->eos, pressure, least_relative_density * rho0, rho0);
         };
         return {at(fluid.cavitation_pressure),
                 at(std::max(fluid.cavitation_pressure, -fluid.air_entry_suction))};

@@ -43,11 +43,13 @@ class PointFunctions(Protocol):
     def __getattr__(self, name: str) -> PointFunction: ...
 
 
-class Physics(Protocol):
-    """Point functions in two and three dimensions."""
+class Physics(PointFunctions, Protocol):
+    """Point functions: those in two or three dimensions, and those that know no dimension."""
 
     two: PointFunctions
     three: PointFunctions
+    equations_of_state: Mapping[str, list[str]]  # parameters of each, in the order of its columns
+    least_relative_density: float  # of a liquid in the resolved scheme, over rho0
 
 
 class Core(Protocol):

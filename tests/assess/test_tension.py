@@ -41,11 +41,12 @@ class Frame:
         return self.fields[key]
 
 
-def found(pressure: np.ndarray, **water: float) -> Hanging:
+def found(pressure: np.ndarray, eos: str = "linear", **water: float) -> Hanging:
     materials = complete_materials({"water": water} if water else {}) | complete_materials({})
     if water:
         materials["water"] = materials["water"].with_values(water)
-    seen = hanging(SCENARIO, Frame(pressure), materials)  # type: ignore[arg-type]
+    scenario = SCENARIO | {"eos": eos}
+    seen = hanging(scenario, Frame(pressure), materials)  # type: ignore[arg-type]
     assert seen is not None
     return seen
 
@@ -77,6 +78,22 @@ def test_away_from_bodies_it_hangs_on_the_density_or_on_cavitation():
     assert found(pressure, cavitation_pressure=-1000.0).share == pytest.approx(0.1)
     pressure[0] = -0.02 * STIFFNESS
     assert found(pressure).share == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("eos", "water", "least"),
+    [
+        ("linear", {}, -0.02),
+        ("tait", {}, (0.98**7 - 1) / 7),
+        ("stiffened_gas", {"gamma": 3.0}, (0.98**3 - 1) / 3),
+    ],
+)
+def test_the_bound_is_the_pressure_at_the_least_density(eos, water, least):
+    pressure = np.full(10, 100.0)
+    pressure[0] = 0.99 * least * STIFFNESS
+    assert found(pressure, eos, **water).share == 0
+    pressure[0] = least * STIFFNESS
+    assert found(pressure, eos, **water).share == pytest.approx(0.1)
 
 
 def test_the_check_names_time_and_bodies():

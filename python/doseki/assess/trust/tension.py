@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from ...compiled import load_core
 from ...record.particles import BOUND, FREE
 from ...record.reader import Snapshot
-from ...scenario.materials import Material
-from ...scenario.schemes import KERNEL_SUPPORT, RESOLVED_KERNEL
+from ...scenario.materials import Material, equation_of_state
+from ...scenario.schemes import KERNEL_SUPPORT, RESOLVED, RESOLVED_KERNEL
 from .verdicts import Check, judged, unknown
 
 TENSION = (0.001, 0.02)  # share of the fluid
-MIN_DENSITY = 0.98  # of rho0; the scheme bears no lower one
 NEAR = 1e-3  # relative: nearer to a bound, a pressure is on it
 NAMED = 3  # bodies that a finding names
 
@@ -72,13 +72,23 @@ def _bounds(
 ) -> np.ndarray:
     """The least pressure, Pa, that each particle can have."""
     bounds = np.zeros(len(names))
+    eos = equation_of_state(RESOLVED, scenario.get("eos", "linear"))
     for name in np.unique(names):
         liquid = materials[str(name)]
-        stiffness = liquid.rho0 * (scenario.get("xi", 1.0) * liquid.speedsound) ** 2
-        in_flow = max(liquid.cavitation_pressure, (MIN_DENSITY - 1) * stiffness)
+        least = _least_pressure(liquid.scaled(scenario.get("xi", 1.0)), eos)
+        in_flow = max(liquid.cavitation_pressure, least)
         bearable = np.where(at_body, max(in_flow, -liquid.air_entry_suction), in_flow)
         bounds = np.where(names == name, bearable, bounds)
     return bounds
+
+
+def _least_pressure(liquid: Material, eos: str) -> float:
+    """Pressure, Pa, at the least density that the scheme lets a liquid have."""
+    physics, table = load_core().physics, liquid.table()
+    parameters = [[table[name]] for name in physics.equations_of_state[eos]]
+    density = physics.least_relative_density * liquid.rho0
+    pressure, _, _ = getattr(physics, eos)([[density], *parameters])
+    return pressure[0]
 
 
 def tension_check(seen: list[Hanging]) -> Check:
