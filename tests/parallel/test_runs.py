@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -63,34 +64,21 @@ def assert_same_snapshots(one: doseki.Run, other: doseki.Run, rounding: float = 
 
 
 @pytest.fixture(scope="module")
-def alone(command: Command, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Any]:
-    """Each case on one rank, run once."""
-    runs: dict[str, doseki.Run] = {}
+def on_ranks(
+    command: Command, tmp_path_factory: pytest.TempPathFactory
+) -> Callable[[int, str], doseki.Run]:
+    """Each case on a number of ranks, run once."""
 
-    def get(name: str) -> doseki.Run:
-        if name not in runs:
-            runs[name] = run(command, 1, name, tmp_path_factory.mktemp("alone") / name)
-        return runs[name]
-
-    return get
-
-
-@pytest.fixture(scope="module")
-def pair(command: Command, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Any]:
-    """Each case on two ranks, run once."""
-    runs: dict[str, doseki.Run] = {}
-
-    def get(name: str) -> doseki.Run:
-        if name not in runs:
-            runs[name] = run(command, 2, name, tmp_path_factory.mktemp("pair") / name)
-        return runs[name]
+    @cache
+    def get(ranks: int, name: str) -> doseki.Run:
+        return run(command, ranks, name, tmp_path_factory.mktemp(f"ranks-{ranks}") / name)
 
     return get
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_run_on_two_ranks_is_that_on_one(alone, pair, name):
-    one, two = alone(name), pair(name)
+def test_a_run_on_two_ranks_is_that_on_one(on_ranks, name):
+    one, two = on_ranks(1, name), on_ranks(2, name)
     assert_same_snapshots(one, two)
     assert two.summary["ranks"] == 2
     assert two.history.columns == one.history.columns
@@ -109,8 +97,8 @@ def test_a_run_on_two_ranks_is_that_on_one(alone, pair, name):
             )
 
 
-def test_the_history_tells_how_the_work_is_spread(alone, pair):
-    one, two = alone("dambreak").history, pair("dambreak").history
+def test_the_history_tells_how_the_work_is_spread(on_ranks):
+    one, two = on_ranks(1, "dambreak").history, on_ranks(2, "dambreak").history
     assert np.all(one["imbalance"] == 1)
     assert all(np.all(one[f"share_{name}"] == 0) for name in ("balance", "migrate", "halo", "wait"))
     last = {name: two[name][-1] for name in SHARED}
@@ -123,15 +111,15 @@ def test_the_history_tells_how_the_work_is_spread(alone, pair):
 @pytest.mark.ranks
 @pytest.mark.parametrize("ranks", [3, 4])
 @pytest.mark.parametrize("name", CASES)
-def test_a_run_on_more_ranks_is_that_on_one(command, alone, tmp_path, name, ranks):
+def test_a_run_on_more_ranks_is_that_on_one(command, on_ranks, tmp_path, name, ranks):
     many = run(command, ranks, name, tmp_path / "many")
-    assert_same_snapshots(alone(name), many)
+    assert_same_snapshots(on_ranks(1, name), many)
 
 
 @pytest.mark.parametrize(
     ("before", "after"), [pytest.param(2, 3, marks=pytest.mark.ranks), (2, 1), (1, 2)]
 )
-def test_a_checkpoint_goes_on_with_any_number_of_ranks(command, alone, tmp_path, before, after):
+def test_a_checkpoint_goes_on_with_any_number_of_ranks(command, on_ranks, tmp_path, before, after):
     folder = tmp_path / "run"
     run(command, before, "collision", folder, "time_max=0.0002")
     done = command(
@@ -139,7 +127,7 @@ def test_a_checkpoint_goes_on_with_any_number_of_ranks(command, alone, tmp_path,
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("agree to rounding only") == 1
-    resumed, straight = doseki.load(folder), alone("collision")
+    resumed, straight = doseki.load(folder), on_ranks(1, "collision")
     assert resumed.summary["ranks"] == after
     mine, yours = straight[-1], resumed[-1]
     for name in ("position", "velocity", "density"):
@@ -147,7 +135,7 @@ def test_a_checkpoint_goes_on_with_any_number_of_ranks(command, alone, tmp_path,
         assert np.abs(mine[name] - yours[name]).max() < 1e-10 * scale, name
 
 
-def test_ranks_are_started_by_an_option(command, alone, tmp_path):
+def test_ranks_are_started_by_an_option(command, on_ranks, tmp_path):
     done = command(
         1, "run", "collision", "--ranks", 2, "-o", tmp_path / "two", "--no-figures",
         "--threads", 1, *settings("collision"),
@@ -155,7 +143,7 @@ def test_ranks_are_started_by_an_option(command, alone, tmp_path):
     assert done.returncode == 0, done.stderr
     two = doseki.load(tmp_path / "two")
     assert two.summary["ranks"] == 2
-    assert_same_snapshots(alone("collision"), two)
+    assert_same_snapshots(on_ranks(1, "collision"), two)
 
 
 def test_a_run_that_starts_from_another_one_is_that_of_one_rank(command, tmp_path):
