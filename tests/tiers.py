@@ -87,6 +87,8 @@ def main() -> None:
         print(f"doseki: {error}", file=sys.stderr)
         sys.exit(2)
     os.environ["OMP_NUM_THREADS"] = "1"
+    # Hundreds of tests start a process, and each would compile all its imports.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     os.execv(sys.executable, [sys.executable, "-m", "pytest", *arguments])
 
 

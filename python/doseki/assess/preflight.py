@@ -63,8 +63,10 @@ def brief_check(
         f"{len(simulation):,} particles, {_size(memory)}, first timestep {dt:.3g} s: about"
         f" {steps:,.0f} steps"
     )
+    names = dict.fromkeys(_copied(name) for name in body_names)
+    sizes = [f"{name}: {size}" for name in names for size in _resized(scenario, name)]
     doubts = sentences(findings(scenario, state, body_names, warnings))
-    return [head, *(f"warning: {doubt}" for doubt in doubts)]
+    return [head, *sizes, *(f"warning: {doubt}" for doubt in doubts)]
 
 
 def _line(name: str, text: str) -> str:
@@ -79,13 +81,17 @@ def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str
         count = int(np.sum(state["body"] == body))
         if count:
             material = scenario.material_names[state["material"][state["body"] == body][0]]
-            stem, _, number = name.rpartition(".")
-            copied = stem if number.isdigit() else name
-            counts.setdefault((copied, material), []).append(count)
+            counts.setdefault((_copied(name), material), []).append(count)
     for (name, material), each in counts.items():
         copies = f" in {len(each)} copies" if len(each) > 1 else ""
         yield _line(f"  {name}", f"{sum(each):,} {material}{copies}")
-        yield from _resized(scenario, name)
+        yield from (_line("", size) for size in _resized(scenario, name))
+
+
+def _copied(name: str) -> str:
+    """The name of a body without its number among copies."""
+    stem, _, number = name.rpartition(".")
+    return stem if number.isdigit() else name
 
 
 def _resized(scenario: Scenario, name: str) -> Iterator[str]:
@@ -97,7 +103,7 @@ def _resized(scenario: Scenario, name: str) -> Iterator[str]:
     if np.any(np.abs(got - given) > 1e-6 * (table.dp or scenario.dp)):
         shown = [" x ".join(f"{x:.4g}" for x in size) for size in (got, given)]
         spacing = table.dp or scenario.dp
-        yield _line("", f"{shown[0]} m: dp = {spacing:g} m does not divide {shown[1]} m")
+        yield f"{shown[0]} m: dp = {spacing:g} m does not divide {shown[1]} m"
 
 
 def _first(scenario: Scenario, name: str) -> str:
