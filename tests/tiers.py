@@ -1,7 +1,7 @@
 """The tiers of the tests: `./doseki test [TIER] [options of pytest]`.
 
 A test that has the marker of a tier is run by that tier only; a test that has none belongs to the
-default tier, which protects the main paths and takes a quarter of an hour on two cores. Markers are
+default tier, which protects the main paths and takes some eight minutes on two cores. Markers are
 declared in pyproject.toml.
 """
 
@@ -33,7 +33,7 @@ FREE = "--hypothesis-profile=free"
 
 TIERS = {
     "default": Tier(
-        "what protects the main paths; a quarter of an hour on two cores",
+        "what protects the main paths; eight minutes on two cores",
         ("-m", f"not ({' or '.join(APART)})"),
     ),
     "fast": Tier(

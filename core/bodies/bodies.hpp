@@ -201,7 +201,7 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
     }
 }
 
-// Compiled once: bodies_2.cpp, bodies_3.cpp.
+// Compiled once: bodies.cpp.
 extern template class Bodies<2>;
 extern template class Bodies<3>;
 

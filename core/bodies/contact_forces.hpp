@@ -1,5 +1,5 @@
 #pragma once
-// Forces of contacts, which bodies_2.cpp and bodies_3.cpp compile.
+// Forces of contacts, which bodies.cpp compiles.
 
 #include <cmath>
 #include <limits>

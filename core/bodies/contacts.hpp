@@ -82,7 +82,7 @@ private:
     double max_overlap_ = 0.0;
 };
 
-// Compiled once: bodies_2.cpp, bodies_3.cpp.
+// Compiled once: bodies.cpp.
 extern template class Contacts<2>;
 extern template class Contacts<3>;
 

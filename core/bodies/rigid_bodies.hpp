@@ -326,7 +326,7 @@ auto RigidBodies<D>::follow_walls(const MovingWalls<D>& walls, double t, double 
     return step;
 }
 
-// Compiled once: bodies_2.cpp, bodies_3.cpp.
+// Compiled once: bodies.cpp.
 extern template class RigidBodies<2>;
 extern template class RigidBodies<3>;
 

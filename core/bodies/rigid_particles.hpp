@@ -119,7 +119,7 @@ void RigidParticles<D>::set_velocities(Particles<D>& particles, const RigidBodie
     });
 }
 
-// Compiled once: bodies_2.cpp, bodies_3.cpp.
+// Compiled once: bodies.cpp.
 extern template class RigidParticles<2>;
 extern template class RigidParticles<3>;
 

@@ -124,7 +124,7 @@ private:
     DeformableSurfaces<D> surfaces_;
 };
 
-// Compiled once: deformable_2.cpp, deformable_3.cpp.
+// Compiled once: deformable.cpp.
 extern template class DeformableBodies<2>;
 extern template class DeformableBodies<3>;
 

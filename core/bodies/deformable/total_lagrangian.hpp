@@ -34,7 +34,7 @@ struct PointShare {
 /// apart. Forces are the gradient of a discrete energy, so that without damping position Verlet
 /// keeps energy as well as momentum and angular momentum. Points are stored in the order of their
 /// sort at rest; `slot` finds them. How they are stepped is in deformable/advance.hpp, which
-/// deformable_2.cpp and deformable_3.cpp compile.
+/// deformable.cpp compiles.
 template <int D>
 class TotalLagrangian {
 public:
@@ -183,7 +183,7 @@ private:
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
 };
 
-// Compiled once: deformable_2.cpp, deformable_3.cpp.
+// Compiled once: deformable.cpp.
 extern template class TotalLagrangian<2>;
 extern template class TotalLagrangian<3>;
 

@@ -1,4 +1,4 @@
-// Deformable bodies in two dimensions, compiled once for all schemes.
+// Deformable bodies, compiled once for all schemes.
 
 #include "bodies/deformable/advance.hpp"
 
@@ -6,5 +6,8 @@ namespace doseki {
 
 template class TotalLagrangian<2>;
 template class DeformableBodies<2>;
+
+template class TotalLagrangian<3>;
+template class DeformableBodies<3>;
 
 }  // namespace doseki
