@@ -1,25 +1,24 @@
-"""doseki, interrupted (SIGINT) at a moment that does not depend on how fast the machine is.
+"""doseki, which gets a signal at a moment that does not depend on how fast the machine is.
 
-Arguments: the moment, and the arguments of doseki. A moment is `import:N`, the Nth import, or
-`module:function`, the first call of a function of doseki.
+Arguments: the number of the signal, the moment, and the arguments of doseki. A moment is
+`import:N`, the Nth import, or `module:function`, the first call of a function of doseki.
 """
 
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from types import FrameType
 from typing import Any
 
-moment, arguments = sys.argv[1], sys.argv[2:]
+number, moment, arguments = int(sys.argv[1]), sys.argv[2], sys.argv[3:]
 module, _, name = moment.partition(":")
 imports = 0
 
 
 def interrupt() -> None:
-    """Ctrl-C."""
-    os.kill(os.getpid(), signal.SIGINT)
+    """Ctrl-C, or another signal."""
+    os.kill(os.getpid(), number)
 
 
 def count(event: str, _arguments: tuple[Any, ...]) -> None:

@@ -109,6 +109,31 @@ settle = true
 """
 
 
+def run_interrupted(number, moment, file, folder, *options):
+    """`doseki run`, which gets a signal at a moment."""
+    script = [sys.executable, Path(__file__).parent / "interrupted.py", int(number), moment]
+    return subprocess.run(
+        [*map(str, script), "run", str(file), "-o", str(folder), *options],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        preexec_fn=hear_signals,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+@pytest.mark.parametrize("moment", ["figures.plot:draw_run", "assess.trust.report:write_trust"])
+def test_a_signal_after_the_last_step_costs_no_summary(tmp_path, number, moment):
+    (tmp_path / "load.toml").write_text(SETTLING.replace("settle = true", ""))
+    folder = tmp_path / "run"
+    done = run_interrupted(number, moment, tmp_path / "load.toml", folder, "--threads", "1")
+    assert done.returncode == 0, done.stderr
+    assert "interrupted" in done.stdout + done.stderr
+    assert "status            done" in done.stdout
+    assert (folder / "summary.txt").read_text().strip() in done.stdout
+
+
 @pytest.mark.parametrize(
     "moment",
     [
@@ -122,15 +147,7 @@ settle = true
 )
 def test_an_interrupt_before_the_run_is_one_line(tmp_path, moment):
     (tmp_path / "load.toml").write_text(SETTLING)
-    script = [sys.executable, Path(__file__).parent / "interrupted.py", moment]
-    done = subprocess.run(
-        [*map(str, script), "run", str(tmp_path / "load.toml"), "-o", str(tmp_path / "run")],
-        env=environment(),
-        capture_output=True,
-        text=True,
-        preexec_fn=hear_signals,
-        check=False,
-    )
+    done = run_interrupted(signal.SIGINT, moment, tmp_path / "load.toml", tmp_path / "run")
     assert (done.returncode, done.stderr) == (130, "doseki: interrupted\n")
     assert not (tmp_path / "run").exists()
 

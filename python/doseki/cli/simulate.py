@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import Interrupted, one_line
+from .interrupts import ending_early
 from .numbers import number
 from .options import (
     AsJson,
@@ -58,7 +59,7 @@ def run(
         for line in [*brief_check(*started), *_about_cores(threads)]:
             typer.echo(line, err=True)
 
-    with run_folder(directory, overwrite, team):
+    with run_folder(directory, overwrite, team), ending_early():
         with progress_bar(loaded.title, loaded.time_max) as progress:
             options = RunOptions(
                 threads,
@@ -175,7 +176,7 @@ def resume(
 
     team = join(ranks)
     scenario = load(directory).scenario
-    with team.holding(directory):
+    with team.holding(directory), ending_early():
         with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
             options = RunOptions(
                 threads,

@@ -14,7 +14,7 @@ from ..driver.active_run import ActiveRun, Progress
 from ..driver.ranks import OneRank
 from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
-from ..errors import PhysicsError, ResourceError
+from ..errors import Interrupted, PhysicsError, ResourceError
 from ..record.beginning import check_free
 from ..record.reader import load
 from ..record.writer import Recorder
@@ -185,6 +185,6 @@ def _judge(directory: Path) -> str:
     """Say how far to trust a finished run; it stays one where that fails, which is told."""
     try:
         write_trust(load(directory))
-    except Exception as error:
+    except (Exception, Interrupted) as error:
         return f"no trust report: {error or repr(error)}"
     return ""
