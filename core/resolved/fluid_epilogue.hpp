@@ -95,15 +95,19 @@ private:
         }
     }
 
-    /// None near a free surface, where there is little pressure and the inverse is large.
+    /// None near a free surface, where there is little pressure and the inverse is large. Bounded,
+    /// or a few particles in a hole would shorten the step of all (Eq. 41).
     Sym<double, D> correction_excess(std::size_t p, const Sums& sums,
                                      const Mat<double, D>& B) const {
         constexpr double min_determinant = 0.3;  // of the moment
+        constexpr double max_excess = 0.5;
         const bool corrected =
             std::max(sums.max_surface, state_.surface[p]) < FreeSurfaceIndicator::surface &&
             B(0, 0) > 0.0 && min_determinant * determinant(B) < 1.0;
-        Sym<double, D> excess;
-        if (corrected) excess = symmetric_part(B - identity<double, D>());
+        if (!corrected) return {};
+        Sym<double, D> excess = symmetric_part(B - identity<double, D>());
+        const double share = max_excess / std::max(row_norm(excess), max_excess);
+        for (double& element : excess.element) element *= share;
         return excess;
     }
 

@@ -26,6 +26,7 @@ LEAST_BETA = 0.05  # of the Riemann dissipation
 RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
 RELAXATION_PER_STRAIN = 10.0
 LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
+LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
@@ -396,7 +397,10 @@ class FlowReference:
         """Inverse moments inside the fluid and at walls, none near the surface."""
         self.inside = (np.maximum(self.nearby, self.measure) < SURFACE) & self.spans
         self.B = np.tile(np.eye(self.dim), (len(self.x), 1, 1))
-        self.B[self.inside] = np.linalg.inv(self.moment[self.inside])
+        excess = np.linalg.inv(self.moment[self.inside]) - np.eye(self.dim)
+        size = np.abs(excess).sum(axis=2).max(axis=1, initial=0)
+        share = LARGEST_EXCESS / np.maximum(size, LARGEST_EXCESS)
+        self.B[self.inside] += share[:, None, None] * excess
 
     def _add_shift(self) -> None:
         """What moving relative to the fluid does to velocity and density."""

@@ -14,7 +14,7 @@ from doseki.solver.build import load_core
 
 from ..instruction_sets import INSTRUCTION_SETS
 from ..simulations import core_table
-from .flow_reference import LEAST_DENSITY, SURFACE, FlowOptions, FlowReference
+from .flow_reference import LARGEST_EXCESS, LEAST_DENSITY, SURFACE, FlowOptions, FlowReference
 
 GRAVITY = [2.0, -1.0, -9.8]
 MATERIALS = [
@@ -66,6 +66,7 @@ CASES = {
     "rough": Case(walls=(STICK, ROUGH, STICK)),
     "rough, periodic": Case(walls=(STICK, ROUGH, ROUGH), periodic="xy"),
     "periodic": Case(periodic="xyz"),
+    "holes, periodic": Case(periodic="xyz", thinned=0.2),
     "two fluids, periodic": Case(periodic="xyz", fluids=2),
     "viscosity limits the step": Case(thicker=1000),
     "hardly moving": Case(periodic="xyz", speed=0.008),
@@ -200,6 +201,8 @@ def test_the_cases_reach_every_branch(dim: int) -> None:
     assert 0 < case["open"].inside.sum() < len(case["open"].x)
     for name in ("open", "spray", "periodic"):
         assert (case[name].rho < LEAST_DENSITY * case[name].rho0).any()
+    excess = np.abs(case["holes, periodic"].B - np.eye(dim)).sum(axis=2).max(axis=1)
+    assert np.isclose(excess, LARGEST_EXCESS).any()
     near = (case["open"].nearby > SURFACE) & (case["open"].measure < SURFACE)
     assert near.any()
     assert (case["spray"].measure == 3).any()
