@@ -56,14 +56,15 @@ struct WallAccumulators {
     Vec<T, D> velocity;
     Vec<T, D> area;  // that it sees of the fluid, outwards, over the wall particle's volume
     // Over the faces of other bodies around its own:
-    Vec<T, D> film_force;
+    Vec<T, D> film_force, face_velocity;
     T cover{}, film_pressure{}, film_density{};
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.weight...), f(self.height...), f(self.pressure...);
         f(self.density...), f(self.velocity...), f(self.area...), f(self.film_force...);
-        f(self.cover...), f(self.film_pressure...), f(self.film_density...);
+        f(self.face_velocity...), f(self.cover...), f(self.film_pressure...),
+            f(self.film_density...);
     }
 };
 
@@ -237,7 +238,10 @@ DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& grav
     const T apart = select(w.face != v.face && w.face != none && v.face != none, T(1), T(0));
     const T W = apart * Kernel::value(pair.r, inverse_support), share = v.volume * W;
     T head = v.pressure;
-    for (int a = 0; a < D; ++a) head += v.film_density * T(gravity[a]) * pair.r_ij[a];
+    for (int a = 0; a < D; ++a) {
+        head += v.film_density * T(gravity[a]) * pair.r_ij[a];
+        sums.face_velocity[a] += share * v.v[a];
+    }
     sums.cover += share;
     sums.film_pressure += share * head;
     sums.film_density += share * v.film_density;

@@ -60,17 +60,25 @@ private:
         const double weight = std::max(sums.weight + sums.cover, model_.full_cover);
         wall.pressure[p] = (sums.pressure + sums.film_pressure) / weight;
         wall.film_density[p] = (sums.density + sums.film_density) / weight;
-        wall.film_traction[p] =
-            (-pressure_at_surface(p) / std::max(sums.cover, model_.full_cover)) *
-            hidden_area(p, sums);
+        wall.film_traction[p] = (-pressure_at_surface(p, opening_speed(p, sums)) /
+                                 std::max(sums.cover, model_.full_cover)) *
+                                hidden_area(p, sums);
         return sums.film_force;
     }
 
-    /// No film holds tension.
-    double pressure_at_surface(std::size_t p) const {
+    /// At which the faces around part from this one.
+    double opening_speed(std::size_t p, const WallAccumulators<double, D>& sums) const {
+        const Vec<double, D> around = (1.0 / sums.cover) * sums.face_velocity;
+        return dot(around - state_.velocity[p], state_.wall.normal[p]);
+    }
+
+    /// Faces that part stretch the film between them, or its pressure would do work on them that no
+    /// water brings. No film holds tension.
+    double pressure_at_surface(std::size_t p, double opening) const {
         const WallState<D>& wall = state_.wall;
-        const double slope = dot(model_.options.gravity, wall.normal[p]);
-        return std::max(0.0, wall.pressure[p] + wall.film_density[p] * slope * wall.depth[p]);
+        const double slope = dot(model_.options.gravity, wall.normal[p]) * wall.depth[p];
+        return std::max(
+            0.0, wall.pressure[p] + wall.film_density[p] * (slope - model_.constants.c * opening));
     }
 
     /// Of the face of a body, that neither its own particles nor fluid particles take up.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.scenario.start import start_text
 from doseki.validate.cases.grains.under_water import (
     SUBMERGED,
     flow_force,
@@ -92,7 +93,7 @@ def test_it_floats_once_the_water_is_as_deep_as_archimedes_says(density, floats)
     given = f"depth={0.08}", f"density={800 * density}"
     run = Running(BLOCK, "across=10", *given)
     before = moving_body(run, "centre")[1]
-    run.advance(0.4)
+    run.advance(1.0)
     rise = moving_body(run, "centre")[1] - before
     dp = run.scenario.dp
     assert (rise > 0.1 * dp) if floats else (abs(rise) < 0.02 * dp)
@@ -122,3 +123,12 @@ def test_what_lies_dry_feels_nothing(tmp_path):
     advance(simulation, 200)
     grains = simulation.grains()
     assert not np.any(np.asarray(grains["flow_force"])[~np.asarray(grains["fixed"])])
+
+
+def test_a_block_that_a_falling_column_meets_stays_on_its_bed(tmp_path):
+    """The film under it does no work on it that no water brings."""
+    simulation = Flows(tmp_path)(start_text(2, dry=False), "dp=0.02", "column=0.3")
+    simulation.advance(limit=0.3, pause=0.3, max_steps=10**9)
+    centre = np.asarray(simulation.grains()["centre"])[0]
+    assert centre[0] > 0.56
+    assert centre[1] < 0.05 + 0.5 * 0.02
