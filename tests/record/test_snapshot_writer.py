@@ -9,7 +9,7 @@ import pytest
 from doseki.record import snapshot_writer, writer
 from doseki.record.fields import FIELDS, GRAIN_FIELDS
 from doseki.record.snapshot_writer import SnapshotWriter
-from doseki.record.vtkhdf import Header, read_field, read_grains, read_header
+from doseki.record.vtkhdf import Header, read_fields, read_grains, read_header
 from doseki.util import files
 
 from ..synthetic_runs import random_state
@@ -34,7 +34,9 @@ def grain_state(n, dim, seed):
 def assert_holds(path, state, said, grains):
     assert read_header(path) == said
     for field in FIELDS:
-        np.testing.assert_array_equal(read_field(path, field, said.dim), state[field.key])
+        np.testing.assert_array_equal(
+            read_fields(path, [field], said.dim)[field.key], state[field.key]
+        )
     found = read_grains(path, said.dim)
     assert found.keys() == grains.keys()
     for key, values in found.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,24 +43,32 @@ def read_header(path: Path) -> Header:
         )
 
 
-def read_field(path: Path, field: ParticleField, dim: int) -> np.ndarray:
-    """Read one field, shaped as in Python; raises UserError for what `write` does not write."""
+def read_fields(path: Path, fields: Sequence[ParticleField], dim: int) -> dict[str, np.ndarray]:
+    """Read fields by their keys, shaped as in Python.
+
+    Raises UserError for what `write` does not write.
+    """
     with open_hdf5(path) as file:
-        name, count = location(field), len(file.dataset(f"{ROOT}/Points"))
-        if field.absent is not None and name not in file:
-            return np.full(count, field.absent, field.dtype)
-        return _decoded(file, name, field, count, dim)
+        count = len(file.dataset(f"{ROOT}/Points"))
+        return {field.key: _field(file, field, count, dim) for field in fields}
 
 
-def read_grains(path: Path, dim: int) -> dict[str, np.ndarray]:
-    """The table of bodies that move, by the keys of GRAIN_FIELDS; empty where there are none."""
+def _field(file: Hdf5File, field: ParticleField, count: int, dim: int) -> np.ndarray:
+    name = location(field)
+    if field.absent is not None and name not in file:
+        return np.full(count, field.absent, field.dtype)
+    return _decoded(file, name, field, count, dim)
+
+
+def read_grains(
+    path: Path, dim: int, fields: Sequence[ParticleField] = GRAIN_FIELDS
+) -> dict[str, np.ndarray]:
+    """Columns of the table of bodies that move, by their keys; empty where there are none."""
     with open_hdf5(path) as file:
         if GRAINS not in file:
             return {}
         count = len(file.dataset(f"{GRAINS}/Position"))
-        return {
-            f.key: _decoded(file, f"{GRAINS}/{f.file_name}", f, count, dim) for f in GRAIN_FIELDS
-        }
+        return {f.key: _decoded(file, f"{GRAINS}/{f.file_name}", f, count, dim) for f in fields}
 
 
 def _decoded(file: Hdf5File, name: str, field: ParticleField, count: int, dim: int) -> np.ndarray:

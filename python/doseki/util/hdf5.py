@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,12 @@ class Hdf5File:
     def __init__(self, path: Path, file: h5py.File, size: int) -> None:
         self.path = path
         self._file, self._size = file, size
+        self._groups: dict[str, h5py.Group] = {}  # that have been looked at
+
+    @cached_property
+    def _free(self) -> int:
+        """Bytes of memory, asked once: an answer takes as long as a small dataset."""
+        return available_bytes()
 
     def error(self, name: str, wrong: str) -> UserError:
         """A UserError about the part `name` of this file."""
@@ -74,17 +81,19 @@ class Hdf5File:
 
     def numbers(self, name: str) -> np.ndarray:
         """The numbers in a dataset."""
-        dataset = self.dataset(name)
-        if dataset.dtype.kind not in "iufb":
-            raise self.error(name, "must hold numbers")
-        return dataset[...]
+        return self._numbers(name, self.dataset(name))
 
     def number(self, name: str) -> Any:
         """The only number in a dataset."""
         dataset = self.dataset(name)
         if dataset.size != 1:
             raise self.error(name, f"must hold one number, not {dataset.size}")
-        return self.numbers(name).reshape(1)[0].item()
+        return self._numbers(name, dataset).reshape(1)[0].item()
+
+    def _numbers(self, name: str, dataset: h5py.Dataset) -> np.ndarray:
+        if dataset.dtype.kind not in "iufb":
+            raise self.error(name, "must hold numbers")
+        return dataset[...]
 
     def words(self, name: str, longest: int) -> np.ndarray:
         """The strings in a vector, none longer than `longest` bytes."""
@@ -98,7 +107,7 @@ class Hdf5File:
         rows = len(dataset)
         if text.length is None:
             # Any number of rows may share one string as long as the file.
-            rows = max(1, available_bytes() // 16 // max(1, self._size))
+            rows = max(1, self._free // 16 // max(1, self._size))
         parts = [np.zeros(0, "U1")]
         for first in range(0, len(dataset), max(1, rows)):
             found = dataset.asstr()[first : first + rows]
@@ -119,7 +128,7 @@ class Hdf5File:
             raise self.error(name, "must hold numbers or strings")
         # Names of free length may all be one text as long as the file.
         bytes_each = known.dtype.itemsize if text is None or text.length else self._size
-        if count > MOST_NAMES or count * bytes_each > available_bytes() / 4:
+        if count > MOST_NAMES or count * bytes_each > self._free / 4:
             raise self.error(name, f"claims {count} entries, more than this machine can hold")
         found = attributes[name]
         return found if text is None else _decoded(found)
@@ -127,20 +136,29 @@ class Hdf5File:
     def _part(self, name: str, kind: type = h5py.HLObject) -> Any:
         """A part of the file, to which no link leads elsewhere."""
         part: Any = self._file
+        place = ""
         for step in [step for step in name.split("/") if step]:
-            if not isinstance(part, h5py.Group) or step not in part:
-                raise self.error(name, "is missing")
-            if not isinstance(part.get(step, getlink=True), h5py.HardLink):
-                raise self.error(name, "is a link; links are not followed")
-            part = part[step]
+            place += f"/{step}"
+            part = self._groups[place] if place in self._groups else self._step(name, part, step)
+            if isinstance(part, h5py.Group):
+                self._groups[place] = part
         if not isinstance(part, kind):
             raise self.error(name, f"is not a {kind.__name__.lower()}")
         return part
 
+    def _step(self, name: str, part: Any, step: str) -> Any:
+        """One step on the way to `name`."""
+        link = part.get(step, getlink=True) if isinstance(part, h5py.Group) else None
+        if link is None:
+            raise self.error(name, "is missing")
+        if not isinstance(link, h5py.HardLink):
+            raise self.error(name, "is a link; links are not followed")
+        return part[step]
+
     def _check_size(self, name: str, dataset: h5py.Dataset) -> None:
         """That the data are there, and do not unpack to more than memory holds."""
         claimed, stored = dataset.size * dataset.dtype.itemsize, dataset.id.get_storage_size()
-        if claimed > available_bytes() / 4:
+        if claimed > self._free / 4:
             raise self.error(
                 name, f"claims {claimed / 2**30:.3g} GiB, more than this machine can hold"
             )
@@ -166,7 +184,7 @@ class Hdf5File:
             return 1
         largest = [0]
         dataset.id.chunk_iter(lambda found: largest.append(max(largest.pop(), found.size)))
-        if LARGEST_RATIO * largest[0] > available_bytes() / 2:
+        if LARGEST_RATIO * largest[0] > self._free / 2:
             raise self.error(name, "has chunks that may unpack to more than this machine can hold")
         return LARGEST_RATIO
 

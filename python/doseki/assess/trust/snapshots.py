@@ -16,6 +16,10 @@ from ...scenario.schemes import RESOLVED, UETA2022
 from ..warnings import MIN_ACROSS_GRAIN
 from .tension import Hanging, hanging
 
+FIELDS = (  # that the checks of every snapshot read
+    "position", "velocity", "mass", "density", "pressure", "smoothing_length", "material", "body",
+    "motion",
+)  # fmt: skip
 COLUMN = 4  # spacings, width of the columns in which depths are measured
 
 
@@ -47,10 +51,11 @@ def look(run: Run) -> Seen:
     materials = complete_materials(run.scenario.get("material", {}))
     single = _single_grain_bodies(run.scenario)
     for snapshot in run:
+        snapshot.prefetch(FIELDS)
         seen.motions |= set(np.unique(snapshot["motion"]).tolist())
         free = snapshot["motion"] == FREE
-        if len(bodies := snapshot.grains):
-            seen.overlap.append(float(np.max(bodies["overlap"])))
+        if len(overlaps := snapshot.overlaps()):
+            seen.overlap.append(float(overlaps.max()))
         seen.walls_go |= bool(np.any(snapshot["velocity"][snapshot["motion"] == FIXED]))
         gravity = np.array(gravity_of(run.scenario))
         along = snapshot["position"][free] @ gravity
