@@ -26,6 +26,7 @@ LARGEST_RATIO = 1032
 DEFLATE, SHUFFLE, CHECKSUM, LZF = 1, 2, 3, 32000
 MOST_NAMES = 100_000  # of an attribute
 LONGEST_TEXT = 2**20  # characters, in an attribute
+ALWAYS_HELD = 2**20  # bytes that every machine has
 
 
 @contextmanager
@@ -53,6 +54,9 @@ class Hdf5File:
         """Bytes of memory, asked once: an answer takes as long as a small dataset."""
         return available_bytes()
 
+    def _is_too_large(self, size: int) -> bool:
+        return size > ALWAYS_HELD and size > self._free / 4
+
     def error(self, name: str, wrong: str) -> UserError:
         """A UserError about the part `name` of this file."""
         return UserError(f'{self.path}: "{name}" {wrong}')
@@ -73,10 +77,10 @@ class Hdf5File:
         dataset = self._part(name, h5py.Dataset)
         if dataset.external or dataset.is_virtual:
             raise self.error(name, "keeps its data in other files, which are not read")
-        text = h5py.check_string_dtype(dataset.dtype)
-        if text is None and dataset.dtype.kind not in "iufb":
+        dtype = dataset.dtype
+        if dtype.kind not in "iufb" and h5py.check_string_dtype(dtype) is None:
             raise self.error(name, "must hold numbers or strings")
-        self._check_size(name, dataset)
+        self._check_size(name, dataset, dataset.size * dtype.itemsize)
         return dataset
 
     def numbers(self, name: str) -> np.ndarray:
@@ -128,7 +132,7 @@ class Hdf5File:
             raise self.error(name, "must hold numbers or strings")
         # Names of free length may all be one text as long as the file.
         bytes_each = known.dtype.itemsize if text is None or text.length else self._size
-        if count > MOST_NAMES or count * bytes_each > self._free / 4:
+        if count > MOST_NAMES or self._is_too_large(count * bytes_each):
             raise self.error(name, f"claims {count} entries, more than this machine can hold")
         found = attributes[name]
         return found if text is None else _decoded(found)
@@ -155,10 +159,10 @@ class Hdf5File:
             raise self.error(name, "is a link; links are not followed")
         return part[step]
 
-    def _check_size(self, name: str, dataset: h5py.Dataset) -> None:
-        """That the data are there, and do not unpack to more than memory holds."""
-        claimed, stored = dataset.size * dataset.dtype.itemsize, dataset.id.get_storage_size()
-        if claimed > self._free / 4:
+    def _check_size(self, name: str, dataset: h5py.Dataset, claimed: int) -> None:
+        """That so many bytes are there, and do not unpack to more than memory holds."""
+        stored = dataset.id.get_storage_size()
+        if self._is_too_large(claimed):
             raise self.error(
                 name, f"claims {claimed / 2**30:.3g} GiB, more than this machine can hold"
             )
