@@ -9,7 +9,6 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -48,14 +47,6 @@ class Hdf5File:
         self.path = path
         self._file, self._size = file, size
         self._groups: dict[str, h5py.Group] = {}  # that have been looked at
-
-    @cached_property
-    def _free(self) -> int:
-        """Bytes of memory, asked once: an answer takes as long as a small dataset."""
-        return available_bytes()
-
-    def _is_too_large(self, size: int) -> bool:
-        return size > ALWAYS_HELD and size > self._free / 4
 
     def error(self, name: str, wrong: str) -> UserError:
         """A UserError about the part `name` of this file."""
@@ -111,7 +102,7 @@ class Hdf5File:
         rows = len(dataset)
         if text.length is None:
             # Any number of rows may share one string as long as the file.
-            rows = max(1, self._free // 16 // max(1, self._size))
+            rows = max(1, available_bytes() // 16 // max(1, self._size))
         parts = [np.zeros(0, "U1")]
         for first in range(0, len(dataset), max(1, rows)):
             found = dataset.asstr()[first : first + rows]
@@ -132,7 +123,7 @@ class Hdf5File:
             raise self.error(name, "must hold numbers or strings")
         # Names of free length may all be one text as long as the file.
         bytes_each = known.dtype.itemsize if text is None or text.length else self._size
-        if count > MOST_NAMES or self._is_too_large(count * bytes_each):
+        if count > MOST_NAMES or _is_too_large(count * bytes_each):
             raise self.error(name, f"claims {count} entries, more than this machine can hold")
         found = attributes[name]
         return found if text is None else _decoded(found)
@@ -162,7 +153,7 @@ class Hdf5File:
     def _check_size(self, name: str, dataset: h5py.Dataset, claimed: int) -> None:
         """That so many bytes are there, and do not unpack to more than memory holds."""
         stored = dataset.id.get_storage_size()
-        if self._is_too_large(claimed):
+        if _is_too_large(claimed):
             raise self.error(
                 name, f"claims {claimed / 2**30:.3g} GiB, more than this machine can hold"
             )
@@ -188,9 +179,14 @@ class Hdf5File:
             return 1
         largest = [0]
         dataset.id.chunk_iter(lambda found: largest.append(max(largest.pop(), found.size)))
-        if LARGEST_RATIO * largest[0] > self._free / 2:
+        if LARGEST_RATIO * largest[0] > available_bytes() / 2:
             raise self.error(name, "has chunks that may unpack to more than this machine can hold")
         return LARGEST_RATIO
+
+
+def _is_too_large(size: int) -> bool:
+    """For memory, which is asked each time: what was read before has taken some of it."""
+    return size > ALWAYS_HELD and size > available_bytes() / 4
 
 
 def _decoded(found: Any) -> Any:
