@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.run.channel import doseki_command, environment
 
@@ -28,7 +28,7 @@ VARIABLES = {
     "MPLBACKEND": ["nothing"],
     "PYTHONIOENCODING": ["ascii"],
     "LC_ALL": ["C", "xx_YY"],
-    "COLUMNS": ["0", "x", "-5"],
+    "COLUMNS": ["9223372036854775847", "0", "x", "-5", "²", "9" * 5000],
     "TERM": ["", "土"],
     "HOME": ["/nowhere", ""],
 }
@@ -81,6 +81,8 @@ TEXTS = st.text(st.characters(blacklist_categories=["Cs"], blacklist_characters=
     variables=st.dictionaries(st.sampled_from(NAMES), NUMBERS | TEXTS, min_size=1, max_size=4),
     words=st.sampled_from([*[("explain", "/nowhere")] * 8, ("list",), ("--help",)]),
 )
+@example(variables={"COLUMNS": str(2**63)}, words=("--help",))
+@example(variables={"COLUMNS": "²", "LINES": "9" * 5000}, words=("--help",))
 def test_any_environment(variables, words):
     """What each command reads of it first, in this process."""
     from .test_command_line import run

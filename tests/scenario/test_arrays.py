@@ -228,6 +228,15 @@ def test_an_error_in_a_copy_is_shown_where_the_part_stands(tmp_path, error_of):
     assert "line 15: body.post.1.radus is not a known key; did you mean radius?" in message
 
 
+@pytest.mark.parametrize("name", ["[[]]", "[{ a = 1 }]", "[1, [2]]", "{ a = [] }"])
+@pytest.mark.parametrize("key", ["bodies", "material"])
+def test_what_is_no_name_is_refused_where_names_are_looked_up(tmp_path, error_of, key, name):
+    path = tmp_path / "case.toml"
+    kind = {"bodies": "force", "material": "mass_centre"}[key]
+    path.write_text(HEAD.format(dim=2) + DISC + f'[gauge.g]\nkind = "{kind}"\n{key} = {name}\n')
+    assert f"line 17: gauge.g.{key}" in error_of(str(path))
+
+
 TANK = """
 [body.tank]
 shape = "tank"

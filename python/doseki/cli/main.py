@@ -19,6 +19,7 @@ from .interrupts import interruptible, leaving_at_once
 
 def main(arguments: list[str] | None = None) -> Any:
     """Entry point: errors become one sentence and an exit code; a traceback only with --debug."""
+    _forget_absurd_terminal()
     with leaving_at_once():
         from .app import app, wants_tracebacks
         from .ranks import joined
@@ -46,6 +47,17 @@ def main(arguments: list[str] | None = None) -> Any:
     finally:
         if ranks := joined():
             ranks.done()
+
+
+def _forget_absurd_terminal() -> None:
+    """Let the terminal be measured where the environment gives it no possible size.
+
+    Text is set to that width, whatever memory it takes.
+    """
+    for name in ("COLUMNS", "LINES"):
+        size = os.environ.get(name, "")
+        if not (size.isascii() and size.isdigit() and len(size) <= 4):
+            os.environ.pop(name, None)
 
 
 def _is_silent() -> bool:

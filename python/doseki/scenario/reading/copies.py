@@ -178,6 +178,11 @@ def _referring(section: str, parts: Any, made: dict[str, dict[str, list[str]]]) 
             refers = [about.section for about in field.metadata if isinstance(about, RefersTo)]
             if refers and isinstance(part.get(key), list):
                 copies = made.get(refers[0], {})
-                changed[key] = [new for old in part[key] for new in copies.get(old, [old])]
+                changed[key] = [new for old in part[key] for new in _copies_of(old, copies)]
         found[name] = changed
     return found
+
+
+def _copies_of(name: Any, copies: dict[str, list[str]]) -> list[Any]:
+    """The names that one stands for; what is no name is left to the reading of the table."""
+    return copies.get(name, [name]) if isinstance(name, str) else [name]
