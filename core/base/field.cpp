@@ -32,7 +32,7 @@ void gather(std::size_t size, std::byte* to, const std::byte* from,
 }  // namespace
 
 void FieldMemory::reorder(std::span<const std::uint32_t> order) {
-    std::vector<std::byte> sorted(order.size() * element_size_);
+    decltype(bytes_) sorted(order.size() * element_size_);
     gather(element_size_, sorted.data(), bytes_.data(), order);
     bytes_.swap(sorted);
 }

@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/pack.hpp"
 
 namespace doseki {
@@ -37,7 +37,7 @@ inline constexpr Optional optional;
 template <class E>
 struct Choice {
     E& value;
-    std::vector<std::pair<const char*, E>> words;
+    Array<std::pair<const char*, E>> words;
 };
 template <class E>
 Choice<E> choice(E& value, std::initializer_list<std::pair<const char*, E>> words) {

@@ -8,7 +8,8 @@
 #include <cstddef>
 #include <functional>
 #include <utility>
-#include <vector>
+
+#include "base/array.hpp"
 
 namespace doseki {
 
@@ -31,10 +32,10 @@ void for_each_particle(std::size_t count, F&& f) {
 /// the blocks in their order, so that sums do not depend on the number of threads.
 template <class Value, class Combine, class F>
 Value reduce(std::size_t count, Value start, Combine&& combine, F&& f) {
-    struct Block {  // threads may write to neighbours, which the bits of a vector<bool> forbid
+    struct Block {  // threads may write to neighbours, which the bits of many bools in a row forbid
         Value value;
     };
-    std::vector<Block> blocks((count + light_loop - 1) / light_loop, Block{start});
+    Array<Block> blocks((count + light_loop - 1) / light_loop, Block{start});
 #pragma omp parallel for schedule(static) if (blocks.size() > 1)
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         Value result = start;

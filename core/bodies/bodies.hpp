@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -19,7 +19,7 @@ class Bodies {
 public:
     /// `memory`: time over which accelerations are averaged, as the fluid sees them [s].
     Bodies(const Domain<D>& domain, const Vec<double, D>& gravity, const ContactOptions& options,
-           std::vector<ContactProperties> materials, double memory)
+           Array<ContactProperties> materials, double memory)
         : gravity_(gravity), memory_(memory), contacts_(domain, options, std::move(materials)) {}
 
     RigidBodies<D> rigid;
@@ -80,8 +80,7 @@ public:
     /// Removes the rigid bodies whose centre is in the region and marks their particles in
     /// `removed`.
     template <class Region>
-    void drain(const Particles<D>& particles, const Region& region,
-               std::vector<std::uint8_t>& removed);
+    void drain(const Particles<D>& particles, const Region& region, Array<std::uint8_t>& removed);
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
 
@@ -191,9 +190,9 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
 template <int D>
 template <class Region>
 void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
-                      std::vector<std::uint8_t>& removed) {
+                      Array<std::uint8_t>& removed) {
     if (!any_moves()) return;
-    const std::vector<std::uint8_t> leaves = rigid.remove_inside(region);
+    const Array<std::uint8_t> leaves = rigid.remove_inside(region);
     if (std::find(leaves.begin(), leaves.end(), 1) != leaves.end()) moved_ = margin_;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::int32_t k = rigid_body_of(particles, p);

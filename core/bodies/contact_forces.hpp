@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/array.hpp"
 #include "bodies/contacts.hpp"
 #include "physics/contact.hpp"
 
@@ -52,7 +53,7 @@ inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, co
 }
 
 template <int D>
-ContactLaws<D>::ContactLaws(const ContactOptions& options, std::vector<ContactProperties> materials)
+ContactLaws<D>::ContactLaws(const ContactOptions& options, Array<ContactProperties> materials)
     : options_(options), materials_(std::move(materials)) {
     for (const ContactProperties& a : materials_)
         for (const ContactProperties& b : materials_)

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/rotation.hpp"
 #include "model/contact_properties.hpp"
 #include "model/options.hpp"
@@ -61,7 +61,7 @@ struct ContactLaw {
 template <int D>
 class ContactLaws {
 public:
-    ContactLaws(const ContactOptions& options, std::vector<ContactProperties> materials);
+    ContactLaws(const ContactOptions& options, Array<ContactProperties> materials);
 
     ContactLaw between(const ContactSide& a, const ContactSide& b) const;
     double speed() const { return options_.speed; }
@@ -78,8 +78,8 @@ private:
                      const ContactProperties& b) const;
 
     ContactOptions options_;
-    std::vector<ContactProperties> materials_;
-    std::vector<double> damping_;  // ratio by pair of materials
+    Array<ContactProperties> materials_;
+    Array<double> damping_;  // ratio by pair of materials
 };
 
 }  // namespace doseki

@@ -2,8 +2,8 @@
 #include <compare>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/shape.hpp"
 #include "bodies/surface.hpp"
@@ -15,17 +15,17 @@ namespace doseki {
 /// one. Bodies are numbered over all kinds.
 template <int D>
 struct ContactPoints {
-    std::vector<Vec<double, D>> position, velocity;  // of the centre
-    std::vector<Vec3> spin;
-    std::vector<double> radius;
-    std::vector<double> mass, diameter;  // of the body; overlaps are compared with the diameter
-    std::vector<double> share;           // see ContactSide
-    std::vector<std::int32_t> body, material;
-    std::vector<std::uint8_t> fixed, removed, deformable;
-    std::vector<std::int32_t> surface;  // of which it is a sample, in ContactBodies; -1: of none
+    Array<Vec<double, D>> position, velocity;  // of the centre
+    Array<Vec3> spin;
+    Array<double> radius;
+    Array<double> mass, diameter;  // of the body; overlaps are compared with the diameter
+    Array<double> share;           // see ContactSide
+    Array<std::int32_t> body, material;
+    Array<std::uint8_t> fixed, removed, deformable;
+    Array<std::int32_t> surface;  // of which it is a sample, in ContactBodies; -1: of none
     // What the contacts do to them; torque about their own centre.
-    std::vector<Vec<double, D>> force;
-    std::vector<Vec3> torque;
+    Array<Vec<double, D>> force;
+    Array<Vec3> torque;
 
     std::size_t size() const { return radius.size(); }
 
@@ -80,8 +80,8 @@ struct ContactPair {
 template <int D>
 struct ContactBodies {
     ContactPoints<D> points;
-    std::vector<ConvexBody<D>> convex;
-    std::vector<Surface<D>> surfaces;
+    Array<ConvexBody<D>> convex;
+    Array<Surface<D>> surfaces;
 
     ContactPair pair_with_surface(std::int32_t point, std::int32_t surface) const {
         return {point, -1 - static_cast<std::int32_t>(convex.size()) - surface};

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/contact_points.hpp"
 #include "model/domain.hpp"
 #include "pairs/neighbour_lists.hpp"
@@ -14,16 +14,16 @@ namespace doseki {
 /// The balls among the contact points, sorted in space.
 template <int D>
 struct SortedBalls {
-    std::vector<std::int32_t> point;
-    std::vector<Vec<double, D>> position;  // inside the periodic domain
-    std::vector<double> support;
+    Array<std::int32_t> point;
+    Array<Vec<double, D>> position;  // inside the periodic domain
+    Array<double> support;
 };
 
 template <int D>
 SortedBalls<D> sorted_balls(const ContactPoints<D>& points, const Domain<D>& domain,
                             Neighbours<D>& neighbours) {
     SortedBalls<D> balls;
-    std::vector<std::uint8_t> fixed;
+    Array<std::uint8_t> fixed;
     for (std::size_t c = 0; c < points.size(); ++c) {
         if (points.reach(c) <= 0.0 || points.removed[c]) continue;
         Vec<double, D> x = points.position[c];
@@ -49,7 +49,7 @@ SortedBalls<D> sorted_balls(const ContactPoints<D>& points, const Domain<D>& dom
 /// Adds pairs of balls of different bodies that are nearer than `margin`.
 template <int D>
 void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, double margin,
-                     std::vector<ContactPair>& pairs) {
+                     Array<ContactPair>& pairs) {
     Neighbours<D> neighbours(domain);
     const SortedBalls<D> balls = sorted_balls(points, domain, neighbours);
     if (balls.point.size() < 2) return;
@@ -72,7 +72,7 @@ void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, do
 /// Adds pairs of a contact point and a convex body that are nearer than `margin`.
 template <int D>
 void find_convex_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
-                       std::vector<ContactPair>& pairs) {
+                       Array<ContactPair>& pairs) {
     const ContactPoints<D>& points = bodies.points;
     for (std::size_t s = 0; s < bodies.convex.size(); ++s) {
         const ConvexBody<D>& convex = bodies.convex[s];
@@ -92,9 +92,9 @@ void find_convex_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, 
 
 /// Points of two deformable bodies with surfaces touch the surface of the other, each once.
 template <int D>
-void turn_to_surfaces(const ContactBodies<D>& bodies, std::vector<ContactPair>& pairs) {
-    const std::vector<std::int32_t>& surface = bodies.points.surface;
-    std::vector<ContactPair> others, turned;
+void turn_to_surfaces(const ContactBodies<D>& bodies, Array<ContactPair>& pairs) {
+    const Array<std::int32_t>& surface = bodies.points.surface;
+    Array<ContactPair> others, turned;
     for (const ContactPair& pair : pairs) {
         if (pair.with_shape() || surface[pair.first()] < 0 || surface[pair.second()] < 0) {
             others.push_back(pair);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/contact_search.hpp"
@@ -18,7 +18,7 @@ template <int D>
 class Contacts {
 public:
     Contacts(const Domain<D>& domain, const ContactOptions& options,
-             std::vector<ContactProperties> materials)
+             Array<ContactProperties> materials)
         : domain_(domain), laws_(options, std::move(materials)) {}
 
     /// Pairs that may touch before anything has moved by half of `margin`; springs of pairs that
@@ -44,7 +44,7 @@ public:
     }
 
     void serialise(Archive& archive) {
-        std::vector<std::int32_t> a, b;
+        Array<std::int32_t> a, b;
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);
         archive("contact_a", a), archive("contact_b", b), archive("contact_springs", springs_);
         archive("worst_overlap", max_overlap_);
@@ -75,9 +75,9 @@ private:
 
     Domain<D> domain_;
     ContactLaws<D> laws_;
-    std::vector<ContactPair> pairs_;
-    std::vector<ContactSprings> springs_;
-    std::vector<Contact> contacts_;
+    Array<ContactPair> pairs_;
+    Array<ContactSprings> springs_;
+    Array<Contact> contacts_;
     double timestep_ = std::numeric_limits<double>::infinity();
     double max_overlap_ = 0.0;
 };

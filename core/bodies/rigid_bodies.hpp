@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 #include <limits>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/rigid_body.hpp"
 #include "boundaries/moving_walls.hpp"
@@ -15,7 +15,7 @@ namespace doseki {
 template <int D>
 class RigidBodies {
 public:
-    std::vector<Shape<D>> shapes;
+    Array<Shape<D>> shapes;
 
     bool any_moves() const { return moving_ > 0; }
     std::size_t size() const { return bodies_.size(); }
@@ -31,14 +31,14 @@ public:
     const Vec<double, D>& contact_force(std::size_t k) const { return mean_contact_force_[k]; }
     Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
     /// All spins when the fluid will have acted for `ahead` more.
-    std::vector<Vec3> spins(double ahead) const {
-        std::vector<Vec3> w;
+    Array<Vec3> spins(double ahead) const {
+        Array<Vec3> w;
         for (std::size_t k = 0; k < size(); ++k)
             w.push_back(spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque));
         return w;
     }
-    std::vector<Mat<double, 3>> rotations() const {
-        std::vector<Mat<double, 3>> R;
+    Array<Mat<double, 3>> rotations() const {
+        Array<Mat<double, 3>> R;
         for (const RigidBodyState<D>& state : states_) R.push_back(state.orientation.matrix());
         return R;
     }
@@ -71,8 +71,8 @@ public:
 
     /// Removes the free bodies whose centre is in the region, and tells which.
     template <class Region>
-    std::vector<std::uint8_t> remove_inside(const Region& region) {
-        std::vector<std::uint8_t> leaves(size(), 0);
+    Array<std::uint8_t> remove_inside(const Region& region) {
+        Array<std::uint8_t> leaves(size(), 0);
         for (std::size_t k = 0; k < size(); ++k)
             if (is_free(k) && region.contains(states_[k].centre))
                 leaves[k] = 1, states_[k].removed = 1;
@@ -125,13 +125,13 @@ private:
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
     void restore(const RigidBodyColumns<D>& columns);
 
-    std::vector<RigidBody<D>> bodies_;
-    std::vector<RigidBodyState<D>> states_;
-    std::vector<Vec<double, D>> contact_force_;  // of the last contact step
-    std::vector<Vec3> contact_torque_;
-    std::vector<Vec<double, D>> mean_contact_force_;
-    std::vector<Vec<double, D>> velocity_before_, impulse_before_;  // at the start of a step
-    std::vector<Vec3> spin_before_;
+    Array<RigidBody<D>> bodies_;
+    Array<RigidBodyState<D>> states_;
+    Array<Vec<double, D>> contact_force_;  // of the last contact step
+    Array<Vec3> contact_torque_;
+    Array<Vec<double, D>> mean_contact_force_;
+    Array<Vec<double, D>> velocity_before_, impulse_before_;  // at the start of a step
+    Array<Vec3> spin_before_;
     std::size_t moving_ = 0;
 };
 
@@ -148,7 +148,7 @@ void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& stat
 /// Makes the bodies of an archive, in whose state they are already.
 template <int D>
 void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
-    const std::vector<RigidBodyState<D>> states = std::move(states_);
+    const Array<RigidBodyState<D>> states = std::move(states_);
     columns.expect_fit_of(states.size());
     shapes = columns.shapes();
     bodies_.clear(), states_.clear(), moving_ = 0;

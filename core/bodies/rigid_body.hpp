@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/shape.hpp"
 #include "model/archive.hpp"
@@ -46,14 +46,14 @@ struct RigidBodyPoint {
 /// Shapes and rigid bodies as one vector for each member, as archives keep them.
 template <int D>
 struct RigidBodyColumns {
-    std::vector<double> radius, mass;
-    std::vector<Vec<double, D>> corners, samples;  // of all shapes in turn
-    std::vector<std::int32_t> facet_count, sample_count, shape, material, group;
-    std::vector<std::uint8_t> fixed;
-    std::vector<Mat<double, 3>> inertia;
+    Array<double> radius, mass;
+    Array<Vec<double, D>> corners, samples;  // of all shapes in turn
+    Array<std::int32_t> facet_count, sample_count, shape, material, group;
+    Array<std::uint8_t> fixed;
+    Array<Mat<double, 3>> inertia;
 
     RigidBodyColumns() = default;
-    RigidBodyColumns(const std::vector<Shape<D>>& shapes, const std::vector<RigidBody<D>>& bodies) {
+    RigidBodyColumns(const Array<Shape<D>>& shapes, const Array<RigidBody<D>>& bodies) {
         for (const Shape<D>& each : shapes) {
             radius.push_back(each.radius);
             for (const auto& facet : each.facets)
@@ -90,8 +90,8 @@ struct RigidBodyColumns {
         for (const std::int32_t k : shape) expect_index(k, n, "body_shape");
     }
 
-    std::vector<Shape<D>> shapes() const {
-        std::vector<Shape<D>> result(radius.size());
+    Array<Shape<D>> shapes() const {
+        Array<Shape<D>> result(radius.size());
         auto corner = corners.begin(), sample = samples.begin();
         for (std::size_t k = 0; k < result.size(); ++k) {
             result[k].radius = radius[k];
@@ -111,8 +111,8 @@ struct RigidBodyColumns {
 
 private:
     /// That the parts, of `size` elements each, are all there are.
-    static void expect_parts(const std::vector<std::int32_t>& counts, std::size_t all,
-                             std::size_t size, const char* name) {
+    static void expect_parts(const Array<std::int32_t>& counts, std::size_t all, std::size_t size,
+                             const char* name) {
         std::size_t sum = 0;
         for (const std::int32_t count : counts) {
             expect_fit(count >= 0 && static_cast<std::size_t>(count) <= all, name);

@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -59,13 +59,13 @@ private:
         return points_[particles.point(p)];
     }
 
-    std::vector<RigidBodyPoint<D>> points_;
+    Array<RigidBodyPoint<D>> points_;
 };
 
 template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) const {
-    std::vector<Vec<double, D>> force(points_.size());
+    Array<Vec<double, D>> force(points_.size());
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (has(particles, p)) force[particles.point(p)] = particles.wall.force[p];
     ranks.sum(numbers_of(force));

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/rotation.hpp"
 
 namespace doseki {
@@ -23,8 +23,8 @@ struct Shape {
         std::array<Vec<double, D>, D>;  // corners of a segment or triangle, outside to the right
 
     double radius = 0.0;  // of the ball, or of the ball around everything [m]
-    std::vector<Facet> facets;
-    std::vector<Vec<double, D>> samples;  // points of the surface that may touch another shape
+    Array<Facet> facets;
+    Array<Vec<double, D>> samples;  // points of the surface that may touch another shape
 
     bool is_ball() const { return facets.empty(); }
 

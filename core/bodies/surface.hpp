@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/contact_law.hpp"
 #include "model/domain.hpp"
 
@@ -31,12 +31,12 @@ template <int D>
 struct Surface {
     std::int32_t body = 0, material = 0;
     double mass = 0.0, spacing = 0.0;  // of its points
-    std::vector<std::uint8_t> crease;
-    std::vector<Vec<double, D>> position, velocity;
-    std::vector<Vec3> spin;
+    Array<std::uint8_t> crease;
+    Array<Vec<double, D>> position, velocity;
+    Array<Vec3> spin;
     // What the contacts do to them; torque about where they act.
-    std::vector<Vec<double, D>> force;
-    std::vector<Vec3> torque;
+    Array<Vec<double, D>> force;
+    Array<Vec3> torque;
 
     std::size_t size() const { return crease.size(); }
     void add(bool is_crease) {

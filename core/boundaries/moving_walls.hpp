@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "model/particles.hpp"
 
@@ -115,7 +115,7 @@ public:
 
     /// Marks in `removed` what vanishes after `before` and up to t; true if there is any.
     bool remove(const Particles<D>& particles, double before, double t,
-                std::vector<std::uint8_t>& removed) const {
+                Array<std::uint8_t>& removed) const {
         bool any = false;
         for (const WallMotion<D>& motion : motions_) any |= vanishes(motion, before, t);
         if (!any) return false;
@@ -149,8 +149,8 @@ private:
         return tag.motion == Motion::fixed ? motion_of(tag.body) : nullptr;
     }
 
-    std::vector<WallMotion<D>> motions_;
-    std::vector<int> of_body_;  // index of its motion; -1: none
+    Array<WallMotion<D>> motions_;
+    Array<int> of_body_;  // index of its motion; -1: none
 };
 
 }  // namespace doseki

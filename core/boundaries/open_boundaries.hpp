@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "boundaries/speed_table.hpp"
 #include "model/particles.hpp"
@@ -27,10 +27,10 @@ inline double symmetric_noise(std::int64_t id, int axis) {
 /// to one layer.
 template <int D>
 struct Inflow {
-    std::vector<Vec<double, D>> layer;  // positions of one layer in the plane of the section
-    Vec<double, D> direction{};         // unit vector of the flow
-    SpeedTable speed;                   // from the start of the inflow to its end
-    double spacing = 0.0;               // between layers [m]
+    Array<Vec<double, D>> layer;  // positions of one layer in the plane of the section
+    Vec<double, D> direction{};   // unit vector of the flow
+    SpeedTable speed;             // from the start of the inflow to its end
+    double spacing = 0.0;         // between layers [m]
     int buffer_layers = 4;
     double jitter = 0.0;  // random displacement of a particle, in spacings (< 1/2)
     double mass = 0.0, density = 0.0, smoothing_length = 0.0;  // of one particle
@@ -110,8 +110,8 @@ struct Ledger {
 template <int D>
 class OpenBoundaries {
 public:
-    std::vector<Inflow<D>> inflows;
-    std::vector<Outflow<D>> outflows;
+    Array<Inflow<D>> inflows;
+    Array<Outflow<D>> outflows;
     Ledger<D> ledger;  // of the particles of this rank
     std::int64_t next_id = 0;
     bool adds = true;  // on one rank only; from there particles go to their owners
@@ -155,7 +155,7 @@ public:
     template <class RemoveBodies>
     bool remove_outflow(const Particles<D>& particles, const RemoveBodies& remove_bodies);
 
-    std::vector<std::uint8_t> removed;
+    Array<std::uint8_t> removed;
 
     /// What changes during a run; `removed` is empty between steps.
     void serialise(Archive& archive);

@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
+
+#include "base/array.hpp"
 
 namespace doseki {
 
@@ -10,7 +11,7 @@ namespace doseki {
 /// speed [m/s]. In between the speed is linear in time, so the distance is a parabola and known
 /// exactly.
 struct SpeedTable {
-    std::vector<double> time, distance, speed;
+    Array<double> time, distance, speed;
 
     static SpeedTable constant(double start, double stop, double speed) {
         return {{start, stop}, {0.0, speed * (stop - start)}, {speed, speed}};

@@ -243,7 +243,7 @@ public:
         return table;
     }
     double interacting_pairs() const override {
-        const std::vector<double> counts = sim_.scheme().pair_counts(sim_.neighbours());
+        const Array<double> counts = sim_.scheme().pair_counts(sim_.neighbours());
         return std::accumulate(counts.begin(), counts.end(), 0.0);
     }
     double bare_pair_rate(double seconds) const override {

@@ -57,7 +57,7 @@ inline void SavingArchive::save(const std::string& name, const Rows& rows) {
 
 inline Archive::Rows LoadingArchive::load(const std::string& name) const {
     const Value* value = arrays_.find(name);
-    const auto* array = value ? std::get_if<Array>(value) : nullptr;
+    const auto* array = value ? std::get_if<NumberArray>(value) : nullptr;
     if (!array || array->shape.empty() || array->shape.size() > 2) return {};
     return {array->numbers, array->shape[0], array->shape.size() == 2 ? array->shape[1] : 1};
 }

@@ -1,4 +1,5 @@
 #include "interface/bodies.hpp"
+#include "base/array.hpp"
 
 #include <algorithm>
 
@@ -22,13 +23,12 @@ void read_facets(ColumnReader& column, Shape<D>& shape) {
 }
 
 template <int D>
-std::vector<SurfaceVertex<D>> surface_of(const NamedValues& table,
-                                         const std::vector<Vec<double, D>>& rest) {
+Array<SurfaceVertex<D>> surface_of(const NamedValues& table, const Array<Vec<double, D>>& rest) {
     ColumnReader column(table, "surface of an elastic body");
     const auto place = column.vectors<D>("vertex");
     const auto carrier = column.numbers<std::int32_t>("carrier");
     const auto crease = column.numbers<std::uint8_t>("crease");
-    std::vector<SurfaceVertex<D>> vertices;
+    Array<SurfaceVertex<D>> vertices;
     for (std::size_t v = 0; v < place.size(); ++v) {
         const Vec<double, D> point = rest.at(static_cast<std::size_t>(carrier[v]));
         vertices.push_back({static_cast<std::uint32_t>(carrier[v]), place[v] - point, crease[v]});
@@ -38,7 +38,7 @@ std::vector<SurfaceVertex<D>> surface_of(const NamedValues& table,
 
 }  // namespace
 
-DeformableBody read_elastic_body(const NamedValues& table, const std::vector<const char*>& others) {
+DeformableBody read_elastic_body(const NamedValues& table, const Array<const char*>& others) {
     DeformableBody body{};
     std::string law;
     double modulus = 0.0, ratio = 0.0;
@@ -108,8 +108,8 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const std::vector<const char*> own{"material", "particles", "rest",    "position", "velocity",
-                                       "clamped",  "vertex",    "carrier", "crease"};
+    const Array<const char*> own{"material", "particles", "rest",    "position", "velocity",
+                                 "clamped",  "vertex",    "carrier", "crease"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
@@ -167,7 +167,7 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
 
 template <int D>
 Value BodyTables<D>::rigid_body_of(const Bodies<D>& bodies, const Particles<D>& particles,
-                                   const std::vector<std::size_t>& order) {
+                                   const Array<std::size_t>& order) {
     NewArray<std::int32_t> grain({order.size()});
     for (std::size_t k = 0; k < order.size(); ++k)
         grain[k] = bodies.rigid_body_of(particles, order[k]);
@@ -176,7 +176,7 @@ Value BodyTables<D>::rigid_body_of(const Bodies<D>& bodies, const Particles<D>& 
 
 template <int D>
 Value BodyTables<D>::stress(const Bodies<D>& bodies, const Particles<D>& particles,
-                            const std::vector<std::size_t>& order, const PointStates<D>& states) {
+                            const Array<std::size_t>& order, const PointStates<D>& states) {
     NewArray<double> stress({order.size(), 3, 3});
     for (std::size_t k = 0; k < order.size(); ++k) {
         double* const out = stress.data() + 9 * k;

@@ -1,8 +1,7 @@
 #pragma once
 // Rigid and deformable bodies as tables, in and out.
 
-#include <vector>
-
+#include "base/array.hpp"
 #include "bodies/bodies.hpp"
 #include "interface/particles.hpp"
 #include "interface/reader.hpp"
@@ -12,7 +11,7 @@ namespace doseki {
 
 /// Body parameters of a table {rho0, young_modulus, poisson_ratio, elastic_law, spacing, hourglass,
 /// damping}; `others` are keys that the caller reads itself.
-DeformableBody read_elastic_body(const NamedValues& table, const std::vector<const char*>& others);
+DeformableBody read_elastic_body(const NamedValues& table, const Array<const char*>& others);
 
 /// Columns rest, position, velocity and clamped of the points of a deformable body.
 template <int D>
@@ -37,10 +36,10 @@ struct BodyTables {
     static NamedValues rigid(const Bodies<D>& bodies);
     /// Index of the rigid body of each particle, or -1.
     static Value rigid_body_of(const Bodies<D>& bodies, const Particles<D>& particles,
-                               const std::vector<std::size_t>& order);
+                               const Array<std::size_t>& order);
     /// Cauchy stress of particles, that of deformable bodies included.
     static Value stress(const Bodies<D>& bodies, const Particles<D>& particles,
-                        const std::vector<std::size_t>& order, const PointStates<D>& states);
+                        const Array<std::size_t>& order, const PointStates<D>& states);
 };
 
 extern template struct BodyTables<2>;

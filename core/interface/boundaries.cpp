@@ -1,4 +1,5 @@
 #include "interface/boundaries.hpp"
+#include "base/array.hpp"
 
 #include "interface/reader.hpp"
 
@@ -39,8 +40,7 @@ Inflow<D> BoundaryTables<D>::inflow(const NamedValues& table) {
 }
 
 template <int D>
-Outflow<D> BoundaryTables<D>::outflow(const std::vector<double>& low,
-                                      const std::vector<double>& high) {
+Outflow<D> BoundaryTables<D>::outflow(std::span<const double> low, std::span<const double> high) {
     if (low.size() != D || high.size() != D)
         throw std::invalid_argument("box: corners of the wrong dimension");
     return {vectors_of<D>(low)[0], vectors_of<D>(high)[0]};

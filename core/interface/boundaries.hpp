@@ -1,8 +1,7 @@
 #pragma once
 // Inflows, outflows and prescribed motions as tables.
 
-#include <vector>
-
+#include "base/array.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
 #include "interface/value.hpp"
@@ -14,7 +13,7 @@ struct BoundaryTables {
     /// An inflow of `times`, `distances` and `speeds`, or of a constant `speed` from `start` to
     /// `stop`.
     static Inflow<D> inflow(const NamedValues& table);
-    static Outflow<D> outflow(const std::vector<double>& low, const std::vector<double>& high);
+    static Outflow<D> outflow(std::span<const double> low, std::span<const double> high);
     static WallMotion<D> motion(const NamedValues& table);
 };
 

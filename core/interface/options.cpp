@@ -30,7 +30,7 @@ Material read_material(const NamedValues& table, const std::string& place) {
 }  // namespace
 
 template <int D>
-Setup<D> Setup<D>::read(const std::vector<NamedValues>& materials, const NamedValues& options) {
+Setup<D> Setup<D>::read(std::span<const NamedValues> materials, const NamedValues& options) {
     Setup setup;
     for (std::size_t k = 0; k < materials.size(); ++k)
         setup.materials.push_back(

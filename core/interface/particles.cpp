@@ -15,7 +15,7 @@ void put_row(NewArray<double>& array, std::size_t k, const std::array<double, n>
 }
 
 template <int D>
-void sort_by_id(const Particles<D>& particles, std::vector<std::size_t>& order) {
+void sort_by_id(const Particles<D>& particles, Array<std::size_t>& order) {
     std::sort(order.begin(), order.end(), [&particles](std::size_t p, std::size_t q) {
         return particles.tag[p].id < particles.tag[q].id;
     });
@@ -83,19 +83,18 @@ void ParticleTables<D>::set_faces(Particles<D>& particles, const NamedValues& co
 }
 
 template <int D>
-std::vector<std::size_t> ParticleTables<D>::id_order(const Particles<D>& particles) {
-    std::vector<std::size_t> order(particles.size());
+Array<std::size_t> ParticleTables<D>::id_order(const Particles<D>& particles) {
+    Array<std::size_t> order(particles.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     sort_by_id(particles, order);
     return order;
 }
 
 template <int D>
-std::vector<std::size_t> ParticleTables<D>::inside(const Particles<D>& particles,
-                                                   const std::vector<double>& low,
-                                                   const std::vector<double>& high) {
+Array<std::size_t> ParticleTables<D>::inside(const Particles<D>& particles,
+                                             const Array<double>& low, const Array<double>& high) {
     const Outflow<D> box = BoundaryTables<D>::outflow(low, high);
-    std::vector<std::size_t> found;
+    Array<std::size_t> found;
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (box.contains(particles.position[p])) found.push_back(p);
     sort_by_id(particles, found);
@@ -104,7 +103,7 @@ std::vector<std::size_t> ParticleTables<D>::inside(const Particles<D>& particles
 
 template <int D>
 NamedValues ParticleTables<D>::sample(const Particles<D>& particles,
-                                      const std::vector<std::size_t>& order,
+                                      const Array<std::size_t>& order,
                                       const PointStates<D>& states) {
     const std::size_t n = order.size();
     NewArray<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}),
@@ -130,7 +129,7 @@ NamedValues ParticleTables<D>::sample(const Particles<D>& particles,
 
 template <int D>
 NamedValues ParticleTables<D>::fields(const Particles<D>& particles,
-                                      const std::vector<std::size_t>& order,
+                                      const Array<std::size_t>& order,
                                       const PointStates<D>& states) {
     const std::size_t n = order.size();
     NewArray<double> c({n});
@@ -146,7 +145,7 @@ NamedValues ParticleTables<D>::fields(const Particles<D>& particles,
 
 template <int D>
 NamedValues ParticleTables<D>::rates(const Particles<D>& particles,
-                                     const std::vector<std::size_t>& order) {
+                                     const Array<std::size_t>& order) {
     NamedValues table;
     table["acceleration"] = column(particles.acceleration, order);
     table["density_rate"] = column(particles.density_rate, order);
@@ -154,7 +153,7 @@ NamedValues ParticleTables<D>::rates(const Particles<D>& particles,
 }
 
 template <int D>
-Value ParticleTables<D>::column(const Field<double>& field, const std::vector<std::size_t>& order) {
+Value ParticleTables<D>::column(const Field<double>& field, const Array<std::size_t>& order) {
     NewArray<double> column({order.size()});
     for (std::size_t k = 0; k < order.size(); ++k) column[k] = field[order[k]];
     return column;
@@ -162,7 +161,7 @@ Value ParticleTables<D>::column(const Field<double>& field, const std::vector<st
 
 template <int D>
 Value ParticleTables<D>::column(const Field<Vec<double, D>>& field,
-                                const std::vector<std::size_t>& order) {
+                                const Array<std::size_t>& order) {
     NewArray<double> column({order.size(), D});
     for (std::size_t k = 0; k < order.size(); ++k) put_row(column, k, field[order[k]].component);
     return column;
@@ -170,7 +169,7 @@ Value ParticleTables<D>::column(const Field<Vec<double, D>>& field,
 
 template <int D>
 Value ParticleTables<D>::column(const Field<Mat<double, D>>& field,
-                                const std::vector<std::size_t>& order) {
+                                const Array<std::size_t>& order) {
     NewArray<double> column({order.size(), D, D});
     for (std::size_t k = 0; k < order.size(); ++k) {
         const auto& element = field[order[k]].element;
@@ -180,7 +179,7 @@ Value ParticleTables<D>::column(const Field<Mat<double, D>>& field,
 }
 
 template <int D>
-Value ParticleTables<D>::stresses(const std::vector<std::size_t>& order,
+Value ParticleTables<D>::stresses(const Array<std::size_t>& order,
                                   const std::function<Deviator<double, D>(std::size_t)>& deviator) {
     NewArray<double> column({order.size(), 3, 3});
     for (std::size_t k = 0; k < order.size(); ++k)
@@ -189,13 +188,13 @@ Value ParticleTables<D>::stresses(const std::vector<std::size_t>& order,
 }
 
 template <int D>
-std::vector<Deviator<double, D>> ParticleTables<D>::deviators(const NamedValues& columns,
-                                                              std::size_t count) {
+Array<Deviator<double, D>> ParticleTables<D>::deviators(const NamedValues& columns,
+                                                        std::size_t count) {
     ColumnReader column(columns, "stresses");
     const auto numbers = column.numbers<double>("deviatoric_stress", 9);
     column.finish();
     if (column.rows() != count) throw std::invalid_argument("stresses: one row for each particle");
-    std::vector<Deviator<double, D>> rows(count);
+    Array<Deviator<double, D>> rows(count);
     for (std::size_t k = 0; k < count; ++k)
         for (int a = 0; a < D; ++a)
             for (int b = a; b < D; ++b)

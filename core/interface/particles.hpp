@@ -2,8 +2,8 @@
 // Particles as tables of columns, in and out.
 
 #include <functional>
-#include <vector>
 
+#include "base/array.hpp"
 #include "interface/value.hpp"
 #include "model/particles.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
@@ -29,30 +29,28 @@ struct ParticleTables {
     static void set_faces(Particles<D>& particles, const NamedValues& columns);
 
     /// Indices of the particles in the order of their ids.
-    static std::vector<std::size_t> id_order(const Particles<D>& particles);
+    static Array<std::size_t> id_order(const Particles<D>& particles);
     /// The same of those in a box.
-    static std::vector<std::size_t> inside(const Particles<D>& particles,
-                                           const std::vector<double>& low,
-                                           const std::vector<double>& high);
+    static Array<std::size_t> inside(const Particles<D>& particles, const Array<double>& low,
+                                     const Array<double>& high);
     /// Columns of the particles in `order` that gauges read.
-    static NamedValues sample(const Particles<D>& particles, const std::vector<std::size_t>& order,
+    static NamedValues sample(const Particles<D>& particles, const Array<std::size_t>& order,
                               const PointStates<D>& states);
     /// All fields of a particle but the stress.
-    static NamedValues fields(const Particles<D>& particles, const std::vector<std::size_t>& order,
+    static NamedValues fields(const Particles<D>& particles, const Array<std::size_t>& order,
                               const PointStates<D>& states);
-    static NamedValues rates(const Particles<D>& particles, const std::vector<std::size_t>& order);
+    static NamedValues rates(const Particles<D>& particles, const Array<std::size_t>& order);
 
     /// One field of the particles in `order`.
-    static Value column(const Field<double>& field, const std::vector<std::size_t>& order);
-    static Value column(const Field<Vec<double, D>>& field, const std::vector<std::size_t>& order);
-    static Value column(const Field<Mat<double, D>>& field, const std::vector<std::size_t>& order);
+    static Value column(const Field<double>& field, const Array<std::size_t>& order);
+    static Value column(const Field<Vec<double, D>>& field, const Array<std::size_t>& order);
+    static Value column(const Field<Mat<double, D>>& field, const Array<std::size_t>& order);
     /// Stresses, all nine components of each.
-    static Value stresses(const std::vector<std::size_t>& order,
+    static Value stresses(const Array<std::size_t>& order,
                           const std::function<Deviator<double, D>(std::size_t)>& deviator);
 
     /// The deviators of `count` particles from a column `deviatoric_stress` of nine components.
-    static std::vector<Deviator<double, D>> deviators(const NamedValues& columns,
-                                                      std::size_t count);
+    static Array<Deviator<double, D>> deviators(const NamedValues& columns, std::size_t count);
 
     /// All nine components of S - p I.
     static void fill_stress(double* out, double p, const Deviator<double, D>& S) {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/named.hpp"
 #include "base/vec.hpp"
 #include "interface/value.hpp"
@@ -88,8 +88,8 @@ private:
     static void read(const Value& value, const std::string& place, std::string& member) {
         member = as<std::string>(value, place, "a word");
     }
-    static void read(const Value& value, const std::string& place, Array& member) {
-        member = as<Array>(value, place, "an array");
+    static void read(const Value& value, const std::string& place, NumberArray& member) {
+        member = as<NumberArray>(value, place, "an array");
     }
     template <std::integral Whole>
     static void read(const Value& value, const std::string& place, Whole& member) {
@@ -117,18 +117,18 @@ private:
     }
     template <class T, std::size_t n>
     static void read(const Value& value, const std::string& place, std::array<T, n>& member) {
-        std::vector<T> values;
+        Array<T> values;
         read_list(value, place, values);
         if (values.size() != n)
             throw std::invalid_argument(place + ": expected " + std::to_string(n) + " values");
         std::copy(values.begin(), values.end(), member.begin());
     }
     template <class T>
-    static void read(const Value& value, const std::string& place, std::vector<T>& member) {
+    static void read(const Value& value, const std::string& place, Array<T>& member) {
         read_list(value, place, member);
     }
     template <class T>
-    static void read_list(const Value& value, const std::string& place, std::vector<T>& members) {
+    static void read_list(const Value& value, const std::string& place, Array<T>& members) {
         members.clear();
         const List& list = as<List>(value, place, "a list");
         for (std::size_t k = 0; k < list.size(); ++k) {
@@ -147,13 +147,13 @@ private:
 
     const NamedValues& table_;
     std::string place_;
-    std::vector<std::string> known_;
+    Array<std::string> known_;
 };
 
 /// Vectors of D numbers, one for each row.
 template <int D>
-std::vector<Vec<double, D>> vectors_of(const std::vector<double>& numbers) {
-    std::vector<Vec<double, D>> rows(numbers.size() / D);
+Array<Vec<double, D>> vectors_of(std::span<const double> numbers) {
+    Array<Vec<double, D>> rows(numbers.size() / D);
     for (std::size_t k = 0; k < rows.size(); ++k)
         std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(k * D), D,
                     rows[k].component.begin());
@@ -170,25 +170,25 @@ public:
 
     /// The numbers of one column, `width` of them in each row.
     template <class T>
-    std::vector<T> numbers(const char* key, std::size_t width = 1) {
+    Array<T> numbers(const char* key, std::size_t width = 1) {
         known_.push_back(key);
         const Value* value = table_.find(key);
         if (!value) throw std::invalid_argument(place_ + ": \"" + key + "\" is missing");
-        const auto* array = std::get_if<Array>(value);
+        const auto* array = std::get_if<NumberArray>(value);
         if (!array) throw std::invalid_argument(place_ + "." + key + ": expected an array");
         if (array->size() != array->rows() * width)
             throw std::invalid_argument(place_ + "." + key + ": rows of the wrong length");
         if (checks_rows_ && rows_ != unknown && rows_ != array->rows())
             throw std::invalid_argument(place_ + ": arrays of unequal length");
         rows_ = array->rows();
-        std::vector<T> numbers;
+        Array<T> numbers;
         if (!copy(*array, numbers))
             throw std::invalid_argument(place_ + "." + key + ": numbers of another type");
         return numbers;
     }
 
     template <int D>
-    std::vector<Vec<double, D>> vectors(const char* key) {
+    Array<Vec<double, D>> vectors(const char* key) {
         return vectors_of<D>(numbers<double>(key, D));
     }
 
@@ -203,7 +203,7 @@ public:
 private:
     /// Whole numbers may become real ones; real ones do not become whole.
     template <class T>
-    static bool copy(const Array& array, std::vector<T>& numbers) {
+    static bool copy(const NumberArray& array, Array<T>& numbers) {
         return std::visit(
             [&]<class N>(const N* first) {
                 if constexpr (std::is_integral_v<T> && !std::is_integral_v<N>) {
@@ -220,7 +220,7 @@ private:
     static constexpr std::size_t unknown = std::numeric_limits<std::size_t>::max();
     const NamedValues& table_;
     std::string place_;
-    std::vector<std::string> known_;
+    Array<std::string> known_;
     bool checks_rows_;
     std::size_t rows_ = unknown;
 };

@@ -19,7 +19,7 @@ namespace doseki {
 
 /// Numbers in rows: a view of someone's memory, valid during a call, or with an owner for as long
 /// as it lives.
-struct Array {
+struct NumberArray {
     NumberPointer numbers;
     std::vector<std::size_t> shape;
     std::shared_ptr<const void> owner;
@@ -54,8 +54,8 @@ private:
 
 using List = std::vector<Value>;
 
-struct Value : std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, List,
-                            NamedValues> {
+struct Value : std::variant<std::monostate, bool, std::int64_t, double, std::string, NumberArray,
+                            List, NamedValues> {
     using variant::variant;
 };
 
@@ -74,8 +74,8 @@ public:
     T* row(std::size_t k) { return data_.get() + k * shape_[1]; }
 
     operator Value() const {
-        return Array{static_cast<const T*>(data_.get()), shape_,
-                     std::shared_ptr<const void>(data_, data_.get())};
+        return NumberArray{static_cast<const T*>(data_.get()), shape_,
+                           std::shared_ptr<const void>(data_, data_.get())};
     }
 
 private:

@@ -1,4 +1,5 @@
 #include "model/archive.hpp"
+#include "base/array.hpp"
 
 #include "model/particles.hpp"
 
@@ -11,10 +12,10 @@ void Archive::operator()(const char* name, bool& value) {
 }
 
 void Archive::operator()(const char* name, Field<Tag>& tags) {
-    std::vector<std::int64_t> id;
-    std::vector<std::int32_t> body;
-    std::vector<std::int16_t> material;
-    std::vector<std::uint8_t> motion;
+    Array<std::int64_t> id;
+    Array<std::int32_t> body;
+    Array<std::int16_t> material;
+    Array<std::uint8_t> motion;
     for (const Tag& tag : tags) {
         id.push_back(tag.id), body.push_back(tag.body), material.push_back(tag.material);
         motion.push_back(static_cast<std::uint8_t>(tag.motion));

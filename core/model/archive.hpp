@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string>
 #include <variant>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "base/field.hpp"
 #include "base/members.hpp"
@@ -63,7 +63,7 @@ public:
         std::memcpy(static_cast<void*>(&value), from.numbers, sizeof(T));
     }
     template <class T>
-    void operator()(const char* name, std::vector<T>& values) {
+    void operator()(const char* name, Array<T>& values) {
         column(name, values);
     }
     template <class T>

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/vec.hpp"
 
 namespace doseki {
@@ -11,8 +11,8 @@ namespace doseki {
 /// add up to it, the timestep is the smallest of its limits.
 template <int D>
 struct ForceTerms {
-    std::vector<std::pair<std::string, Vec<double, D>>> acceleration;  // [m/s^2]
-    std::vector<std::pair<std::string, double>> timestep;              // [s]
+    Array<std::pair<std::string, Vec<double, D>>> acceleration;  // [m/s^2]
+    Array<std::pair<std::string, double>> timestep;              // [s]
 
     Vec<double, D> total_acceleration() const {
         Vec<double, D> sum{};

@@ -1,6 +1,6 @@
 #pragma once
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/named.hpp"
 #include "base/vec.hpp"
 
@@ -51,7 +51,7 @@ struct FlowOptions {
     bool shifting = true;
     Turbulence turbulence = Turbulence::none;
     double smagorinsky = 0.12;
-    std::vector<WallCondition> walls;  // by body
+    Array<WallCondition> walls;  // by body
 
     template <class F>
     void members(F&& f) {

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/field.hpp"
 #include "base/vec.hpp"
 #include "model/archive.hpp"
@@ -74,7 +74,7 @@ struct Particles {
     virtual ~Particles() = default;
 
     /// All fields, those of the scheme among them.
-    virtual std::vector<NamedField> fields() = 0;
+    virtual Array<NamedField> fields() = 0;
     virtual void serialise(Archive& archive) = 0;
     /// A particle that an inflow has just added, whose common fields are set.
     virtual void enter(std::size_t p) = 0;
@@ -131,8 +131,8 @@ template <class State>
 struct StateOf final : State {
     using State::State;
 
-    std::vector<NamedField> fields() override {
-        std::vector<NamedField> fields;
+    Array<NamedField> fields() override {
+        Array<NamedField> fields;
         this->for_each_field(
             [&fields](const char* name, auto& field) { fields.push_back({name, &field}); });
         return fields;

@@ -5,8 +5,8 @@
 
 #include <concepts>
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "pairs/count_term.hpp"
 #include "pairs/loop.hpp"
 
@@ -33,7 +33,7 @@ struct PairsToSum {
 template <class B, int D>
 concept SortsAndLists = requires(typename B::template Lists<D> lists, ParticlesToSort<D> particles,
                                  double skin, std::span<const std::int32_t> faces) {
-    { B::sort(lists, particles) } -> std::same_as<std::vector<std::uint32_t>>;  // order of storage
+    { B::sort(lists, particles) } -> std::same_as<Array<std::uint32_t>>;  // order of storage
     B::build_lists(lists, particles.position, particles.support, skin, faces);
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "pairs/backend.hpp"
 #include "pairs/neighbour_lists.hpp"
@@ -14,7 +15,7 @@ struct Cpu {
     using Lists = Neighbours<D>;
 
     template <int D>
-    static std::vector<std::uint32_t> sort(Lists<D>& lists, const ParticlesToSort<D>& particles) {
+    static Array<std::uint32_t> sort(Lists<D>& lists, const ParticlesToSort<D>& particles) {
         return lists.sort(particles.position, particles.support, particles.is_fixed,
                           particles.is_near);
     }

@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <vector>
+
+#include "base/array.hpp"
 
 namespace doseki {
 
@@ -106,9 +107,9 @@ private:
         return start;
     }
 
-    std::vector<std::vector<std::uint16_t>> blocks_;
-    std::vector<std::uint16_t> words_;
-    std::vector<std::uint32_t> sorted_;
+    Array<Array<std::uint16_t>> blocks_;
+    Array<std::uint16_t> words_;
+    Array<std::uint32_t> sorted_;
     std::size_t block_ = 0, used_ = 0, entries_ = 0;
 };
 

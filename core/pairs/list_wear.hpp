@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/box.hpp"
 #include "base/parallel.hpp"
 #include "base/vec.hpp"
@@ -50,10 +50,10 @@ private:
 
     Domain<D> domain_;
     double reach_ = 0.0;
-    std::vector<Vec<double, D>> start_;
+    Array<Vec<double, D>> start_;
     Vec<double, D> origin_, cell_size_;
-    Cell cells_{};                                // cells that far apart share a place
-    std::vector<std::uint32_t> first_, members_;  // particles by cell
+    Cell cells_{};                          // cells that far apart share a place
+    Array<std::uint32_t> first_, members_;  // particles by cell
 };
 
 /// As many cells as there are particles at most: a periodic direction gets wider ones, any other
@@ -112,7 +112,7 @@ void ListWear<D>::start(std::span<const Vec<double, D>> position, double reach) 
     reach_ = reach;
     start_.assign(position.begin(), position.end());
     size_cells(position);
-    std::vector<std::uint32_t> place_of(position.size());
+    Array<std::uint32_t> place_of(position.size());
     for_each_particle(position.size(), [&](std::size_t p) {
         place_of[p] = static_cast<std::uint32_t>(place(position[p]));
     });
@@ -121,7 +121,7 @@ void ListWear<D>::start(std::span<const Vec<double, D>> position, double reach) 
     first_.assign(places + 1, 0);
     for (const std::uint32_t place : place_of) ++first_[place + 1];
     for (std::size_t c = 0; c < places; ++c) first_[c + 1] += first_[c];
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    Array<std::uint32_t> next(first_.begin(), first_.end() - 1);
     members_.resize(position.size());
     for (std::uint32_t p = 0; p < place_of.size(); ++p) members_[next[place_of[p]]++] = p;
 }
@@ -146,7 +146,7 @@ auto ListWear<D>::around(std::size_t place_of_cell, std::span<const Range> range
 
 template <int D>
 double ListWear<D>::approach(std::span<const Vec<double, D>> position) const {
-    std::vector<Range> ranges(first_.size() - 1, Range::nowhere());
+    Array<Range> ranges(first_.size() - 1, Range::nowhere());
     for_each_particle(ranges.size(), [&](std::size_t c) {
         for (std::uint32_t k = first_[c]; k < first_[c + 1]; ++k) {
             const std::uint32_t p = members_[k];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "base/phase_timer.hpp"
 #include "pairs/neighbour_lists.hpp"
@@ -44,9 +45,9 @@ private:
 
 /// Image shifts in units of the records' coordinates.
 template <class real, int D>
-std::vector<std::array<Coordinate<real>, D>> image_shifts(const Neighbours<D>& neighbours,
-                                                          const CoordinateFrame<real, D>& frame) {
-    std::vector<std::array<Coordinate<real>, D>> shifts;
+Array<std::array<Coordinate<real>, D>> image_shifts(const Neighbours<D>& neighbours,
+                                                    const CoordinateFrame<real, D>& frame) {
+    Array<std::array<Coordinate<real>, D>> shifts;
     for (const auto& shift : neighbours.image_shifts()) {
         std::array<Coordinate<real>, D> units;
         for (int a = 0; a < D; ++a) units[a] = static_cast<Coordinate<real>>(shift[a] / frame.unit);
@@ -62,7 +63,7 @@ struct PairLoop {
     static constexpr int D = Term::dim;
 
     std::span<const MotionRecord<real, D>> records;
-    std::vector<std::array<Coordinate<real>, D>> shifts;
+    Array<std::array<Coordinate<real>, D>> shifts;
     real unit;
     const Term& term;
 

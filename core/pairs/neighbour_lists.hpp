@@ -5,8 +5,8 @@
 #include <map>
 #include <span>
 #include <tuple>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/box.hpp"
 #include "base/error.hpp"
 #include "base/vec.hpp"
@@ -43,16 +43,16 @@ public:
 
     /// Order in which particles are to be stored: moving ones before fixed ones, and among each
     /// those that are near other ranks last; none are where `is_near` is empty.
-    std::vector<std::uint32_t> sort(std::span<const Vec<double, D>> position,
-                                    std::span<const double> support,
-                                    std::span<const std::uint8_t> is_fixed,
-                                    std::span<const std::uint8_t> is_near = {});
+    Array<std::uint32_t> sort(std::span<const Vec<double, D>> position,
+                              std::span<const double> support,
+                              std::span<const std::uint8_t> is_fixed,
+                              std::span<const std::uint8_t> is_near = {});
 
     /// Order in which ghosts are to be stored after the particles: moving ones first. They are
     /// neighbours, and have none themselves.
-    std::vector<std::uint32_t> sort_ghosts(std::span<const Vec<double, D>> position,
-                                           std::span<const double> support,
-                                           std::span<const std::uint8_t> is_fixed);
+    Array<std::uint32_t> sort_ghosts(std::span<const Vec<double, D>> position,
+                                     std::span<const double> support,
+                                     std::span<const std::uint8_t> is_fixed);
 
     /// Lists of all clusters of `width` particles, for positions already stored in sorted order,
     /// those of ghosts at the end.
@@ -64,7 +64,7 @@ public:
     const Vec<double, D>& image_shift(std::uint32_t entry) const {
         return image_shift_[entry >> ListEntry::index_bits];
     }
-    const std::vector<Vec<double, D>>& image_shifts() const { return image_shift_; }
+    const Array<Vec<double, D>>& image_shifts() const { return image_shift_; }
     std::size_t entries() const;
     std::size_t bytes() const;
     bool is_periodic() const { return domain_.any_periodic(); }
@@ -85,7 +85,7 @@ public:
 private:
     /// All lists in one array, with their lengths.
     struct FlatLists {
-        std::vector<std::uint32_t> moving, fixed, entries;
+        Array<std::uint32_t> moving, fixed, entries;
     };
 
     FlatLists flatten() const;
@@ -100,8 +100,8 @@ private:
         Vec<double, D> cell_size{};
         Vec<double, D> origin{};
         std::array<std::int64_t, D> cells{};  // power of two, except in periodic directions
-        std::array<std::vector<std::uint32_t>, D> key_part;  // Morton key = OR over directions
-        std::vector<std::uint32_t> cell_start;
+        std::array<Array<std::uint32_t>, D> key_part;  // Morton key = OR over directions
+        Array<std::uint32_t> cell_start;
     };
 
     /// A cell that a search visits, along one direction.
@@ -123,18 +123,18 @@ private:
 
     /// Particles by class: moving before fixed, far from other ranks before near, then by smoothing
     /// length.
-    using Classes = std::map<std::tuple<bool, bool, int>, std::vector<std::uint32_t>>;
-    std::vector<std::uint32_t> sort_classes(const Classes& classes,
-                                            std::span<const Vec<double, D>> position,
-                                            std::span<const double> support, std::size_t first);
+    using Classes = std::map<std::tuple<bool, bool, int>, Array<std::uint32_t>>;
+    Array<std::uint32_t> sort_classes(const Classes& classes,
+                                      std::span<const Vec<double, D>> position,
+                                      std::span<const double> support, std::size_t first);
     bool is_beyond(const Grid& grid, const Bounds& bounds, double radius) const;
 
     /// What a thread needs while it searches.
     struct Scratch {
-        std::vector<std::uint32_t> list;
+        Array<std::uint32_t> list;
         std::span<const std::int32_t> faces;  // that must differ; empty: all pairs are listed
-        std::vector<Part> parts;
-        std::array<std::vector<CellStep>, D> steps;
+        Array<Part> parts;
+        std::array<Array<CellStep>, D> steps;
     };
 
     void fill_image_shifts();
@@ -151,7 +151,7 @@ private:
 
     static void find_parts(std::span<const Vec<double, D>> position,
                            std::span<const double> support, std::size_t first, std::size_t last,
-                           std::vector<Part>& parts);
+                           Array<Part>& parts);
 
     void search_cells(int width, const Grid& grid, const Part& part, std::uint32_t first,
                       double skin, std::span<const Vec<double, D>> position,
@@ -163,10 +163,10 @@ private:
     void fill_steps(const Grid& grid, const Bounds& bounds, double radius, Scratch& scratch) const;
 
     Domain<D> domain_;
-    std::vector<Vec<double, D>> image_shift_;
-    std::vector<Grid> grids_;
-    std::vector<ClusterList> clusters_;
-    std::vector<ListStorage> storage_;  // one per thread
+    Array<Vec<double, D>> image_shift_;
+    Array<Grid> grids_;
+    Array<ClusterList> clusters_;
+    Array<ListStorage> storage_;  // one per thread
     std::size_t moving_ = 0, inner_ = 0, size_ = 0;
 };
 

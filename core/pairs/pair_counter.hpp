@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "pairs/backend.hpp"
 
 namespace doseki {
@@ -21,9 +21,7 @@ public:
     double interacting_pairs() const { return count(lists_.clusters(), scheme_.motion_records()); }
 
     /// Neighbours within support of each particle, ghosts left out.
-    std::vector<double> counts() const {
-        return counts(lists_.clusters(), scheme_.motion_records());
-    }
+    Array<double> counts() const { return counts(lists_.clusters(), scheme_.motion_records()); }
 
     double count(std::span<const ClusterList> clusters, Records records) const {
         double total = 0.0;
@@ -31,8 +29,8 @@ public:
         return total;
     }
 
-    std::vector<double> counts(std::span<const ClusterList> clusters, Records records) const {
-        std::vector<double> of_particle(records.size());
+    Array<double> counts(std::span<const ClusterList> clusters, Records records) const {
+        Array<double> of_particle(records.size());
         // A cluster that holds moving and fixed particles lists fixed ones for both.
         auto keep = [&](std::size_t p, const NeighbourCounts<double>& count) {
             of_particle[p] = count.moving + (p < lists_.moving() ? count.fixed : 0.0);

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/vec.hpp"
 
 namespace doseki {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "pairs/neighbour_lists.hpp"
 
@@ -118,7 +119,7 @@ void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
     clusters_.assign(count, {});
     storage_.resize(static_cast<std::size_t>(thread_count()));
     for (ListStorage& storage : storage_) storage.clear();
-    std::vector<Scratch> scratches(storage_.size());
+    Array<Scratch> scratches(storage_.size());
 
     for_each_task(count, 64, [&](std::size_t thread, std::size_t c) {
         Scratch& scratch = scratches[thread];
@@ -154,7 +155,7 @@ void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
 template <int D>
 void Neighbours<D>::find_parts(std::span<const Vec<double, D>> position,
                                std::span<const double> support, std::size_t first, std::size_t last,
-                               std::vector<Part>& parts) {
+                               Array<Part>& parts) {
     constexpr double widest = 2.5;  // of the support radius
     parts.clear();
     for (std::size_t p = first; p < last; ++p) {

@@ -6,20 +6,21 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/array.hpp"
 #include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
 
 /// The counts of layers after the upper half has been put onto the lower one.
-inline std::vector<double> folded(const std::vector<double>& layers) {
+inline Array<double> folded(const Array<double>& layers) {
     const std::size_t half = layers.size() / 2;
-    std::vector<double> sum(half);
+    Array<double> sum(half);
     for (std::size_t k = 0; k < half; ++k) sum[k] = layers[k] + layers[k + half];
     return sum;
 }
 
 /// Proportional to the number of pairs within layers.
-inline double crowding(const std::vector<double>& layers) {
+inline double crowding(const Array<double>& layers) {
     return std::inner_product(layers.begin(), layers.end(), layers.begin(), 0.0);
 }
 
@@ -50,7 +51,7 @@ std::int64_t Neighbours<D>::wrap(const Grid& grid, std::int64_t cell, int a) con
 /// so the key is the OR of one part for each direction.
 template <int D>
 void Neighbours<D>::fill_key_parts(Grid& grid) {
-    std::array<std::vector<int>, D> places;
+    std::array<Array<int>, D> places;
     for (int bit = 0, place = 0; bit < 32; ++bit)
         for (int a = 0; a < D; ++a)
             if ((std::uint64_t{1} << bit) < static_cast<std::uint64_t>(grid.cells[a]))
@@ -115,7 +116,7 @@ std::array<std::int64_t, D> Neighbours<D>::fold(const Grid& grid, std::array<std
     const std::int64_t limit =
         std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
     if (table_size(cells) <= limit) return cells;
-    std::array<std::vector<double>, D> layers;  // particles with the same cell along a direction
+    std::array<Array<double>, D> layers;  // particles with the same cell along a direction
     for (int a = 0; a < D; ++a) {
         if (domain_.periodic[a]) continue;
         layers[a].assign(static_cast<std::size_t>(cells[a]), 0.0);
@@ -138,10 +139,10 @@ std::array<std::int64_t, D> Neighbours<D>::fold(const Grid& grid, std::array<std
 }
 
 template <int D>
-std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> position,
-                                               std::span<const double> support,
-                                               std::span<const std::uint8_t> is_fixed,
-                                               std::span<const std::uint8_t> is_near) {
+Array<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> position,
+                                         std::span<const double> support,
+                                         std::span<const std::uint8_t> is_fixed,
+                                         std::span<const std::uint8_t> is_near) {
     if (position.size() > ListEntry::max_index)
         throw ResourceFailure("more than 2^27 particles on one rank");
     Classes classes;
@@ -158,9 +159,9 @@ std::vector<std::uint32_t> Neighbours<D>::sort(std::span<const Vec<double, D>> p
 }
 
 template <int D>
-std::vector<std::uint32_t> Neighbours<D>::sort_ghosts(std::span<const Vec<double, D>> position,
-                                                      std::span<const double> support,
-                                                      std::span<const std::uint8_t> is_fixed) {
+Array<std::uint32_t> Neighbours<D>::sort_ghosts(std::span<const Vec<double, D>> position,
+                                                std::span<const double> support,
+                                                std::span<const std::uint8_t> is_fixed) {
     if (size_ + position.size() > ListEntry::max_index)
         throw ResourceFailure("more than 2^27 particles and ghosts on one rank");
     Classes classes;
@@ -171,11 +172,11 @@ std::vector<std::uint32_t> Neighbours<D>::sort_ghosts(std::span<const Vec<double
 
 /// Adds a grid for each class; the first particle is to be stored at `first`.
 template <int D>
-std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes,
-                                                       std::span<const Vec<double, D>> position,
-                                                       std::span<const double> support,
-                                                       std::size_t first) {
-    std::vector<std::uint32_t> order;
+Array<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes,
+                                                 std::span<const Vec<double, D>> position,
+                                                 std::span<const double> support,
+                                                 std::size_t first) {
+    Array<std::uint32_t> order;
     order.reserve(position.size());
     for (const auto& [name, members] : classes) {
         Grid grid;
@@ -185,7 +186,7 @@ std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes,
         for (std::uint32_t p : members) grid.support = std::max(grid.support, support[p]);
         size_grid(grid, position, members);
 
-        std::vector<std::uint32_t> keys(members.size());
+        Array<std::uint32_t> keys(members.size());
         for (std::size_t k = 0; k < members.size(); ++k) {
             keys[k] = key_of(grid, position[members[k]]);
             ++grid.cell_start[keys[k] + 1];
@@ -193,7 +194,7 @@ std::vector<std::uint32_t> Neighbours<D>::sort_classes(const Classes& classes,
         grid.cell_start[0] = grid.first;
         for (std::size_t c = 1; c < grid.cell_start.size(); ++c)
             grid.cell_start[c] += grid.cell_start[c - 1];
-        std::vector<std::uint32_t> next(grid.cell_start.begin(), grid.cell_start.end() - 1);
+        Array<std::uint32_t> next(grid.cell_start.begin(), grid.cell_start.end() - 1);
         order.resize(order.size() + members.size());
         for (std::size_t k = 0; k < members.size(); ++k)
             order[next[keys[k]]++ - first] = members[k];

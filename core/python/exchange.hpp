@@ -24,17 +24,17 @@ public:
     void largest(std::span<double> values) override { call("largest", values); }
     void sum(std::span<double> values) override { call("sum", values); }
 
-    std::vector<double> gather(std::span<const double> part) override {
+    Array<double> gather(std::span<const double> part) override {
         const nanobind::gil_scoped_acquire locked;
         return numbers<double>(transport_.attr("gather")(view(part)));
     }
 
-    std::vector<Parcel> swap(const std::vector<Parcel>& parcels) override {
+    Array<Parcel> swap(const Array<Parcel>& parcels) override {
         const nanobind::gil_scoped_acquire locked;
         nanobind::dict sent;
         for (const Parcel& parcel : parcels)
             sent[nanobind::int_(parcel.rank)] = view(std::span(parcel.content));
-        std::vector<Parcel> came;
+        Array<Parcel> came;
         for (const auto& [rank, content] :
              nanobind::cast<nanobind::dict>(transport_.attr("swap")(sent)))
             came.push_back({nanobind::cast<int>(rank), numbers<std::byte, std::uint8_t>(content)});
@@ -48,11 +48,11 @@ public:
     void cut(std::span<const double> coordinates, std::span<const double> weights) override {
         call("cut", coordinates, weights);
     }
-    std::vector<double> region() override {
+    Array<double> region() override {
         const nanobind::gil_scoped_acquire locked;
         return numbers<double>(transport_.attr("region")());
     }
-    std::vector<int> owners(std::span<const double> coordinates) override {
+    Array<int> owners(std::span<const double> coordinates) override {
         const nanobind::gil_scoped_acquire locked;
         return numbers<int>(transport_.attr("owners")(view(coordinates)));
     }
@@ -80,11 +80,11 @@ private:
     }
 
     template <class T, class Number = T>
-    static std::vector<T> numbers(const nanobind::handle& array) {
+    static Array<T> numbers(const nanobind::handle& array) {
         const auto values = nanobind::cast<
             nanobind::ndarray<const Number, nanobind::c_contig, nanobind::device::cpu>>(array);
         const auto* const first = reinterpret_cast<const T*>(values.data());
-        return std::vector<T>(first, first + values.size());
+        return Array<T>(first, first + values.size());
     }
 
     template <class... Values>

@@ -15,7 +15,7 @@ bool view_as(const AnyArray& array, std::variant<const Numbers*...>& numbers) {
             ...);
 }
 
-Value scalar(const Array& array) {
+Value scalar(const NumberArray& array) {
     return std::visit(
         []<class T>(const T* number) -> Value {
             if constexpr (std::is_same_v<T, bool>)
@@ -30,7 +30,7 @@ Value scalar(const Array& array) {
 
 Value to_array(nb::handle object) {
     const auto held = std::make_shared<AnyArray>(nb::cast<AnyArray>(object));
-    Array array;
+    NumberArray array;
     if (!view_as(*held, array.numbers)) throw nb::type_error("array of an unknown type of number");
     for (std::size_t a = 0; a < held->ndim(); ++a) array.shape.push_back(held->shape(a));
     if (array.shape.empty()) return scalar(array);
@@ -44,7 +44,7 @@ Value to_list(nb::handle object) {
     return list;
 }
 
-nb::object array_to_python(const Array& array) {
+nb::object array_to_python(const NumberArray& array) {
     auto* const owner = new std::shared_ptr<const void>(array.owner);
     const nb::capsule capsule(
         owner, [](void* p) noexcept { delete static_cast<std::shared_ptr<const void>*>(p); });
@@ -89,7 +89,7 @@ nb::object to_python(const Value& value) {
         []<class T>(const T& content) -> nb::object {
             if constexpr (std::is_same_v<T, std::monostate>) {
                 return nb::none();
-            } else if constexpr (std::is_same_v<T, Array>) {
+            } else if constexpr (std::is_same_v<T, NumberArray>) {
                 return array_to_python(content);
             } else if constexpr (std::is_same_v<T, NamedValues>) {
                 return to_python(content);

@@ -2,8 +2,8 @@
 // What particles cost, so that space is cut into parts of equal work.
 
 #include <algorithm>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/phase_timer.hpp"
 #include "pairs/list_storage.hpp"
 
@@ -28,10 +28,10 @@ struct WordCosts {
 /// lengths of the lists; equal shares before there are any. `cost_model(ListWords, PassSeconds)` is
 /// the scheme's: it knows which pass is over which particles.
 template <class CostModel>
-std::vector<double> particle_costs(std::span<const ClusterList> clusters, std::size_t width,
-                                   std::size_t moving, std::size_t count, const PhaseTimer& phases,
-                                   int threads, const CostModel& cost_model) {
-    std::vector<double> costs(count, 1.0);
+Array<double> particle_costs(std::span<const ClusterList> clusters, std::size_t width,
+                             std::size_t moving, std::size_t count, const PhaseTimer& phases,
+                             int threads, const CostModel& cost_model) {
+    Array<double> costs(count, 1.0);
     if (clusters.empty()) return costs;
     ListWords words;
     for (std::size_t c = 0; c < clusters.size(); ++c)

@@ -3,14 +3,14 @@
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/vec.hpp"
 #include "ranks/rank_clock.hpp"
 
 namespace doseki {
 
-using Bytes = std::vector<std::byte>;
+using Bytes = Array<std::byte>;
 
 /// Bytes for, or from, another rank.
 struct Parcel {
@@ -31,9 +31,9 @@ public:
     virtual void largest(std::span<double> values) = 0;  // of each, in place
     virtual void sum(std::span<double> values) = 0;      // of each, in place
     /// The parts of all ranks, which may differ in length, in the order of ranks.
-    virtual std::vector<double> gather(std::span<const double> part) = 0;
+    virtual Array<double> gather(std::span<const double> part) = 0;
     /// Delivers parcels; returns those that came, in the order of ranks.
-    virtual std::vector<Parcel> swap(const std::vector<Parcel>& parcels) = 0;
+    virtual Array<Parcel> swap(const Array<Parcel>& parcels) = 0;
 
     /// Whether space is to be cut anew; `busy`: seconds that this rank has worked since it last
     /// was.
@@ -41,9 +41,9 @@ public:
     /// Cuts space into parts of equal weight.
     virtual void cut(std::span<const double> coordinates, std::span<const double> weights) = 0;
     /// Local: low and high corner of this rank's part.
-    virtual std::vector<double> region() = 0;
+    virtual Array<double> region() = 0;
     /// Local: the ranks to which points belong.
-    virtual std::vector<int> owners(std::span<const double> coordinates) = 0;
+    virtual Array<int> owners(std::span<const double> coordinates) = 0;
 
     /// Local: sends and awaits one message for each of `peers`; `ends` are where each ends, in
     /// bytes.
@@ -84,7 +84,7 @@ public:
         sum({&value, 1});
         return value;
     }
-    std::vector<double> gather(const std::vector<double>& part) const {
+    Array<double> gather(const Array<double>& part) const {
         if (alone()) return part;
         const auto timing = clock.measure(Share::wait);
         return exchange_->gather(part);
@@ -96,7 +96,7 @@ private:
 
 /// Vectors as the numbers that they consist of.
 template <int D>
-std::span<double> numbers_of(std::vector<Vec<double, D>>& vectors) {
+std::span<double> numbers_of(Array<Vec<double, D>>& vectors) {
     static_assert(sizeof(Vec<double, D>) == D * sizeof(double));
     return {reinterpret_cast<double*>(vectors.data()), D * vectors.size()};
 }

@@ -1,10 +1,11 @@
 #include "ranks/halo.hpp"
+#include "base/array.hpp"
 
 namespace doseki {
 
 template <int D>
 auto Halo<D>::all_bounds(std::span<const Vec<double, D>> position, std::span<const double> support,
-                         std::span<const std::uint8_t> is_fixed) const -> std::vector<Bounds> {
+                         std::span<const std::uint8_t> is_fixed) const -> Array<Bounds> {
     Bounds mine;
     for (std::size_t p = 0; p < position.size(); ++p) {
         mine.all.add(position[p]);
@@ -13,7 +14,7 @@ auto Halo<D>::all_bounds(std::span<const Vec<double, D>> position, std::span<con
     }
     constexpr std::size_t numbers = sizeof(Bounds) / sizeof(double);
     const auto flat = ranks.exchange().gather({reinterpret_cast<const double*>(&mine), numbers});
-    std::vector<Bounds> bounds(flat.size() / numbers);
+    Array<Bounds> bounds(flat.size() / numbers);
     std::memcpy(static_cast<void*>(bounds.data()), flat.data(), flat.size() * sizeof(double));
     return bounds;
 }
@@ -49,14 +50,14 @@ void Halo<D>::find_exports(std::span<const Vec<double, D>> position,
                            double skin, bool fixed_meet) {
     peers_.clear();
     exported_.assign(position.size(), 0);
-    const std::vector<Bounds> bounds = all_bounds(position, support, is_fixed);
+    const Array<Bounds> bounds = all_bounds(position, support, is_fixed);
     const Bounds& mine = bounds[static_cast<std::size_t>(ranks.rank())];
     for (int r = 0; r < ranks.count(); ++r) {
         const Bounds& theirs = bounds[static_cast<std::size_t>(r)];
         if (r == ranks.rank() ||
             !(gap(mine.all, theirs.all) < std::max(mine.support, theirs.support) + skin))
             continue;
-        std::vector<std::uint32_t> exported;
+        Array<std::uint32_t> exported;
         for (std::size_t p = 0; p < position.size(); ++p) {
             const Box<D>& box = is_fixed[p] && !fixed_meet ? theirs.moving : theirs.all;
             if (!(gap({position[p], position[p]}, box) <
@@ -72,7 +73,7 @@ void Halo<D>::find_exports(std::span<const Vec<double, D>> position,
 template <int D>
 void Halo<D>::renumber(std::span<const std::uint32_t> order) {
     if (alone()) return;
-    std::vector<std::uint32_t> place(order.size());
+    Array<std::uint32_t> place(order.size());
     for (std::uint32_t k = 0; k < order.size(); ++k) place[order[k]] = k;
     for (Peer& peer : peers_) {
         for (std::uint32_t& p : peer.exported) p = place[p];
@@ -85,7 +86,7 @@ auto Halo<D>::announce(std::span<const Vec<double, D>> position, std::span<const
                        std::span<const std::uint8_t> is_fixed) -> Arrivals {
     Arrivals arrivals;
     if (alone()) return arrivals;
-    std::vector<Parcel> parcels;
+    Array<Parcel> parcels;
     for (Peer& peer : peers_) {
         peer.exported_moving =
             static_cast<std::size_t>(std::count_if(peer.exported.begin(), peer.exported.end(),

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "base/array.hpp"
 #include "base/box.hpp"
 #include "base/field.hpp"
 #include "model/fault.hpp"
@@ -67,9 +68,9 @@ public:
     /// Tells the other ranks what they will get. Fills the arrays with position, support radius and
     /// whether fixed of the ghosts, as they come.
     struct Arrivals {
-        std::vector<Vec<double, D>> position;
-        std::vector<double> support;
-        std::vector<std::uint8_t> is_fixed;
+        Array<Vec<double, D>> position;
+        Array<double> support;
+        Array<std::uint8_t> is_fixed;
     };
     Arrivals announce(std::span<const Vec<double, D>> position, std::span<const double> support,
                       std::span<const std::uint8_t> is_fixed);
@@ -101,7 +102,7 @@ private:
     /// What is exchanged with one rank: moving particles first, then fixed ones.
     struct Peer {
         int rank;
-        std::vector<std::uint32_t> exported;  // particles here
+        Array<std::uint32_t> exported;  // particles here
         std::size_t exported_moving = 0;
         std::size_t first_arrival = 0, arrivals = 0, arrivals_moving = 0;
     };
@@ -112,9 +113,9 @@ private:
         std::uint64_t is_fixed;
     };
 
-    std::vector<Bounds> all_bounds(std::span<const Vec<double, D>> position,
-                                   std::span<const double> support,
-                                   std::span<const std::uint8_t> is_fixed) const;
+    Array<Bounds> all_bounds(std::span<const Vec<double, D>> position,
+                             std::span<const double> support,
+                             std::span<const std::uint8_t> is_fixed) const;
     double gap(const Box<D>& one, const Box<D>& other) const;
     Peer& peer_of(int rank);
 
@@ -128,14 +129,14 @@ private:
     }
 
     Domain<D> domain_;
-    std::vector<Peer> peers_;             // in the order of ranks
-    std::vector<std::uint8_t> exported_;  // of each particle, while lists are built
-    std::vector<std::uint32_t> place_;    // in the storage, of each arrival
+    Array<Peer> peers_;             // in the order of ranks
+    Array<std::uint8_t> exported_;  // of each particle, while lists are built
+    Array<std::uint32_t> place_;    // in the storage, of each arrival
     std::size_t moving_ghosts_ = 0;
-    std::vector<int> peer_ranks_;
-    std::vector<HaloColumn> in_flight_;
+    Array<int> peer_ranks_;
+    Array<HaloColumn> in_flight_;
     Bytes send_, receive_;
-    std::vector<std::size_t> send_ends_, receive_ends_;
+    Array<std::size_t> send_ends_, receive_ends_;
     double bytes_sent_ = 0.0, messages_sent_ = 0.0;
 };
 

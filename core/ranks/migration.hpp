@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 
+#include "base/array.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
 
@@ -37,9 +38,8 @@ void unpack(Particles<D>& particles, const Bytes& bytes) {
 }
 
 template <int D>
-std::vector<double> coordinates_of(const Particles<D>& particles,
-                                   std::span<const std::uint32_t> chosen) {
-    std::vector<double> coordinates;
+Array<double> coordinates_of(const Particles<D>& particles, std::span<const std::uint32_t> chosen) {
+    Array<double> coordinates;
     coordinates.reserve(chosen.size() * D);
     for (const std::uint32_t p : chosen)
         for (int a = 0; a < D; ++a) coordinates.push_back(particles.position[p][a]);
@@ -49,8 +49,8 @@ std::vector<double> coordinates_of(const Particles<D>& particles,
 /// Sends every particle to its owner.
 template <int D>
 void migrate(Particles<D>& particles, Exchange& exchange) {
-    const std::vector<double> region = exchange.region();
-    std::vector<std::uint32_t> leaving, staying;
+    const Array<double> region = exchange.region();
+    Array<std::uint32_t> leaving, staying;
     for (std::uint32_t p = 0; p < particles.size(); ++p) {
         bool inside = true;
         for (int a = 0; a < D; ++a)
@@ -58,12 +58,12 @@ void migrate(Particles<D>& particles, Exchange& exchange) {
                       particles.position[p][a] < region[static_cast<std::size_t>(D + a)];
         if (!inside) leaving.push_back(p);
     }
-    const std::vector<int> owners = exchange.owners(coordinates_of(particles, leaving));
-    std::map<int, std::vector<std::uint32_t>> of_rank;
+    const Array<int> owners = exchange.owners(coordinates_of(particles, leaving));
+    std::map<int, Array<std::uint32_t>> of_rank;
     for (std::size_t k = 0; k < leaving.size(); ++k)
         if (owners[k] != exchange.rank) of_rank[owners[k]].push_back(leaving[k]);
-    std::vector<Parcel> parcels;
-    std::vector<std::uint8_t> gone(particles.size(), 0);
+    Array<Parcel> parcels;
+    Array<std::uint8_t> gone(particles.size(), 0);
     for (const auto& [rank, chosen] : of_rank) {
         parcels.push_back({rank, pack(particles, chosen)});
         for (const std::uint32_t p : chosen) gone[p] = 1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/array.hpp"
 #include "base/poison.hpp"
 #include "resolved/flow_depth.hpp"
 #include "resolved/fluid_epilogue.hpp"
@@ -16,7 +17,7 @@
 namespace doseki {
 
 template <int D, class Backend>
-Resolved<D, Backend>::Resolved(std::vector<Material> materials, const Options<D>& options)
+Resolved<D, Backend>::Resolved(Array<Material> materials, const Options<D>& options)
     : model_(std::make_shared<const ResolvedModel<D>>(std::move(materials), options)) {}
 
 template <int D, class Backend>
@@ -236,7 +237,7 @@ double Resolved<D, Backend>::kernel_support() const {
 }
 
 template <int D, class Backend>
-const std::vector<Material>& Resolved<D, Backend>::materials() const {
+const Array<Material>& Resolved<D, Backend>::materials() const {
     return model_->materials;
 }
 

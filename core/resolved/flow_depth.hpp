@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <vector>
 
+#include "base/array.hpp"
 #include "model/particles.hpp"
 #include "physics/viscosity.hpp"
 #include "ranks/exchange.hpp"
@@ -69,12 +69,12 @@ private:
     void merge(const Ranks& ranks, Add&& add) {
         if (ranks.alone()) return;
         constexpr std::size_t numbers = D + 3;
-        std::vector<double> part;
+        Array<double> part;
         for (const auto& [key, column] : columns_) {
             for (const std::int64_t k : key) part.push_back(static_cast<double>(k));
             part.insert(part.end(), {column.volume, column.height, column.count, column.bed});
         }
-        const std::vector<double> all = ranks.gather(part);
+        const Array<double> all = ranks.gather(part);
         columns_.clear();
         for (std::size_t row = 0; row < all.size(); row += numbers) {
             Key key;

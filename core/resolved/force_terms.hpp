@@ -2,8 +2,8 @@
 // The sums of one fluid particle taken apart: the same sums again, with parts of them left out.
 
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "model/force_terms.hpp"
 #include "pairs/backend.hpp"
 #include "resolved/interactions.hpp"
@@ -39,8 +39,7 @@ struct FluidPass {
     /// exchange among fluids, and what walls do.
     template <class Kernel>
     ForceTerms<D> pair_forces(std::size_t p) const {
-        std::vector<FluidRecord<D>> changed(records.fluid_fields.begin(),
-                                            records.fluid_fields.end());
+        Array<FluidRecord<D>> changed(records.fluid_fields.begin(), records.fluid_fields.end());
         const FluidRecord<D>& record = records.fluid_fields[p];
         const auto force = [&](const FluidAccumulators<double, D>& sums) {
             return (1.0 / record.rho) * (pressure_force(sums, record) + 2.0 * sums.force);

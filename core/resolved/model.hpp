@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
+#include "base/array.hpp"
 #include "model/material.hpp"
 #include "model/material_laws.hpp"
 #include "model/options.hpp"
@@ -37,15 +37,15 @@ struct MinDensity {
 
 template <int D>
 struct ResolvedModel {
-    std::vector<Material> materials;
-    std::vector<MinDensity> min_density;  // of each material that is a fluid
+    Array<Material> materials;
+    Array<MinDensity> min_density;  // of each material that is a fluid
     Options<D> options;
     FlowConstants constants{};
     double lattice_concentration = 1.0;
     double full_cover = 1.0;                       // see physics/wall.hpp
     std::array<double, D + 1> spacing_power{1.0};  // dp^k
 
-    ResolvedModel(std::vector<Material> given, const Options<D>& opts)
+    ResolvedModel(Array<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
         for (const Material& material : materials) {
             if (material.law == Law::fluid) constants.c = std::max(constants.c, material.c0);

@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/phase_timer.hpp"
 #include "model/force_terms.hpp"
 #include "model/material.hpp"
@@ -39,7 +39,7 @@ public:
     /// The second one reads the gradients that the first one has left.
     static constexpr int first_evaluations = 2;
 
-    Resolved(std::vector<Material> materials, const Options<D>& options);
+    Resolved(Array<Material> materials, const Options<D>& options);
 
     /// Fills the rates of `state`, whose density and velocity are half a step behind: the values
     /// predicted with the old rates over `half_dt` are what enters the sums. Sets timestep() and
@@ -65,7 +65,7 @@ public:
     PhaseTimer& phases() { return phases_; }
     const Fault& fault() const { return fault_; }
     std::int64_t limiting_particle() const { return limiting_; }
-    const std::vector<Material>& materials() const;
+    const Array<Material>& materials() const;
     std::span<const MotionRecord<double, D>> motion_records() const { return motion_; }
     const CoordinateFrame<double, D>& frame() const { return frame_; }
     Deviator<double, D> deviator(const State&, std::size_t) const { return {}; }

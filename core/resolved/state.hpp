@@ -1,6 +1,6 @@
 #pragma once
-#include <vector>
 
+#include "base/array.hpp"
 #include "model/material.hpp"
 #include "model/particles.hpp"
 
@@ -10,7 +10,7 @@ namespace doseki {
 /// free-surface indicator are those of the last evaluation, which the next one reads.
 template <int D>
 struct ResolvedState : Particles<D> {
-    explicit ResolvedState(const std::vector<Material>&) { this->wall.in_use = true; }
+    explicit ResolvedState(const Array<Material>&) { this->wall.in_use = true; }
 
     Field<Vec<double, D>> pressure_gradient;  // [Pa/m]
     Field<Mat<double, D>> velocity_gradient;  // [1/s]

@@ -6,8 +6,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/phase_timer.hpp"
 #include "model/archive.hpp"
 #include "model/fault.hpp"
@@ -49,13 +49,13 @@ public:
     virtual Weight<D> weight() const = 0;
 
     virtual int width() const = 0;
-    virtual std::vector<std::uint32_t> sort(Lists& lists, const ParticlesToSort<D>& particles) = 0;
+    virtual Array<std::uint32_t> sort(Lists& lists, const ParticlesToSort<D>& particles) = 0;
     virtual void build_lists(Lists& lists, std::span<const Vec<double, D>> position,
                              std::span<const double> support, double skin,
                              std::span<const std::int32_t> faces) = 0;
     virtual WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) const = 0;
     /// How many neighbours within support each particle has.
-    virtual std::vector<double> pair_counts(const Lists& lists) const = 0;
+    virtual Array<double> pair_counts(const Lists& lists) const = 0;
     /// Throws std::invalid_argument where the scheme has none.
     virtual double bare_pair_rate(const Lists& lists, double seconds) const = 0;
 
@@ -70,7 +70,7 @@ public:
     virtual std::int64_t limiting_particle() const = 0;
 
     virtual double kernel_support() const = 0;
-    virtual const std::vector<Material>& materials() const = 0;
+    virtual const Array<Material>& materials() const = 0;
     virtual PhaseTimer& phases() = 0;
     virtual ThermodynamicState<double> equation_of_state(std::size_t p) const = 0;
     virtual double shear_energy(std::size_t p) const = 0;
@@ -98,7 +98,7 @@ class SchemeKind {
 public:
     static constexpr int D = Lists::dim;
     using Made = std::unique_ptr<AnyScheme<Lists>>;
-    using Make = Made(std::vector<Material> materials, const Options<D>& options);
+    using Make = Made(Array<Material> materials, const Options<D>& options);
 
     SchemeKind(std::string name, std::string precision, Make& make)
         : name_(std::move(name)), precision_(std::move(precision)), make_(make) {
@@ -114,13 +114,13 @@ public:
                                     " precision");
     }
 
-    Made make(std::vector<Material> materials, const Options<D>& options) const {
+    Made make(Array<Material> materials, const Options<D>& options) const {
         return make_(std::move(materials), options);
     }
 
 private:
-    static std::vector<const SchemeKind*>& all() {
-        static std::vector<const SchemeKind*> kinds;
+    static Array<const SchemeKind*>& all() {
+        static Array<const SchemeKind*> kinds;
         return kinds;
     }
 

@@ -1,6 +1,6 @@
 #pragma once
-#include <vector>
 
+#include "base/array.hpp"
 #include "model/material.hpp"
 #include "model/particles.hpp"
 #include "run/any_scheme.hpp"
@@ -15,13 +15,13 @@ struct Totals {
     double mass = 0.0;
     Vec<double, D> momentum{};
     double kinetic_energy = 0.0, bulk_energy = 0.0, shear_energy = 0.0;
-    std::vector<std::int64_t> count;  // free particles per material
+    Array<std::int64_t> count;  // free particles per material
 };
 
 template <class Lists>
 Totals<Lists::dim> totals(AnyScheme<Lists>& scheme) {
     const Particles<Lists::dim>& particles = scheme.particles();
-    const std::vector<Material>& materials = scheme.materials();
+    const Array<Material>& materials = scheme.materials();
     Totals<Lists::dim> sum;
     sum.count.assign(materials.size(), 0);
     for (std::size_t p = 0; p < particles.size(); ++p) {

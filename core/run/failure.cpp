@@ -1,4 +1,5 @@
 #include "run/failure.hpp"
+#include "base/array.hpp"
 
 #include <cstdio>
 
@@ -16,7 +17,7 @@ std::string short_number(double value) {
 /// Ids are below 2^53, so that they survive as real numbers.
 FailureSite first_site(const Ranks& ranks, const FailureSite& own) {
     if (ranks.alone()) return own;
-    std::vector<double> part;
+    Array<double> part;
     if (own.id >= 0)
         part = {static_cast<double>(own.id),
                 static_cast<double>(own.material),
@@ -25,7 +26,7 @@ FailureSite first_site(const Ranks& ranks, const FailureSite& own) {
                 own.position[2],
                 own.speed,
                 own.density};
-    const std::vector<double> all = ranks.gather(part);
+    const Array<double> all = ranks.gather(part);
     if (all.empty()) return {};
     return {static_cast<std::int64_t>(all[0]),
             static_cast<int>(all[1]),
@@ -35,7 +36,7 @@ FailureSite first_site(const Ranks& ranks, const FailureSite& own) {
 }
 
 std::string described(const FailureSite& site, int dimensions, double time, std::int64_t step,
-                      const std::vector<Material>& materials) {
+                      const Array<Material>& materials) {
     std::string text = "at t = " + short_number(time) + " s, step " + std::to_string(step);
     if (site.id < 0) return text;
     const Material& material = materials[static_cast<std::size_t>(site.material)];

@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "model/domain.hpp"
 #include "model/material.hpp"
@@ -29,7 +29,7 @@ FailureSite first_site(const Ranks& ranks, const FailureSite& own);
 
 /// The sentence of a failure.
 std::string described(const FailureSite& site, int dimensions, double time, std::int64_t step,
-                      const std::vector<Material>& materials);
+                      const Array<Material>& materials);
 
 /// Index of the first particle that is lost, -1 for none: outside the world, or a whole box away
 /// from a domain that is given.

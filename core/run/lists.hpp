@@ -4,8 +4,8 @@
 #include <numeric>
 #include <span>
 #include <utility>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/phase_timer.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
@@ -82,7 +82,7 @@ public:
         lists_.serialise(archive);
         lists_.set_size(state.size());
         double reach = wear_.reach();
-        std::vector<Vec<double, D>> built(wear_.positions().begin(), wear_.positions().end());
+        Array<Vec<double, D>> built(wear_.positions().begin(), wear_.positions().end());
         archive("lists_reach", reach), archive("lists_position", built);
         if (archive.loads()) {
             expect_fit(built.empty() || built.size() == state.size(), "lists_position");
@@ -97,8 +97,8 @@ public:
     }
 
 private:
-    static std::vector<std::uint8_t> wall_flags(const State& state) {
-        std::vector<std::uint8_t> fixed(state.size());
+    static Array<std::uint8_t> wall_flags(const State& state) {
+        Array<std::uint8_t> fixed(state.size());
         for (std::size_t p = 0; p < state.size(); ++p) fixed[p] = state.is_wall(p);
         return fixed;
     }
@@ -111,8 +111,7 @@ private:
     }
     Field<std::int32_t> faces_with_ghosts(const State& state);
     double cheapest_skin(double min_support, std::int64_t steps) const;
-    void append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
-                       std::vector<double>& support);
+    void append_ghosts(const State& state, Array<Vec<double, D>>& position, Array<double>& support);
 
     AnyScheme<Lists>& scheme_;
     double given_skin_;
@@ -139,7 +138,7 @@ void RunLists<Lists>::cut_space(const State& state, PhaseTimer& phases) {
     const double busy = halo_.ranks.clock.busy() - cut_busy_;
     cut_busy_ += busy;
     if (!exchange.wants_cuts(busy)) return;
-    std::vector<std::uint32_t> everyone(state.size());
+    Array<std::uint32_t> everyone(state.size());
     std::iota(everyone.begin(), everyone.end(), 0u);
     const auto cost_of_lists = [this](const ListWords& words, const PassSeconds& seconds) {
         return scheme_.cost_of_lists(words, seconds);
@@ -164,8 +163,8 @@ template <class Lists>
 template <class Supports>
 void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64_t steps,
                               PhaseTimer& phases) {
-    std::vector<double> support = supports();
-    const std::vector<std::uint8_t> fixed = wall_flags(state);
+    Array<double> support = supports();
+    const Array<std::uint8_t> fixed = wall_flags(state);
     const double own_support = support.empty() ? std::numeric_limits<double>::max()
                                                : *std::min_element(support.begin(), support.end());
     min_support_ = halo_.ranks.smallest(own_support);
@@ -184,7 +183,7 @@ void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64
         halo_.renumber(order);
     }
     support = supports();
-    std::vector<Vec<double, D>> with_ghosts;
+    Array<Vec<double, D>> with_ghosts;
     if (!halo_.alone()) append_ghosts(state, with_ghosts, support);
     const auto timing = phases.measure(Phase::list_build);
     const std::span<const Vec<double, D>> position =
@@ -212,8 +211,8 @@ Field<std::int32_t> RunLists<Lists>::faces_with_ghosts(const State& state) {
 
 /// Positions and supports of the particles here, sorted, and of their ghosts after them.
 template <class Lists>
-void RunLists<Lists>::append_ghosts(const State& state, std::vector<Vec<double, D>>& position,
-                                    std::vector<double>& support) {
+void RunLists<Lists>::append_ghosts(const State& state, Array<Vec<double, D>>& position,
+                                    Array<double>& support) {
     const auto timing = halo_.ranks.clock.measure(Share::halo);
     position.assign(state.position.begin(), state.position.end());
     const auto ghosts = halo_.announce(position, support, wall_flags(state));

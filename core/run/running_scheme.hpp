@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "base/array.hpp"
 #include "pairs/pair_counter.hpp"
 #include "run/any_scheme.hpp"
 #include "run/integrate.hpp"
@@ -22,10 +23,10 @@ class RunningScheme final : public AnyScheme<ListsOf<SchemeOf>> {
     using Backend = typename SchemeOf::Backend;
 
 public:
-    RunningScheme(std::vector<Material> materials, const Options<D>& options)
+    RunningScheme(Array<Material> materials, const Options<D>& options)
         : state_(materials), scheme_(std::move(materials), options) {}
 
-    static std::unique_ptr<AnyScheme<Lists>> make(std::vector<Material> materials,
+    static std::unique_ptr<AnyScheme<Lists>> make(Array<Material> materials,
                                                   const Options<D>& options) {
         return std::make_unique<RunningScheme>(std::move(materials), options);
     }
@@ -44,7 +45,7 @@ public:
     Weight<D> weight() const override { return doseki::weight(state()); }
 
     int width() const override { return Backend::width; }
-    std::vector<std::uint32_t> sort(Lists& lists, const ParticlesToSort<D>& particles) override {
+    Array<std::uint32_t> sort(Lists& lists, const ParticlesToSort<D>& particles) override {
         return Backend::sort(lists, particles);
     }
     void build_lists(Lists& lists, std::span<const Vec<double, D>> position,
@@ -55,7 +56,7 @@ public:
     WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) const override {
         return SchemeOf::cost_of_lists(words, seconds);
     }
-    std::vector<double> pair_counts(const Lists& lists) const override {
+    Array<double> pair_counts(const Lists& lists) const override {
         return PairCounter(scheme_, lists).counts();
     }
     double bare_pair_rate(const Lists& lists, double seconds) const override {
@@ -80,7 +81,7 @@ public:
     std::int64_t limiting_particle() const override { return scheme_.limiting_particle(); }
 
     double kernel_support() const override { return scheme_.kernel_support(); }
-    const std::vector<Material>& materials() const override { return scheme_.materials(); }
+    const Array<Material>& materials() const override { return scheme_.materials(); }
     PhaseTimer& phases() override { return scheme_.phases(); }
     ThermodynamicState<double> equation_of_state(std::size_t p) const override {
         return scheme_.equation_of_state(state_, p);

@@ -2,8 +2,7 @@
 // What a run asks of a scheme. A scheme is a right-hand side with a state of its own: it owns what
 // it keeps of particles and says what happens to that at each point of a step.
 
-#include <vector>
-
+#include "base/array.hpp"
 #include "base/phase_timer.hpp"
 #include "model/fault.hpp"
 #include "model/force_terms.hpp"
@@ -20,7 +19,7 @@ namespace doseki {
 /// `State`: Particles and the scheme's own fields, all listed in for_each_field(f(name, field)).
 template <class State>
 concept SchemeState = std::derived_from<State, Particles<State::dim>> &&
-                      std::constructible_from<StateOf<State>, const std::vector<Material>&> &&
+                      std::constructible_from<StateOf<State>, const Array<Material>&> &&
                       requires(State& state, const State& known, std::size_t p, double dt) {
                           state.for_each_field([](const char*, auto&) {});
                           state.enter(p);     // a particle that an inflow has just added
@@ -34,7 +33,7 @@ concept SchemeState = std::derived_from<State, Particles<State::dim>> &&
 
 template <class S>
 concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, S::dim> &&
-                 std::constructible_from<S, std::vector<Material>, const Options<S::dim>&> &&
+                 std::constructible_from<S, Array<Material>, const Options<S::dim>&> &&
                  requires(S& scheme, const S& known, typename S::State& state,
                           const typename S::Backend::template Lists<S::dim>& lists,
                           Halo<S::dim>& halo, double half_dt, bool new_lists, std::size_t p) {
@@ -49,7 +48,7 @@ concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, 
                      { known.kernel_support() } -> std::same_as<double>;
                      { known.fault() } -> std::same_as<const Fault&>;
                      { known.limiting_particle() } -> std::same_as<std::int64_t>;
-                     { known.materials() } -> std::same_as<const std::vector<Material>&>;
+                     { known.materials() } -> std::same_as<const Array<Material>&>;
                      { scheme.phases() } -> std::same_as<PhaseTimer&>;
                      known.equation_of_state(state, p).pressure;
                      { known.shear_energy(state, p) } -> std::same_as<double>;

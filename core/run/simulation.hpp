@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "base/array.hpp"
 #include "bodies/bodies.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
@@ -166,14 +167,13 @@ private:
     /// built does not matter, for that follows the skin and the ranks.
     static constexpr double outflow_distance = 0.2;
 
-    static auto contact_properties(const std::vector<Material>& materials) {
-        std::vector<ContactProperties> contact;
+    static auto contact_properties(const Array<Material>& materials) {
+        Array<ContactProperties> contact;
         for (const Material& material : materials) contact.push_back(material.contact);
         return contact;
     }
     /// Several times what sound takes from one particle to the next.
-    static double averaging_time(const std::vector<Material>& materials,
-                                 const Options<D>& options) {
+    static double averaging_time(const Array<Material>& materials, const Options<D>& options) {
         double c = 0.0;
         for (const Material& material : materials)
             if (material.law == Law::fluid) c = max(c, material.c0);
@@ -192,7 +192,7 @@ private:
         }
     }
 
-    const std::vector<Material>& materials() const { return scheme_->materials(); }
+    const Array<Material>& materials() const { return scheme_->materials(); }
     /// The smallest step [s] that a run goes on with.
     double least_timestep() const {
         return min_relative_timestep * options_.cflnumber * lists_.min_support() /
@@ -211,7 +211,7 @@ private:
     void wrap_positions();
     bool remove_outflow();
     void drop_removed();
-    std::vector<double> support_radii() const;
+    Array<double> support_radii() const;
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
 
     Options<D> options_;
@@ -347,7 +347,7 @@ template <class Lists>
 void Simulation<Lists>::drop_removed() {
     auto& removed = open_boundaries.removed;
     removed.resize(particles.size(), 0);
-    std::vector<std::uint32_t> kept;
+    Array<std::uint32_t> kept;
     for (std::uint32_t p = 0; p < particles.size(); ++p)
         if (!removed[p]) kept.push_back(p);
     if (kept.size() < particles.size()) reorder(particles, kept);
@@ -356,8 +356,8 @@ void Simulation<Lists>::drop_removed() {
 
 /// As large as they may become before the next sort.
 template <class Lists>
-std::vector<double> Simulation<Lists>::support_radii() const {
-    std::vector<double> support(particles.size());
+Array<double> Simulation<Lists>::support_radii() const {
+    Array<double> support(particles.size());
     const bool grows = options_.h_mode == SmoothingLengthMode::eq10;
     for (std::size_t p = 0; p < support.size(); ++p) {
         double h = particles.smoothing_length[p];

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/array.hpp"
 #include "base/poison.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
@@ -14,7 +15,7 @@
 namespace doseki {
 
 template <int D, class real, class Backend>
-Ueta2022<D, real, Backend>::Ueta2022(std::vector<Material> materials, const Options<D>& options)
+Ueta2022<D, real, Backend>::Ueta2022(Array<Material> materials, const Options<D>& options)
     : model_(std::make_shared<const Ueta2022Model<D>>(std::move(materials), options)) {}
 
 template <int D, class real, class Backend>
@@ -286,7 +287,7 @@ Deviator<double, D> Ueta2022<D, real, Backend>::deviator(const State& particles,
 }
 
 template <int D, class real, class Backend>
-const std::vector<Material>& Ueta2022<D, real, Backend>::materials() const {
+const Array<Material>& Ueta2022<D, real, Backend>::materials() const {
     return model_->materials;
 }
 

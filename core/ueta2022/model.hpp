@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
-#include <vector>
 
+#include "base/array.hpp"
 #include "ueta2022/laws.hpp"
 
 namespace doseki {
@@ -10,12 +10,12 @@ namespace doseki {
 /// once.
 template <int D>
 struct Ueta2022Model {
-    std::vector<Material> materials;
+    Array<Material> materials;
     Options<D> options;
-    std::vector<YieldSurface<double>> surfaces;  // by material
-    bool yields = false;                         // any of them
+    Array<YieldSurface<double>> surfaces;  // by material
+    bool yields = false;                   // any of them
 
-    Ueta2022Model(std::vector<Material> given, const Options<D>& opts)
+    Ueta2022Model(Array<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
         for (const Material& material : materials) {
             surfaces.push_back(yield_surface<D>(material));

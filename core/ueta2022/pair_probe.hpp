@@ -2,8 +2,8 @@
 #include <cmath>
 #include <ctime>
 #include <unordered_map>
-#include <vector>
 
+#include "base/array.hpp"
 #include "pairs/pair_counter.hpp"
 #include "ueta2022/interactions.hpp"
 #include "ueta2022/right_hand_side.hpp"
@@ -45,9 +45,9 @@ private:
     /// Clusters from the middle, with copies of all they read.
     struct HotSet {
         ListStorage lists;
-        std::vector<ClusterList> clusters;
-        std::vector<MotionRecord<real, D>> motion;
-        std::vector<StressRecord<real, D>> stress;
+        Array<ClusterList> clusters;
+        Array<MotionRecord<real, D>> motion;
+        Array<StressRecord<real, D>> stress;
     };
 
     HotSet hot_set() const {
@@ -69,7 +69,7 @@ private:
         for (std::size_t p = first * width; p < (first + hot_clusters) * width; ++p)
             place_of(static_cast<std::uint32_t>(p));
         for (const ClusterList& list : chosen) {
-            std::vector<std::uint32_t> entries;
+            Array<std::uint32_t> entries;
             auto add = [&](std::uint32_t entry) {
                 entries.push_back(place_of(entry & ListEntry::index_mask) |
                                   (entry & ~ListEntry::index_mask));

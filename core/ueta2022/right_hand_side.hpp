@@ -3,8 +3,8 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/phase_timer.hpp"
 #include "model/fault.hpp"
 #include "model/force_terms.hpp"
@@ -37,7 +37,7 @@ public:
     /// Nothing that a sum reads was left by the one before.
     static constexpr int first_evaluations = 1;
 
-    Ueta2022(std::vector<Material> materials, const Options<D>& options);
+    Ueta2022(Array<Material> materials, const Options<D>& options);
 
     /// Fills the rates of `particles`, whose density, stress and velocity are half a step behind:
     /// the values predicted with the old rates over `half_dt` are what enters the sums. Sets
@@ -75,7 +75,7 @@ public:
     const Fault& fault() const { return fault_; }
     /// The particle that allows the shortest timestep, or -1.
     std::int64_t limiting_particle() const { return limiting_; }
-    const std::vector<Material>& materials() const;
+    const Array<Material>& materials() const;
     std::span<const MotionRecord<real, D>> motion_records() const { return motion_; }
     std::span<const StressRecord<real, D>> stress_records() const { return stress_; }
     const CoordinateFrame<real, D>& frame() const { return frame_; }

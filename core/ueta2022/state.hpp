@@ -1,7 +1,7 @@
 #pragma once
 #include <algorithm>
-#include <vector>
 
+#include "base/array.hpp"
 #include "model/material.hpp"
 #include "model/particles.hpp"
 
@@ -11,7 +11,7 @@ namespace doseki {
 /// materials with strength.
 template <int D>
 struct Ueta2022State : Particles<D> {
-    explicit Ueta2022State(const std::vector<Material>& materials)
+    explicit Ueta2022State(const Array<Material>& materials)
         : has_strength(std::any_of(materials.begin(), materials.end(),
                                    [](const Material& m) { return m.shear_modulus > 0.0; })) {}
 

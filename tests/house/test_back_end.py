@@ -1,4 +1,4 @@
-"""What only a back end may know stays in it: threads, and what binds the core to Python."""
+"""What only a back end may know stays in it: threads, memory, and what binds the core to Python."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 CORE = Path(__file__).parents[2] / "core"
+OUTSIDE = {"interface", "python"}  # what speaks with callers
 SOURCES = sorted(file for file in CORE.rglob("*") if file.suffix in {".hpp", ".cpp", ".cu"})
 
 
@@ -29,9 +30,16 @@ def test_nanobind_is_where_python_is():
     assert lines_with(r"nanobind", elsewhere) == []
 
 
-def test_how_fields_are_stored_only_they_know():
-    """Others see elements, and bytes where they do the same with all fields."""
-    field = (CORE / "base" / "field.hpp").read_text(encoding="utf-8")
-    shown = re.sub(r"^(private|protected):.*?^(?=public:|};)", "", field, flags=re.M | re.S)
-    assert "class Field " in shown
-    assert "std::vector" not in shown
+def test_how_values_are_stored_only_two_files_know():
+    """The rest sees fields, arrays and spans, wherever their memory is."""
+    storage = {CORE / "base" / "field.hpp", CORE / "base" / "array.hpp"}
+    inside = [file for file in SOURCES if file.parts[len(CORE.parts)] not in OUTSIDE]
+    assert lines_with(r"std::vector|<vector>", [f for f in inside if f not in storage]) == []
+    for file in storage:
+        assert "std::vector" not in shown(file.read_text(encoding="utf-8"))
+
+
+def shown(text: str) -> str:
+    """What a header lets others use: private parts and what is inherited privately left out."""
+    text = re.sub(r"^(private|protected):.*?^(?=public:|};)", "", text, flags=re.M | re.S)
+    return re.sub(r": private std::vector<T> \{.*?^public:", "{", text, flags=re.M | re.S)

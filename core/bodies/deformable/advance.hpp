@@ -1,6 +1,7 @@
 #pragma once
 // How deformable bodies are stepped, by themselves and among others.
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
@@ -60,10 +61,10 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
 
 template <int D>
 void TotalLagrangian<D>::sort() {
-    std::vector<double> radii(size());
-    const std::vector<std::uint8_t> fixed(size(), 0);
+    Array<double> radii(size());
+    const Array<std::uint8_t> fixed(size(), 0);
     for (std::size_t p = 0; p < size(); ++p) radii[p] = body_of(p).support();
-    const std::vector<std::uint32_t> order = neighbours_.sort(rest_, radii, fixed);
+    const Array<std::uint32_t> order = neighbours_.sort(rest_, radii, fixed);
     auto reorder = [&order](auto& field) {
         auto sorted = field;
         for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
@@ -81,7 +82,7 @@ void TotalLagrangian<D>::correct_gradients() {
     // The matrix is 1 inside; 0 where neighbours do not span the space.
     constexpr double min_determinant = 1e-4;
     correction_.resize(size());
-    std::vector<std::uint8_t> flat(size(), 0);
+    Array<std::uint8_t> flat(size(), 0);
     auto finish = [&](std::size_t p, const DeformationAccumulators<double, D>& sums) {
         flat[p] = !(determinant(sums.place) > min_determinant);
         correction_[p] = inverse(sums.place, min_determinant);
@@ -98,10 +99,10 @@ void TotalLagrangian<D>::correct_gradients() {
 /// Accelerations by internal forces about rest, which are linear in small displacements and
 /// velocities.
 template <int D>
-std::vector<Vec<double, D>> TotalLagrangian<D>::linear_response(
-    const std::vector<Vec<double, D>>& displacement, const std::vector<Vec<double, D>>& velocity) {
+Array<Vec<double, D>> TotalLagrangian<D>::linear_response(const Array<Vec<double, D>>& displacement,
+                                                          const Array<Vec<double, D>>& velocity) {
     for (std::size_t p = 0; p < size(); ++p) x[p] = rest_[p] + displacement[p], v[p] = velocity[p];
-    std::vector<Vec<double, D>> response(size());
+    Array<Vec<double, D>> response(size());
     sum_internal_forces(0.0, [&](std::size_t p, const Vec<double, D>& force) {
         if (!clamped_[p]) response[p] = (1.0 / body_of(p).rho0) * force;
     });
@@ -114,8 +115,8 @@ template <int D>
 void TotalLagrangian<D>::limit_timestep() {
     const double amplitude = 1e-6 * bodies_[0].spacing;
     const auto x0 = x, v0 = v;
-    const std::vector<Vec<double, D>> none(size());
-    std::vector<Vec<double, D>> mode(size());
+    const Array<Vec<double, D>> none(size());
+    Array<Vec<double, D>> mode(size());
     for (std::size_t p = 0; p < size(); ++p)  // not orthogonal to the fastest mode
         for (int k = 0; k < D && !clamped_[p]; ++k)
             mode[p][k] =
@@ -201,8 +202,8 @@ void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
 }
 
 template <int D>
-std::vector<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
-    std::vector<std::uint32_t> found;
+Array<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
+    Array<std::uint32_t> found;
     neighbours_.clusters()[p / lanes<double>].for_each_moving([&](std::uint32_t entry) {
         const std::uint32_t j = entry & ListEntry::index_mask;
         const Vec<double, D> apart = rest_[j] - rest_[p];
@@ -212,9 +213,8 @@ std::vector<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) cons
 }
 
 template <int D>
-std::vector<PointShare> TotalLagrangian<D>::carriers(std::size_t p,
-                                                     const Vec<double, D>& offset) const {
-    std::vector<PointShare> shares{{static_cast<std::uint32_t>(p), 1.0}};
+Array<PointShare> TotalLagrangian<D>::carriers(std::size_t p, const Vec<double, D>& offset) const {
+    Array<PointShare> shares{{static_cast<std::uint32_t>(p), 1.0}};
     const Vec<double, D> along = correction_[p] * offset;
     for (const std::uint32_t j : neighbours_of(p)) {
         const Vec<double, D> R = rest_[p] - rest_[j];
@@ -282,7 +282,7 @@ void DeformableBodies<D>::end_step(double dt, double memory) {
 /// Normals turn as surfaces do, with F^-T.
 template <int D>
 double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) const {
-    std::vector<double> gone(particles.size(), 0.0);
+    Array<double> gone(particles.size(), 0.0);
     for_each_point(particles, [&](std::size_t p, std::size_t k) {
         const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
         gone[p] = dot(step, step);

@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "base/array.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/surfaces.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
@@ -118,9 +118,9 @@ private:
     }
 
     TotalLagrangian<D> solids_;
-    std::vector<Vec<double, D>> normal_;  // at rest
-    std::vector<std::int32_t> material_;  // by body
-    std::vector<Vec<double, D>> flow_force_, acceleration_, before_;
+    Array<Vec<double, D>> normal_;  // at rest
+    Array<std::int32_t> material_;  // by body
+    Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;
 };
 

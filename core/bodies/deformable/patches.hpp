@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/matrix.hpp"
 #include "bodies/rotation.hpp"
 
@@ -14,7 +14,7 @@ namespace doseki {
 template <int D>
 class Patch {
 public:
-    explicit Patch(std::vector<std::uint32_t> points) : points_(std::move(points)) {}
+    explicit Patch(Array<std::uint32_t> points) : points_(std::move(points)) {}
 
     /// Of velocities v at positions x, both of all points [1/s].
     Vec3 spin(std::span<const Vec<double, D>> x, std::span<const Vec<double, D>> v) const {
@@ -53,7 +53,7 @@ private:
         return inverse(inertia, 0.0);
     }
 
-    std::vector<std::uint32_t> points_;
+    Array<std::uint32_t> points_;
 };
 
 }  // namespace doseki

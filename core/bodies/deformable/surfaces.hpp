@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/patches.hpp"
@@ -32,16 +32,16 @@ public:
     /// Adds surfaces to those that may touch, with the points at which they do; `first_body` is the
     /// number of the first of these bodies among all bodies that touch, `material` that of each.
     void add_to(ContactBodies<D>& contact, std::int32_t first_body,
-                const TotalLagrangian<D>& solids, const std::vector<std::int32_t>& material);
+                const TotalLagrangian<D>& solids, const Array<std::int32_t>& material);
     /// Shows the contacts where the points are.
     void show(ContactBodies<D>& contact, const TotalLagrangian<D>& solids) const;
     /// Takes the forces of the contacts.
     void collect(ContactBodies<D>& contact, TotalLagrangian<D>& solids) const;
 
     void serialise(Archive& archive, const TotalLagrangian<D>& solids) {
-        std::vector<std::uint32_t> point;
-        std::vector<Vec<double, D>> offset;
-        std::vector<std::uint8_t> crease;
+        Array<std::uint32_t> point;
+        Array<Vec<double, D>> offset;
+        Array<std::uint8_t> crease;
         for (const SurfaceVertex<D>& vertex : vertices_)
             point.push_back(vertex.point), offset.push_back(vertex.offset),
                 crease.push_back(vertex.crease);
@@ -75,18 +75,18 @@ private:
     void add_samples(ContactBodies<D>& contact, std::size_t surface,
                      const TotalLagrangian<D>& solids);
 
-    std::vector<SurfaceVertex<D>> vertices_;  // those of a body one after another
-    std::vector<std::vector<PointShare>> carriers_;
-    std::vector<Patch<D>> patches_;          // around the point of each
-    std::vector<std::size_t> first_vertex_;  // of each surface, and the end
-    std::vector<Sample> samples_;
+    Array<SurfaceVertex<D>> vertices_;  // those of a body one after another
+    Array<Array<PointShare>> carriers_;
+    Array<Patch<D>> patches_;          // around the point of each
+    Array<std::size_t> first_vertex_;  // of each surface, and the end
+    Array<Sample> samples_;
     std::size_t first_contact_point_ = 0;
 };
 
 template <int D>
 void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first_body,
                                    const TotalLagrangian<D>& solids,
-                                   const std::vector<std::int32_t>& material) {
+                                   const Array<std::int32_t>& material) {
     first_contact_point_ = contact.points.size();
     carriers_.clear(), patches_.clear(), first_vertex_.clear(), samples_.clear();
     for (std::size_t v = 0; v < vertices_.size(); ++v) {

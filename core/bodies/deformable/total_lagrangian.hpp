@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
@@ -19,8 +19,8 @@ struct ElasticTerm;
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
 struct SolidPoints {
-    std::vector<Vec<double, D>> rest, position, velocity;
-    std::vector<std::uint8_t> clamped;
+    Array<Vec<double, D>> rest, position, velocity;
+    Array<std::uint8_t> clamped;
 };
 
 /// Part of a point in a place that points carry along.
@@ -88,10 +88,10 @@ public:
     /// Where the point that was added as number k is stored.
     std::uint32_t slot(std::size_t k) const { return slot_[k]; }
     /// Points within the support of one at rest, itself among them.
-    std::vector<std::uint32_t> neighbours_of(std::size_t p) const;
+    Array<std::uint32_t> neighbours_of(std::size_t p) const;
     /// The place that goes with point p by its deformation gradient, from `offset` at rest: shares
     /// of points, which add up to 1.
-    std::vector<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
+    Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
@@ -105,7 +105,7 @@ public:
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
     /// alone.
     void serialise(Archive& archive, const Vec<double, D>& gravity) {
-        std::vector<double> numbers;
+        Array<double> numbers;
         if (!archive.loads())
             for (const DeformableBody& body : bodies_) {
                 const auto of_body = body.numbers();
@@ -116,8 +116,8 @@ public:
         archive("elastic_position", x), archive("elastic_velocity", v),
             archive("elastic_body", body_);
         archive("elastic_clamped", clamped_), archive("elastic_slot", slot_);
-        std::vector<Vec<double, D>> accelerations = a;
-        std::vector<Mat<double, D>> deformations = deformation_;
+        Array<Vec<double, D>> accelerations = a;
+        Array<Mat<double, D>> deformations = deformation_;
         archive("elastic_acceleration", accelerations),
             archive("elastic_deformation", deformations);
         if (archive.loads()) {
@@ -131,8 +131,8 @@ public:
         }
     }
 
-    std::vector<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
-    std::vector<Vec<double, D>> load;     // force of others within a step [N], 2-D: [N/m]
+    Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
+    Array<Vec<double, D>> load;     // force of others within a step [N], 2-D: [N/m]
 
 private:
     /// Throws std::invalid_argument unless restored arrays are those of the same bodies.
@@ -158,8 +158,8 @@ private:
     template <class F>
     void sum_internal_forces(double half_dt, const F& take);
     void compute_accelerations(double half_dt, const Vec<double, D>& gravity);
-    std::vector<Vec<double, D>> linear_response(const std::vector<Vec<double, D>>& displacement,
-                                                const std::vector<Vec<double, D>>& velocity);
+    Array<Vec<double, D>> linear_response(const Array<Vec<double, D>>& displacement,
+                                          const Array<Vec<double, D>>& velocity);
     void update_point(std::size_t p, const DeformationAccumulators<double, D>& sums);
 
     void damp_springs();
@@ -168,17 +168,17 @@ private:
     void sum_over_pairs(const Term& term, const Epilogue& epilogue);
     ElasticTerm<D> records() const;
 
-    std::vector<DeformableBody> bodies_;
-    std::vector<Vec<double, D>> apart_;  // by body: shift of its places at rest
-    double reach_ = 0.0;                 // how far along x places at rest are taken
-    std::vector<Vec<double, D>> rest_;
-    std::vector<std::int32_t> body_;
-    std::vector<std::uint8_t> clamped_;
-    std::vector<std::uint32_t> slot_;
-    std::vector<Mat<double, D>> correction_, deformation_;
+    Array<DeformableBody> bodies_;
+    Array<Vec<double, D>> apart_;  // by body: shift of its places at rest
+    double reach_ = 0.0;           // how far along x places at rest are taken
+    Array<Vec<double, D>> rest_;
+    Array<std::int32_t> body_;
+    Array<std::uint8_t> clamped_;
+    Array<std::uint32_t> slot_;
+    Array<Mat<double, D>> correction_, deformation_;
     Neighbours<D> neighbours_;
-    std::vector<MotionRecord<double, D>> motion_;
-    std::vector<ElasticRecord<D>> solid_;
+    Array<MotionRecord<double, D>> motion_;
+    Array<ElasticRecord<D>> solid_;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
 };
