@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "interface/reader.hpp"
-#include "model/material_laws.hpp"
+#include "model/chosen_laws.hpp"
 
 namespace doseki {
 namespace {

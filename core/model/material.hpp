@@ -8,7 +8,7 @@ namespace doseki {
 
 enum class Law { fluid, solid };
 
-struct MaterialLaws;  // model/material_laws.hpp
+struct MaterialLaws;  // model/chosen_laws.hpp
 
 /// Parameters of one material, already scaled by xi (Eq. 19): c0 -> xi c0, mu -> xi^2 mu.
 struct Material {

@@ -1,13 +1,26 @@
 #pragma once
-#include "physics/equation_of_state.hpp"
-#include "physics/rheology.hpp"
+// What follows from the laws of a material. The laws themselves (model/chosen_laws.hpp) are seen by
+// few, so that one that is changed compiles no pair loop anew.
+
+#include "physics/equation_of_state/thermodynamic_state.hpp"
+#include "physics/rheology/shear_state.hpp"
 
 namespace doseki {
 
-/// What a material obeys, scaled as its numbers are (model/material.hpp).
-struct MaterialLaws {
-    EquationOfState<double> eos;
-    Rheology<double> rheology;  // of fluids
-};
+struct MaterialLaws;
+
+/// Least density of a liquid over rho0, whatever tension it could bear: the resolved scheme is one
+/// of weak compressibility.
+inline constexpr double least_relative_density = 0.98;
+
+ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws, double rho);
+/// Density at which the equation of state has this pressure; `low` or `high` where that lies beyond
+/// them.
+double density_of(const MaterialLaws& laws, double pressure, double low, double high);
+/// Of the fluid itself, without turbulence [Pa s].
+double viscosity(const MaterialLaws& laws, const ShearState<double>& state);
+/// Whether the viscosity varies by orders of magnitude beside a plug, so that pairs take harmonic
+/// means.
+bool has_yield_stress(const MaterialLaws& laws);
 
 }  // namespace doseki

@@ -9,10 +9,6 @@
 
 namespace doseki {
 
-/// Least density of a liquid over rho0, whatever tension it could bear: the resolved scheme is one
-/// of weak compressibility.
-inline constexpr double least_relative_density = 0.98;
-
 /// Contract of an equation of state. Whoever needs the pressure alone takes it out of at(): once
 /// inlined, the rest is not worked out.
 template <class Law, class T>

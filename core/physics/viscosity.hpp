@@ -29,18 +29,6 @@ DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
     return harmonic ? T(2) * mu_i * mu_j / max(sum, number<T>(1e-30)) : number<T>(0.5) * sum;
 }
 
-/// |D| = sqrt(2 D:D) of the strain rate, the symmetric part of L [1/s].
-template <class T, int D>
-DOSEKI_FN T strain_rate(const Mat<T, D>& L) {
-    T sum = T(0);
-    for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) {
-            const T d = number<T>(0.5) * (L(a, b) + L(b, a));
-            sum += T(2) * d * d;
-        }
-    return sqrt(sum);
-}
-
 /// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress
 /// rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile. At least
 /// `min_length`; z: height over the bed, d: depth.

@@ -3,6 +3,7 @@
 // they list them.
 
 #include "bodies/shape.hpp"
+#include "model/material_laws.hpp"
 #include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
 #include "physics/hourglass.hpp"

@@ -3,6 +3,7 @@
 #include "physics/free_surface.hpp"
 #include "physics/kernel.hpp"
 #include "physics/momentum.hpp"
+#include "physics/rheology/shear_state.hpp"
 #include "physics/riemann.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"

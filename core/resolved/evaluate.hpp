@@ -103,11 +103,11 @@ void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_d
     record.rho = rho;
     record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
     record.surface = state.surface[p];
-    record.p = model_->without_surface_tension(pressure(material.laws->eos, rho), record.surface);
+    record.p = model_->without_surface_tension(thermodynamic_state(*material.laws, rho).pressure,
+                                               record.surface);
     update_mean_pressure(state, p, 2.0 * half_dt);
     const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
-    record.mu =
-        viscosity(material.laws->rheology, sheared) + rho * model_->eddy_viscosity(state, p);
+    record.mu = viscosity(*material.laws, sheared) + rho * model_->eddy_viscosity(state, p);
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
     record.pressure_gradient = state.pressure_gradient[p];
@@ -226,7 +226,7 @@ ThermodynamicState<double> Resolved<D, Backend>::equation_of_state(const State& 
                                                                    std::size_t p) const {
     if (state.is_wall(p)) return {state.wall.pressure[p], model_->constants.c, 0.0};
     const Material& material = model_->material(state.tag[p]);
-    const auto at = thermodynamic_state(material.laws->eos, state.density[p]);
+    const auto at = thermodynamic_state(*material.laws, state.density[p]);
     return {model_->without_surface_tension(at.pressure, state.surface[p]), material.c0,
             at.bulk_energy};
 }

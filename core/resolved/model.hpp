@@ -28,7 +28,7 @@ struct MinDensity {
     static MinDensity of(const Material& fluid) {
         auto at = [&fluid](double pressure) {
             const double rho0 = fluid.rho0;
-            return density_of(fluid.laws->eos, pressure, least_relative_density * rho0, rho0);
+            return density_of(*fluid.laws, pressure, least_relative_density * rho0, rho0);
         };
         return {at(fluid.cavitation_pressure),
                 at(std::max(fluid.cavitation_pressure, -fluid.air_entry_suction))};
@@ -51,7 +51,7 @@ struct ResolvedModel {
             if (material.law == Law::fluid) constants.c = std::max(constants.c, material.c0);
             min_density.push_back(material.law == Law::fluid ? MinDensity::of(material)
                                                              : MinDensity{});
-            constants.harmonic |= has_yield_stress(material.laws->rheology);
+            constants.harmonic |= has_yield_stress(*material.laws);
         }
         const FlowOptions& flow = options.flow;
         constants.dp = flow.dp;

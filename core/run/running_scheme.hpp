@@ -1,6 +1,6 @@
 #pragma once
-// What puts a scheme, with its state and back end, behind the interface of a run. Compiled with
-// each right-hand side (right_hand_side.cpp.in).
+// What puts a scheme, with its state and back end, behind the interface of a run. Compiled once
+// for all schemes (schemes.cpp.in).
 
 #include <utility>
 

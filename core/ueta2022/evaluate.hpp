@@ -101,7 +101,7 @@ void Ueta2022<D, real, Backend>::update_particle(State& particles, std::size_t p
     if (tag.motion == Motion::free) {
         if (material.law == Law::fluid) {
             const ShearState<double> state{strain_rate(L), eos.pressure, rho};
-            stress = viscous_stress(L, viscosity(material.laws->rheology, state));
+            stress = viscous_stress(L, viscosity(*material.laws, state));
         } else if (material.shear_modulus > 0.0) {
             stress = particles.deviatoric_stress[p];
             add_scaled(stress, half_dt, particles.deviatoric_stress_rate[p]);

@@ -8,7 +8,6 @@
 #include "model/material_laws.hpp"
 #include "model/options.hpp"
 #include "model/particles.hpp"
-#include "physics/viscosity.hpp"
 #include "physics/yield.hpp"
 
 namespace doseki {
@@ -27,12 +26,16 @@ YieldSurface<double> yield_surface(const Material& material) {
 /// rule on tension.
 inline ThermodynamicState<double> equation_of_state(const Material& material, double rho,
                                                     Motion motion, Tension tension) {
-    auto state = thermodynamic_state(material.laws->eos, rho);
+    auto state = thermodynamic_state(*material.laws, rho);
     const bool clamped = motion == Motion::fixed || tension == Tension::clamp_all ||
                          (tension == Tension::clamp_fluid && material.law == Law::fluid);
     if (clamped) state.pressure = max(0.0, state.pressure);
     return state;
 }
+
+/// Density ratio (5/7)^(3/2) at which Eq. (8) has its minimum. What is stretched further is a void:
+/// it resists no more, and its density stays there until it is compressed again.
+inline constexpr double void_ratio = 0.60368;
 
 /// Eq. (11), drho/dt = -rho div v. Inflow-buffer particles keep their prescribed density; a
 /// particle stretched beyond void_ratio is not stretched further.

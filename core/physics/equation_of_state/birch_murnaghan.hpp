@@ -15,10 +15,6 @@ DOSEKI_FN T cbrt_near_one(const T& e) {
     return y;
 }
 
-/// Density ratio (5/7)^(3/2) at which Eq. (8) has its minimum. What is stretched further is a void:
-/// it resists no more, and its density stays there until it is compressed again.
-inline constexpr double void_ratio = 0.60368;
-
 /// Birch-Murnaghan equation of state and what follows from it.
 /// Eq. (8):  p = 3/2 rho0 c0^2 (e^(7/3) - e^(5/3)),  e = rho/rho0.
 /// Eq. (17): c^2 = dp/drho = c0^2/2 (7 e^(4/3) - 5 e^(2/3)).

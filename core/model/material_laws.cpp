@@ -1,0 +1,21 @@
+#include "model/material_laws.hpp"
+
+#include "model/chosen_laws.hpp"
+
+namespace doseki {
+
+ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws, double rho) {
+    return thermodynamic_state(laws.eos, rho);
+}
+
+double density_of(const MaterialLaws& laws, double pressure, double low, double high) {
+    return density_of(laws.eos, pressure, low, high);
+}
+
+double viscosity(const MaterialLaws& laws, const ShearState<double>& state) {
+    return viscosity(laws.rheology, state);
+}
+
+bool has_yield_stress(const MaterialLaws& laws) { return has_yield_stress(laws.rheology); }
+
+}  // namespace doseki
