@@ -168,6 +168,21 @@ def test_brief_form_takes_no_step():
     assert simulation.steps == 0
 
 
+def test_what_nothing_hinders_takes_steps_from_output_to_output(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(
+        'dim = 2\ndp = 0.01\nxi = 0.01\ntime_max = 0.6\ntime_out = 0.2\nscheme = "resolved"\n'
+        'gravity = [0, 0]\n[body.a]\nshape = "disc"\nmaterial = "basalt"\ncentre = [0, 0]\n'
+        "radius = 0.05\nvelocity = [1, 0]\n",
+        encoding="utf-8",
+    )
+    scenario = load_scenario(path)
+    assert (
+        "first timestep 0.2 s: about 3 steps"
+        in brief_check(scenario, *build_simulation(scenario))[0]
+    )
+
+
 MEASURE = """
 import json, sys
 from doseki.solver.build import build_simulation, load_core

@@ -59,8 +59,10 @@ def brief_check(
     state, dt = simulation.state(), simulation.rates()["timestep"]
     memory = len(simulation) * simulation.bytes_per_particle
     steps = steps_between(scenario.begins_at, scenario.time_max, dt, scenario.sampled_intervals)
+    # Where nothing limits a step, the next output or the end does.
+    first = min(dt, *scenario.sampled_intervals, scenario.time_max - scenario.begins_at)
     head = (
-        f"{len(simulation):,} particles, {_size(memory)}, first timestep {dt:.3g} s: about"
+        f"{len(simulation):,} particles, {_size(memory)}, first timestep {first:.3g} s: about"
         f" {steps:,.0f} steps"
     )
     names = dict.fromkeys(_copied(name) for name in body_names)
