@@ -38,6 +38,7 @@ NOT_NEGATIVE = {
     "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
+MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
 # Infinite where nothing limits a step.
 MAY_BE_INFINITE = {"next_timestep"}
 
@@ -100,6 +101,8 @@ def _check_values(name: str, values: np.ndarray) -> None:
         if plain in PLACES:
             good &= np.abs(values) <= LARGEST
         _expect(good, name, "is not finite, or out of range")
+    if values.dtype == np.int64:
+        _expect((values >= -MAX_COUNT) & (values <= MAX_COUNT), name, "is out of range")
     if plain in POSITIVE:
         _expect(values > 0, name, "is not above 0")
     if plain in NOT_NEGATIVE:
