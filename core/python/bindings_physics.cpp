@@ -1,7 +1,8 @@
 // The point functions that sums over pairs are made of.
 
 #include "physics/free_surface.hpp"
-#include "physics/kernel.hpp"
+#include "physics/kernel/wendland_c2.hpp"
+#include "physics/kernel/wendland_c6.hpp"
 #include "physics/momentum.hpp"
 #include "physics/rheology/shear_state.hpp"
 #include "physics/riemann.hpp"

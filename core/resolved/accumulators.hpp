@@ -3,7 +3,6 @@
 // that one source serves packs on a processor and one thread for each particle on a device.
 
 #include "model/particles.hpp"
-#include "physics/kernel.hpp"
 #include "physics/riemann.hpp"
 #include "physics/viscosity.hpp"
 #include "physics/wall.hpp"

@@ -9,7 +9,8 @@
 #include "model/material_laws.hpp"
 #include "model/options.hpp"
 #include "physics/free_surface.hpp"
-#include "physics/kernel.hpp"
+#include "physics/kernel/wendland_c2.hpp"
+#include "physics/kernel/wendland_c6.hpp"
 #include "resolved/accumulators.hpp"
 #include "resolved/state.hpp"
 

@@ -2,7 +2,7 @@
 // What the ueta2022 scheme sums over pairs, and what one pair adds: numbers in, numbers out, so
 // that one source serves packs on a processor and one thread for each particle on a device.
 
-#include "physics/kernel.hpp"
+#include "physics/kernel/wendland_c6.hpp"
 #include "physics/momentum.hpp"
 #include "physics/velocity_gradient.hpp"
 #include "ueta2022/records.hpp"

@@ -7,7 +7,7 @@
 #include "bodies/deformable/records.hpp"
 #include "pairs/rows.hpp"
 #include "physics/hourglass.hpp"
-#include "physics/kernel.hpp"
+#include "physics/kernel/wendland_c2.hpp"
 #include "physics/velocity_gradient.hpp"
 
 namespace doseki {
