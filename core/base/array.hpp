@@ -20,7 +20,6 @@ public:
     using Storage::Storage;
     Array() = default;
     Array(Storage values) : Storage(std::move(values)) {}
-    explicit Array(std::span<const T> values) : Storage(values.begin(), values.end()) {}
 
     using Storage::at;
     using Storage::back;
@@ -34,7 +33,6 @@ public:
     using Storage::erase;
     using Storage::front;
     using Storage::insert;
-    using Storage::pop_back;
     using Storage::push_back;
     using Storage::reserve;
     using Storage::resize;
@@ -43,9 +41,6 @@ public:
     using Storage::assign;
 
     void swap(Array& other) { Storage::swap(other); }
-    friend bool operator==(const Array& a, const Array& b) {
-        return static_cast<const Storage&>(a) == static_cast<const Storage&>(b);
-    }
 };
 
 }  // namespace doseki

@@ -1,5 +1,4 @@
 #include "interface/bodies.hpp"
-#include "base/array.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,4 @@
 #include "interface/boundaries.hpp"
-#include "base/array.hpp"
 
 #include "interface/reader.hpp"
 

@@ -1,5 +1,4 @@
 #include "model/archive.hpp"
-#include "base/array.hpp"
 
 #include "model/particles.hpp"
 

@@ -1,5 +1,4 @@
 #pragma once
-
 #include "base/array.hpp"
 #include "base/named.hpp"
 #include "base/vec.hpp"

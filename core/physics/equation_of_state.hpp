@@ -39,9 +39,4 @@ inline double density_of(const EquationOfState<double>& eos, double pressure, do
     return high;
 }
 
-template <class T>
-DOSEKI_FN T pressure(const EquationOfState<T>& eos, const T& rho) {
-    return with_value(eos, [&](const auto& law) { return law.at(rho).pressure; });
-}
-
 }  // namespace doseki

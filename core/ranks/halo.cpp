@@ -1,5 +1,4 @@
 #include "ranks/halo.hpp"
-#include "base/array.hpp"
 
 namespace doseki {
 

@@ -1,5 +1,4 @@
 #pragma once
-
 #include "base/array.hpp"
 #include "model/material.hpp"
 #include "model/particles.hpp"

@@ -1,5 +1,4 @@
 #include "run/failure.hpp"
-#include "base/array.hpp"
 
 #include <cstdio>
 

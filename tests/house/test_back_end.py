@@ -36,7 +36,9 @@ def test_how_values_are_stored_only_two_files_know():
     inside = [file for file in SOURCES if file.parts[len(CORE.parts)] not in OUTSIDE]
     assert lines_with(r"std::vector|<vector>", [f for f in inside if f not in storage]) == []
     for file in storage:
-        assert "std::vector" not in shown(file.read_text(encoding="utf-8"))
+        text = shown(file.read_text(encoding="utf-8"))
+        assert f"class {file.stem.capitalize()} " in text
+        assert "std::vector" not in text
 
 
 def shown(text: str) -> str:
