@@ -16,6 +16,7 @@ namespace doseki {
 /// Below these sizes a loop ends sooner on one thread than it takes to call the others.
 inline constexpr std::size_t light_loop = 2048;  // particles, a few operations each
 inline constexpr std::size_t pair_loop = 32;     // clusters
+inline constexpr std::size_t contact_loop = 64;  // pairs of bodies
 
 inline void set_threads(int count) { omp_set_num_threads(count); }
 /// How many threads a loop may use.
@@ -26,6 +27,13 @@ template <class F>
 void for_each_particle(std::size_t count, F&& f) {
 #pragma omp parallel for schedule(static) if (count > light_loop)
     for (std::size_t p = 0; p < count; ++p) f(p);
+}
+
+/// The same for pairs of bodies that may touch, each some hundred operations where they do.
+template <class F>
+void for_each_contact(std::size_t count, F&& f) {
+#pragma omp parallel for schedule(static) if (count > contact_loop)
+    for (std::size_t k = 0; k < count; ++k) f(k);
 }
 
 /// Combines f(0), f(1) ... f(count - 1), beginning with the neutral `start`: block by block, then

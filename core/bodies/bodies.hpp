@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 
 #include "base/array.hpp"
 #include "bodies/contacts.hpp"
@@ -109,10 +111,12 @@ private:
         const double margin = std::min(rigid.margin(), deformable.margin());
         margin_ = std::isfinite(margin) ? margin : 0.0;
         deformable_step_ = deformable.timestep();
-        show_bodies();
+        all_points_.resize(contact_.points.size());
+        std::iota(all_points_.begin(), all_points_.end(), 0);
+        show_bodies(all_points_);
     }
-    void show_bodies() {
-        rigid.show(contact_);
+    void show_bodies(std::span<const std::int32_t> points) {
+        rigid.show(contact_, points);
         deformable.show(contact_);
     }
     void find_contacts() {
@@ -139,6 +143,7 @@ private:
     Contacts<D> contacts_;
     RigidParticles<D> rigid_particles_;
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
+    Array<std::int32_t> all_points_;
     double moved_ = 0.0;        // bound on the distance gone since contacts were looked for
     double margin_ = 0.0;
     double deformable_step_ = std::numeric_limits<double>::infinity();  // stable [s]
@@ -172,11 +177,12 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
                                  FailureKind::speed);
         drift(0.5 * step);
         follow_walls(walls, t + dt - left, step);
-        const bool search = 2.0 * moved_ >= margin_;
-        if (search || contacts_.any()) show_bodies();
-        if (search) find_contacts();
+        if (2.0 * moved_ >= margin_)
+            show_bodies(all_points_), find_contacts();
+        else if (contacts_.any())
+            show_bodies(contacts_.points());
         contacts_.apply(contact_, step);
-        rigid.collect(contact_), deformable.collect(contact_);
+        rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
         if (!deformable.empty()) deformable.push(step, gravity_);
         rigid.push(gravity_, step);
         drift(0.5 * step);

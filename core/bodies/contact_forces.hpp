@@ -1,6 +1,7 @@
 #pragma once
 // Forces of contacts, which bodies.cpp compiles.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "base/array.hpp"
+#include "base/parallel.hpp"
 #include "bodies/contacts.hpp"
 #include "physics/contact.hpp"
 
@@ -125,9 +127,22 @@ void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
     restore(bodies);
 }
 
+/// Each once, in rising order.
+inline Array<std::int32_t> points_of(const Array<ContactPair>& pairs) {
+    Array<std::int32_t> points;
+    for (const ContactPair& pair : pairs) {
+        points.push_back(pair.a);
+        if (!pair.with_shape()) points.push_back(pair.b);
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return points;
+}
+
 template <int D>
 void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
+    points_ = points_of(pairs_);
     contacts_.clear();
     timestep_ = std::numeric_limits<double>::infinity();
     std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch
@@ -179,17 +194,22 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }
 
+/// All threads find what the pairs do; it is handed out in the order of the pairs, so that sums do
+/// not depend on the number of threads.
 template <int D>
 void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
+    pushes_.resize(pairs_.size());
+    for_each_contact(pairs_.size(),
+                     [&](std::size_t k) { pushes_[k] = push_of_pair(bodies, k, dt); });
+    ContactPoints<D>& points = bodies.points;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        Contact& contact = contacts_[k];
-        if (const auto overlap = overlap_of_pair(bodies, k)) {
-            contact.overlap = overlap->depth;
-            max_overlap_ = std::max(max_overlap_, overlap->depth / contact.law.diameter);
-            push_apart(bodies, k, *overlap, dt);
-        } else if (contact.overlap > 0.0) {
-            contact.overlap = 0.0, springs_[k] = {};
-        }
+        const Push& push = pushes_[k];
+        if (!push.touches) continue;
+        max_overlap_ = std::max(max_overlap_, push.overlap.depth / contacts_[k].law.diameter);
+        const std::size_t a = pairs_[k].first();
+        points.force[a] = points.force[a] + push.force;
+        points.torque[a] = points.torque[a] + push.torque_a;
+        push_second(bodies, pairs_[k], push.overlap, -1.0 * push.force, push.torque_b);
     }
 }
 
@@ -207,24 +227,28 @@ std::optional<Overlap<D>> Contacts<D>::overlap_of_pair(const ContactBodies<D>& b
 }
 
 template <int D>
-void Contacts<D>::push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
-                             double dt) {
-    const SecondSide<D> b(bodies, pairs_[k], overlap);
-    ContactPoints<D>& points = bodies.points;
+auto Contacts<D>::push_of_pair(const ContactBodies<D>& bodies, std::size_t k, double dt) -> Push {
+    Contact& contact = contacts_[k];
+    const auto overlap = overlap_of_pair(bodies, k);
+    if (!overlap) {
+        if (contact.overlap > 0.0) contact.overlap = 0.0, springs_[k] = {};
+        return {};
+    }
+    contact.overlap = overlap->depth;
+    const ContactPoints<D>& points = bodies.points;
+    const MotionAt<D> b = motion_of_second(bodies, pairs_[k], *overlap);
     const std::size_t a = pairs_[k].first();
     const Vec<double, D> v_a =
-                             points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
-                         v_b = b.velocity() + turning_velocity(b.spin(), overlap.lever_b);
+                             points.velocity[a] + turning_velocity(points.spin[a], overlap->lever_a),
+                         v_b = b.velocity + turning_velocity(b.spin, overlap->lever_b);
     const ContactAction on_a =
-        contacts_[k].law.act(springs_[k], overlap.depth, in_space(overlap.normal),
-                             {in_space(v_a - v_b), points.spin[a] - b.spin()}, dt);
-    const Vec<double, D> force = in_run<D>(on_a.force);
+        contact.law.act(springs_[k], overlap->depth, in_space(overlap->normal),
+                        {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
     auto torque = [&](const Vec<double, D>& lever) {
         return cross(in_space(lever), on_a.force) + on_a.moment;
     };
-    points.force[a] = points.force[a] + force;
-    points.torque[a] = points.torque[a] + torque(overlap.lever_a);
-    b.push(-1.0 * force, -1.0 * torque(overlap.lever_b));
+    return {true, *overlap, in_run<D>(on_a.force), torque(overlap->lever_a),
+            -1.0 * torque(overlap->lever_b)};
 }
 
 }  // namespace doseki

@@ -30,6 +30,8 @@ public:
 
     /// Whether there are pairs that may touch.
     bool any() const { return !pairs_.empty(); }
+    /// The contact points of these pairs, in rising order.
+    const Array<std::int32_t>& points() const { return points_; }
     const Domain<D>& domain() const { return domain_; }
     /// Step that follows the stiffest pair found, infinite without any.
     double timestep() const { return timestep_; }
@@ -64,6 +66,14 @@ private:
         std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
     };
 
+    /// What a pair does in one step to the first body, and at what it touches the second.
+    struct Push {
+        bool touches = false;
+        Overlap<D> overlap;
+        Vec<double, D> force;
+        Vec3 torque_a, torque_b;  // on each body about its own centre or point
+    };
+
     static std::uint64_t key(const ContactPair& pair) {
         return static_cast<std::uint64_t>(static_cast<std::uint32_t>(pair.a)) << 32 |
                static_cast<std::uint32_t>(pair.b);
@@ -71,13 +81,15 @@ private:
     void expect_pairs_of(const ContactBodies<D>& bodies) const;
     Contact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
     std::optional<Overlap<D>> overlap_of_pair(const ContactBodies<D>& bodies, std::size_t k) const;
-    void push_apart(ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap, double dt);
+    Push push_of_pair(const ContactBodies<D>& bodies, std::size_t k, double dt);
 
     Domain<D> domain_;
     ContactLaws<D> laws_;
     Array<ContactPair> pairs_;
+    Array<std::int32_t> points_;
     Array<ContactSprings> springs_;
     Array<Contact> contacts_;
+    Array<Push> pushes_;
     double timestep_ = std::numeric_limits<double>::infinity();
     double max_overlap_ = 0.0;
 };

@@ -59,42 +59,39 @@ std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t
     return overlap;
 }
 
-/// What a contact point touches: another one, a convex body or a surface.
+/// How what a contact point touches moves where the lever of the contact begins.
 template <int D>
-class SecondSide {
-public:
-    SecondSide(ContactBodies<D>& bodies, const ContactPair& pair, const Overlap<D>& overlap)
-        : points_(bodies.points),
-          point_(pair.with_shape() ? 0 : pair.second()),
-          surface_(bodies.surface(pair)),
-          convex_(pair.with_shape() && !surface_ ? &bodies.convex[pair.shape()] : nullptr),
-          at_(overlap.at) {}
-
-    /// Where the lever of the contact begins.
-    Vec<double, D> velocity() const {
-        if (surface_) return surface_->mean(surface_->velocity, at_);
-        return convex_ ? convex_->velocity : points_.velocity[point_];
-    }
-    Vec3 spin() const {
-        if (surface_) return surface_->spin[at_.nearest()];
-        return convex_ ? convex_->spin : points_.spin[point_];
-    }
-    void push(const Vec<double, D>& force, const Vec3& torque) const {
-        if (surface_)
-            surface_->push(at_, force, torque);
-        else if (convex_)
-            convex_->force = convex_->force + force, convex_->torque = convex_->torque + torque;
-        else
-            points_.force[point_] = points_.force[point_] + force,
-            points_.torque[point_] = points_.torque[point_] + torque;
-    }
-
-private:
-    ContactPoints<D>& points_;
-    std::size_t point_;
-    Surface<D>* surface_;
-    ConvexBody<D>* convex_;
-    const SurfaceWeights& at_;
+struct MotionAt {
+    Vec<double, D> velocity;
+    Vec3 spin;
 };
+
+/// Of the second side of a pair: another point, a convex body or a surface.
+template <int D>
+MotionAt<D> motion_of_second(const ContactBodies<D>& bodies, const ContactPair& pair,
+                             const Overlap<D>& overlap) {
+    if (const Surface<D>* surface = bodies.surface(pair))
+        return {surface->mean(surface->velocity, overlap.at), surface->spin[overlap.at.nearest()]};
+    if (pair.with_shape()) {
+        const ConvexBody<D>& convex = bodies.convex[pair.shape()];
+        return {convex.velocity, convex.spin};
+    }
+    return {bodies.points.velocity[pair.second()], bodies.points.spin[pair.second()]};
+}
+
+/// Gives force and torque to the second side of a pair.
+template <int D>
+void push_second(ContactBodies<D>& bodies, const ContactPair& pair, const Overlap<D>& overlap,
+                 const Vec<double, D>& force, const Vec3& torque) {
+    auto add_to = [&](Vec<double, D>& forces, Vec3& torques) {
+        forces = forces + force, torques = torques + torque;
+    };
+    if (Surface<D>* surface = bodies.surface(pair))
+        surface->push(overlap.at, force, torque);
+    else if (pair.with_shape())
+        add_to(bodies.convex[pair.shape()].force, bodies.convex[pair.shape()].torque);
+    else
+        add_to(bodies.points.force[pair.second()], bodies.points.torque[pair.second()]);
+}
 
 }  // namespace doseki

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "base/array.hpp"
 #include "bodies/contact_points.hpp"
@@ -46,11 +47,12 @@ public:
     void add(const RigidBody<D>& body, const RigidBodyState<D>& state, const Vec3& spin);
 
     /// Adds the bodies to those that may touch; the first that are added.
-    void add_to(ContactBodies<D>& contact) const;
-    /// Shows the contacts where the bodies are.
-    void show(ContactBodies<D>& contact) const;
-    /// Takes the forces of the contacts.
-    void collect(const ContactBodies<D>& contact);
+    void add_to(ContactBodies<D>& contact);
+    /// Shows the contacts where the bodies are, and of their contact points those given in rising
+    /// order, which have no force then.
+    void show(ContactBodies<D>& contact, std::span<const std::int32_t> points) const;
+    /// Takes the forces on the points that were shown.
+    void collect(const ContactBodies<D>& contact, std::span<const std::int32_t> points);
 
     /// Half a step of the forces of the fluid.
     void kick(double half_dt);
@@ -122,11 +124,16 @@ public:
     }
 
 private:
+    /// Of body k, the sample that contact point c is.
+    std::size_t sample(std::size_t k, std::size_t c) const {
+        return c - static_cast<std::size_t>(first_point_[k]);
+    }
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
     void restore(const RigidBodyColumns<D>& columns);
 
     Array<RigidBody<D>> bodies_;
     Array<RigidBodyState<D>> states_;
+    Array<std::int32_t> first_point_;      // of each body among the contact points
     Array<Vec<double, D>> contact_force_;  // of the last contact step
     Array<Vec3> contact_torque_;
     Array<Vec<double, D>> mean_contact_force_;
@@ -173,8 +180,10 @@ Vec3 RigidBodies<D>::spin_of(std::size_t k, const Vec3& L) const {
 }
 
 template <int D>
-void RigidBodies<D>::add_to(ContactBodies<D>& contact) const {
+void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
+    first_point_.clear();
     for (std::size_t k = 0; k < size(); ++k) {
+        first_point_.push_back(static_cast<std::int32_t>(contact.points.size()));
         const RigidBody<D>& body = bodies_[k];
         const auto number = static_cast<std::int32_t>(k);
         const double diameter = 2.0 * shape(k).radius;
@@ -194,45 +203,46 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) const {
 }
 
 template <int D>
-void RigidBodies<D>::show(ContactBodies<D>& contact) const {
-    ContactPoints<D>& points = contact.points;
-    std::size_t c = 0, s = 0;
-    for (std::size_t k = 0; k < size(); ++k) {
+void RigidBodies<D>::show(ContactBodies<D>& contact, std::span<const std::int32_t> points) const {
+    for (ConvexBody<D>& convex : contact.convex) {
+        const auto k = static_cast<std::size_t>(convex.body);
         const RigidBodyState<D>& state = states_[k];
-        const bool ball = shape(k).is_ball();
-        const Vec3 w = spin(k);
-        const Mat<double, 3> R = ball ? Mat<double, 3>{} : state.orientation.matrix();
-        if (!ball) {
-            ConvexBody<D>& convex = contact.convex[s++];
-            convex.shape = &shape(k), convex.centre = state.centre,
-            convex.velocity = state.velocity;
-            convex.rotation = R, convex.spin = w, convex.removed = state.is_removed();
-            convex.force = {}, convex.torque = {};
-        }
-        const std::size_t count = ball ? 1 : shape(k).samples.size();
-        for (std::size_t point = 0; point < count; ++point, ++c) {
-            const Vec<double, D> lever =
-                ball ? Vec<double, D>{} : rotated(R, shape(k).samples[point]);
-            points.position[c] = state.centre + lever;
-            points.velocity[c] = state.velocity + turning_velocity(w, lever);
-            points.spin[c] = w, points.removed[c] = state.is_removed();
-            points.force[c] = {}, points.torque[c] = {};
-        }
+        convex.shape = &shape(k), convex.centre = state.centre, convex.velocity = state.velocity;
+        convex.rotation = state.orientation.matrix(), convex.spin = spin(k);
+        convex.removed = state.is_removed();
+        convex.force = {}, convex.torque = {};
+    }
+    ContactPoints<D>& shown = contact.points;
+    Vec3 w;
+    Mat<double, 3> R;
+    for (std::size_t n = 0, body = size(); n < points.size(); ++n) {
+        const auto c = static_cast<std::size_t>(points[n]),
+                   k = static_cast<std::size_t>(shown.body[c]);
+        if (k >= size()) break;  // deformable ones come last
+        const RigidBodyState<D>& state = states_[k];
+        if (k != body) body = k, w = spin(k), R = state.orientation.matrix();
+        const Vec<double, D> lever =
+            shape(k).is_ball() ? Vec<double, D>{} : rotated(R, shape(k).samples[sample(k, c)]);
+        shown.position[c] = state.centre + lever;
+        shown.velocity[c] = state.velocity + turning_velocity(w, lever);
+        shown.spin[c] = w, shown.removed[c] = state.is_removed();
+        shown.force[c] = {}, shown.torque[c] = {};
     }
 }
 
 template <int D>
-void RigidBodies<D>::collect(const ContactBodies<D>& contact) {
-    const ContactPoints<D>& points = contact.points;
+void RigidBodies<D>::collect(const ContactBodies<D>& contact,
+                             std::span<const std::int32_t> points) {
+    const ContactPoints<D>& shown = contact.points;
     std::fill(contact_force_.begin(), contact_force_.end(), Vec<double, D>{});
     std::fill(contact_torque_.begin(), contact_torque_.end(), Vec3{});
-    for (std::size_t c = 0; c < points.size(); ++c) {
-        const auto k = static_cast<std::size_t>(points.body[c]);
-        if (k >= size()) break;  // deformable ones come last
-        const Vec3 lever = in_space(points.position[c] - states_[k].centre);
-        contact_force_[k] = contact_force_[k] + points.force[c];
+    for (const std::int32_t point : points) {
+        const auto c = static_cast<std::size_t>(point), k = static_cast<std::size_t>(shown.body[c]);
+        if (k >= size()) break;
+        const Vec3 lever = in_space(shown.position[c] - states_[k].centre);
+        contact_force_[k] = contact_force_[k] + shown.force[c];
         contact_torque_[k] =
-            contact_torque_[k] + points.torque[c] + cross(lever, in_space(points.force[c]));
+            contact_torque_[k] + shown.torque[c] + cross(lever, in_space(shown.force[c]));
     }
     for (const ConvexBody<D>& convex : contact.convex) {
         const auto k = static_cast<std::size_t>(convex.body);

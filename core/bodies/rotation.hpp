@@ -9,19 +9,19 @@ using Vec3 = Vec<double, 3>;
 
 /// A vector of the plane as one of space, and back. Spins and torques are always vectors of space.
 template <int D>
-Vec3 in_space(const Vec<double, D>& u) {
+DOSEKI_FN Vec3 in_space(const Vec<double, D>& u) {
     Vec3 v;
     for (int a = 0; a < D; ++a) v[a] = u[a];
     return v;
 }
 template <int D>
-Vec<double, D> in_run(const Vec3& u) {
+DOSEKI_FN Vec<double, D> in_run(const Vec3& u) {
     Vec<double, D> v;
     for (int a = 0; a < D; ++a) v[a] = u[a];
     return v;
 }
 
-inline Vec3 cross(const Vec3& u, const Vec3& v) {
+DOSEKI_FN Vec3 cross(const Vec3& u, const Vec3& v) {
     Vec3 w;
     w[0] = u[1] * v[2] - u[2] * v[1], w[1] = u[2] * v[0] - u[0] * v[2],
     w[2] = u[0] * v[1] - u[1] * v[0];
@@ -30,12 +30,12 @@ inline Vec3 cross(const Vec3& u, const Vec3& v) {
 
 /// spin x r, both ends in the space of the run.
 template <int D>
-Vec<double, D> turning_velocity(const Vec3& spin, const Vec<double, D>& r) {
+DOSEKI_FN Vec<double, D> turning_velocity(const Vec3& spin, const Vec<double, D>& r) {
     return in_run<D>(cross(spin, in_space(r)));
 }
 
 template <int D>
-double norm(const Vec<double, D>& u) {
+DOSEKI_FN double norm(const Vec<double, D>& u) {
     return std::sqrt(dot(u, u));
 }
 
@@ -70,14 +70,14 @@ struct Quaternion {
 
 /// The leading D x D block of R (or of its transpose) times u.
 template <int D>
-Vec<double, D> rotated(const Mat<double, 3>& R, const Vec<double, D>& u) {
+DOSEKI_FN Vec<double, D> rotated(const Mat<double, 3>& R, const Vec<double, D>& u) {
     Vec<double, D> v;
     for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) v[a] += R(a, b) * u[b];
     return v;
 }
 template <int D>
-Vec<double, D> rotated_back(const Mat<double, 3>& R, const Vec<double, D>& u) {
+DOSEKI_FN Vec<double, D> rotated_back(const Mat<double, 3>& R, const Vec<double, D>& u) {
     Vec<double, D> v;
     for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) v[a] += R(b, a) * u[b];

@@ -20,6 +20,7 @@ from ..scenario.schemes import RESOLVED, UETA2022
 from ..solver.protocol import CoreSimulation
 from ..util.cores import allowed_cores, shared_cores
 from .case import SCHEMES, Case, make_simulation
+from .flows import FLOWS, print_flows, time_flows
 from .report import checks, growth, machine, memory_check, phase_table, speed_table
 
 SIZES = (4_000, 10_000, 100_000, 1_000_000)
@@ -31,6 +32,7 @@ ROUNDS, QUICK_ROUNDS = 5, 3
 LIVES_PER_ROUND = 4  # of the lists, at most
 ROUND_SECONDS = 0.1  # at least, unless the lists' lives are up
 BARE_SECONDS = 0.05
+OF_BLOCK = ("--sizes", "--dims", "--precision", "--isa", "--scheme")
 
 Row = dict[str, Any]
 
@@ -46,6 +48,8 @@ class Plan:
     isas: Sequence[str] = ()
     quick: bool = False
     scheme: str = UETA2022
+    block: bool = True  # whether it is timed
+    flows: Sequence[str] = ()
 
     def groups(self) -> Iterator[list[Case]]:
         """Cases to be timed in turns, so that what disturbs the machine disturbs them alike."""
@@ -210,6 +214,7 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
         raise UserError(
             f"--sizes {min(sizes)}: fewer than {SMALLEST} particles are not worth timing"
         )
+    flows = _chosen_flows(options, quick)
     scheme = (_words("--scheme", options["--scheme"], SCHEMES) or [UETA2022])[0]
     precisions = _words("--precision", options["--precision"], PRECISIONS) or list(PRECISIONS)
     if scheme == RESOLVED:
@@ -222,7 +227,24 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
         threads=counts_of("--threads", options["--threads"], 4096),
         isas=_words("--isa", options["--isa"], available_instruction_sets()),
         quick=quick,
+        block=options["--flows"] is None,
+        flows=flows,
     )
+
+
+def _chosen_flows(options: Mapping[str, str | None], quick: bool) -> list[str]:
+    """All of them beside the block, unless options choose something of either."""
+    of_block = [name for name in OF_BLOCK if options[name] is not None]
+    text = options["--flows"]
+    if text is None:
+        return [] if quick or of_block else list(FLOWS)
+    if quick or of_block:
+        option = "--quick" if quick else of_block[0]
+        raise UserError(f"{option} goes with the block of particles, not with --flows")
+    names = _words("--flows", text, [*FLOWS, "all"])
+    if not names:
+        raise UserError(f"--flows: name some of {', '.join([*FLOWS, 'all'])}")
+    return list(FLOWS) if "all" in names else names
 
 
 def append_history(path: Path, rows: Sequence[Row]) -> None:
@@ -237,8 +259,6 @@ def append_history(path: Path, rows: Sequence[Row]) -> None:
 def print_report(rows: Sequence[Row]) -> None:
     """Tables, growth and targets, as Markdown."""
     print(f"{machine()}; scheme {rows[0]['scheme']}")
-    for doubt in shared_cores(max(row["threads"] for row in rows)):
-        print(f"warning: {doubt}")
     for title, table in (("Speed and memory", speed_table), ("Share of a step, %", phase_table)):
         print(f"\n{title}\n\n{table(rows)}")
     print("\nStep time ~ N^a\n")
@@ -252,17 +272,26 @@ def print_report(rows: Sequence[Row]) -> None:
 def bench_command(plan: Plan, as_json: bool, history: Path | None) -> None:
     """`doseki bench`; raises ResourceError when memory is over its limit."""
     rows: list[Row] = []
-    for group in run_bench(plan):
+    for group in run_bench(plan) if plan.block else ():
         rows += group
         print(
             f"doseki bench: {group[0]['dim']}-D, {group[0]['n']} particles timed", file=sys.stderr
         )
+    flows: list[Row] = []
+    for group in time_flows(plan.flows, plan.threads or default_threads()):
+        flows += group
+        print(f"doseki bench: {group[0]['flow']} timed", file=sys.stderr)
     if as_json:
-        print(json.dumps(rows))
+        print(json.dumps([*rows, *flows]))
     else:
-        print_report(rows)
+        for doubt in shared_cores(max(row["threads"] for row in [*rows, *flows])):
+            print(f"warning: {doubt}")
+        if rows:
+            print_report(rows)
+        if flows:
+            print_flows(flows)
     if history:
-        append_history(history, rows)
+        append_history(history, [*rows, *flows])
     memory = memory_check(rows)
     if memory and not memory.holds:
         raise ResourceError(f"over the limit of memory: {memory}")

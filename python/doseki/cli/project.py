@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..errors import UserError
 from .options import Threads, free_directory
 
 Tier = StrEnum("Tier", ["coarse", "full"])
@@ -76,6 +77,14 @@ def bench(
         str | None,
         typer.Option(metavar="NAME", help="ueta2022 or resolved.", show_default="ueta2022"),
     ] = None,
+    flows: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,...",
+            help="Only these flows: dam-break-2d, dam-break-3d, flume, tumbler or all.",
+            show_default="all, after the block",
+        ),
+    ] = None,
     ranks: Annotated[
         str | None,
         typer.Option(metavar="R,...", help="Scaling over MPI ranks of this machine instead."),
@@ -90,7 +99,9 @@ def bench(
     from ..bench.command import bench_command, make_plan
 
     options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
-    options |= {"--threads": threads, "--isa": isa, "--scheme": scheme}
+    options |= {"--threads": threads, "--isa": isa, "--scheme": scheme, "--flows": flows}
+    if flows is not None and ranks is not None:
+        raise UserError("--flows: not with --ranks; run them one after the other")
     plan = make_plan(options, quick)
     if ranks is None:
         bench_command(plan, as_json, append)

@@ -1,0 +1,191 @@
+"""Flows that `doseki bench` times when they are under way: what a user waits for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from ..compiled import load_core
+from ..scenario.load import load_scenario
+from ..solver.build import build_simulation
+from ..solver.protocol import CoreSimulation
+from .report import machine, markdown_table
+
+Row = dict[str, Any]
+
+ROUNDS = 5
+NO_LIMIT = 10**15  # steps
+
+
+@dataclass(frozen=True)
+class Flow:
+    """A scenario, and from when on it is timed."""
+
+    name: str
+    scenario: str
+    settings: tuple[str, ...]
+    developed: float  # s of flow before the first measurement
+    window: float  # s of flow that one measurement takes
+
+
+FLOWS = {
+    flow.name: flow
+    for flow in (
+        # Past impact on the far wall, when the water splashes.
+        Flow(
+            "dam-break-2d", "dambreak", ("scheme=resolved", "dp== column_height/120"), 0.6, 0.01
+        ),
+        Flow(
+            "dam-break-3d",
+            "dambreak",
+            ("scheme=resolved", "dim=3", "dp== column_height/40"),
+            0.6,
+            0.01,
+        ),
+        # The water has reached the load, which goes with it.
+        Flow(
+            "flume",
+            "flume",
+            (
+                "scheme=resolved",
+                "flume_length=2.2",
+                "load_mass=5",
+                "load_length=0.32",
+                "load_start=1.2",
+            ),
+            0.8,
+            0.005,
+        ),
+        Flow("tumbler", str(Path(__file__).parent / "tumbler.toml"), (), 1.0, 0.005),
+    )
+}
+
+
+@dataclass
+class Clocked:
+    """What has been measured of a flow on some threads."""
+
+    threads: int
+    flow_rates: list[float] = field(default_factory=list)  # s of flow per s
+    core_shares: list[float] = field(default_factory=list)  # processor time / (time x threads)
+    phases: dict[str, float] = field(default_factory=dict)  # s
+    seconds: float = 0.0
+    steps: int = 0
+    rebuilds: int = 0
+    updates: int = 0
+    flow_time: float = 0.0
+
+    def run_window(self, simulation: CoreSimulation, window: float) -> None:
+        """Adds one measurement. One thread is timed by the processor time it got, as others
+        disturb that least.
+        """
+        load_core().set_threads(self.threads)
+        steps, rebuilds, updates = simulation.steps, simulation.rebuilds, simulation.updates
+        start = simulation.time
+        simulation.time_phases(True)
+        wall, processor = time.perf_counter(), time.process_time()
+        simulation.advance(limit=start + window, pause=start + window, max_steps=NO_LIMIT)
+        wall, processor = time.perf_counter() - wall, time.process_time() - processor
+        seconds = processor if self.threads == 1 else wall
+        for phase, spent in simulation.phase_seconds().items():
+            self.phases[phase] = self.phases.get(phase, 0.0) + spent
+        simulation.time_phases(False)
+        self.flow_rates.append((simulation.time - start) / seconds)
+        self.core_shares.append(processor / (wall * self.threads))
+        self.seconds += seconds
+        self.flow_time += simulation.time - start
+        self.steps += simulation.steps - steps
+        self.rebuilds += simulation.rebuilds - rebuilds
+        self.updates += simulation.updates - updates
+
+    def row(self, flow: Flow, simulation: CoreSimulation, alone: float | None) -> Row:
+        """The result; `alone` is the rate of one thread, where it was measured."""
+        rate, total = median(self.flow_rates), sum(self.phases.values())
+        return {
+            "flow": flow.name,
+            "n": len(simulation),
+            "threads": self.threads,
+            "flow_seconds_per_second": rate,
+            "spread": (max(self.flow_rates) - min(self.flow_rates)) / rate,
+            "updates_per_s": self.updates / self.seconds,
+            "timestep": self.flow_time / self.steps,
+            "steps_per_rebuild": self.steps / max(1, self.rebuilds),
+            "skin": simulation.skin,
+            "bytes_per_particle": simulation.bytes_per_particle,
+            "efficiency": rate / (alone * self.threads) if alone else None,
+            "core_share": median(self.core_shares),
+            "phases": {phase: spent / total for phase, spent in self.phases.items()},
+        }
+
+
+def developed(flow: Flow, threads: int) -> CoreSimulation:
+    """Its simulation, run until it is timed."""
+    load_core().set_threads(threads)
+    simulation, _names = build_simulation(load_scenario(flow.scenario, flow.settings))
+    simulation.advance(limit=flow.developed, pause=flow.developed, max_steps=NO_LIMIT)
+    return simulation
+
+
+def time_flow(flow: Flow, threads: Sequence[int]) -> list[Row]:
+    """One row for each number of threads. They take turns, so that all see the same flow and what
+    disturbs the machine disturbs them alike.
+    """
+    simulation = developed(flow, max(threads))
+    clocked = [Clocked(count) for count in threads]
+    for _ in range(ROUNDS):
+        for clock in clocked:
+            clock.run_window(simulation, flow.window)
+    alone = next((median(clock.flow_rates) for clock in clocked if clock.threads == 1), None)
+    return [clock.row(flow, simulation, alone) for clock in clocked]
+
+
+def time_flows(names: Sequence[str], threads: Sequence[int]) -> Iterator[list[Row]]:
+    """The rows of one flow after another."""
+    for name in names:
+        yield time_flow(FLOWS[name], threads)
+
+
+def flow_table(rows: Sequence[Row]) -> str:
+    """How many seconds of flow a second brings."""
+    header = ["flow", "N", "threads", "flow s/s", "+-", "cores had", "efficiency", "M updates/s"]
+    header += ["step, us", "steps per list", "skin", "bytes/particle"]
+    return markdown_table(
+        header,
+        [
+            [
+                row["flow"],
+                str(row["n"]),
+                str(row["threads"]),
+                f"{row['flow_seconds_per_second']:.3g}",
+                f"{50 * row['spread']:.0f} %",
+                f"{100 * row['core_share']:.0f} %",
+                "" if row["efficiency"] is None else f"{row['efficiency']:.2f}",
+                f"{row['updates_per_s'] / 1e6:.2f}",
+                f"{1e6 * row['timestep']:.3g}",
+                f"{row['steps_per_rebuild']:.1f}",
+                f"{row['skin']:.3g}",
+                f"{row['bytes_per_particle']:.0f}",
+            ]
+            for row in rows
+        ],
+    )
+
+
+def flow_phase_table(rows: Sequence[Row]) -> str:
+    """Share of each phase in the time of a step, %."""
+    phases = list(rows[0]["phases"])
+    lines = [
+        [row["flow"], str(row["threads"]), *(f"{100 * row['phases'][p]:.1f}" for p in phases)]
+        for row in rows
+    ]
+    return markdown_table(["flow", "threads", *phases], lines)
+
+
+def print_flows(rows: Sequence[Row]) -> None:
+    """Both tables, as Markdown."""
+    print(f"{machine()}; scheme resolved, flows under way\n\n{flow_table(rows)}")
+    print(f"\nShare of a step, %\n\n{flow_phase_table(rows)}")
