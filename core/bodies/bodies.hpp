@@ -144,7 +144,7 @@ private:
     RigidParticles<D> rigid_particles_;
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     Array<std::int32_t> all_points_;
-    double moved_ = 0.0;        // bound on the distance gone since contacts were looked for
+    double moved_ = 0.0;  // bound on the distance gone since contacts were looked for
     double margin_ = 0.0;
     double deformable_step_ = std::numeric_limits<double>::infinity();  // stable [s]
 };

@@ -238,8 +238,8 @@ auto Contacts<D>::push_of_pair(const ContactBodies<D>& bodies, std::size_t k, do
     const ContactPoints<D>& points = bodies.points;
     const MotionAt<D> b = motion_of_second(bodies, pairs_[k], *overlap);
     const std::size_t a = pairs_[k].first();
-    const Vec<double, D> v_a =
-                             points.velocity[a] + turning_velocity(points.spin[a], overlap->lever_a),
+    const Vec<double, D> v_a = points.velocity[a] +
+                               turning_velocity(points.spin[a], overlap->lever_a),
                          v_b = b.velocity + turning_velocity(b.spin, overlap->lever_b);
     const ContactAction on_a =
         contact.law.act(springs_[k], overlap->depth, in_space(overlap->normal),

@@ -36,9 +36,7 @@ FLOWS = {
     flow.name: flow
     for flow in (
         # Past impact on the far wall, when the water splashes.
-        Flow(
-            "dam-break-2d", "dambreak", ("scheme=resolved", "dp== column_height/120"), 0.6, 0.01
-        ),
+        Flow("dam-break-2d", "dambreak", ("scheme=resolved", "dp== column_height/120"), 0.6, 0.01),
         Flow(
             "dam-break-3d",
             "dambreak",
