@@ -1,10 +1,11 @@
-"""The flume with inflow, outflow and two materials: the same bits on any number of threads."""
+"""Flows with all there is in a step: the same bits on any number of threads."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from doseki.bench.flows import FLOWS
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation
 
@@ -28,3 +29,18 @@ def test_threads_change_no_bit_of_the_flume(core, precision):
     for state in states[1:]:
         for name, values in states[0].items():
             np.testing.assert_equal(state[name], values, err_msg=name)
+
+
+def test_threads_change_no_bit_of_grains_that_touch(core):
+    scenario = load_scenario(FLOWS["tumbler"].scenario)
+    states = []
+    for threads in (1, 2, 4):
+        core.set_threads(threads)
+        simulation, _ = build_simulation(scenario)
+        simulation.advance(limit=1.0, pause=1.0, max_steps=300)
+        states.append(simulation.checkpoint())
+    assert len(states[0]["contact_springs"]) > 64, "enough to be shared"
+    assert states[0]["contact_springs"].any(), "some touch"
+    for state in states[1:]:
+        for name, values in states[0].items():
+            np.testing.assert_array_equal(state[name], values, err_msg=name)
