@@ -101,7 +101,15 @@ private:
         Vec<double, D> origin{};
         std::array<std::int64_t, D> cells{};  // power of two, except in periodic directions
         std::array<Array<std::uint32_t>, D> key_part;  // Morton key = OR over directions
+        std::span<const std::uint16_t> curve{};        // of the cells of a block
         Array<std::uint32_t> cell_start;
+
+        /// Place of a cell in storage: blocks of cells in Morton order, the cells of each along a
+        /// Hilbert curve.
+        std::uint32_t place(std::uint32_t key) const {
+            const auto in_block = static_cast<std::uint32_t>(curve.size() - 1);
+            return (key & ~in_block) | curve[key & in_block];
+        }
     };
 
     /// A cell that a search visits, along one direction.

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/array.hpp"
+#include "base/hilbert.hpp"
 #include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
@@ -48,10 +49,12 @@ std::int64_t Neighbours<D>::wrap(const Grid& grid, std::int64_t cell, int a) con
 }
 
 /// Bits of a Morton key are those of all directions in turn, as long as a direction has some left;
-/// so the key is the OR of one part for each direction.
+/// so the key is the OR of one part for each direction. Blocks have bits of all.
 template <int D>
 void Neighbours<D>::fill_key_parts(Grid& grid) {
     std::array<Array<int>, D> places;
+    const std::int64_t fewest = *std::min_element(grid.cells.begin(), grid.cells.end());
+    grid.curve = hilbert_curve<D>(std::bit_width(static_cast<std::uint64_t>(fewest - 1)));
     for (int bit = 0, place = 0; bit < 32; ++bit)
         for (int a = 0; a < D; ++a)
             if ((std::uint64_t{1} << bit) < static_cast<std::uint64_t>(grid.cells[a]))
@@ -70,7 +73,7 @@ std::uint32_t Neighbours<D>::key_of(const Grid& grid, const Vec<double, D>& x) c
     std::uint32_t key = 0;
     for (int a = 0; a < D; ++a)
         key |= grid.key_part[a][static_cast<std::size_t>(wrap(grid, cell_of(grid, x[a], a), a))];
-    return key;
+    return grid.place(key);
 }
 
 template <int D>
