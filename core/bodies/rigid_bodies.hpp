@@ -4,6 +4,7 @@
 #include <span>
 
 #include "base/array.hpp"
+#include "base/parallel.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/rigid_body.hpp"
 #include "boundaries/moving_walls.hpp"
@@ -33,14 +34,15 @@ public:
     Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
     /// All spins when the fluid will have acted for `ahead` more.
     Array<Vec3> spins(double ahead) const {
-        Array<Vec3> w;
-        for (std::size_t k = 0; k < size(); ++k)
-            w.push_back(spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque));
+        Array<Vec3> w(size());
+        for_each_particle(size(), [&](std::size_t k) {
+            w[k] = spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque);
+        });
         return w;
     }
     Array<Mat<double, 3>> rotations() const {
-        Array<Mat<double, 3>> R;
-        for (const RigidBodyState<D>& state : states_) R.push_back(state.orientation.matrix());
+        Array<Mat<double, 3>> R(size());
+        for_each_particle(size(), [&](std::size_t k) { R[k] = states_[k].orientation.matrix(); });
         return R;
     }
 
@@ -82,12 +84,9 @@ public:
     }
 
     double max_speed() const {
-        double speed = 0.0;
-        for (std::size_t k = 0; k < size(); ++k)
-            if (is_free(k))
-                speed =
-                    std::max(speed, norm(states_[k].velocity) + shape(k).radius * norm(spin(k)));
-        return speed;
+        return reduce(size(), 0.0, maximum, [&](std::size_t k) {
+            return is_free(k) ? norm(states_[k].velocity) + shape(k).radius * norm(spin(k)) : 0.0;
+        });
     }
     /// How far bodies may go before contacts are looked for again [m]; infinite where none moves.
     double margin() const {
@@ -253,65 +252,63 @@ void RigidBodies<D>::collect(const ContactBodies<D>& contact,
 
 template <int D>
 void RigidBodies<D>::kick(double half_dt) {
-    for (std::size_t k = 0; k < size(); ++k) {
-        if (!is_free(k)) continue;
+    for_each_particle(size(), [&](std::size_t k) {
+        if (!is_free(k)) return;
         RigidBodyState<D>& state = states_[k];
         state.velocity = state.velocity + (half_dt / bodies_[k].mass) * state.flow_force;
         state.flow_impulse = state.flow_impulse + half_dt * state.flow_force;
         state.angular_momentum = state.angular_momentum + half_dt * state.flow_torque;
-    }
+    });
 }
 
 template <int D>
 void RigidBodies<D>::begin_step() {
     spin_before_ = spins(0.0);
     velocity_before_.resize(size()), impulse_before_.resize(size());
-    for (std::size_t k = 0; k < size(); ++k) {
+    for_each_particle(size(), [&](std::size_t k) {
         velocity_before_[k] = states_[k].velocity;
         impulse_before_[k] = states_[k].contact_impulse;
-    }
+    });
 }
 
 template <int D>
 double RigidBodies<D>::drift(double dt) {
-    double farthest = 0.0;
-    for (std::size_t k = 0; k < size(); ++k) {
-        if (!is_free(k)) continue;
+    return reduce(size(), 0.0, maximum, [&](std::size_t k) {
+        if (!is_free(k)) return 0.0;
         RigidBodyState<D>& state = states_[k];
         const Vec3 turn = dt * spin(k);
         state.centre = state.centre + dt * state.velocity;
         state.orientation = state.orientation.turned(turn);
         const double reach = shape(k).is_ball() ? 0.0 : shape(k).radius;
-        farthest = std::max(farthest, dt * norm(state.velocity) + reach * norm(turn));
-    }
-    return farthest;
+        return dt * norm(state.velocity) + reach * norm(turn);
+    });
 }
 
 template <int D>
 void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
-    for (std::size_t k = 0; k < size(); ++k) {
+    for_each_particle(size(), [&](std::size_t k) {
         RigidBodyState<D>& state = states_[k];
         state.contact_impulse = state.contact_impulse + dt * contact_force_[k];
-        if (!is_free(k)) continue;
+        if (!is_free(k)) return;
         state.velocity =
             state.velocity + dt * (gravity + (1.0 / bodies_[k].mass) * contact_force_[k]);
         state.angular_momentum = state.angular_momentum + dt * contact_torque_[k];
-    }
+    });
 }
 
 template <int D>
 void RigidBodies<D>::end_step(double dt, double memory) {
-    for (std::size_t k = 0; k < size(); ++k) {
+    for_each_particle(size(), [&](std::size_t k) {
         RigidBodyState<D>& state = states_[k];
         mean_contact_force_[k] = (1.0 / dt) * (state.contact_impulse - impulse_before_[k]);
-        if (!is_free(k)) continue;
+        if (!is_free(k)) return;
         const Vec<double, D> mean = (1.0 / dt) * (state.velocity - velocity_before_[k]) +
                                     (1.0 / bodies_[k].mass) * state.flow_force;
         const double share = std::min(1.0, dt / memory);
         state.acceleration = state.acceleration + share * (mean - state.acceleration);
         state.spin_rate =
             state.spin_rate + share * ((1.0 / dt) * (spin(k) - spin_before_[k]) - state.spin_rate);
-    }
+    });
 }
 
 template <int D>

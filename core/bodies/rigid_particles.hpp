@@ -66,8 +66,9 @@ template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) const {
     Array<Vec<double, D>> force(points_.size());
-    for (std::size_t p = 0; p < particles.size(); ++p)
+    for_each_particle(particles.size(), [&](std::size_t p) {
         if (has(particles, p)) force[particles.point(p)] = particles.wall.force[p];
+    });
     ranks.sum(numbers_of(force));
     for (std::size_t k = 0; k < bodies.size(); ++k)
         bodies.state(k).flow_force = {}, bodies.state(k).flow_torque = {};
