@@ -76,9 +76,8 @@ def test_what_is_said_of_the_cores(monkeypatch, threads, of, load, limit, said):
 
 
 def test_numbers_of_threads_in_the_environment():
-    assert [int_of(text) for text in ("4", "4,2", "", None, "x", "0", "-1")] == [
-        4, 4, None, None, None, None, None,
-    ]  # fmt: skip
+    texts = ("4", "4,2", "", None, "x", "0", "-1", "9" * 5000)
+    assert [int_of(text) for text in texts] == [4, 4, None, None, None, None, None, None]
 
 
 @pytest.mark.parametrize(

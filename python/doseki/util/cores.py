@@ -10,6 +10,7 @@ from pathlib import Path
 
 from .finding import Finding
 
+MOST_DIGITS = 9  # of a number of threads that OpenMP takes
 BUSY = 0.5  # cores that others may take without being spoken of
 GROUPS = Path("/sys/fs/cgroup")
 MEMBERSHIP = Path("/proc/self/cgroup")
@@ -106,4 +107,5 @@ def shared_cores(threads: int | None = None) -> list[SharedCores]:
 def int_of(text: str | None) -> int | None:
     """The first of the whole numbers that OMP_NUM_THREADS may hold."""
     first = (text or "").split(",")[0].strip()
-    return int(first) if first.isdecimal() and int(first) > 0 else None
+    readable = first.isdecimal() and len(first) <= MOST_DIGITS
+    return int(first) if readable and int(first) > 0 else None
