@@ -32,32 +32,17 @@ class Flow:
     window: float  # s of flow that one measurement takes
 
 
+DAM_BREAK = ("scheme=resolved", "tank_height=1.8")  # high enough for what splashes up
+FLUME = ("scheme=resolved", "flume_length=2.2", "load_mass=5", "load_length=0.32", "load_start=1.2")
+
 FLOWS = {
     flow.name: flow
     for flow in (
-        # Past impact on the far wall, when the water splashes.
-        Flow("dam-break-2d", "dambreak", ("scheme=resolved", "dp== column_height/120"), 0.6, 0.01),
-        Flow(
-            "dam-break-3d",
-            "dambreak",
-            ("scheme=resolved", "dim=3", "dp== column_height/40"),
-            0.6,
-            0.01,
-        ),
+        # Past the impact on the far wall.
+        Flow("dam-break-2d", "dambreak", (*DAM_BREAK, "dp=0.005"), 0.6, 0.01),
+        Flow("dam-break-3d", "dambreak", (*DAM_BREAK, "dim=3", "dp=0.015"), 0.6, 0.01),
         # The water has reached the load, which goes with it.
-        Flow(
-            "flume",
-            "flume",
-            (
-                "scheme=resolved",
-                "flume_length=2.2",
-                "load_mass=5",
-                "load_length=0.32",
-                "load_start=1.2",
-            ),
-            0.8,
-            0.005,
-        ),
+        Flow("flume", "flume", FLUME, 0.8, 0.005),
         Flow("tumbler", str(Path(__file__).parent / "tumbler.toml"), (), 1.0, 0.005),
     )
 }
