@@ -138,6 +138,7 @@ private:
     Array<Vec<double, D>> mean_contact_force_;
     Array<Vec<double, D>> velocity_before_, impulse_before_;  // at the start of a step
     Array<Vec3> spin_before_;
+    Array<Vec3> ball_turn_;  // within a step: contacts do not see how a ball is turned
     std::size_t moving_ = 0;
 };
 
@@ -219,9 +220,13 @@ void RigidBodies<D>::show(ContactBodies<D>& contact, std::span<const std::int32_
                    k = static_cast<std::size_t>(shown.body[c]);
         if (k >= size()) break;  // deformable ones come last
         const RigidBodyState<D>& state = states_[k];
-        if (k != body) body = k, w = spin(k), R = state.orientation.matrix();
+        const bool ball = shape(k).is_ball();
+        if (k != body) {
+            body = k, w = spin(k);
+            if (!ball) R = state.orientation.matrix();
+        }
         const Vec<double, D> lever =
-            shape(k).is_ball() ? Vec<double, D>{} : rotated(R, shape(k).samples[sample(k, c)]);
+            ball ? Vec<double, D>{} : rotated(R, shape(k).samples[sample(k, c)]);
         shown.position[c] = state.centre + lever;
         shown.velocity[c] = state.velocity + turning_velocity(w, lever);
         shown.spin[c] = w, shown.removed[c] = state.is_removed();
@@ -265,6 +270,7 @@ template <int D>
 void RigidBodies<D>::begin_step() {
     spin_before_ = spins(0.0);
     velocity_before_.resize(size()), impulse_before_.resize(size());
+    ball_turn_.assign(size(), {});
     for_each_particle(size(), [&](std::size_t k) {
         velocity_before_[k] = states_[k].velocity;
         impulse_before_[k] = states_[k].contact_impulse;
@@ -277,10 +283,14 @@ double RigidBodies<D>::drift(double dt) {
         if (!is_free(k)) return 0.0;
         RigidBodyState<D>& state = states_[k];
         const Vec3 turn = dt * spin(k);
+        const double distance = dt * norm(state.velocity);
         state.centre = state.centre + dt * state.velocity;
+        if (shape(k).is_ball()) {
+            ball_turn_[k] = ball_turn_[k] + turn;
+            return distance;
+        }
         state.orientation = state.orientation.turned(turn);
-        const double reach = shape(k).is_ball() ? 0.0 : shape(k).radius;
-        return dt * norm(state.velocity) + reach * norm(turn);
+        return distance + shape(k).radius * norm(turn);
     });
 }
 
@@ -302,6 +312,7 @@ void RigidBodies<D>::end_step(double dt, double memory) {
         RigidBodyState<D>& state = states_[k];
         mean_contact_force_[k] = (1.0 / dt) * (state.contact_impulse - impulse_before_[k]);
         if (!is_free(k)) return;
+        state.orientation = state.orientation.turned(ball_turn_[k]);
         const Vec<double, D> mean = (1.0 / dt) * (state.velocity - velocity_before_[k]) +
                                     (1.0 / bodies_[k].mass) * state.flow_force;
         const double share = std::min(1.0, dt / memory);
