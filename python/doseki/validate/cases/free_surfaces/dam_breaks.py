@@ -70,6 +70,9 @@ BOX_SENSORS = {
 }
 FRONT_SENSORS, TOP_SENSORS = ("P1", "P2", "P3", "P4"), ("P5", "P6", "P7", "P8")
 LOW_BOX = "at 8 the box is two particles high, and the upper one is both sensors and the edge"
+AS_ROUNDING_HAS_IT = (
+    "at 8, runs that differ in rounding alone have 0.094 to 0.102: spray and waves that fall back"
+)
 IMPACT_END = 2.0  # s
 GAUGES = {  # x in m, file and column
     "H1": (1.488, "kleefsman-2005-levels-h1-h3.csv", 1),
@@ -286,7 +289,12 @@ OBSTACLE = Case(
         ),
         *criteria_of(TOP_SENSORS, {what: (None, more) for what, (_, more) in COARSER.items()}, {}),
         *(
-            Criterion(name, (at_most(0.1), at_most(0.07), at_most(0.05)), "mean error over 0.55 m")
+            Criterion(
+                name,
+                (at_most(0.1), at_most(0.07), at_most(0.05)),
+                "mean error over 0.55 m",
+                short=AS_ROUNDING_HAS_IT if name == "H3" else "",
+            )
             for name in GAUGES
         ),
         Criterion(ROOM, (small(0.005),), "water keeps its volume through the impact"),
