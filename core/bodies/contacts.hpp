@@ -66,7 +66,7 @@ private:
         std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
     };
 
-    /// What a pair does in one step to the first body, and at what it touches the second.
+    /// What a pair does to its bodies; the second one gets the opposite force.
     struct Push {
         bool touches = false;
         Overlap<D> overlap;

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -58,6 +60,18 @@ class Case:
         """Particles that share one list."""
         lanes = load_core(self.isa).lanes
         return 2 * lanes if self.precision == "float" and lanes > 1 else lanes
+
+
+def clocked(threads: int, run: Callable[[], None]) -> tuple[float, float]:
+    """Seconds that `run` takes, and processor time over wall time and threads.
+
+    One thread is timed by the processor time it got, so that other programs disturb it only through
+    caches; several threads by the wall clock, since they wait for each other.
+    """
+    wall, processor = time.perf_counter(), time.process_time()
+    run()
+    wall, processor = time.perf_counter() - wall, time.process_time() - processor
+    return processor if threads == 1 else wall, processor / (wall * threads)
 
 
 def block(dim: int, n: int) -> np.ndarray:

@@ -19,7 +19,7 @@ from ..errors import ResourceError, UserError
 from ..scenario.schemes import RESOLVED, UETA2022
 from ..solver.protocol import CoreSimulation
 from ..util.cores import allowed_cores, shared_cores
-from .case import SCHEMES, Case, make_simulation
+from .case import SCHEMES, Case, clocked, make_simulation
 from .flows import FLOWS, print_flows, time_flows
 from .report import checks, growth, machine, memory_check, phase_table, speed_table
 
@@ -82,11 +82,7 @@ def default_threads() -> list[int]:
 
 @dataclass
 class Timing:
-    """One case, and what has been measured of it so far.
-
-    One thread is timed by the processor time it got, so that other programs disturb it only through
-    caches; several threads by the wall clock, since they wait for each other.
-    """
+    """One case, and what has been measured of it so far."""
 
     case: Case
     simulation: CoreSimulation
@@ -111,21 +107,22 @@ class Timing:
         while simulation.rebuilds == built:
             simulation.advance(limit=1e30, pause=1e30, max_steps=1)
 
+    def _live_for_a_round(self) -> None:
+        started = time.perf_counter()
+        for _ in range(LIVES_PER_ROUND):
+            self._live_once()
+            if time.perf_counter() - started > ROUND_SECONDS:
+                break
+
     def run_round(self) -> None:
         """Adds one measurement, of whole lives of the lists."""
         simulation = self.simulation
         load_core(self.case.isa).set_threads(self.case.threads)
         first_step, first_build = simulation.steps, simulation.rebuilds
-        wall, processor = time.perf_counter(), time.process_time()
-        for _ in range(LIVES_PER_ROUND):
-            self._live_once()
-            if time.perf_counter() - wall > ROUND_SECONDS:
-                break
-        wall, processor = time.perf_counter() - wall, time.process_time() - processor
-        steps, threads = simulation.steps - first_step, self.case.threads
-        seconds = processor if threads == 1 else wall
+        seconds, core_share = clocked(self.case.threads, self._live_for_a_round)
+        steps = simulation.steps - first_step
         self.update_rates.append(self.case.n * steps / seconds)
-        self.core_shares.append(processor / (wall * threads))
+        self.core_shares.append(core_share)
         self.steps += steps
         self.rebuilds += simulation.rebuilds - first_build
         if self.case.threads == 1 and self.case.scheme == UETA2022:

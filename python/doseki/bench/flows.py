@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -13,6 +13,7 @@ from ..compiled import load_core
 from ..scenario.load import load_scenario
 from ..solver.build import build_simulation
 from ..solver.protocol import CoreSimulation
+from .case import clocked
 from .report import machine, markdown_table
 
 Row = dict[str, Any]
@@ -48,6 +49,11 @@ FLOWS = {
 }
 
 
+def run_until(simulation: CoreSimulation, instant: float) -> None:
+    """Step until this time, s."""
+    simulation.advance(limit=instant, pause=instant, max_steps=NO_LIMIT)
+
+
 @dataclass
 class Clocked:
     """What has been measured of a flow on some threads."""
@@ -63,22 +69,17 @@ class Clocked:
     flow_time: float = 0.0
 
     def run_window(self, simulation: CoreSimulation, window: float) -> None:
-        """Adds one measurement. One thread is timed by the processor time it got, as others
-        disturb that least.
-        """
+        """Adds one measurement."""
         load_core().set_threads(self.threads)
         steps, rebuilds, updates = simulation.steps, simulation.rebuilds, simulation.updates
         start = simulation.time
         simulation.time_phases(True)
-        wall, processor = time.perf_counter(), time.process_time()
-        simulation.advance(limit=start + window, pause=start + window, max_steps=NO_LIMIT)
-        wall, processor = time.perf_counter() - wall, time.process_time() - processor
-        seconds = processor if self.threads == 1 else wall
+        seconds, core_share = clocked(self.threads, partial(run_until, simulation, start + window))
         for phase, spent in simulation.phase_seconds().items():
             self.phases[phase] = self.phases.get(phase, 0.0) + spent
         simulation.time_phases(False)
         self.flow_rates.append((simulation.time - start) / seconds)
-        self.core_shares.append(processor / (wall * self.threads))
+        self.core_shares.append(core_share)
         self.seconds += seconds
         self.flow_time += simulation.time - start
         self.steps += simulation.steps - steps
@@ -109,7 +110,7 @@ def developed(flow: Flow, threads: int) -> CoreSimulation:
     """Its simulation, run until it is timed."""
     load_core().set_threads(threads)
     simulation, _names = build_simulation(load_scenario(flow.scenario, flow.settings))
-    simulation.advance(limit=flow.developed, pause=flow.developed, max_steps=NO_LIMIT)
+    run_until(simulation, flow.developed)
     return simulation
 
 
@@ -118,12 +119,12 @@ def time_flow(flow: Flow, threads: Sequence[int]) -> list[Row]:
     disturbs the machine disturbs them alike.
     """
     simulation = developed(flow, max(threads))
-    clocked = [Clocked(count) for count in threads]
+    clocks = [Clocked(count) for count in threads]
     for _ in range(ROUNDS):
-        for clock in clocked:
+        for clock in clocks:
             clock.run_window(simulation, flow.window)
-    alone = next((median(clock.flow_rates) for clock in clocked if clock.threads == 1), None)
-    return [clock.row(flow, simulation, alone) for clock in clocked]
+    alone = next((median(clock.flow_rates) for clock in clocks if clock.threads == 1), None)
+    return [clock.row(flow, simulation, alone) for clock in clocks]
 
 
 def time_flows(names: Sequence[str], threads: Sequence[int]) -> Iterator[list[Row]]:
