@@ -150,10 +150,11 @@ public:
         set_speeds(particles, [t](const SpeedTable& table) { return table.speed_at(t); });
     }
 
-    /// Marks in `removed` the free particles inside an outflow, and what `remove_bodies(outflow,
-    /// removed)` marks there; true if there is any.
-    template <class RemoveBodies>
-    bool remove_outflow(const Particles<D>& particles, const RemoveBodies& remove_bodies);
+    /// Marks in `removed` the free particles inside an outflow or for which `leaves(p)`, and what
+    /// `remove_bodies(outflow, removed)` marks there; true if there is any.
+    template <class Leaves, class RemoveBodies>
+    bool remove_outflow(const Particles<D>& particles, const Leaves& leaves,
+                        const RemoveBodies& remove_bodies);
 
     Array<std::uint8_t> removed;
 
@@ -259,8 +260,8 @@ bool OpenBoundaries<D>::inject(Particles<D>& particles, double t) {
 }
 
 template <int D>
-template <class RemoveBodies>
-bool OpenBoundaries<D>::remove_outflow(const Particles<D>& particles,
+template <class Leaves, class RemoveBodies>
+bool OpenBoundaries<D>::remove_outflow(const Particles<D>& particles, const Leaves& leaves,
                                        const RemoveBodies& remove_bodies) {
     bool any = false;
     removed.resize(particles.size(), 0);
@@ -268,6 +269,7 @@ bool OpenBoundaries<D>::remove_outflow(const Particles<D>& particles,
     for (std::size_t p = 0; p < particles.size(); ++p) {
         for (const Outflow<D>& outflow : outflows)
             if (particles.is_free(p) && outflow.contains(particles.position[p])) removed[p] = 1;
+        if (leaves(p)) removed[p] = 1;
         if (removed[p] && particles.is_counted(p)) ledger.outflow.add(particles, p);
         any |= removed[p] != 0;
     }

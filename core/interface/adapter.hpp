@@ -67,6 +67,10 @@ public:
     void move_body(const NamedValues& motion) override {
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
+    void set_terrain(const NamedValues& field, const NamedValues& wall) override {
+        sim_.terrain.set(BoundaryTables<D>::height_field(field),
+                         BoundaryTables<D>::terrain_wall(wall));
+    }
     void set_stresses(const NamedValues& columns) override {
         if (auto* const stress = sim_.scheme().own_fields().deviatoric_stress)
             stress->assign(ParticleTables<D>::deviators(columns, sim_.particles.size()));

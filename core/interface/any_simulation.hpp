@@ -44,6 +44,8 @@ public:
     virtual void add_inflow(const NamedValues& inflow) = 0;
     virtual void add_outflow(const std::vector<double>& low, const std::vector<double>& high) = 0;
     virtual void move_body(const NamedValues& motion) = 0;
+    /// A bed that is a surface, and what its wall particles are like.
+    virtual void set_terrain(const NamedValues& field, const NamedValues& wall) = 0;
     /// Deviatoric stresses of all particles in the order of adding, where the scheme evolves them.
     virtual void set_stresses(const NamedValues& columns) = 0;
     /// Sets the clock [s] of a run that goes on from another one; after the inflows.

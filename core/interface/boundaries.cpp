@@ -57,6 +57,42 @@ WallMotion<D> BoundaryTables<D>::motion(const NamedValues& table) {
     return motion;
 }
 
+template <int D>
+HeightField<D> BoundaryTables<D>::height_field(const NamedValues& table) {
+    HeightField<D> field;
+    NumberArray heights;
+    Reader read(table, "terrain");
+    read("origin", field.origin), read("cell", field.cell), read("heights", heights);
+    read.allow("unknown"), read.finish();
+    if (heights.shape.size() != D - 1)
+        throw std::invalid_argument("terrain.heights: a grid of the wrong dimension");
+    std::size_t width = 1;
+    for (int a = 0; a < D - 1; ++a) {
+        field.nodes[a] = static_cast<std::int64_t>(heights.shape[D - 2 - a]);
+        if (field.nodes[a] < 2) throw std::invalid_argument("terrain.heights: fewer than 2 nodes");
+        if (a < D - 2) width = heights.shape[D - 2 - a];
+    }
+    ColumnReader column(table, "terrain", ColumnReader::any_rows);
+    field.heights = column.numbers<double>("heights", width);
+    field.unknown = column.numbers<std::uint8_t>("unknown", width);
+    if (field.unknown.size() != field.heights.size() || !(field.cell > 0.0))
+        throw std::invalid_argument("terrain: unknown and heights differ in shape, or no cell");
+    for (const double height : field.heights)
+        if (!std::isfinite(height)) throw std::invalid_argument("terrain.heights: not finite");
+    return field;
+}
+
+template <int D>
+TerrainWall BoundaryTables<D>::terrain_wall(const NamedValues& table) {
+    TerrainWall wall;
+    Reader read(table, "terrain wall");
+    read("dp", wall.dp), read("layers", wall.layers), read("density", wall.density);
+    read("smoothing_length", wall.smoothing_length);
+    read("material", wall.material), read("body", wall.body);
+    read.finish();
+    return wall;
+}
+
 template struct BoundaryTables<2>;
 template struct BoundaryTables<3>;
 

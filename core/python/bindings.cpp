@@ -10,6 +10,7 @@ namespace nb = nanobind;
 void bind_simulation(nb::module_& m);
 void bind_elastic(nb::module_& m);
 void bind_physics(nb::module_& m);
+void bind_terrain(nb::module_& m);
 
 NB_MODULE(DOSEKI_MODULE, m) {
     nb::exception<doseki::PhysicsFailure>(m, "PhysicsFailure");
@@ -19,4 +20,5 @@ NB_MODULE(DOSEKI_MODULE, m) {
     bind_simulation(m);
     bind_elastic(m);
     bind_physics(m);
+    bind_terrain(m);
 }

@@ -39,6 +39,9 @@ public:
     void add_inflow(const nb::dict& inflow) { core_->add_inflow(to_table(inflow)); }
     void add_outflow(const Corner& low, const Corner& high) { core_->add_outflow(low, high); }
     void move_body(const nb::dict& motion) { core_->move_body(to_table(motion)); }
+    void set_terrain(const nb::dict& field, const nb::dict& wall) {
+        core_->set_terrain(to_table(field), to_table(wall));
+    }
     void set_stresses(const nb::object& deviatoric_stress) {
         NamedValues columns;
         columns["deviatoric_stress"] = to_value(deviatoric_stress);
@@ -133,6 +136,9 @@ void bind_setup(Class& c) {
         .def("add_outflow", &P::add_outflow, nb::arg("low"), nb::arg("high"))
         .def("move_body", &P::move_body, nb::arg("motion"),
              nb::sig("def move_body(self, motion: doseki.solver.protocol.Table) -> None"))
+        .def("set_terrain", &P::set_terrain, nb::arg("field"), nb::arg("wall"),
+             nb::sig("def set_terrain(self, field: doseki.solver.protocol.Table, wall: "
+                     "doseki.solver.protocol.Table) -> None"))
         .def("set_stresses", &P::set_stresses, nb::arg("deviatoric_stress"),
              nb::sig("def set_stresses(self, deviatoric_stress: numpy.ndarray) -> None"))
         .def("begin_at", &P::begin_at, nb::arg("time"))

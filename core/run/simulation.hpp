@@ -9,6 +9,7 @@
 #include "bodies/bodies.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
+#include "boundaries/terrain.hpp"
 #include "run/account.hpp"
 #include "run/any_scheme.hpp"
 #include "run/diagnostics.hpp"
@@ -43,6 +44,7 @@ public:
     Particles<D>& particles;
     OpenBoundaries<D> open_boundaries;
     MovingWalls<D> moving_walls;
+    Terrain<D> terrain;
     Bodies<D> bodies;
 
     /// Makes this one of several ranks. Every call that steps or sorts is then made by all of them.
@@ -108,6 +110,8 @@ public:
         particles.serialise(archive);
         if (archive.loads()) expect_particles();
         open_boundaries.serialise(archive);
+        terrain.serialise(archive);
+        if (archive.loads()) terrain.expect_tiles(particles);
         bodies.serialise(archive);
         if (archive.loads()) bodies.expect_points(particles);
         scheme_->serialise(archive);
@@ -209,6 +213,7 @@ private:
 
     void rebuild_lists();
     void wrap_positions();
+    void look_at_terrain();
     bool remove_outflow();
     void drop_removed();
     Array<double> support_radii() const;
@@ -315,7 +320,9 @@ void Simulation<Lists>::rebuild_lists() {
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
     wrap_positions();
     lists_.cut_space(particles, phases());
+    look_at_terrain();
     drop_removed();
+    terrain.fill(particles, open_boundaries.next_id, open_boundaries.adds);
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
@@ -332,12 +339,24 @@ void Simulation<Lists>::wrap_positions() {
     }
 }
 
+/// Fluid must find a bed wherever it may be before the lists are built anew.
+template <class Lists>
+void Simulation<Lists>::look_at_terrain() {
+    if (!terrain.is_there()) return;
+    const Array<double> own = support_radii();
+    const double support = ranks().largest(
+        own.empty() ? 0.0 : *std::max_element(own.begin(), own.end()));
+    const double skin = max(options_.skin, CheapestSkin<D>::max_skin);
+    terrain.look(particles, support, skin * support, ranks(), open_boundaries.removed);
+}
+
 /// True where any rank has particles that left.
 template <class Lists>
 bool Simulation<Lists>::remove_outflow() {
-    if (open_boundaries.outflows.empty()) return false;
-    const bool any =
-        open_boundaries.remove_outflow(particles, [this](const Outflow<D>& outflow, auto& removed) {
+    if (open_boundaries.outflows.empty() && !terrain.is_there()) return false;
+    const bool any = open_boundaries.remove_outflow(
+        particles, [this](std::size_t p) { return terrain.leaves(particles, p); },
+        [this](const Outflow<D>& outflow, auto& removed) {
             bodies.drain(particles, outflow, removed);
         });
     return ranks().largest(any ? 1.0 : 0.0) > 0.0;

@@ -52,6 +52,26 @@ class Physics(PointFunctions, Protocol):
     least_relative_density: float  # of a liquid in the resolved scheme, over rho0
 
 
+class HeightField(Protocol):
+    """The surface of a bed; columns of numbers by name, one row for each place."""
+
+    def at(self, places: np.ndarray) -> dict[str, np.ndarray]:
+        """`height`, m, `area` over that of its plan, `normal` and whether it is `unknown`, at places
+        (N, dim - 1), m.
+        """
+        ...
+
+    def nearest(self, points: np.ndarray) -> dict[str, np.ndarray]:
+        """The signed `distance`, m, of points (N, dim) above the surface, and the `normal` there."""
+        ...
+
+    def columns(self, low: Sequence[float], side: float, dp: float) -> dict[str, np.ndarray]:
+        """`place` (N, dim - 1), m, of columns that stand on a square, each on an `area` (N,), m2, of
+        the surface near dp^2 (2-D: m, near dp).
+        """
+        ...
+
+
 class Core(Protocol):
     """A compiled module."""
 
@@ -73,6 +93,14 @@ class Core(Protocol):
 
         Raises ValueError for a key or word that is unknown, or a key that is missing.
         """
+        ...
+
+    def HeightField2(self, table: Mapping[str, object]) -> HeightField:  # noqa: N802 (a class)
+        """The bed of a 2-D run: origin, cell, heights, unknown."""
+        ...
+
+    def HeightField3(self, table: Mapping[str, object]) -> HeightField:  # noqa: N802 (a class)
+        """The same of a 3-D run."""
         ...
 
     def set_threads(self, n: int) -> None:

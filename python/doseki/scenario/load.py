@@ -11,13 +11,15 @@ import numpy as np
 from pydantic import ValidationError
 
 from ..util.input_file import digest_of
+from .bed import Bed, read_bed
 from .checks.references import check_names, check_references
 from .checks.tables import check_scenario
 from .earlier import earlier_run
 from .hydrographs import completed_inflows
 from .materials import Material, MaterialError, complete_materials, equation_of_state
-from .model import Scenario, file_of, min_sound_speed, names_in_use
+from .model import Found, Scenario, file_of, min_sound_speed, names_in_use, terrain_file
 from .particle_files.reader import ParticleTable, read_particles
+from .releases import completed_release
 from .reading.copies import with_copies
 from .reading.files import find_scenario, merged_table, read_with_bases, scenario_folder
 from .reading.messages import to_user_error
@@ -25,6 +27,8 @@ from .reading.overrides import apply_overrides
 from .reading.resolve import resolve_table
 from .reading.units import in_own_units
 from .schemes import with_scheme_defaults
+from .tables.body import BodyTable
+from .tables.release import Release
 from .tables.root import ScenarioTable
 from .values.toml_source import Where, read_toml
 
@@ -65,6 +69,7 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
     }
     check_names(tables, where)
     check_references(tables, where, materials, read)
+    bed = _bed(tables, where)
     gravity = tables.gravity
     if gravity is None:
         gravity = _gravity_on_slope(tables.slope, tables.g, tables.dim)
@@ -74,24 +79,58 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
         "inflow": completed_inflows(tables.inflow, gravity, where),
         "xi": tables.xi or _reduction_factor(tables, gravity, materials, read),
     }
+    if any(isinstance(body, Release) for body in tables.body.values()):
+        completed["body"] = _with_releases(tables, bed, where)
     earlier = None if tables.start is None else earlier_run(tables.start, where)
-    scenario = Scenario.made_of(tables, completed, where, materials, constants, read, earlier)
+    found = Found(constants, read, earlier, bed)
+    scenario = Scenario.made_of(tables, completed, where, materials, found)
     check_scenario(scenario)
     return scenario
+
+
+def _bed(tables: ScenarioTable, where: Where) -> Bed | None:
+    """The bed of [terrain], where there is one."""
+    terrain = tables.terrain
+    if terrain is None:
+        return None
+    return read_bed(terrain_file(where, terrain), terrain, tables.dim, tables.dp, where)
+
+
+def _with_releases(tables: ScenarioTable, bed: Bed | None, where: Where) -> dict[str, BodyTable]:
+    """The bodies, releases with what their files say."""
+    if bed is None:
+        name = next(name for name, body in tables.body.items() if isinstance(body, Release))
+        raise where.error(
+            ("body", name), f'body.{name}: shape = "release" needs a [terrain] to lie on'
+        )
+    bodies = dict(tables.body)
+    for name, body in tables.body.items():
+        if isinstance(body, Release):
+            path = None if body.file is None else file_of(where, name, body.file)
+            crs = None if bed.raster is None else bed.raster.crs
+            bodies[name] = completed_release(name, body, path, crs, where)
+    return bodies
 
 
 def _check_digests(tables: ScenarioTable, where: Where) -> None:
     """Files whose content is known must still have it."""
     for name, body in tables.body.items():
-        expected = body.given("digest")
-        if expected is not None:
+        if body.given("digest") is not None and body.given("file") is not None:
             path = file_of(where, name, body.given("file"))
-            if (found := digest_of(path)) != expected:
-                raise where.error(
-                    ("body", name, "digest"),
-                    f"body.{name}.digest: {path} is not the file that was meant: its digest is"
-                    f" {found}, expected {expected}; bring back the file, or remove the key",
-                )
+            _check_digest(("body", name, "digest"), path, body.given("digest"), where)
+    terrain = tables.terrain
+    if terrain is not None and terrain.digest is not None:
+        path = terrain_file(where, terrain)
+        _check_digest(("terrain", "digest"), path, terrain.digest, where)
+
+
+def _check_digest(keys: tuple[str, ...], path: Path, expected: str, where: Where) -> None:
+    if (found := digest_of(path)) != expected:
+        raise where.error(
+            keys,
+            f"{'.'.join(keys)}: {path} is not the file that was meant: its digest is {found},"
+            f" expected {expected}; bring back the file, or remove the key",
+        )
 
 
 def _gravity_on_slope(slope: float | None, g: float, dim: int) -> np.ndarray:

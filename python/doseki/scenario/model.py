@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from ..record.folder import INPUTS
 from ..util.frozen import frozen
 from ..util.input_file import InputFile, digest_of
 from ..util.toml_writer import to_toml
+from .bed import Bed
 from .earlier import Earlier
 from .gauges.gauge import Gauge, Setting
 from .kinematics import Kinematics
@@ -22,8 +24,19 @@ from .particle_files.reader import ParticleTable
 from .schemes import KERNEL_SUPPORT, RESOLVED
 from .tables.root import ScenarioTable
 from .tables.sections import SECTIONS
+from .tables.terrain import Terrain
 from .values.toml_source import Where
 from .values.types import Acceleration, Duration, Positive
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was read and worked out for a scenario beside its tables."""
+
+    constants: Mapping[str, Any]
+    particle_tables: Mapping[str, ParticleTable]
+    earlier: Earlier | None = None
+    bed: Bed | None = None
 
 
 class Scenario(ScenarioTable):
@@ -46,6 +59,7 @@ class Scenario(ScenarioTable):
     _constants: Mapping[str, Any] = PrivateAttr()
     _particle_tables: Mapping[str, ParticleTable] = PrivateAttr()
     _earlier: Earlier | None = PrivateAttr(None)
+    _bed: Bed | None = PrivateAttr(None)
 
     @classmethod
     def made_of(
@@ -54,9 +68,7 @@ class Scenario(ScenarioTable):
         completed: Mapping[str, Any],
         where: Where,
         materials: Mapping[str, Material],
-        constants: Mapping[str, Any],
-        particle_tables: Mapping[str, ParticleTable],
-        earlier: Earlier | None = None,
+        found: Found,
     ) -> Scenario:
         """The scenario of checked `tables`, with the values `completed` that follow from them."""
         fields = ScenarioTable.model_fields.items()
@@ -66,8 +78,9 @@ class Scenario(ScenarioTable):
             tables.model_fields_set, **{name: frozen(value) for name, value in values.items()}
         )
         made._where, made._materials = where, frozen(materials)
-        made._constants, made._particle_tables = frozen(constants), frozen(particle_tables)
-        made._earlier = earlier
+        made._constants = frozen(found.constants)
+        made._particle_tables = frozen(found.particle_tables)
+        made._earlier, made._bed = found.earlier, found.bed
         return made
 
     @property
@@ -99,6 +112,11 @@ class Scenario(ScenarioTable):
     def earlier(self) -> Earlier | None:
         """The run that it starts from, if it does."""
         return self._earlier
+
+    @property
+    def bed(self) -> Bed | None:
+        """The ground of [terrain], where there is one."""
+        return self._bed
 
     @property
     def begins_at(self) -> float:
@@ -199,7 +217,13 @@ class Scenario(ScenarioTable):
     @property
     def inputs(self) -> list[InputFile]:
         """The files that it needs; raises UserError for one that cannot be read."""
-        return [*self.body_files.values(), *self.start_files]
+        of_terrain = [] if self.terrain_input is None else [self.terrain_input]
+        return [*self.body_files.values(), *of_terrain, *self.start_files]
+
+    @cached_property
+    def terrain_input(self) -> InputFile | None:
+        """That of [terrain]."""
+        return None if self.terrain is None else _input(terrain_file(self.where, self.terrain))
 
     @cached_property
     def body_files(self) -> dict[str, InputFile]:
@@ -224,6 +248,9 @@ class Scenario(ScenarioTable):
         given["material"] = {name: self._material_table(name) for name in self.material_names}
         for name, file in self.body_files.items():
             given["body"][name] |= {"file": _name_of(file, stored), "digest": file.digest}
+        if self.terrain_input is not None:
+            file = self.terrain_input
+            table["terrain"] |= {"file": _name_of(file, stored), "digest": file.digest}
         if self._earlier is not None:
             table["start"] |= {
                 "from": [_name_of(file, stored) for file in self.start_files],
@@ -255,6 +282,11 @@ def file_of(where: Where, name: str, file: str) -> Path:
     return where.folder(("body", name, "file")) / file
 
 
+def terrain_file(where: Where, terrain: Terrain) -> Path:
+    """The file of [terrain]; its path is relative to the scenario file that names it."""
+    return where.folder(("terrain", "file")) / terrain.file
+
+
 def names_in_use(tables: ScenarioTable, read: Mapping[str, ParticleTable]) -> list[str]:
     """The materials of bodies, of the particles `read` from files, and of inflows, none twice."""
     used: list[str] = []
@@ -264,6 +296,7 @@ def names_in_use(tables: ScenarioTable, read: Mapping[str, ParticleTable]) -> li
         elif body.material is not None:
             used.append(body.material)
     used += [inflow.material for inflow in tables.inflow.values()]
+    used += [] if tables.terrain is None else [tables.terrain.material]
     return list(dict.fromkeys(used))
 
 

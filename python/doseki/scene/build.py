@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import ResourceError
 from ..record.particles import BOUND, FREE, ParticleSet, concatenate
 from ..scenario.model import Scenario
+from ..scenario.tables.terrain import TERRAIN
 from ..util.finding import Finding
 from ..util.memory import available_bytes
 from .bodies import Bodies, ElasticBody
@@ -240,9 +241,10 @@ def _outside(
 
 
 def body_names(scenario: Scenario) -> list[str]:
-    """Bodies first, a file's own body names in place of the name of the file's body."""
+    """Bodies first, a file's own body names in place of its own; the terrain; the inflows."""
     names = [each for name in scenario.body for each in scenario.names_of_bodies(name)]
-    return list(dict.fromkeys([*names, *scenario.inflow]))
+    bed = [] if scenario.terrain is None else [TERRAIN]
+    return list(dict.fromkeys([*names, *bed, *scenario.inflow]))
 
 
 def _check_size(bodies: Mapping[str, Body[Any]]) -> None:

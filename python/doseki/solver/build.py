@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,11 +15,13 @@ from ..scenario.materials import Material, equation_of_state
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
+from ..scenario.tables.terrain import TERRAIN, Terrain
 from ..scene.build import Scene, build_scene
 from ..scene.checks.grain_numbers import check_grain_numbers
 from ..scene.checks.sensors import sensor_findings
 from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
+from ..scene.lattices import ROUNDING
 from ..scene.wall_normals import wall_geometry
 from ..util.finding import Finding
 from ..util.telling import Tell, say_nothing
@@ -64,7 +67,7 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """What only the resolved scheme has."""
     names = "dp kernel viscosity shifting turbulence smagorinsky".split()
     return {name: getattr(scenario, name) for name in names} | {
-        "walls": [_wall_condition(scenario.body.get(name)) for name in body_names]
+        "walls": [_wall_condition(_wall_of(scenario, name)) for name in body_names]
     }
 
 
@@ -76,7 +79,12 @@ def _contact_options(scenario: Scenario) -> dict[str, Any]:
     return options
 
 
-def _wall_condition(body: BodyTable | None) -> dict[str, Any]:
+def _wall_of(scenario: Scenario, name: str) -> BodyTable | Terrain | None:
+    """The table that says how fluid meets a body of this name, if one does."""
+    return scenario.terrain if name == TERRAIN and scenario.terrain else scenario.body.get(name)
+
+
+def _wall_condition(body: BodyTable | Terrain | None) -> dict[str, Any]:
     wall = (body.given("wall") if body is not None else None) or "no_slip"
     ks = body.given("ks") if body is not None and wall == "rough" else 0.0
     return {"no_slip": wall == "no_slip", "ks": ks}
@@ -158,9 +166,25 @@ def empty_simulation(
         simulation.add_outflow(list(outflow.min), list(outflow.max))
     for motion in wall_motions(scenario, body_names):
         simulation.move_body(motion)
+    if scenario.bed is not None:
+        simulation.set_terrain(scenario.bed.table, _terrain_wall(scenario, body_names))
     if scenario.earlier is not None:
         simulation.begin_at(scenario.begins_at)
     return simulation
+
+
+def _terrain_wall(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
+    """What the wall particles of the terrain are like."""
+    assert scenario.terrain is not None
+    name = scenario.terrain.material
+    return {
+        "dp": scenario.dp,
+        "layers": math.ceil(scenario.support / scenario.dp - ROUNDING),
+        "density": scenario.materials[name].rho0,
+        "smoothing_length": scenario.eta * scenario.dp,
+        "material": scenario.material_names.index(name),
+        "body": body_names.index(TERRAIN),
+    }
 
 
 class Filled(NamedTuple):

@@ -277,6 +277,10 @@ class CoreSimulation(Simulation, Protocol):
         """A prescribed motion of a fixed body."""
         ...
 
+    def set_terrain(self, field: Table, wall: Table) -> None:
+        """The bed as a surface, and what its wall particles are like; before the run starts."""
+        ...
+
     def set_stresses(self, deviatoric_stress: Floats) -> None:
         """Deviatoric stresses (N, 3, 3), Pa, of all particles, where the scheme evolves them."""
         ...

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from ...util.spelling import suggestion
 from ..materials import Material
 from ..particle_files.reader import ParticleTable
+from ..table import Table
 from ..tables.root import ScenarioTable
-from ..tables.sections import SECTIONS
+from ..tables.sections import SECTIONS, SINGLE_TABLES
 from ..values.toml_source import Where
 from ..values.types import RefersTo
 
@@ -42,13 +43,12 @@ def check_references(
     if not tables.body and not tables.inflow:
         raise where.error((), "a scenario needs at least one [body.NAME] or [inflow.NAME]")
     known = {name: getattr(tables, name) for name in SECTIONS} | {"material": materials}
-    for section in SECTIONS:
-        for name, part in getattr(tables, section).items():
-            for key, field in type(part).model_fields.items():
-                for about in field.metadata:
-                    if isinstance(about, RefersTo):
-                        keys, value = (section, name, key), getattr(part, key)
-                        _check_known(where, keys, value, about.section, known[about.section])
+    for place, part in _parts(tables):
+        for key, field in type(part).model_fields.items():
+            for about in field.metadata:
+                if isinstance(about, RefersTo):
+                    keys, value = (*place, key), getattr(part, key)
+                    _check_known(where, keys, value, about.section, known[about.section])
     for name, particles in read.items():
         for material in particles.material_names:
             if material not in materials:
@@ -57,9 +57,19 @@ def check_references(
                 raise where.error(("body", name, "file"), message + suggestion(material, materials))
 
 
+def _parts(tables: ScenarioTable) -> Iterator[tuple[tuple[str, ...], Table]]:
+    """Every table of the scenario, with where it stands."""
+    for name in SINGLE_TABLES:
+        if (part := getattr(tables, name)) is not None:
+            yield (name,), part
+    for section in SECTIONS:
+        for name, part in getattr(tables, section).items():
+            yield (section, name), part
+
+
 def _check_known(
     where: Where,
-    keys: tuple[str, str, str],
+    keys: tuple[str, ...],
     value: str | list[str] | None,
     section: str,
     known: Mapping[str, object],

@@ -25,6 +25,7 @@ from ..values.types import (
 from ..values.units import LENGTH, Measured
 from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
 from .motion import Motion
+from .release import Release
 
 Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 
@@ -272,6 +273,7 @@ BODIES = Kinds(
         "points": Points,
         "file": ParticleFile,
         "tank": Tank,
+        "release": Release,
         GRAINS: Grains,
     },
     special=_packed,

@@ -32,6 +32,7 @@ from .material import MaterialTable
 from .parameter import Parameter
 from .region import Outflow, Window
 from .start import Start
+from .terrain import Terrain
 
 if TYPE_CHECKING:
     EquationOfState = str
@@ -118,6 +119,7 @@ class ScenarioTable(Table):
     domain_min: Position | None = Field(None, description="lower corner of the periodic domain, m")
     domain_max: Position | None = Field(None, description="upper corner of the periodic domain, m")
     contact: Annotated[Contact, OF_RESOLVED] = Field(default_factory=Contact)
+    terrain: Annotated[Terrain | None, OF_RESOLVED] = None
     start: Start | None = None
     parameters: dict[str, Parameter] = Field(default_factory=dict)
     material: dict[str, MaterialTable] = Field(default_factory=dict)

@@ -7,6 +7,7 @@ from typing import Any
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box, Disc, Grains, Mesh, ParticleFile, Points, Polygon
 from ...scenario.tables.body import BodyTable
+from ...scenario.tables.release import Release
 from .body import Body
 from .box import BoxBody
 from .disc import DiscBody
@@ -15,12 +16,14 @@ from .grains import GrainsBody
 from .mesh import MeshBody
 from .points import PointsBody
 from .polygon import PolygonBody
+from .release import ReleaseBody
 
 MADE_OF: dict[type[BodyTable], type[Body[Any]]] = {
     Box: BoxBody,
     Disc: DiscBody,
     Grains: GrainsBody,
     Mesh: MeshBody,
+    Release: ReleaseBody,
     ParticleFile: FileBody,
     Points: PointsBody,
     Polygon: PolygonBody,

@@ -1,0 +1,171 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "base/array.hpp"
+#include "base/vec.hpp"
+
+namespace doseki {
+
+/// The bed as heights over a plane: the last axis is up, the others are horizontal.
+template <int D>
+using Horizontal = Vec<double, D - 1>;
+
+template <int D>
+Horizontal<D> horizontal(const Vec<double, D>& x) {
+    Horizontal<D> place;
+    for (int a = 0; a < D - 1; ++a) place[a] = x[a];
+    return place;
+}
+
+/// Heights at the nodes of a square grid. In between, the cubic of Catmull and Rom (1974) along each
+/// axis: it passes through the nodes and its slope is continuous. Beyond the grid it goes on
+/// straight.
+template <int D>
+class HeightField {
+    static constexpr int axes = D - 1;
+
+public:
+    Horizontal<D> origin{};                // node 0 [m]
+    double cell = 1.0;                     // distance between nodes [m]
+    std::array<std::int64_t, axes> nodes{};  // along each axis; 2 or more
+    Array<double> heights;                 // [m], the first axis fastest
+    Array<std::uint8_t> unknown;           // by node: the map has nothing there; may be empty
+
+    struct Surface {
+        double height;            // [m]
+        Horizontal<D> slope;      // gradient of the height
+        double area;              // of the surface over that of its plan
+        Vec<double, D> normal;    // upwards
+    };
+
+    Surface at(const Horizontal<D>& place) const {
+        std::array<Stencil, axes> stencil;
+        for (int a = 0; a < axes; ++a) stencil[a] = stencil_at(a, place[a]);
+        Surface surface{};
+        if constexpr (D == 2) {
+            surface.height = sum_along(stencil[0].value, stencil[0], 0);
+            surface.slope[0] = sum_along(stencil[0].slope, stencil[0], 0) / cell;
+            surface.height += stencil[0].beyond * surface.slope[0];
+        } else {
+            sum_over_rows(stencil, surface);
+        }
+        const double steepness = dot(surface.slope, surface.slope);
+        surface.area = std::sqrt(1.0 + steepness);
+        for (int a = 0; a < axes; ++a) surface.normal[a] = -surface.slope[a] / surface.area;
+        surface.normal[axes] = 1.0 / surface.area;
+        return surface;
+    }
+
+    double height(const Horizontal<D>& place) const { return at(place).height; }
+
+    /// The signed distance of x from the surface, above 0 in the air, and the normal there. The foot
+    /// of the perpendicular is found by iteration.
+    struct Nearest {
+        double distance;
+        Vec<double, D> normal;
+    };
+    Nearest nearest(const Vec<double, D>& x) const {
+        Surface surface = at(horizontal(x));
+        double distance = (x[axes] - surface.height) * surface.normal[axes];
+        for (int k = 0; k < 3; ++k) {
+            const Vec<double, D> foot = x - distance * surface.normal;
+            const Surface there = at(horizontal(foot));
+            Vec<double, D> on_surface = foot;
+            on_surface[axes] = there.height;
+            distance = dot(x - on_surface, there.normal);
+            surface = there;
+        }
+        return {distance, surface.normal};
+    }
+
+    /// Whether the map says nothing of this place, or ends before it.
+    bool is_unknown(const Horizontal<D>& place) const {
+        std::int64_t index = 0, stride = 1;
+        for (int a = 0; a < axes; ++a) {
+            const double u = std::round((place[a] - origin[a]) / cell);
+            if (!(u >= 0.0 && u < static_cast<double>(nodes[a]))) return true;
+            index += static_cast<std::int64_t>(u) * stride, stride *= nodes[a];
+        }
+        return !unknown.empty() && unknown[static_cast<std::size_t>(index)] != 0;
+    }
+
+    /// Corner of the grid of nodes that is far from the origin [m].
+    double end(int a) const { return origin[a] + static_cast<double>(nodes[a] - 1) * cell; }
+
+private:
+    /// Four nodes along one axis, and what each adds to the value and to its slope per cell.
+    struct Stencil {
+        std::int64_t first;  // the one before the cell, which may lie outside by one
+        std::array<double, 4> value, slope;
+        double beyond;  // the grid's end [m]
+    };
+
+    Stencil stencil_at(int a, double place) const {
+        const double u = (place - origin[a]) / cell, last = static_cast<double>(nodes[a] - 1);
+        const double inside = std::clamp(u, 0.0, last);
+        const double start = std::min(std::floor(inside), last - 1.0);
+        const double t = inside - start, t2 = t * t, t3 = t2 * t;
+        return {static_cast<std::int64_t>(start) - 1,
+                {0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+                 0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)},
+                {0.5 * (-3.0 * t2 + 4.0 * t - 1.0), 0.5 * (9.0 * t2 - 10.0 * t),
+                 0.5 * (-9.0 * t2 + 8.0 * t + 1.0), 0.5 * (3.0 * t2 - 2.0 * t)},
+                (u - inside) * cell};
+    }
+
+    /// Height of a node of the line that begins at `base`; one outside the grid lies on the straight
+    /// line through the two next to it.
+    double node(int a, std::int64_t base, std::int64_t stride, std::int64_t k) const {
+        const auto of = [&](std::int64_t j) {
+            return heights[static_cast<std::size_t>(base + j * stride)];
+        };
+        if (k < 0) return 2.0 * of(0) - of(1);
+        if (k >= nodes[a]) return 2.0 * of(nodes[a] - 1) - of(nodes[a] - 2);
+        return of(k);
+    }
+
+    double sum_along(const std::array<double, 4>& weight, const Stencil& x,
+                     std::int64_t base) const {
+        double sum = 0.0;
+        for (int k = 0; k < 4; ++k) sum += weight[k] * node(0, base, 1, x.first + k);
+        return sum;
+    }
+
+    /// Height and slope from the rows of four nodes around the place.
+    void sum_over_rows(const std::array<Stencil, axes>& stencil, Surface& surface) const
+        requires(D == 3)
+    {
+        const Stencil &x = stencil[0], &y = stencil[1];
+        std::array<double, 4> height{}, slope{};
+        for (int k = 0; k < 4; ++k) {
+            height[k] = row(x.value, x, y.first + k);
+            slope[k] = row(x.slope, x, y.first + k) / cell;
+        }
+        double twist = 0.0;
+        for (int k = 0; k < 4; ++k) {
+            surface.height += y.value[k] * height[k];
+            surface.slope[0] += y.value[k] * slope[k];
+            surface.slope[1] += y.slope[k] * height[k] / cell;
+            twist += y.slope[k] * slope[k] / cell;
+        }
+        surface.height += x.beyond * surface.slope[0] + y.beyond * surface.slope[1] +
+                          x.beyond * y.beyond * twist;
+        surface.slope[0] += y.beyond * twist;
+        surface.slope[1] += x.beyond * twist;
+    }
+
+    /// A weighted sum along row j, which may lie outside by one.
+    double row(const std::array<double, 4>& weight, const Stencil& x, std::int64_t j) const
+        requires(D == 3)
+    {
+        const std::int64_t rows = nodes[1];
+        if (j < 0) return 2.0 * row(weight, x, 0) - row(weight, x, 1);
+        if (j >= rows) return 2.0 * row(weight, x, rows - 1) - row(weight, x, rows - 2);
+        return sum_along(weight, x, j * nodes[0]);
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,359 @@
+#pragma once
+// A bed that is a surface, with wall particles only where there is flow.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "base/array.hpp"
+#include "boundaries/height_field.hpp"
+#include "model/archive.hpp"
+#include "model/particles.hpp"
+#include "ranks/exchange.hpp"
+
+namespace doseki {
+
+/// What wall particles of a terrain are like.
+struct TerrainWall {
+    double dp = 0.0;                // their spacing [m]
+    int layers = 0;                 // below the surface
+    double density = 0.0;           // [kg/m^3]
+    double smoothing_length = 0.0;  // [m]
+    std::int16_t material = 0;
+    std::int32_t body = 0;
+};
+
+/// The wall particles of one tile: columns that stand on equal areas of the surface, so that each
+/// particle has the volume dp^D but for the curvature of the bed.
+template <int D>
+class TileColumns {
+public:
+    struct Column {
+        Horizontal<D> place;
+        double area;  // of the surface that it stands for [m^(D-1)]
+    };
+
+    TileColumns(const HeightField<D>& field, const Horizontal<D>& low, double side, double dp)
+        : field_(field), low_(low), side_(side), dp_(dp) {
+        if constexpr (D == 2)
+            add_row(low, 0, 1.0);
+        else
+            add_rows();
+    }
+
+    const Array<Column>& columns() const { return columns_; }
+
+private:
+    static constexpr int probes = 4;  // of the slope, along each side of a tile
+
+    /// Rows run along the steeper axis and are dp apart on the surface.
+    void add_rows()
+        requires(D == 3)
+    {
+        const Horizontal<D> steepness = mean_steepness();
+        const int along = steepness[0] >= steepness[1] ? 0 : 1, across = 1 - along;
+        const double width = side_ * std::sqrt(1.0 + steepness[across]);
+        const double rows = std::max(1.0, std::round(width / dp_));
+        for (int j = 0; j < static_cast<int>(rows); ++j) {
+            Horizontal<D> start = low_;
+            start[across] += (j + 0.5) * side_ / rows;
+            add_row(start, along, side_ / rows);
+        }
+    }
+
+    /// Mean square slope along each axis.
+    Horizontal<D> mean_steepness() const
+        requires(D == 3)
+    {
+        Horizontal<D> sum{};
+        for (int i = 0; i < probes; ++i)
+            for (int j = 0; j < probes; ++j) {
+                Horizontal<D> place = low_;
+                place[0] += (i + 0.5) * side_ / probes, place[1] += (j + 0.5) * side_ / probes;
+                const Horizontal<D> slope = field_.at(place).slope;
+                for (int a = 0; a < 2; ++a) sum[a] += slope[a] * slope[a] / (probes * probes);
+            }
+        return sum;
+    }
+
+    /// Columns along one row, each on the same area of the surface; `width` of the row in plan.
+    void add_row(const Horizontal<D>& start, int along, double width) {
+        const int parts = 2 * static_cast<int>(std::ceil(side_ / dp_));
+        const double step = side_ / parts;
+        Array<double> area(static_cast<std::size_t>(parts) + 1);  // up to the end of each part
+        Horizontal<D> place = start;
+        for (int k = 0; k < parts; ++k) {
+            place[along] = start[along] + (k + 0.5) * step;
+            area[k + 1] = area[k] + field_.at(place).area * step * width;
+        }
+        const double total = area.back();
+        const double count = std::max(1.0, std::round(total / std::pow(dp_, D - 1)));
+        int part = 0;
+        for (int k = 0; k < static_cast<int>(count); ++k) {
+            const double middle = (k + 0.5) * total / count;
+            while (area[part + 1] < middle) ++part;
+            const double inside = (middle - area[part]) / (area[part + 1] - area[part]);
+            place[along] = start[along] + (part + inside) * step;
+            columns_.push_back({place, total / count});
+        }
+    }
+
+    const HeightField<D>& field_;
+    Horizontal<D> low_;
+    double side_, dp_;
+    Array<Column> columns_;
+};
+
+/// A terrain: the surface, and the tiles of it that have wall particles. A tile gets them when fluid
+/// comes near and loses them when all fluid has gone, so that memory grows with the flow and not
+/// with the map.
+template <int D>
+class Terrain {
+    static constexpr int axes = D - 1;
+    static constexpr int tile_columns = D == 2 ? 16 : 8;
+
+public:
+    bool is_there() const { return wall_.layers > 0; }
+    const HeightField<D>& field() const { return field_; }
+
+    void set(HeightField<D> field, const TerrainWall& wall) {
+        field_ = std::move(field), wall_ = wall;
+        side_ = tile_columns * wall.dp;
+        for (int a = 0; a < axes; ++a) {
+            // One tile more on each side, for what flows along the edge of the map.
+            low_[a] = field_.origin[a] - side_;
+            const double tiles = std::ceil((field_.end(a) + side_ - low_[a]) / side_);
+            tiles_[a] = static_cast<std::int64_t>(tiles);
+        }
+    }
+
+    /// Finds the tiles that fluid may reach before it has gone `margin` [m], marks in `removed` the
+    /// particles of tiles that it has left, and remembers which tiles to fill. All ranks call it.
+    void look(const Particles<D>& particles, double support, double margin, const Ranks& ranks,
+              Array<std::uint8_t>& removed);
+
+    /// Adds the particles of the tiles that look() has found; their ids go on from `next_id`. Where
+    /// `adds` is false another rank adds them.
+    void fill(Particles<D>& particles, std::int64_t& next_id, bool adds);
+
+    /// Whether a particle is free and beyond the map, or where the map says nothing.
+    bool leaves(const Particles<D>& particles, std::size_t p) const {
+        return is_there() && particles.is_free(p) &&
+               field_.is_unknown(horizontal(particles.position[p]));
+    }
+
+    void serialise(Archive& archive) {
+        if (is_there()) archive("terrain_tiles", active_);
+    }
+    /// Throws std::invalid_argument where what was loaded is none of this terrain.
+    void expect_tiles(const Particles<D>& particles) const;
+
+private:
+    /// A tile with fluid above it, and where the lowest of that is [m].
+    struct Occupied {
+        std::int64_t tile;
+        double low;
+    };
+
+    bool is_own(const Particles<D>& particles, std::size_t p) const {
+        return particles.is_fixed(p) && particles.tag[p].body == wall_.body;
+    }
+    bool is_active(std::int64_t tile) const {
+        return std::binary_search(active_.begin(), active_.end(), tile);
+    }
+    std::int64_t tile_count() const {
+        std::int64_t count = 1;
+        for (int a = 0; a < axes; ++a) count *= tiles_[a];
+        return count;
+    }
+
+    /// The tile above which a place is; those beyond the map belong to its edge.
+    std::int64_t tile_at(const Horizontal<D>& place) const {
+        std::int64_t tile = 0, stride = 1;
+        for (int a = 0; a < axes; ++a) {
+            const double u = std::floor((place[a] - low_[a]) / side_);
+            const double last = static_cast<double>(tiles_[a] - 1);
+            tile += static_cast<std::int64_t>(std::clamp(u, 0.0, last)) * stride;
+            stride *= tiles_[a];
+        }
+        return tile;
+    }
+    Horizontal<D> corner_of(std::int64_t tile) const {
+        Horizontal<D> corner = low_;
+        for (int a = 0; a < axes; ++a) {
+            corner[a] += static_cast<double>(tile % tiles_[a]) * side_;
+            tile /= tiles_[a];
+        }
+        return corner;
+    }
+
+    /// Calls f(neighbour) for the tiles no more than `distance` tiles away.
+    template <class F>
+    void for_each_around(std::int64_t tile, std::int64_t distance, const F& f) const {
+        const std::int64_t column = tile % tiles_[0], row = tile / tiles_[0];
+        const std::int64_t rows = D == 3 ? tiles_[axes - 1] : 1;
+        for (auto j = std::max<std::int64_t>(row - distance, 0);
+             j <= std::min(row + distance, rows - 1); ++j)
+            for (auto i = std::max<std::int64_t>(column - distance, 0);
+                 i <= std::min(column + distance, tiles_[0] - 1); ++i)
+                f(j * tiles_[0] + i);
+    }
+
+    Array<Occupied> occupied(const Particles<D>& particles, const Ranks& ranks) const;
+    double highest(std::int64_t tile) const;
+    void add_column(Particles<D>& particles, std::int64_t tile,
+                    const typename TileColumns<D>::Column& column, std::int64_t& next_id) const;
+    double spread(const Horizontal<D>& place, double depth) const;
+
+    HeightField<D> field_;
+    TerrainWall wall_;
+    double side_ = 0.0;                       // of a tile [m]
+    Horizontal<D> low_{};                     // corner of the first tile
+    std::array<std::int64_t, axes> tiles_{};  // along each axis
+    Array<std::int64_t> active_;              // tiles that have their particles, in order
+    Array<std::int64_t> to_fill_;
+};
+
+template <int D>
+void Terrain<D>::expect_tiles(const Particles<D>& particles) const {
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+        expect_index(active_[k], static_cast<std::size_t>(tile_count()), "terrain_tiles");
+        expect_fit(k == 0 || active_[k - 1] < active_[k], "terrain_tiles");
+    }
+    if (!is_there() || !particles.wall.in_use) return;
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (is_own(particles, p)) expect_fit(is_active(particles.wall.point[p]), "point");
+}
+
+/// In the order of tiles, each once.
+template <int D>
+auto Terrain<D>::occupied(const Particles<D>& particles, const Ranks& ranks) const
+    -> Array<Occupied> {
+    Array<Occupied> found;
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        if (particles.is_wall(p)) continue;
+        const Vec<double, D>& x = particles.position[p];
+        const std::int64_t tile = tile_at(horizontal(x));
+        if (!found.empty() && found.back().tile == tile)
+            found.back().low = std::min(found.back().low, x[axes]);
+        else
+            found.push_back({tile, x[axes]});
+    }
+    if (!ranks.alone()) {
+        Array<double> own;
+        for (const Occupied& each : found)
+            own.push_back(static_cast<double>(each.tile)), own.push_back(each.low);
+        const Array<double> all = ranks.gather(own);
+        found.clear();
+        for (std::size_t k = 0; k < all.size(); k += 2)
+            found.push_back({static_cast<std::int64_t>(all[k]), all[k + 1]});
+    }
+    std::sort(found.begin(), found.end(), [](const Occupied& a, const Occupied& b) {
+        return a.tile != b.tile ? a.tile < b.tile : a.low < b.low;
+    });
+    const auto same = [](const Occupied& a, const Occupied& b) { return a.tile == b.tile; };
+    found.erase(std::unique(found.begin(), found.end(), same), found.end());
+    return found;
+}
+
+/// No bed in the tile is higher [m]: from samples, with room for what lies between them.
+template <int D>
+double Terrain<D>::highest(std::int64_t tile) const {
+    const int samples = 2 + std::min(30, static_cast<int>(2.0 * side_ / field_.cell));
+    double top = -std::numeric_limits<double>::infinity(), low = -top;
+    const Horizontal<D> corner = corner_of(tile);
+    const auto step = [&](int i) { return i * side_ / samples; };
+    for (int i = 0; i <= samples; ++i)
+        for (int j = 0; j <= (D == 3 ? samples : 0); ++j) {
+            Horizontal<D> place = corner;
+            place[0] += step(i);
+            if constexpr (D == 3) place[1] += step(j);
+            const double height = field_.height(place);
+            top = std::max(top, height), low = std::min(low, height);
+        }
+    return top + 0.25 * (top - low);
+}
+
+template <int D>
+void Terrain<D>::look(const Particles<D>& particles, double support, double margin,
+                      const Ranks& ranks, Array<std::uint8_t>& removed) {
+    // Normals lean, so that a particle may lie beside its tile by as much as it is deep.
+    const double reach = support + margin + wall_.layers * wall_.dp;
+    const auto near = static_cast<std::int64_t>(std::ceil(reach / side_));
+    Array<std::int64_t> kept;
+    to_fill_.clear();
+    for (const Occupied& each : occupied(particles, ranks)) {
+        for_each_around(each.tile, near, [&](std::int64_t tile) {
+            if (!is_active(tile) && each.low - reach < highest(tile)) to_fill_.push_back(tile);
+        });
+        // A tile further: particles that tremble on an edge must not make and drop tiles.
+        for_each_around(each.tile, near + 1, [&](std::int64_t tile) {
+            if (is_active(tile)) kept.push_back(tile);
+        });
+    }
+    for (Array<std::int64_t>* tiles : {&to_fill_, &kept}) {
+        std::sort(tiles->begin(), tiles->end());
+        tiles->erase(std::unique(tiles->begin(), tiles->end()), tiles->end());
+    }
+    if (kept.size() == active_.size()) return;
+    active_.swap(kept);
+    removed.resize(particles.size(), 0);
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (is_own(particles, p) && !is_active(particles.wall.point[p])) removed[p] = 1;
+}
+
+template <int D>
+void Terrain<D>::fill(Particles<D>& particles, std::int64_t& next_id, bool adds) {
+    for (const std::int64_t tile : to_fill_) {
+        const TileColumns<D> made(field_, corner_of(tile), side_, wall_.dp);
+        if (!adds)
+            next_id += wall_.layers * static_cast<std::int64_t>(made.columns().size());
+        else
+            for (const auto& column : made.columns()) add_column(particles, tile, column, next_id);
+    }
+    active_.insert(active_.end(), to_fill_.begin(), to_fill_.end());
+    std::sort(active_.begin(), active_.end());
+    to_fill_.clear();
+}
+
+template <int D>
+void Terrain<D>::add_column(Particles<D>& particles, std::int64_t tile,
+                            const typename TileColumns<D>::Column& column,
+                            std::int64_t& next_id) const {
+    const auto surface = field_.at(column.place);
+    Vec<double, D> foot{};
+    for (int a = 0; a < axes; ++a) foot[a] = column.place[a];
+    foot[axes] = surface.height;
+    const std::size_t first = particles.size();
+    resize(particles, first + static_cast<std::size_t>(wall_.layers));
+    for (int layer = 0; layer < wall_.layers; ++layer) {
+        const std::size_t p = first + static_cast<std::size_t>(layer);
+        const double depth = (layer + 0.5) * wall_.dp;
+        particles.position[p] = foot - depth * surface.normal;
+        particles.density[p] = wall_.density;
+        particles.mass[p] = wall_.density * column.area * wall_.dp * spread(column.place, depth);
+        particles.smoothing_length[p] = wall_.smoothing_length;
+        particles.tag[p] = {next_id++, wall_.body, wall_.material, Motion::fixed};
+        particles.enter(p);
+        particles.wall.normal[p] = surface.normal;
+        particles.wall.depth[p] = depth;
+        particles.wall.point[p] = static_cast<std::int32_t>(tile);
+    }
+}
+
+/// The area of the surface so deep below the bed, over that of the bed: below a hollow it is larger.
+template <int D>
+double Terrain<D>::spread(const Horizontal<D>& place, double depth) const {
+    const double step = 0.5 * wall_.dp;
+    double divergence = 0.0;
+    for (int a = 0; a < axes; ++a) {
+        Horizontal<D> ahead = place, behind = place;
+        ahead[a] += step, behind[a] -= step;
+        divergence += (field_.at(ahead).normal[a] - field_.at(behind).normal[a]) / (2.0 * step);
+    }
+    return std::clamp(1.0 - depth * divergence, 0.25, 2.0);
+}
+
+}  // namespace doseki

@@ -1,0 +1,163 @@
+"""The bed of [terrain]: heights on a grid, read from a map or from a profile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from ..errors import UserError
+from ..geodata.errors import GeodataError
+from ..geodata.raster import Raster, read_raster
+from .particle_files.columns_csv import numbers_in, read_csv_columns
+from .tables.terrain import Terrain
+from .values.toml_source import Where
+from .values.units import LENGTH
+
+PROFILE_EXAMPLE = "x [m],z [m]"
+MAX_NODES = 50_000_000  # of a profile or a section; 0.4 GB
+
+
+@dataclass(frozen=True, eq=False)
+class Bed:
+    """Heights of the ground at the nodes of a square grid, up to where the map goes.
+
+    Attributes:
+        origin: (dim - 1,) place of the first node, m, in the coordinates of the run.
+        cell: distance between nodes, m.
+        heights: (nodes,) in 2-D, (rows from south to north, columns from west to east) in 3-D, m;
+            nodes that the map knows nothing of have the height of the nearest one that it knows.
+        unknown: the same shape, 1 at such nodes.
+        raster: 3-D: the map as it is used, after window, resampling and smoothing; in 2-D None.
+
+    """
+
+    origin: np.ndarray
+    cell: float
+    heights: np.ndarray
+    unknown: np.ndarray
+    raster: Raster | None = None
+
+    @cached_property
+    def table(self) -> dict[str, object]:
+        """As the core reads it."""
+        return {
+            "origin": self.origin.tolist(),
+            "cell": self.cell,
+            "heights": np.ascontiguousarray(self.heights, np.float64),
+            "unknown": np.ascontiguousarray(self.unknown, np.uint8),
+        }
+
+    @property
+    def extent(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper end (dim - 1,) along the horizontal axes, m."""
+        nodes = np.array(self.heights.shape[::-1])
+        return self.origin - 0.5 * self.cell, self.origin + (nodes - 0.5) * self.cell
+
+    @property
+    def unknown_share(self) -> float:
+        """The share of the grid of which the map knows nothing."""
+        return float(np.mean(self.unknown))
+
+
+def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) -> Bed:
+    """The bed that [terrain] describes; raises UserError, which names the key."""
+    try:
+        if dim == 2 and path.suffix.lower() == ".csv":
+            return _bed_of_profile(path, terrain, dp, where)
+        raster = _used(read_raster(path), terrain)
+    except GeodataError as error:
+        raise where.error(("terrain",), f"terrain: {error}") from None
+    if dim == 3:
+        return _bed_of_raster(path, raster)
+    if terrain.section is None:
+        raise where.error(
+            ("terrain",),
+            "terrain.section is missing: a 2-D run cuts a grid along a line, [[x, y], [x, y]]; "
+            "or give a CSV file with columns x and z",
+        )
+    return _bed_of_section(raster, terrain, dp, where)
+
+
+def _used(raster: Raster, terrain: Terrain) -> Raster:
+    """What is used of the map."""
+    if terrain.window is not None:
+        raster = raster.window(*terrain.window)
+    if terrain.resample is not None:
+        raster = raster.resampled(terrain.resample)
+    if terrain.smoothing is not None:
+        raster = raster.smoothed(terrain.smoothing)
+    return raster
+
+
+def _bed_of_raster(path: Path, raster: Raster) -> Bed:
+    if min(raster.shape) < 2:
+        raise UserError(f"{path}: {raster.shape} cells; a terrain needs 2 along each axis")
+    heights, unknown = _filled(path, raster.values[::-1])
+    origin = np.array([raster.west, raster.south]) + 0.5 * raster.cell
+    return Bed(origin, raster.cell, heights, unknown, raster)
+
+
+def _bed_of_section(raster: Raster, terrain: Terrain, dp: float, where: Where) -> Bed:
+    """Along a line on the map; x is the distance from its first end."""
+    assert terrain.section is not None
+    start, end = (np.array(place) for place in terrain.section)
+    length = float(np.linalg.norm(end - start))
+    cell = terrain.resample or dp
+    x = _nodes(0.0, length, cell, where)
+    places = start + x[:, None] * (end - start) / length
+    heights = raster.sampled(places[:, 0], places[:, 1])
+    if np.isnan(heights[[0, -1]]).any():
+        raise where.error(
+            ("terrain", "section"), "terrain.section: an end lies where the map has no data"
+        )
+    filled, unknown = _filled(Path(terrain.file), heights)
+    return Bed(x[:1], cell, filled, unknown)
+
+
+def _bed_of_profile(path: Path, terrain: Terrain, dp: float, where: Where) -> Bed:
+    """Straight lines through the points (x, z) of a file."""
+    for key in ("section", "window"):
+        if getattr(terrain, key) is not None:
+            raise where.error(("terrain", key), f"terrain.{key}: is for grids, not for a profile")
+    columns = read_csv_columns(path)
+    try:
+        x, z = (np.array(numbers_in(columns, name, LENGTH, PROFILE_EXAMPLE)) for name in "xz")
+    except ValueError as error:
+        raise UserError(f"{path}: {error}") from None
+    if len(x) < 2 or not (np.diff(x) > 0).all():
+        raise UserError(f"{path}: x must go up from row to row, in two rows or more")
+    if not (np.isfinite(x).all() and np.isfinite(z).all()):
+        raise UserError(f"{path}: holds numbers that are not finite")
+    cell = terrain.resample or dp
+    nodes = _nodes(float(x[0]), float(x[-1]), cell, where)
+    heights = np.interp(nodes, x, z)
+    if terrain.smoothing is not None:
+        line = Raster(heights[None, :], nodes[0], 0.0, cell).smoothed(terrain.smoothing)
+        heights = line.values[0]
+    return Bed(nodes[:1], cell, heights, np.zeros(len(nodes), np.uint8))
+
+
+def _nodes(low: float, high: float, cell: float, where: Where) -> np.ndarray:
+    count = (high - low) / cell
+    if not 1 <= count <= MAX_NODES:
+        raise where.error(
+            ("terrain",),
+            f"terrain: {count:.3g} cells of {cell:g} m along x; allowed: 1 to {MAX_NODES:.3g} "
+            "(set terrain.resample)",
+        )
+    return low + cell * np.arange(int(count + 1e-9) + 1)
+
+
+def _filled(path: Path, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Heights everywhere, and where they are not known."""
+    unknown = np.isnan(heights)
+    if unknown.all():
+        raise UserError(f"{path}: has no data at all in the part that is used")
+    if unknown.any():
+        nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
+        heights = heights[tuple(nearest)]
+    return np.array(heights), unknown.astype(np.uint8)

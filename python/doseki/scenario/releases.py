@@ -1,0 +1,83 @@
+"""Releases completed: polygons and thickness read from files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..geodata.crs import same_crs
+from ..geodata.errors import GeodataError
+from ..geodata.features import read_features
+from .tables.release import Release
+from .values.toml_source import Where
+
+RASTERS = (".tif", ".tiff", ".asc")
+FIELD = "thickness"
+
+
+def is_raster(file: str | None) -> bool:
+    """Whether a release is a raster of thickness."""
+    return file is not None and Path(file).suffix.lower() in RASTERS
+
+
+def completed_release(
+    name: str, release: Release, path: Path | None, crs: str | None, where: Where
+) -> Release:
+    """The release with its polygons and a thickness for each, unless it is a raster.
+
+    `path` is its file, `crs` the coordinate reference system of the terrain.  Raises UserError.
+    """
+    if release.between is not None or is_raster(release.file):
+        if is_raster(release.file) and release.thickness is not None:
+            raise where.error(
+                ("body", name, "thickness"),
+                f"body.{name}.thickness: the raster says how thick it is; give one of the two",
+            )
+        return release
+    found: dict[str, Any] = {"file": None, "digest": None, "polygon": None}
+    if path is not None:
+        found["polygons"], thickness = _from_file(name, release, path, where, crs)
+    else:
+        given = release.polygon
+        found["polygons"] = [[given]] if given is not None else release.polygons
+        thickness = release.thickness
+    count = len(found["polygons"])
+    if not isinstance(thickness, list):
+        thickness = [thickness] * count
+    if len(thickness) != count:
+        raise where.error(
+            ("body", name, "thickness"),
+            f"body.{name}.thickness has {len(thickness)} numbers for {count} polygons",
+        )
+    return release.model_copy(update=found | {"thickness": thickness})
+
+
+def _from_file(name: str, release: Release, path: Path, where: Where, crs: str | None) -> tuple[Any, Any]:
+    """Polygons as lists of rings, and the thickness given or of each."""
+    keys, place = ("body", name, "file"), f"body.{name}.file"
+    try:
+        features = read_features(path)
+    except GeodataError as error:
+        raise where.error(keys, f"{place}: {error}") from None
+    if same_crs(features.crs, crs) is False:
+        raise where.error(
+            keys,
+            f"{place}: {path} and the terrain have different coordinate reference systems; convert "
+            "it with ogr2ogr -t_srs",
+        )
+    if not features.polygons:
+        raise where.error(keys, f"{place}: {path} has no polygon")
+    polygons = [[ring.tolist() for ring in each.rings] for each in features.polygons]
+    if release.thickness is not None:
+        return polygons, release.thickness
+    thickness = [each.attributes.get(FIELD) for each in features.polygons]
+    for number in thickness:
+        if not isinstance(number, int | float) or not 0 < number < np.inf:
+            raise where.error(
+                keys,
+                f"{place}: a polygon of {path} has {FIELD} = {number!r}, not a length in m above 0; "
+                f"give body.{name}.thickness",
+            )
+    return polygons, [float(number) for number in thickness]
