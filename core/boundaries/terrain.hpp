@@ -25,25 +25,26 @@ struct TerrainWall {
     std::int32_t body = 0;
 };
 
-/// The wall particles of one tile: columns that stand on equal areas of the surface, so that each
-/// particle has the volume dp^D but for the curvature of the bed.
+/// One layer of particles of a tile, so deep below the surface: they stand for equal areas of the
+/// layer, so that each has the volume dp^D, in hollows and on ridges too.
 template <int D>
-class TileColumns {
+class TileLayer {
 public:
-    struct Column {
-        Horizontal<D> place;
-        double area;  // of the surface that it stands for [m^(D-1)]
+    struct Foot {
+        Horizontal<D> place;  // of the surface above it
+        double area;          // of the layer that it stands for [m^(D-1)]
     };
 
-    TileColumns(const HeightField<D>& field, const Horizontal<D>& low, double side, double dp)
-        : field_(field), low_(low), side_(side), dp_(dp) {
+    TileLayer(const HeightField<D>& field, const Horizontal<D>& low, double side, double dp,
+              double depth)
+        : field_(field), low_(low), side_(side), dp_(dp), depth_(depth) {
         if constexpr (D == 2)
             add_row(low, 0, 1.0);
         else
             add_rows();
     }
 
-    const Array<Column>& columns() const { return columns_; }
+    const Array<Foot>& feet() const { return feet_; }
 
 private:
     static constexpr int probes = 4;  // of the slope, along each side of a tile
@@ -78,15 +79,15 @@ private:
         return sum;
     }
 
-    /// Columns along one row, each on the same area of the surface; `width` of the row in plan.
+    /// Along one row, which is `width` wide in plan.
     void add_row(const Horizontal<D>& start, int along, double width) {
-        const int parts = 2 * static_cast<int>(std::ceil(side_ / dp_));
+        const int parts = 4 * static_cast<int>(std::ceil(side_ / dp_));
         const double step = side_ / parts;
         Array<double> area(static_cast<std::size_t>(parts) + 1);  // up to the end of each part
         Horizontal<D> place = start;
         for (int k = 0; k < parts; ++k) {
             place[along] = start[along] + (k + 0.5) * step;
-            area[k + 1] = area[k] + field_.at(place).area * step * width;
+            area[k + 1] = area[k] + field_.at(place).area * spread(place) * step * width;
         }
         const double total = area.back();
         const double count = std::max(1.0, std::round(total / std::pow(dp_, D - 1)));
@@ -96,14 +97,29 @@ private:
             while (area[part + 1] < middle) ++part;
             const double inside = (middle - area[part]) / (area[part + 1] - area[part]);
             place[along] = start[along] + (part + inside) * step;
-            columns_.push_back({place, total / count});
+            feet_.push_back({place, total / count});
         }
+    }
+
+    /// The area of the layer over that of the surface: below a hollow it is larger. Below a sharp
+    /// ridge normals would cross, and there is next to none.
+    double spread(const Horizontal<D>& place) const {
+        if (depth_ == 0.0) return 1.0;
+        const double step = 0.25 * dp_;
+        double divergence = 0.0;
+        for (int a = 0; a < D - 1; ++a) {
+            Horizontal<D> ahead = place, behind = place;
+            ahead[a] += step, behind[a] -= step;
+            divergence +=
+                (field_.at(ahead).normal[a] - field_.at(behind).normal[a]) / (2.0 * step);
+        }
+        return std::max(1.0 - depth_ * divergence, 0.05);
     }
 
     const HeightField<D>& field_;
     Horizontal<D> low_;
-    double side_, dp_;
-    Array<Column> columns_;
+    double side_, dp_, depth_;
+    Array<Foot> feet_;
 };
 
 /// A terrain: the surface, and the tiles of it that have wall particles. A tile gets them when fluid
@@ -203,9 +219,8 @@ private:
 
     Array<Occupied> occupied(const Particles<D>& particles, const Ranks& ranks) const;
     double highest(std::int64_t tile) const;
-    void add_column(Particles<D>& particles, std::int64_t tile,
-                    const typename TileColumns<D>::Column& column, std::int64_t& next_id) const;
-    double spread(const Horizontal<D>& place, double depth) const;
+    void add_particle(Particles<D>& particles, std::int64_t tile, double depth,
+                      const typename TileLayer<D>::Foot& foot, std::int64_t id) const;
 
     HeightField<D> field_;
     TerrainWall wall_;
@@ -306,54 +321,38 @@ void Terrain<D>::look(const Particles<D>& particles, double support, double marg
 
 template <int D>
 void Terrain<D>::fill(Particles<D>& particles, std::int64_t& next_id, bool adds) {
-    for (const std::int64_t tile : to_fill_) {
-        const TileColumns<D> made(field_, corner_of(tile), side_, wall_.dp);
-        if (!adds)
-            next_id += wall_.layers * static_cast<std::int64_t>(made.columns().size());
-        else
-            for (const auto& column : made.columns()) add_column(particles, tile, column, next_id);
-    }
+    for (const std::int64_t tile : to_fill_)
+        for (int layer = 0; layer < wall_.layers; ++layer) {
+            const double depth = (layer + 0.5) * wall_.dp;
+            const TileLayer<D> made(field_, corner_of(tile), side_, wall_.dp, depth);
+            for (const auto& foot : made.feet()) {
+                if (adds) add_particle(particles, tile, depth, foot, next_id);
+                ++next_id;
+            }
+        }
     active_.insert(active_.end(), to_fill_.begin(), to_fill_.end());
     std::sort(active_.begin(), active_.end());
     to_fill_.clear();
 }
 
 template <int D>
-void Terrain<D>::add_column(Particles<D>& particles, std::int64_t tile,
-                            const typename TileColumns<D>::Column& column,
-                            std::int64_t& next_id) const {
-    const auto surface = field_.at(column.place);
-    Vec<double, D> foot{};
-    for (int a = 0; a < axes; ++a) foot[a] = column.place[a];
-    foot[axes] = surface.height;
-    const std::size_t first = particles.size();
-    resize(particles, first + static_cast<std::size_t>(wall_.layers));
-    for (int layer = 0; layer < wall_.layers; ++layer) {
-        const std::size_t p = first + static_cast<std::size_t>(layer);
-        const double depth = (layer + 0.5) * wall_.dp;
-        particles.position[p] = foot - depth * surface.normal;
-        particles.density[p] = wall_.density;
-        particles.mass[p] = wall_.density * column.area * wall_.dp * spread(column.place, depth);
-        particles.smoothing_length[p] = wall_.smoothing_length;
-        particles.tag[p] = {next_id++, wall_.body, wall_.material, Motion::fixed};
-        particles.enter(p);
-        particles.wall.normal[p] = surface.normal;
-        particles.wall.depth[p] = depth;
-        particles.wall.point[p] = static_cast<std::int32_t>(tile);
-    }
-}
-
-/// The area of the surface so deep below the bed, over that of the bed: below a hollow it is larger.
-template <int D>
-double Terrain<D>::spread(const Horizontal<D>& place, double depth) const {
-    const double step = 0.5 * wall_.dp;
-    double divergence = 0.0;
-    for (int a = 0; a < axes; ++a) {
-        Horizontal<D> ahead = place, behind = place;
-        ahead[a] += step, behind[a] -= step;
-        divergence += (field_.at(ahead).normal[a] - field_.at(behind).normal[a]) / (2.0 * step);
-    }
-    return std::clamp(1.0 - depth * divergence, 0.25, 2.0);
+void Terrain<D>::add_particle(Particles<D>& particles, std::int64_t tile, double depth,
+                              const typename TileLayer<D>::Foot& foot, std::int64_t id) const {
+    const auto surface = field_.at(foot.place);
+    Vec<double, D> x{};
+    for (int a = 0; a < axes; ++a) x[a] = foot.place[a];
+    x[axes] = surface.height;
+    const std::size_t p = particles.size();
+    resize(particles, p + 1);
+    particles.position[p] = x - depth * surface.normal;
+    particles.density[p] = wall_.density;
+    particles.mass[p] = wall_.density * foot.area * wall_.dp;
+    particles.smoothing_length[p] = wall_.smoothing_length;
+    particles.tag[p] = {id, wall_.body, wall_.material, Motion::fixed};
+    particles.enter(p);
+    particles.wall.normal[p] = surface.normal;
+    particles.wall.depth[p] = depth;
+    particles.wall.point[p] = static_cast<std::int32_t>(tile);
 }
 
 }  // namespace doseki

@@ -84,11 +84,13 @@ struct Options {
     bool sym_grad = false;
     Tension tension = Tension::clamp_fluid;
     SmoothingLengthMode h_mode = SmoothingLengthMode::constant;
+    Vec<double, D> origin{};  // where zero is in the coordinates of messages [m]
     FlowOptions flow;
     ContactOptions contact;
 
     template <class F>
     void members(F&& f) {
+        f("origin", origin, optional);
         f("gravity", gravity), f("attraction", attraction, optional);
         f("eta", eta), f("alpha", alpha), f("cflnumber", cflnumber), f("cfl_force", cfl_force);
         f("skin", skin), f("auto_skin", auto_skin, optional);

@@ -51,12 +51,12 @@ public:
     nb::dict columns(const std::vector<double>& low, double side, double dp) const {
         if (low.size() != D - 1 || !(side > 0.0) || !(dp > 0.0))
             throw nb::value_error("columns: a corner of the wrong dimension, or no size");
-        const TileColumns<D> made(field_, vectors_of<D - 1>(low)[0], side, dp);
-        const std::size_t n = made.columns().size();
+        const TileLayer<D> made(field_, vectors_of<D - 1>(low)[0], side, dp, 0.0);
+        const std::size_t n = made.feet().size();
         NewArray<double> place({n, D - 1}), area({n});
         for (std::size_t k = 0; k < n; ++k) {
-            std::copy_n(made.columns()[k].place.component.begin(), D - 1, place.row(k));
-            area[k] = made.columns()[k].area;
+            std::copy_n(made.feet()[k].place.component.begin(), D - 1, place.row(k));
+            area[k] = made.feet()[k].area;
         }
         NamedValues table;
         table["place"] = place, table["area"] = area;

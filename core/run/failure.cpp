@@ -7,7 +7,7 @@ namespace {
 
 std::string short_number(double value) {
     char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.6g", value);
+    std::snprintf(buffer, sizeof buffer, "%.9g", value);
     return buffer;
 }
 

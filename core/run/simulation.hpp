@@ -393,7 +393,8 @@ Array<double> Simulation<Lists>::support_radii() const {
 template <class Lists>
 void Simulation<Lists>::fail(FailureKind kind, std::int64_t p) {
     const FailureSite own = p < 0 ? FailureSite{} : site_of(particles, static_cast<std::size_t>(p));
-    const FailureSite site = first_site(ranks(), own);
+    FailureSite site = first_site(ranks(), own);
+    for (std::size_t a = 0; a < D; ++a) site.position[a] += options_.origin[static_cast<int>(a)];
     throw PhysicsFailure(described(site, D, time_, steps_ + 1, materials()), kind, site);
 }
 

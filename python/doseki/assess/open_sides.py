@@ -63,7 +63,7 @@ class _Source:
 def open_sides(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     """A finding for each body or inflow that will fall for ever, within the time of the run."""
     fall = Fall.of(scenario)
-    if fall is None:
+    if fall is None or scenario.bed is not None:  # what leaves a map leaves the run
         return
     flows, others = _flows(scenario, state, names), _solids(scenario, state, names)
     inflows = list(_inflows(scenario))

@@ -37,6 +37,10 @@ class ParticleSet:
         """Number of space dimensions."""
         return self.position.shape[1]
 
+    def chosen(self, keep: np.ndarray) -> ParticleSet:
+        """Those of a mask (N,), or of indices."""
+        return ParticleSet(**{name: values[keep] for name, values in vars(self).items()})
+
     @classmethod
     def empty(cls, dim: int) -> ParticleSet:
         """No particle at all, with the right shapes and types."""

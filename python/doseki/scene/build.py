@@ -27,12 +27,14 @@ from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
 from .checks.resolution import resolution_warnings
 from .contacts import contact_groups
+from .ground import ground_of
 from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
 
 MAX_PARTICLES = 2_000_000_000
 BYTES_PER_PARTICLE = 500  # what a run holds, lists included
+IN_THE_GROUND = 0.25  # spacings that particles may be nearer to a bed than those that rest on it
 
 
 class Settled(NamedTuple):
@@ -95,6 +97,8 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     whole = {group.name for group in made}
     whole |= {n for n, body in bodies.items() if body.contact_shape() is not None}
     parts = {n: _outside(scenario, n, part, solids, whole) for n, part in parts.items()}
+    if scenario.bed is not None:
+        parts = {n: _above_ground(scenario, n, part) for n, part in parts.items()}
     particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
     check_particles(scenario, particles, names)
     warnings += find_overlaps(particles, names, scenario.carried)
@@ -237,7 +241,17 @@ def _outside(
     keep = ~inside | (particles.motion != FREE)
     if keep.all():
         return particles
-    return ParticleSet(**{name: values[keep] for name, values in vars(particles).items()})
+    return particles.chosen(keep)
+
+
+def _above_ground(scenario: Scenario, name: str, particles: ParticleSet) -> ParticleSet:
+    """The particles of a body without the free ones that lie in the ground of the terrain."""
+    assert scenario.bed is not None
+    if name in scenario.carried or name in scenario.inflow:
+        return particles
+    distance = ground_of(scenario.bed).height_above(particles.position)
+    keep = (distance > (0.5 - IN_THE_GROUND) * scenario.dp) | (particles.motion != FREE)
+    return particles if keep.all() else particles.chosen(keep)
 
 
 def body_names(scenario: Scenario) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -43,8 +43,18 @@ class Ground:
         inside = ((place >= low) & (place <= high)).all(axis=1)
         return place[inside], area[inside]
 
+    def height_above(self, points: np.ndarray) -> np.ndarray:
+        """Distance (N,) of points (N, dim) from the surface, m; below 0 in the ground."""
+        return self.field.nearest(np.ascontiguousarray(points))["distance"]
+
     def above(self, place: np.ndarray, height: np.ndarray) -> np.ndarray:
         """Points (N, dim), m, at a height (N,) along the normal above places (N, dim - 1)."""
         surface = self.field.at(np.ascontiguousarray(place))
         foot = np.column_stack([place, surface["height"]])
         return np.asarray(foot + height[:, None] * surface["normal"])
+
+
+@lru_cache(maxsize=2)
+def ground_of(bed: Bed) -> Ground:
+    """The ground of a bed, made once."""
+    return Ground(bed)

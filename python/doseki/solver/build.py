@@ -25,6 +25,7 @@ from ..scene.lattices import ROUNDING
 from ..scene.wall_normals import wall_geometry
 from ..util.finding import Finding
 from ..util.telling import Tell, say_nothing
+from .placed import Placed, origin_of
 from .protocol import CoreSimulation, Table
 from .relaxing import relaxed
 from .rigid_bodies import add_bodies
@@ -45,7 +46,7 @@ def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     names += ["tension", "h_mode"]
     axes = "xyz"[: scenario.dim]
     zeros = [0.0] * scenario.dim
-    low, high = scenario.domain_min, scenario.domain_max
+    low, high, origin = scenario.domain_min, scenario.domain_max, origin_of(scenario)
     flow: dict[str, Any] = {}
     if scenario.scheme == RESOLVED:
         flow = {"flow": _flow_options(scenario, body_names), "contact": _contact_options(scenario)}
@@ -57,8 +58,9 @@ def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
             "skin": FIRST_SKIN if scenario.skin == "auto" else scenario.skin,
             "auto_skin": scenario.skin == "auto",
             "periodic": [axis in scenario.periodic for axis in axes],
-            "domain_min": zeros if low is None else list(low),
-            "domain_max": zeros if high is None else list(high),
+            "domain_min": zeros if low is None else list(low - origin),
+            "domain_max": zeros if high is None else list(high - origin),
+            "origin": list(origin),
         }
     )
 
@@ -138,10 +140,20 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
 
 
 def _new_simulation(
-    scenario: Scenario, isa: str | None, materials: Sequence[Table], options: Table
+    scenario: Scenario,
+    body_names: list[str],
+    isa: str | None,
+    materials: Sequence[Table],
+    options: Table,
 ) -> CoreSimulation:
+    """One without particles, on its terrain."""
     kind = scenario.scheme, scenario.dim, scenario.precision
-    return cast(CoreSimulation, load_core(isa).Simulation(*kind, materials, options))
+    core = cast(CoreSimulation, load_core(isa).Simulation(*kind, materials, options))
+    origin = origin_of(scenario)
+    simulation = cast(CoreSimulation, Placed(core, origin)) if origin.any() else core
+    if scenario.bed is not None:
+        simulation.set_terrain(scenario.bed.table, _terrain_wall(scenario, body_names))
+    return simulation
 
 
 def _dry_simulation(
@@ -151,7 +163,7 @@ def _dry_simulation(
     materials, options = core_materials(scenario), core_options(scenario, body_names)
     calm = [table | {"restitution": min(CALM, table["restitution"])} for table in materials]
     options["contact"] |= {"steps": min(CALM_STEPS, options["contact"]["steps"])}
-    return _new_simulation(scenario, isa, calm, options)
+    return _new_simulation(scenario, body_names, isa, calm, options)
 
 
 def empty_simulation(
@@ -159,15 +171,13 @@ def empty_simulation(
 ) -> CoreSimulation:
     """A core simulation of `scenario` without particles, to be filled or restored."""
     materials, options = core_materials(scenario), core_options(scenario, body_names)
-    simulation = _new_simulation(scenario, isa, materials, options)
+    simulation = _new_simulation(scenario, body_names, isa, materials, options)
     for section in build_inflows(scenario, body_names):
         simulation.add_inflow(_inflow_table(section))
     for outflow in scenario.outflow.values():
         simulation.add_outflow(list(outflow.min), list(outflow.max))
     for motion in wall_motions(scenario, body_names):
         simulation.move_body(motion)
-    if scenario.bed is not None:
-        simulation.set_terrain(scenario.bed.table, _terrain_wall(scenario, body_names))
     if scenario.earlier is not None:
         simulation.begin_at(scenario.begins_at)
     return simulation
@@ -210,7 +220,7 @@ def filled_simulation(
     if scenario.relax is not None:
         _check_relaxing(scenario, scene)
         still = core_materials(scenario), core_options(scenario, body_names)
-        alone = _new_simulation(scenario, isa, *still)
+        alone = _new_simulation(scenario, body_names, isa, *still)
         _fill(alone, scenario, scene)
         scene = replace(scene, particles=relaxed(scene.particles, alone, scenario.relax, tell))
     simulation = empty_simulation(scenario, body_names, isa)

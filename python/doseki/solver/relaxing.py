@@ -24,7 +24,6 @@ def relaxed(
     peak of the kinetic energy (kinetic damping: Cundall, 1976), where a column that sinks into the
     gaps of its start passes its equilibrium.  Raises PhysicsError where that fails.
     """
-    still = np.zeros_like(particles.velocity)
     simulation.start()
     energy = 0.0
     try:
@@ -33,16 +32,18 @@ def relaxed(
             tell(f"water relaxes: {simulation.time:.3g} s of {seconds:.3g} s")
             before, energy = energy, simulation.totals()["kinetic_energy"]
             if energy < before:
-                simulation.restore(simulation.checkpoint() | {"velocity": still})
+                now = simulation.checkpoint()
+                simulation.restore(now | {"velocity": np.zeros_like(now["velocity"])})
                 energy = 0.0
     except load_core().PhysicsFailure as failure:
         raise PhysicsError(f"relax: {failure}") from None
     state, free = simulation.state(), particles.motion == FREE
-    order = np.argsort(particles.id)
-    position, density = particles.position.copy(), particles.density.copy()
-    position[order], density[order] = state["position"], state["density"]
+    # A terrain has added wall particles of its own; what flowed away cannot be put back.
+    now = np.searchsorted(state["id"], particles.id)
+    if not np.array_equal(np.take(state["id"], now, mode="clip"), particles.id):
+        raise PhysicsError("relax: particles left the run before they came to rest")
     return replace(
         particles,
-        position=np.where(free[:, None], position, particles.position),
-        density=np.where(free, density, particles.density),
+        position=np.where(free[:, None], state["position"][now], particles.position),
+        density=np.where(free, state["density"][now], particles.density),
     )

@@ -11,6 +11,7 @@ from .gauges import check_figures, check_gauges
 from .meaning import check_meaning
 from .motions import check_motions
 from .start import check_start
+from .terrain import check_terrain
 
 MAX_OUTPUTS = 1e6
 
@@ -30,6 +31,7 @@ def check_scenario(scenario: Scenario) -> None:
     check_gauges(scenario)
     check_figures(scenario)
     check_start(scenario)
+    check_terrain(scenario)
 
 
 def _check_outputs(scenario: Scenario) -> None:

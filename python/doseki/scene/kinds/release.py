@@ -14,7 +14,7 @@ from ...record.particles import FREE, ParticleSet
 from ...scenario.model import file_of
 from ...scenario.releases import is_raster
 from ...scenario.tables.release import Release
-from ..ground import Ground
+from ..ground import Ground, ground_of
 from .shaped import Shaped
 
 
@@ -33,7 +33,7 @@ class ReleaseBody(Shaped[Release]):
     def ground(self) -> Ground:
         """What it lies on."""
         assert self.scenario.bed is not None
-        return Ground(self.scenario.bed)
+        return ground_of(self.scenario.bed)
 
     @cached_property
     def asked(self) -> float:

@@ -1,0 +1,41 @@
+"""Checks of [terrain] against the rest of a scenario."""
+
+from __future__ import annotations
+
+from ..model import Scenario
+from ..tables.terrain import TERRAIN
+
+MAX_TILES = 2**31  # that particles can number
+COLUMNS = {2: 16, 3: 8}  # along one side of a tile
+
+
+def check_terrain(scenario: Scenario) -> None:
+    """Raise UserError for what a run on a terrain cannot do."""
+    if scenario.terrain is None or scenario.bed is None:
+        return
+    error = scenario.where.error
+    for section in ("body", "inflow"):
+        if TERRAIN in getattr(scenario, section):
+            raise error((section, TERRAIN), f'{section}.{TERRAIN}: the bed has the name "terrain"')
+    if scenario.attraction > 0:
+        raise error(
+            ("attraction",), "attraction pulls towards the origin, and maps have theirs elsewhere"
+        )
+    horizontal = set("xyz"[: scenario.dim - 1]) & set(scenario.periodic)
+    if horizontal:
+        axis = sorted(horizontal)[0]
+        raise error(("periodic",), f'periodic: a terrain is not periodic along "{axis}"')
+    law = scenario.materials[scenario.terrain.material].law
+    if law != "solid":
+        raise error(
+            ("terrain", "material"),
+            f'terrain.material = "{scenario.terrain.material}" is a fluid; a bed is a solid',
+        )
+    low, high = scenario.bed.extent
+    tiles = float(((high - low) / (COLUMNS[scenario.dim] * scenario.dp) + 2).prod())
+    if tiles > MAX_TILES:
+        raise error(
+            ("terrain",),
+            f"terrain: {tiles:.3g} tiles of {COLUMNS[scenario.dim]:g} dp cover the map; at most "
+            f"{MAX_TILES:.3g}: give terrain.window, or increase dp",
+        )
