@@ -65,6 +65,12 @@ class Balls:
     clear: np.ndarray
 
 
+def joined(*parts: Balls) -> Balls:
+    """All balls of several."""
+    columns = zip(*(vars(part).values() for part in parts), strict=True)
+    return Balls(*(np.concatenate(column) for column in columns))
+
+
 def render(balls: Balls, camera: Camera, extent: Extent, width: int) -> np.ndarray:
     """A picture (rows, `width`, 3) uint8 on white of what `extent` holds, in the camera's axes."""
     pixel = (extent[1] - extent[0]) / width

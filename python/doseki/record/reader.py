@@ -13,12 +13,14 @@ from typing import Any, overload
 import numpy as np
 
 from ..errors import UserError
+from ..geodata.raster import Raster
 from ..util.foreign import read_text, readable
 from ..util.spelling import suggestion
 from . import vtkhdf
 from .between import Between
 from .fields import FIELD_BY_KEY, GRAIN_FIELDS
 from .folder import RunFolder, read_history
+from .ground import Profile, read_ground
 from .particles import FIXED
 
 ROUNDING = 1e-6  # of the time between two snapshots: the same time
@@ -175,6 +177,11 @@ class Run(Sequence[Snapshot]):
     def directory(self) -> Path:
         """The folder of the run."""
         return self.folder.path
+
+    @cached_property
+    def ground(self) -> Raster | Profile | None:
+        """The ground of a run on a terrain, else None."""
+        return read_ground(self.folder)
 
     @property
     def times(self) -> np.ndarray:

@@ -17,6 +17,7 @@ from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError
 from ..record.beginning import check_free
 from ..record.reader import load
+from ..record.ground import write_ground
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
 from ..solver.build import load_core
@@ -108,6 +109,8 @@ def run_scenario(
             scenario, state.simulation, recorder, state.body_names, options.ranks, state.warnings
         )
         run.goes_on = state.goes_on
+        if (bed := scenario.bed) is not None:
+            options.ranks.on_root(lambda: write_ground(run.folder, bed.ground))
         return carry_out(run, options, fresh=True)
 
 

@@ -12,6 +12,7 @@ from scipy.ndimage import distance_transform_edt
 from ..errors import UserError
 from ..geodata.errors import GeodataError
 from ..geodata.raster import Raster, read_raster
+from ..record.ground import Profile
 from .particle_files.columns_csv import numbers_in, read_csv_columns
 from .tables.terrain import Terrain
 from .values.toml_source import Where
@@ -50,6 +51,14 @@ class Bed:
             "heights": np.ascontiguousarray(self.heights, np.float64),
             "unknown": np.ascontiguousarray(self.unknown, np.uint8),
         }
+
+    @property
+    def ground(self) -> Raster | Profile:
+        """As the folder of a run keeps it."""
+        if self.raster is not None:
+            return self.raster
+        x = self.origin[0] + self.cell * np.arange(len(self.heights))
+        return Profile(x, self.heights)
 
     @property
     def extent(self) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ from ...measure.views import named_window
 from ...record.reader import Run
 from ...scenario.tables.figure import SnapshotFigure
 from ..colouring import colouring
+from ..ground import draw_ground
 from ..dots import dots, draw_particles, extent_of, outside_text
 from ..layout import SMALL, Extent, PanelGrid, moment_text, name_axes
 from .moments import chosen
@@ -51,6 +52,7 @@ def draw_panels(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
         row, column = divmod(number, columns)
         axes = grid.panel(row, column)
         shown = dots(snapshot, what.view, size, what.material)
+        draw_ground(axes, run, what.view, extent)
         draw_particles(axes, snapshot, shown, colours[name], extent)
         name_axes(axes, snapshot.dim, what.view.rotate)
         title = what.panel_title(moment_text(run, moment), size)

@@ -14,9 +14,10 @@ from ...measure.views import View, flow_direction
 from ...record.reader import Run
 from ..colouring import colouring
 from ..dots import dots, draw_particles, extent_of, outside_text
+from ..ground import ground_balls
 from ..layout import SMALL, ViewRows, moment_text, name_axes, scale_bar
 from ..space import Space, balls_of, seen_extent
-from ..surfaces import Camera, render
+from ..surfaces import Camera, joined, render
 from .panels import Panels
 
 SLANTING = np.array([0.45, 0.80, -0.42])  # away from the viewer, where the flow runs to -x
@@ -32,6 +33,7 @@ def draw_spatial(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
     cameras = [Camera.looking(away), Camera.looking(DOWN)]
     extents = [seen_extent(space, snapshots, camera) for camera in cameras]
     extents.append(extent_of(snapshots, what.view))
+    ground = ground_balls(run, space)
     rows = list(product(zip(moments, snapshots, strict=True), what.colours))
     grid = ViewRows(len(rows), extents, what.title)
     colours = {name: colouring(run, snapshots, name, what.view) for name in what.colours}
@@ -39,7 +41,8 @@ def draw_spatial(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
         panels = grid.row(row)
         for camera, extent, axes in zip(cameras, extents, panels, strict=False):
             balls = balls_of(run, snapshot, colours[name], space, camera, what.material)
-            axes.imshow(render(balls, camera, extent, PIXELS), extent=extent)
+            seen = render(joined(balls, ground), camera, extent, PIXELS)
+            axes.imshow(seen, extent=extent)
             axes.set(xlim=extent[:2], ylim=extent[2:])
         shown = dots(snapshot, what.view, "grain", what.material)
         draw_particles(panels[2], snapshot, shown, colours[name], extents[2])

@@ -1,0 +1,49 @@
+"""The ground of a run on a terrain: below the flow in 2-D, a surface around it in 3-D."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..geodata.raster import Raster
+from ..measure.views import View
+from ..record.ground import Profile
+from ..record.reader import Run
+from .layout import Extent
+from .space import Space
+from .surfaces import Balls
+
+COLOUR = "#b3ada3"
+SPACE_COLOUR = (0.70, 0.68, 0.64)
+ACROSS = 240  # points of the ground along the longer side of what is drawn
+
+
+def draw_ground(axes: Axes, run: Run, view: View, extent: Extent) -> None:
+    """Fill what lies below the profile of a 2-D run; nothing where it has none."""
+    if not isinstance(run.ground, Profile):
+        return
+    x, z = run.ground.x, run.ground.z
+    below = min(float(z.min()), extent[2]) - (extent[3] - extent[2])
+    outline = np.array([[x[0], below], *zip(x, z, strict=True), [x[-1], below]])
+    corners = view.coordinates(outline)
+    axes.fill(corners[:, 0], corners[:, 1], color=COLOUR, linewidth=0, zorder=0)
+
+
+def ground_balls(run: Run, space: Space) -> Balls:
+    """The surface of a terrain around what is drawn, as balls; none without one."""
+    if not isinstance(run.ground, Raster):
+        none = np.zeros((0, 3))
+        flags = np.zeros(0, bool)
+        return Balls(none, np.zeros(0), none, flags, flags)
+    room = 0.15 * float(np.max(space.high - space.low))
+    low, high = (space.low - room)[:2], (space.high + room)[:2]
+    step = float(np.max(high - low)) / ACROSS
+    x, y = (np.arange(a, b, step) for a, b in zip(low, high, strict=True))
+    grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    height = run.ground.sampled(grid[:, 0], grid[:, 1])
+    known = ~np.isnan(height)
+    # A ball whose top is at the surface; on a slope it must reach its neighbours.
+    radius = np.full(int(known.sum()), 1.5 * step)
+    position = np.column_stack([grid, height])[known] - [0.0, 0.0, 1.5 * step]
+    smooth = np.ones(len(position), bool)
+    return Balls(position, radius, np.tile(SPACE_COLOUR, (len(position), 1)), smooth, ~smooth)
