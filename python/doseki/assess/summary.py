@@ -8,6 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..measure.flow import Flow, WindowFlow, measure_flow
+from ..measure.hydrographs import passage
+from ..measure.maps.runout import Runout, runout_lines
 from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
@@ -19,8 +21,8 @@ WIDTH = 18  # of the column of names
 
 def summary_text(run: Run) -> str:
     """What was run, how it went and the key results: about 20 lines."""
-    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run), _warnings(run)]
-    parts.append(_trust(run))
+    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run)]
+    parts += [_sections(run), _runout(run), _warnings(run), _trust(run)]
     return "\n".join(line for part in parts for line in part)
 
 
@@ -110,6 +112,31 @@ def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
     if entry.grain_count[k]:
         text += f"; {entry.grain_count[k]} grains, mean speed {entry.grain_speed[k]:.3g} m/s"
     return text
+
+
+def _sections(run: Run) -> Iterator[str]:
+    """What passed the sections."""
+    for name, table in run.scenario.get("gauge", {}).items():
+        record = run.gauges.get(name)
+        if table.get("kind") != "section" or record is None or not len(record["time"]):
+            continue
+        found = passage(record)
+        text = "nothing yet"
+        if found.arrival is not None:
+            text = (
+                f"flow from {found.arrival:.3g} s on, peak {found.peak:.3g} m3/s at"
+                f" {found.peak_time:.3g} s, {found.volume:.3g} m3 passed, depth up to"
+                f" {found.depth:.3g} m, speed up to {found.speed:.3g} m/s"
+            )
+        yield _line(f"section {name}", text)
+
+
+def _runout(run: Run) -> Iterator[str]:
+    """How far the flow went, where the run kept maps."""
+    said = run.summary.get("runout")
+    if said:
+        for k, line in enumerate(runout_lines(Runout(**said))):
+            yield _line("" if k else "maps", line)
 
 
 def _warnings(run: Run) -> Iterator[str]:

@@ -11,7 +11,7 @@ from typing import Any
 from ..util.foreign import read_text
 from .crs import check_map_coordinates
 from .errors import GeodataError
-from .features import Features, Line, Polygon
+from .outlines import Features, Line, Polygon
 from .shapes import line_of, polygon_of
 
 MAX_BYTES = 500_000_000

@@ -112,7 +112,7 @@ def write_geotiff(path: Path, raster: Raster, tags: dict[str, str]) -> None:
     """Write a raster as float64, compressed without loss; `tags` are names and texts."""
     rasterio = needed("rasterio", path, WHAT)
     nodata = math.nan if raster.nodata is None else raster.nodata
-    at = rasterio.transform.from_origin(raster.west, raster.north, raster.cell, raster.cell)
+    at = rasterio.Affine(raster.cell, 0.0, raster.west, 0.0, -raster.cell, raster.north)
     about = {
         "driver": "GTiff", "dtype": "float64", "count": 1, "compress": "deflate", "predictor": 3,
         "height": raster.shape[0], "width": raster.shape[1], "transform": at, "nodata": nodata,

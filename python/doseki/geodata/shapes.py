@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .errors import GeodataError
-from .features import Line, Polygon
+from .outlines import Line, Polygon
 
 MAX_VERTICES = 10_000_000  # of one ring or line
 LARGEST = 1e9  # m; the earth is 4e7 m around

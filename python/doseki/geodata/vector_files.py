@@ -13,7 +13,7 @@ import numpy as np
 from ..util.foreign import open_regular, readable
 from .crs import check_map_coordinates
 from .errors import GeodataError, needed
-from .features import Features, Line, Polygon
+from .outlines import Features, Line, Polygon
 from .shapes import line_of, polygon_of
 
 # What a file of each kind begins with: GDAL would take others for what they say themselves.
@@ -37,14 +37,17 @@ def read_vector_file(path: Path, layer: str | None) -> Features:
         if not file.read(len(MAGIC[suffix])) == MAGIC[suffix]:
             raise GeodataError(f"{path}: is not {WHAT[suffix]}")
     with warnings.catch_warnings(), readable(path, f" as {WHAT[suffix]}"):
-        warnings.simplefilter("ignore", UserWarning)  # measures (M) of vertices are left out
+        warnings.simplefilter("ignore")  # of measures (M) of vertices, which nothing here needs
         layer = _layer(path, layer)
         about, _, shapes, columns = pyogrio.read(path, layer=layer)
         geometries = shapely.from_wkb(shapes)
     crs = about["crs"]
     if crs is not None:
         check_map_coordinates(path, crs)
-    rows = [dict(zip(about["fields"], map(_plain, row), strict=True)) for row in zip(*columns)]
+    rows = [
+        dict(zip(about["fields"], map(_plain, row), strict=True))
+        for row in zip(*columns, strict=True)
+    ]
     rows = rows or [{} for _ in geometries]
     found = [
         shape
