@@ -92,10 +92,30 @@ public:
         return !unknown.empty() && unknown[static_cast<std::size_t>(index)] != 0;
     }
 
+    /// How far at most normals lean from the vertical: the sine of the steepest slope there can be.
+    double lean() const { return lean_; }
+    /// Finds lean(), once the heights are there.
+    void measure_lean() {
+        double steepest = 0.0;  // between nodes; the cubic may rise half as steeply again
+        std::int64_t stride = 1;
+        for (int a = 0; a < axes; ++a) {
+            double rise = 0.0;
+            for (std::size_t k = 0; k + static_cast<std::size_t>(stride) < heights.size(); ++k)
+                if (static_cast<std::int64_t>(k) / stride % nodes[a] < nodes[a] - 1)
+                    rise = std::max(rise, std::abs(heights[k + static_cast<std::size_t>(stride)] -
+                                                   heights[k]));
+            steepest += (1.5 * rise / cell) * (1.5 * rise / cell);
+            stride *= nodes[a];
+        }
+        lean_ = std::sqrt(steepest / (1.0 + steepest));
+    }
+
     /// Corner of the grid of nodes that is far from the origin [m].
     double end(int a) const { return origin[a] + static_cast<double>(nodes[a] - 1) * cell; }
 
 private:
+    double lean_ = 1.0;
+
     /// Four nodes along one axis, and what each adds to the value and to its slope per cell.
     struct Stencil {
         std::int64_t first;  // the one before the cell, which may lie outside by one

@@ -136,6 +136,7 @@ public:
 
     void set(HeightField<D> field, const TerrainWall& wall) {
         field_ = std::move(field), wall_ = wall;
+        field_.measure_lean();
         side_ = tile_columns * wall.dp;
         for (int a = 0; a < axes; ++a) {
             // One tile more on each side, for what flows along the edge of the map.
@@ -167,10 +168,21 @@ public:
     void expect_tiles(const Particles<D>& particles) const;
 
 private:
-    /// A tile with fluid above it, and where the lowest of that is [m].
+    /// A tile with fluid above it: what of it that is, in plan, and where the lowest is [m].
     struct Occupied {
+        static constexpr int numbers = 2 * axes + 2;
+
         std::int64_t tile;
+        Horizontal<D> from, to;
         double low;
+
+        void add(const Occupied& other) {
+            for (int a = 0; a < axes; ++a) {
+                from[a] = std::min(from[a], other.from[a]);
+                to[a] = std::max(to[a], other.to[a]);
+            }
+            low = std::min(low, other.low);
+        }
     };
 
     bool is_own(const Particles<D>& particles, std::size_t p) const {
@@ -205,19 +217,19 @@ private:
         return corner;
     }
 
-    /// Calls f(neighbour) for the tiles no more than `distance` tiles away.
+    /// Calls f(tile) for the tiles no farther than `distance` [m] from the fluid.
     template <class F>
-    void for_each_around(std::int64_t tile, std::int64_t distance, const F& f) const {
-        const std::int64_t column = tile % tiles_[0], row = tile / tiles_[0];
-        const std::int64_t rows = D == 3 ? tiles_[axes - 1] : 1;
-        for (auto j = std::max<std::int64_t>(row - distance, 0);
-             j <= std::min(row + distance, rows - 1); ++j)
-            for (auto i = std::max<std::int64_t>(column - distance, 0);
-                 i <= std::min(column + distance, tiles_[0] - 1); ++i)
-                f(j * tiles_[0] + i);
+    void for_each_near(const Occupied& fluid, double distance, const F& f) const {
+        Horizontal<D> from = fluid.from, to = fluid.to;
+        for (int a = 0; a < axes; ++a) from[a] -= distance, to[a] += distance;
+        const std::int64_t first = tile_at(from), last = tile_at(to), width = tiles_[0];
+        for (std::int64_t row = first / width; row <= last / width; ++row)
+            for (std::int64_t column = first % width; column <= last % width; ++column)
+                f(row * width + column);
     }
 
     Array<Occupied> occupied(const Particles<D>& particles, const Ranks& ranks) const;
+    static Array<Occupied> of_all_ranks(const Array<Occupied>& own, const Ranks& ranks);
     double highest(std::int64_t tile) const;
     void add_particle(Particles<D>& particles, std::int64_t tile, double depth,
                       const typename TileLayer<D>::Foot& foot, std::int64_t id) const;
@@ -250,26 +262,46 @@ auto Terrain<D>::occupied(const Particles<D>& particles, const Ranks& ranks) con
     for (std::size_t p = 0; p < particles.size(); ++p) {
         if (particles.is_wall(p)) continue;
         const Vec<double, D>& x = particles.position[p];
-        const std::int64_t tile = tile_at(horizontal(x));
-        if (!found.empty() && found.back().tile == tile)
-            found.back().low = std::min(found.back().low, x[axes]);
+        const Horizontal<D> place = horizontal(x);
+        const Occupied own{tile_at(place), place, place, x[axes]};
+        if (!found.empty() && found.back().tile == own.tile)
+            found.back().add(own);
         else
-            found.push_back({tile, x[axes]});
+            found.push_back(own);
     }
-    if (!ranks.alone()) {
-        Array<double> own;
-        for (const Occupied& each : found)
-            own.push_back(static_cast<double>(each.tile)), own.push_back(each.low);
-        const Array<double> all = ranks.gather(own);
-        found.clear();
-        for (std::size_t k = 0; k < all.size(); k += 2)
-            found.push_back({static_cast<std::int64_t>(all[k]), all[k + 1]});
+    found = of_all_ranks(found, ranks);
+    std::sort(found.begin(), found.end(),
+              [](const Occupied& a, const Occupied& b) { return a.tile < b.tile; });
+    std::size_t kept = 0;
+    for (std::size_t k = 1; k < found.size(); ++k) {
+        if (found[k].tile == found[kept].tile)
+            found[kept].add(found[k]);
+        else
+            found[++kept] = found[k];
     }
-    std::sort(found.begin(), found.end(), [](const Occupied& a, const Occupied& b) {
-        return a.tile != b.tile ? a.tile < b.tile : a.low < b.low;
-    });
-    const auto same = [](const Occupied& a, const Occupied& b) { return a.tile == b.tile; };
-    found.erase(std::unique(found.begin(), found.end(), same), found.end());
+    if (!found.empty()) found.resize(kept + 1);
+    return found;
+}
+
+template <int D>
+auto Terrain<D>::of_all_ranks(const Array<Occupied>& own, const Ranks& ranks) -> Array<Occupied> {
+    if (ranks.alone()) return own;
+    Array<double> numbers;
+    for (const Occupied& each : own) {
+        numbers.push_back(static_cast<double>(each.tile)), numbers.push_back(each.low);
+        for (int a = 0; a < axes; ++a)
+            numbers.push_back(each.from[a]), numbers.push_back(each.to[a]);
+    }
+    const Array<double> all = ranks.gather(numbers);
+    Array<Occupied> found;
+    for (std::size_t k = 0; k < all.size(); k += Occupied::numbers) {
+        Occupied each{static_cast<std::int64_t>(all[k]), {}, {}, all[k + 1]};
+        for (std::size_t a = 0; a < axes; ++a) {
+            each.from[static_cast<int>(a)] = all[k + 2 + 2 * a];
+            each.to[static_cast<int>(a)] = all[k + 3 + 2 * a];
+        }
+        found.push_back(each);
+    }
     return found;
 }
 
@@ -294,17 +326,16 @@ double Terrain<D>::highest(std::int64_t tile) const {
 template <int D>
 void Terrain<D>::look(const Particles<D>& particles, double support, double margin,
                       const Ranks& ranks, Array<std::uint8_t>& removed) {
-    // Normals lean, so that a particle may lie beside its tile by as much as it is deep.
-    const double reach = support + margin + wall_.layers * wall_.dp;
-    const auto near = static_cast<std::int64_t>(std::ceil(reach / side_));
+    // Normals lean, so that a particle may lie beside its tile by part of how deep it is.
+    const double reach = support + margin + field_.lean() * wall_.layers * wall_.dp;
     Array<std::int64_t> kept;
     to_fill_.clear();
     for (const Occupied& each : occupied(particles, ranks)) {
-        for_each_around(each.tile, near, [&](std::int64_t tile) {
+        for_each_near(each, reach, [&](std::int64_t tile) {
             if (!is_active(tile) && each.low - reach < highest(tile)) to_fill_.push_back(tile);
         });
-        // A tile further: particles that tremble on an edge must not make and drop tiles.
-        for_each_around(each.tile, near + 1, [&](std::int64_t tile) {
+        // Farther: particles that tremble on an edge must not make and drop tiles.
+        for_each_near(each, reach + 0.5 * side_, [&](std::int64_t tile) {
             if (is_active(tile)) kept.push_back(tile);
         });
     }

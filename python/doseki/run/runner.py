@@ -16,8 +16,9 @@ from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError
 from ..record.beginning import check_free
-from ..record.reader import load
+from ..record.folder import RunFolder
 from ..record.ground import write_ground
+from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
 from ..solver.build import load_core
@@ -106,12 +107,13 @@ def run_scenario(
             directory,
             lambda: Recorder(directory, text, *names, scenario.dim, options.overwrite, inputs),
         )
+        if (bed := scenario.bed) is not None:
+            folder = RunFolder(Path(directory))
+            options.ranks.on_root(lambda: write_ground(folder, bed.ground))
         run = ActiveRun(
             scenario, state.simulation, recorder, state.body_names, options.ranks, state.warnings
         )
         run.goes_on = state.goes_on
-        if (bed := scenario.bed) is not None:
-            options.ranks.on_root(lambda: write_ground(run.folder, bed.ground))
         return carry_out(run, options, fresh=True)
 
 
