@@ -20,25 +20,25 @@ Horizontal<D> horizontal(const Vec<double, D>& x) {
     return place;
 }
 
-/// Heights at the nodes of a square grid. In between, the cubic of Catmull and Rom (1974) along each
-/// axis: it passes through the nodes and its slope is continuous. Beyond the grid it goes on
+/// Heights at the nodes of a square grid. In between, the cubic of Catmull and Rom (1974) along
+/// each axis: it passes through the nodes and its slope is continuous. Beyond the grid it goes on
 /// straight.
 template <int D>
 class HeightField {
     static constexpr int axes = D - 1;
 
 public:
-    Horizontal<D> origin{};                // node 0 [m]
-    double cell = 1.0;                     // distance between nodes [m]
+    Horizontal<D> origin{};                  // node 0 [m]
+    double cell = 1.0;                       // distance between nodes [m]
     std::array<std::int64_t, axes> nodes{};  // along each axis; 2 or more
-    Array<double> heights;                 // [m], the first axis fastest
-    Array<std::uint8_t> unknown;           // by node: the map has nothing there; may be empty
+    Array<double> heights;                   // [m], the first axis fastest
+    Array<std::uint8_t> unknown;             // by node: the map has nothing there; may be empty
 
     struct Surface {
-        double height;            // [m]
-        Horizontal<D> slope;      // gradient of the height
-        double area;              // of the surface over that of its plan
-        Vec<double, D> normal;    // upwards
+        double height;          // [m]
+        Horizontal<D> slope;    // gradient of the height
+        double area;            // of the surface over that of its plan
+        Vec<double, D> normal;  // upwards
     };
 
     Surface at(const Horizontal<D>& place) const {
@@ -61,8 +61,8 @@ public:
 
     double height(const Horizontal<D>& place) const { return at(place).height; }
 
-    /// The signed distance of x from the surface, above 0 in the air, and the normal there. The foot
-    /// of the perpendicular is found by iteration.
+    /// The signed distance of x from the surface, above 0 in the air, and the normal there. The
+    /// foot of the perpendicular is found by iteration.
     struct Nearest {
         double distance;
         Vec<double, D> normal;
@@ -102,8 +102,8 @@ public:
             double rise = 0.0;
             for (std::size_t k = 0; k + static_cast<std::size_t>(stride) < heights.size(); ++k)
                 if (static_cast<std::int64_t>(k) / stride % nodes[a] < nodes[a] - 1)
-                    rise = std::max(rise, std::abs(heights[k + static_cast<std::size_t>(stride)] -
-                                                   heights[k]));
+                    rise = std::max(
+                        rise, std::abs(heights[k + static_cast<std::size_t>(stride)] - heights[k]));
             steepest += (1.5 * rise / cell) * (1.5 * rise / cell);
             stride *= nodes[a];
         }
@@ -136,8 +136,8 @@ private:
                 (u - inside) * cell};
     }
 
-    /// Height of a node of the line that begins at `base`; one outside the grid lies on the straight
-    /// line through the two next to it.
+    /// Height of a node of the line that begins at `base`; one outside the grid lies on the
+    /// straight line through the two next to it.
     double node(int a, std::int64_t base, std::int64_t stride, std::int64_t k) const {
         const auto of = [&](std::int64_t j) {
             return heights[static_cast<std::size_t>(base + j * stride)];
@@ -171,8 +171,8 @@ private:
             surface.slope[1] += y.slope[k] * height[k] / cell;
             twist += y.slope[k] * slope[k] / cell;
         }
-        surface.height += x.beyond * surface.slope[0] + y.beyond * surface.slope[1] +
-                          x.beyond * y.beyond * twist;
+        surface.height +=
+            x.beyond * surface.slope[0] + y.beyond * surface.slope[1] + x.beyond * y.beyond * twist;
         surface.slope[0] += y.beyond * twist;
         surface.slope[1] += x.beyond * twist;
     }

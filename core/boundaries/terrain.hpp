@@ -11,7 +11,6 @@
 #include "boundaries/height_field.hpp"
 #include "model/archive.hpp"
 #include "model/particles.hpp"
-#include "ranks/exchange.hpp"
 
 namespace doseki {
 
@@ -110,8 +109,7 @@ private:
         for (int a = 0; a < D - 1; ++a) {
             Horizontal<D> ahead = place, behind = place;
             ahead[a] += step, behind[a] -= step;
-            divergence +=
-                (field_.at(ahead).normal[a] - field_.at(behind).normal[a]) / (2.0 * step);
+            divergence += (field_.at(ahead).normal[a] - field_.at(behind).normal[a]) / (2.0 * step);
         }
         return std::max(1.0 - depth_ * divergence, 0.05);
     }
@@ -122,9 +120,9 @@ private:
     Array<Foot> feet_;
 };
 
-/// A terrain: the surface, and the tiles of it that have wall particles. A tile gets them when fluid
-/// comes near and loses them when all fluid has gone, so that memory grows with the flow and not
-/// with the map.
+/// A terrain: the surface, and the tiles of it that have wall particles. A tile gets them when
+/// fluid comes near and loses them when all fluid has gone, so that memory grows with the flow and
+/// not with the map.
 template <int D>
 class Terrain {
     static constexpr int axes = D - 1;
@@ -147,8 +145,10 @@ public:
     }
 
     /// Finds the tiles that fluid may reach before it has gone `margin` [m], marks in `removed` the
-    /// particles of tiles that it has left, and remembers which tiles to fill. All ranks call it.
-    void look(const Particles<D>& particles, double support, double margin, const Ranks& ranks,
+    /// particles of tiles that it has left, and remembers which tiles to fill. All ranks call it:
+    /// `gather` makes numbers of all ranks of those of one.
+    template <class Gather>
+    void look(const Particles<D>& particles, double support, double margin, const Gather& gather,
               Array<std::uint8_t>& removed);
 
     /// Adds the particles of the tiles that look() has found; their ids go on from `next_id`. Where
@@ -170,8 +170,6 @@ public:
 private:
     /// A tile with fluid above it: what of it that is, in plan, and where the lowest is [m].
     struct Occupied {
-        static constexpr int numbers = 2 * axes + 2;
-
         std::int64_t tile;
         Horizontal<D> from, to;
         double low;
@@ -228,8 +226,10 @@ private:
                 f(row * width + column);
     }
 
-    Array<Occupied> occupied(const Particles<D>& particles, const Ranks& ranks) const;
-    static Array<Occupied> of_all_ranks(const Array<Occupied>& own, const Ranks& ranks);
+    static Array<double> as_numbers(const Array<Occupied>& tiles);
+    static Array<Occupied> from_numbers(const Array<double>& numbers);
+    Array<Occupied> occupied(const Particles<D>& particles) const;
+    static Array<Occupied> merged(Array<Occupied> tiles);
     double highest(std::int64_t tile) const;
     void add_particle(Particles<D>& particles, std::int64_t tile, double depth,
                       const typename TileLayer<D>::Foot& foot, std::int64_t id) const;
@@ -254,10 +254,9 @@ void Terrain<D>::expect_tiles(const Particles<D>& particles) const {
         if (is_own(particles, p)) expect_fit(is_active(particles.wall.point[p]), "point");
 }
 
-/// In the order of tiles, each once.
+/// A tile may be among them several times.
 template <int D>
-auto Terrain<D>::occupied(const Particles<D>& particles, const Ranks& ranks) const
-    -> Array<Occupied> {
+auto Terrain<D>::occupied(const Particles<D>& particles) const -> Array<Occupied> {
     Array<Occupied> found;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         if (particles.is_wall(p)) continue;
@@ -269,40 +268,47 @@ auto Terrain<D>::occupied(const Particles<D>& particles, const Ranks& ranks) con
         else
             found.push_back(own);
     }
-    found = of_all_ranks(found, ranks);
-    std::sort(found.begin(), found.end(),
+    return found;
+}
+
+/// In the order of tiles, each once.
+template <int D>
+auto Terrain<D>::merged(Array<Occupied> tiles) -> Array<Occupied> {
+    std::sort(tiles.begin(), tiles.end(),
               [](const Occupied& a, const Occupied& b) { return a.tile < b.tile; });
-    std::size_t kept = 0;
-    for (std::size_t k = 1; k < found.size(); ++k) {
-        if (found[k].tile == found[kept].tile)
-            found[kept].add(found[k]);
+    Array<Occupied> found;
+    for (const Occupied& each : tiles) {
+        if (!found.empty() && found.back().tile == each.tile)
+            found.back().add(each);
         else
-            found[++kept] = found[k];
+            found.push_back(each);
     }
-    if (!found.empty()) found.resize(kept + 1);
     return found;
 }
 
 template <int D>
-auto Terrain<D>::of_all_ranks(const Array<Occupied>& own, const Ranks& ranks) -> Array<Occupied> {
-    if (ranks.alone()) return own;
+Array<double> Terrain<D>::as_numbers(const Array<Occupied>& tiles) {
     Array<double> numbers;
-    for (const Occupied& each : own) {
+    for (const Occupied& each : tiles) {
         numbers.push_back(static_cast<double>(each.tile)), numbers.push_back(each.low);
         for (int a = 0; a < axes; ++a)
             numbers.push_back(each.from[a]), numbers.push_back(each.to[a]);
     }
-    const Array<double> all = ranks.gather(numbers);
-    Array<Occupied> found;
-    for (std::size_t k = 0; k < all.size(); k += Occupied::numbers) {
-        Occupied each{static_cast<std::int64_t>(all[k]), {}, {}, all[k + 1]};
+    return numbers;
+}
+
+template <int D>
+auto Terrain<D>::from_numbers(const Array<double>& numbers) -> Array<Occupied> {
+    Array<Occupied> tiles;
+    for (std::size_t k = 0; k < numbers.size(); k += 2 * axes + 2) {
+        Occupied each{static_cast<std::int64_t>(numbers[k]), {}, {}, numbers[k + 1]};
         for (std::size_t a = 0; a < axes; ++a) {
-            each.from[static_cast<int>(a)] = all[k + 2 + 2 * a];
-            each.to[static_cast<int>(a)] = all[k + 3 + 2 * a];
+            each.from[static_cast<int>(a)] = numbers[k + 2 + 2 * a];
+            each.to[static_cast<int>(a)] = numbers[k + 3 + 2 * a];
         }
-        found.push_back(each);
+        tiles.push_back(each);
     }
-    return found;
+    return tiles;
 }
 
 /// No bed in the tile is higher [m]: from samples, with room for what lies between them.
@@ -324,13 +330,15 @@ double Terrain<D>::highest(std::int64_t tile) const {
 }
 
 template <int D>
+template <class Gather>
 void Terrain<D>::look(const Particles<D>& particles, double support, double margin,
-                      const Ranks& ranks, Array<std::uint8_t>& removed) {
+                      const Gather& gather, Array<std::uint8_t>& removed) {
     // Normals lean, so that a particle may lie beside its tile by part of how deep it is.
     const double reach = support + margin + field_.lean() * wall_.layers * wall_.dp;
     Array<std::int64_t> kept;
     to_fill_.clear();
-    for (const Occupied& each : occupied(particles, ranks)) {
+    const Array<double> numbers = gather(as_numbers(occupied(particles)));
+    for (const Occupied& each : merged(from_numbers(numbers))) {
         for_each_near(each, reach, [&](std::int64_t tile) {
             if (!is_active(tile) && each.low - reach < highest(tile)) to_fill_.push_back(tile);
         });

@@ -16,8 +16,8 @@ struct BoundaryTables {
     static Inflow<D> inflow(const NamedValues& table);
     static Outflow<D> outflow(std::span<const double> low, std::span<const double> high);
     static WallMotion<D> motion(const NamedValues& table);
-    /// `origin` and `cell` of a grid of `heights`, which has a row for each node along the first axis
-    /// (3-D: along the second, each of them a row of nodes along the first), and where it is
+    /// `origin` and `cell` of a grid of `heights`, which has a row for each node along the first
+    /// axis (3-D: along the second, each of them a row of nodes along the first), and where it is
     /// `unknown`.
     static HeightField<D> height_field(const NamedValues& table);
     static TerrainWall terrain_wall(const NamedValues& table);

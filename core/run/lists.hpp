@@ -19,6 +19,23 @@
 
 namespace doseki {
 
+/// Support radii of particles [m], as large as they may become before the next sort.
+template <class Lists>
+Array<double> support_radii(AnyScheme<Lists>& scheme, const Options<Lists::dim>& options) {
+    const auto& particles = scheme.particles();
+    Array<double> support(particles.size());
+    const bool grows = options.h_mode == SmoothingLengthMode::eq10;
+    for (std::size_t p = 0; p < support.size(); ++p) {
+        double h = particles.smoothing_length[p];
+        if (grows) {
+            const double rho0 = scheme.materials()[particles.tag[p].material].rho0;
+            h = max(h, 1.25 * options.eta * std::pow(particles.mass[p] / rho0, 1.0 / Lists::dim));
+        }
+        support[p] = scheme.kernel_support() * h;
+    }
+    return support;
+}
+
 /// The neighbour lists of a run and what keeps them true: the skin, how far particles have gone
 /// since the last build, and the ghosts of other ranks. Lists hold as long as no two particles can
 /// have come nearer by more than the skin.

@@ -216,7 +216,6 @@ private:
     void look_at_terrain();
     bool remove_outflow();
     void drop_removed();
-    Array<double> support_radii() const;
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
 
     Options<D> options_;
@@ -326,7 +325,8 @@ void Simulation<Lists>::rebuild_lists() {
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
-    lists_.rebuild(particles, [this] { return support_radii(); }, steps_, phases());
+    lists_.rebuild(
+        particles, [this] { return support_radii(*scheme_, options_); }, steps_, phases());
 }
 
 template <class Lists>
@@ -343,11 +343,12 @@ void Simulation<Lists>::wrap_positions() {
 template <class Lists>
 void Simulation<Lists>::look_at_terrain() {
     if (!terrain.is_there()) return;
-    const Array<double> own = support_radii();
-    const double support = ranks().largest(
-        own.empty() ? 0.0 : *std::max_element(own.begin(), own.end()));
+    const Array<double> own = support_radii(*scheme_, options_);
+    const double largest = own.empty() ? 0.0 : *std::max_element(own.begin(), own.end());
+    const double support = ranks().largest(largest);
     const double skin = max(options_.skin, CheapestSkin<D>::max_skin);
-    terrain.look(particles, support, skin * support, ranks(), open_boundaries.removed);
+    const auto gather = [this](const Array<double>& part) { return ranks().gather(part); };
+    terrain.look(particles, support, skin * support, gather, open_boundaries.removed);
 }
 
 /// True where any rank has particles that left.
@@ -371,22 +372,6 @@ void Simulation<Lists>::drop_removed() {
         if (!removed[p]) kept.push_back(p);
     if (kept.size() < particles.size()) reorder(particles, kept);
     removed.clear();
-}
-
-/// As large as they may become before the next sort.
-template <class Lists>
-Array<double> Simulation<Lists>::support_radii() const {
-    Array<double> support(particles.size());
-    const bool grows = options_.h_mode == SmoothingLengthMode::eq10;
-    for (std::size_t p = 0; p < support.size(); ++p) {
-        double h = particles.smoothing_length[p];
-        if (grows) {
-            const double rho0 = materials()[particles.tag[p].material].rho0;
-            h = max(h, 1.25 * options_.eta * std::pow(particles.mass[p] / rho0, 1.0 / D));
-        }
-        support[p] = scheme_->kernel_support() * h;
-    }
-    return support;
 }
 
 /// Throws the same on all ranks; `p` is -1 on those that have not the particle to blame.

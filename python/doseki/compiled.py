@@ -9,7 +9,10 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
+
+if TYPE_CHECKING:  # the build runs this file without numpy
+    import numpy as np
 
 # What a module was compiled for, and the processor flags that must be there for it.
 INSTRUCTION_SETS: dict[str, dict[str, set[str]]] = {
@@ -56,18 +59,18 @@ class HeightField(Protocol):
     """The surface of a bed; columns of numbers by name, one row for each place."""
 
     def at(self, places: np.ndarray) -> dict[str, np.ndarray]:
-        """`height`, m, `area` over that of its plan, `normal` and whether it is `unknown`, at places
-        (N, dim - 1), m.
+        """At places (N, dim - 1), m: `height`, m, `area` over that of the plan, `normal`, and
+        whether the height is `unknown`.
         """
         ...
 
     def nearest(self, points: np.ndarray) -> dict[str, np.ndarray]:
-        """The signed `distance`, m, of points (N, dim) above the surface, and the `normal` there."""
+        """Signed `distance`, m, of points (N, dim) above the surface, and the `normal` there."""
         ...
 
     def columns(self, low: Sequence[float], side: float, dp: float) -> dict[str, np.ndarray]:
-        """`place` (N, dim - 1), m, of columns that stand on a square, each on an `area` (N,), m2, of
-        the surface near dp^2 (2-D: m, near dp).
+        """`place` (N, dim - 1), m, of columns that stand on a square, and the `area` (N,) of the
+        surface below each, near dp^2, m2; in 2-D near dp, m.
         """
         ...
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.figures.surfaces import NOTHING, Balls, Camera, nearest_balls, render
+from doseki.figures.space.surfaces import NOTHING, Balls, Camera, nearest_balls, render
 
 RED, BLUE = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 ALONG_Y = Camera.looking(np.array([0.0, 1.0, 0.0]))

@@ -18,9 +18,9 @@ from .colouring import colouring
 from .dots import dots, extent_of, picture
 from .layout import time_text
 from .nothing import NothingToDrawError
-from .space import Space, balls_of, seen_extent
+from .space.box import Space, balls_of, seen_extent
+from .space.surfaces import Camera, render
 from .stage import WIDTH, Stage
-from .surfaces import Camera, render
 from .text import plain_text
 
 SIDEWAYS = np.array([0.0, 1.0, 0.0])  # away from the viewer

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UserError
+from ..geodata.ground import ground_files
 from ..util.foreign import read_text, readable
 
 RASTERS = (".tif", ".asc")  # endings of rasters
 MAP_FILES = (*RASTERS, ".prj", ".png", ".csv", ".json")
 INPUTS = "inputs"  # folder of copies of the files that a scenario names
-GROUND_SUFFIXES = (".tif", ".asc", ".csv", ".prj")
 
 
 @dataclass(frozen=True)
@@ -112,11 +112,6 @@ class RunFolder:
         """The folder of the pictures."""
         return self.path / "figures"
 
-    def ground_files(self) -> list[Path]:
-        """The ground of a run on a terrain, and what stands beside it."""
-        files = (self.path / f"terrain{suffix}" for suffix in GROUND_SUFFIXES)
-        return [file for file in files if file.exists()]
-
     def links(self) -> list[Path]:
         """Symbolic links in the folder: writing to one would write somewhere else."""
         folders = (
@@ -169,7 +164,7 @@ class RunFolder:
         """What a run may have written while it went on."""
         return [
             *(file for file in (self.history, self.series, self.log) if file.exists()),
-            *self.ground_files(),
+            *ground_files(self.path),
             *self.snapshot_files(),
             *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),

@@ -13,6 +13,7 @@ from typing import Any, overload
 import numpy as np
 
 from ..errors import UserError
+from ..geodata.ground import Profile, read_ground
 from ..geodata.raster import Raster
 from ..util.foreign import read_text, readable
 from ..util.spelling import suggestion
@@ -20,7 +21,6 @@ from . import vtkhdf
 from .between import Between
 from .fields import FIELD_BY_KEY, GRAIN_FIELDS
 from .folder import RunFolder, read_history
-from .ground import Profile, read_ground
 from .particles import FIXED
 
 ROUNDING = 1e-6  # of the time between two snapshots: the same time
@@ -181,7 +181,7 @@ class Run(Sequence[Snapshot]):
     @cached_property
     def ground(self) -> Raster | Profile | None:
         """The ground of a run on a terrain, else None."""
-        return read_ground(self.folder)
+        return read_ground(self.folder.path)
 
     @property
     def times(self) -> np.ndarray:

@@ -15,9 +15,8 @@ from ..driver.ranks import OneRank
 from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError
+from ..geodata.ground import write_ground
 from ..record.beginning import check_free
-from ..record.folder import RunFolder
-from ..record.ground import write_ground
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
@@ -108,8 +107,8 @@ def run_scenario(
             lambda: Recorder(directory, text, *names, scenario.dim, options.overwrite, inputs),
         )
         if (bed := scenario.bed) is not None:
-            folder = RunFolder(Path(directory))
-            options.ranks.on_root(lambda: write_ground(folder, bed.ground))
+            ground = bed.ground
+            options.ranks.on_root(lambda: write_ground(Path(directory), ground))
         run = ActiveRun(
             scenario, state.simulation, recorder, state.body_names, options.ranks, state.warnings
         )

@@ -11,10 +11,10 @@ from scipy.ndimage import distance_transform_edt
 
 from ..errors import UserError
 from ..geodata.errors import GeodataError
+from ..geodata.ground import Profile
 from ..geodata.raster import Raster, read_raster
-from ..record.ground import Profile
 from .particle_files.columns_csv import numbers_in, read_csv_columns
-from .tables.terrain import Terrain
+from .tables.terrain.terrain import Terrain
 from .values.toml_source import Where
 from .values.units import LENGTH
 

@@ -19,17 +19,17 @@ from .hydrographs import completed_inflows
 from .materials import Material, MaterialError, complete_materials, equation_of_state
 from .model import Found, Scenario, file_of, min_sound_speed, names_in_use, terrain_file
 from .particle_files.reader import ParticleTable, read_particles
-from .releases import completed_release
 from .reading.copies import with_copies
 from .reading.files import find_scenario, merged_table, read_with_bases, scenario_folder
 from .reading.messages import to_user_error
 from .reading.overrides import apply_overrides
 from .reading.resolve import resolve_table
 from .reading.units import in_own_units
+from .releases import completed_release
 from .schemes import with_scheme_defaults
 from .tables.body import BodyTable
-from .tables.release import Release
 from .tables.root import ScenarioTable
+from .tables.terrain.release import Release
 from .values.toml_source import Where, read_toml
 
 HISTORY_ROWS = 1000  # of a run that does not give time_history

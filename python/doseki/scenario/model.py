@@ -24,7 +24,7 @@ from .particle_files.reader import ParticleTable
 from .schemes import KERNEL_SUPPORT, RESOLVED
 from .tables.root import ScenarioTable
 from .tables.sections import SECTIONS
-from .tables.terrain import Terrain
+from .tables.terrain.terrain import Terrain
 from .values.toml_source import Where
 from .values.types import Acceleration, Duration, Positive
 

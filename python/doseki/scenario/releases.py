@@ -10,7 +10,7 @@ import numpy as np
 from ..geodata.crs import same_crs
 from ..geodata.errors import GeodataError
 from ..geodata.features import read_features
-from .tables.release import Release
+from .tables.terrain.release import Release
 from .values.toml_source import Where
 
 RASTERS = (".tif", ".tiff", ".asc")
@@ -54,7 +54,9 @@ def completed_release(
     return release.model_copy(update=found | {"thickness": thickness})
 
 
-def _from_file(name: str, release: Release, path: Path, where: Where, crs: str | None) -> tuple[Any, Any]:
+def _from_file(
+    name: str, release: Release, path: Path, where: Where, crs: str | None
+) -> tuple[Any, Any]:
     """Polygons as lists of rings, and the thickness given or of each."""
     keys, place = ("body", name, "file"), f"body.{name}.file"
     try:
@@ -72,12 +74,14 @@ def _from_file(name: str, release: Release, path: Path, where: Where, crs: str |
     polygons = [[ring.tolist() for ring in each.rings] for each in features.polygons]
     if release.thickness is not None:
         return polygons, release.thickness
-    thickness = [each.attributes.get(FIELD) for each in features.polygons]
-    for number in thickness:
+    thickness = []
+    for polygon in features.polygons:
+        number = polygon.attributes.get(FIELD)
         if not isinstance(number, int | float) or not 0 < number < np.inf:
             raise where.error(
                 keys,
-                f"{place}: a polygon of {path} has {FIELD} = {number!r}, not a length in m above 0; "
-                f"give body.{name}.thickness",
+                f"{place}: a polygon of {path} has {FIELD} = {number!r}, not a length in m above "
+                f"0; give body.{name}.thickness",
             )
-    return polygons, [float(number) for number in thickness]
+        thickness.append(float(number))
+    return polygons, thickness

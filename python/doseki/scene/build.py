@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import ResourceError
 from ..record.particles import BOUND, FREE, ParticleSet, concatenate
 from ..scenario.model import Scenario
-from ..scenario.tables.terrain import TERRAIN
+from ..scenario.tables.terrain.terrain import TERRAIN
 from ..util.finding import Finding
 from ..util.memory import available_bytes
 from .bodies import Bodies, ElasticBody

@@ -15,7 +15,7 @@ from ..scenario.materials import Material, equation_of_state
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
-from ..scenario.tables.terrain import TERRAIN, Terrain
+from ..scenario.tables.terrain.terrain import TERRAIN, Terrain
 from ..scene.build import Scene, build_scene
 from ..scene.checks.grain_numbers import check_grain_numbers
 from ..scene.checks.sensors import sensor_findings

@@ -39,11 +39,11 @@ def relaxed(
         raise PhysicsError(f"relax: {failure}") from None
     state, free = simulation.state(), particles.motion == FREE
     # A terrain has added wall particles of its own; what flowed away cannot be put back.
-    now = np.searchsorted(state["id"], particles.id)
-    if not np.array_equal(np.take(state["id"], now, mode="clip"), particles.id):
+    place = np.searchsorted(state["id"], particles.id)
+    if not np.array_equal(np.take(state["id"], place, mode="clip"), particles.id):
         raise PhysicsError("relax: particles left the run before they came to rest")
     return replace(
         particles,
-        position=np.where(free[:, None], state["position"][now], particles.position),
-        density=np.where(free, state["density"][now], particles.density),
+        position=np.where(free[:, None], state["position"][place], particles.position),
+        density=np.where(free, state["density"][place], particles.density),
     )

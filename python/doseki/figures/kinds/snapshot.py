@@ -12,9 +12,9 @@ from ...measure.views import named_window
 from ...record.reader import Run
 from ...scenario.tables.figure import SnapshotFigure
 from ..colouring import colouring
-from ..ground import draw_ground
 from ..dots import dots, draw_particles, extent_of, outside_text
 from ..layout import SMALL, Extent, PanelGrid, moment_text, name_axes
+from ..space.ground import draw_ground
 from .moments import chosen
 from .panels import Panels
 from .spatial import draw_spatial

@@ -14,10 +14,10 @@ from ...measure.views import View, flow_direction
 from ...record.reader import Run
 from ..colouring import colouring
 from ..dots import dots, draw_particles, extent_of, outside_text
-from ..ground import ground_balls
 from ..layout import SMALL, ViewRows, moment_text, name_axes, scale_bar
-from ..space import Space, balls_of, seen_extent
-from ..surfaces import Camera, joined, render
+from ..space.box import Space, balls_of, seen_extent
+from ..space.ground import ground_balls
+from ..space.surfaces import Camera, joined, render
 from .panels import Panels
 
 SLANTING = np.array([0.45, 0.80, -0.42])  # away from the viewer, where the flow runs to -x

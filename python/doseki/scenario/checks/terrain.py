@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..model import Scenario
-from ..tables.terrain import TERRAIN
+from ..tables.terrain.terrain import TERRAIN
 
 MAX_TILES = 2**31  # that particles can number
 COLUMNS = {2: 16, 3: 8}  # along one side of a tile

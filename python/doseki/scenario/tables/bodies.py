@@ -25,7 +25,7 @@ from ..values.types import (
 from ..values.units import LENGTH, Measured
 from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
 from .motion import Motion
-from .release import Release
+from .terrain.release import Release
 
 Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 

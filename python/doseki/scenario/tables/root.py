@@ -33,7 +33,7 @@ from .material import MaterialTable
 from .parameter import Parameter
 from .region import Outflow, Window
 from .start import Start
-from .terrain import Terrain
+from .terrain.terrain import Terrain
 
 if TYPE_CHECKING:
     EquationOfState = str

@@ -7,7 +7,7 @@ from typing import Any
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box, Disc, Grains, Mesh, ParticleFile, Points, Polygon
 from ...scenario.tables.body import BodyTable
-from ...scenario.tables.release import Release
+from ...scenario.tables.terrain.release import Release
 from .body import Body
 from .box import BoxBody
 from .disc import DiscBody

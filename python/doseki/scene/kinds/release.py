@@ -13,7 +13,7 @@ from ...geodata.raster import read_raster
 from ...record.particles import FREE, ParticleSet
 from ...scenario.model import file_of
 from ...scenario.releases import is_raster
-from ...scenario.tables.release import Release
+from ...scenario.tables.terrain.release import Release
 from ..ground import Ground, ground_of
 from .shaped import Shaped
 
@@ -87,7 +87,7 @@ class ReleaseBody(Shaped[Release]):
         return Columns(place, area, np.full(len(area), thickness)), length * thickness
 
     def _area(self, rings: list[list[list[float]]], thickness: float) -> tuple[Columns, float]:
-        """Columns inside a polygon: its edge gives way by part of a spacing, for the right volume."""
+        """Columns inside a polygon, whose edge gives way a little for the right volume."""
         outer, *holes = (np.array(ring) for ring in rings)
         polygon = Polygon(outer, tuple(holes))
         low, high = outer.min(axis=0), outer.max(axis=0)
@@ -115,7 +115,7 @@ class ReleaseBody(Shaped[Release]):
             raster = read_raster(path)
         except GeodataError as error:
             raise self.error(f".file: {error}", "file") from None
-        west, south, east, north = raster.extent
+        west, _, _, north = raster.extent
         filled = np.argwhere(np.nan_to_num(raster.values) > 0)
         if not len(filled):
             raise self.error(f".file: {path} is nowhere above 0", "file")

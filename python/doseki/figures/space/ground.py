@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from ..geodata.raster import Raster
-from ..measure.views import View
-from ..record.ground import Profile
-from ..record.reader import Run
-from .layout import Extent
-from .space import Space
+from ...geodata.ground import Profile
+from ...geodata.raster import Raster
+from ...measure.views import View
+from ...record.reader import Run
+from ..layout import Extent
+from .box import Space
 from .surfaces import Balls
 
 COLOUR = "#b3ada3"

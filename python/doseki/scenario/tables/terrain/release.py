@@ -6,10 +6,10 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..table import Only
-from ..values.types import Coordinate, Digest, Length
-from ..values.units import LENGTH, Measured
-from .body import ShapedBody
+from ...table import Only
+from ...values.types import Coordinate, Digest, Length
+from ...values.units import LENGTH, Measured
+from ..body import ShapedBody
 
 Place = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[Place], Field(min_length=3)]

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field, model_validator
 
-from ..table import Only, Table
-from ..values.types import Coordinate, Digest, Length, MaterialName
-from ..values.units import LENGTH, Measured
+from ...table import Only, Table
+from ...values.types import Coordinate, Digest, Length, MaterialName
+from ...values.units import LENGTH, Measured
 
 TERRAIN = "terrain"  # the name of its body
 Extent = Annotated[list[Coordinate], Field(min_length=4, max_length=4), Measured(LENGTH)]
@@ -57,6 +56,6 @@ class Terrain(Table):
         if self.section is not None:
             if any(len(end) != 2 for end in self.section):
                 raise ValueError("section is [[x, y], [x, y]], two places on the map")
-            if np.array_equal(*self.section):
+            if self.section[0] == self.section[1]:
                 raise ValueError("the two ends of section must differ")
         return self

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..measure.views import View, fluid_names
-from ..record.reader import Run, Snapshot
-from .colouring import Colouring
-from .dots import ROOM, ends_of_most, grain_radius
-from .layout import Extent
-from .nothing import NothingToDrawError
+from ...measure.views import View, fluid_names
+from ...record.reader import Run, Snapshot
+from ..colouring import Colouring
+from ..dots import ROOM, ends_of_most, grain_radius
+from ..layout import Extent
+from ..nothing import NothingToDrawError
 from .surfaces import Balls, Camera
 
 HIDES = 0.2  # a wall hides what is behind it where it is turned so much towards the viewer

@@ -16,7 +16,7 @@ from scipy.ndimage import (
     minimum_filter,
 )
 
-from .layout import Extent
+from ..layout import Extent
 
 SWELL = 1.25  # radius of a ball over that of the particle: no holes between neighbours
 SMOOTH = 1.0  # radii over which the surface of many balls is smoothed
