@@ -9,8 +9,8 @@ from .walk import BLOCK, NONE, SCHEMES, WORDS, cases, ignored, text_of
 
 # Not what a run computes: when it writes, and what is drawn of it (tests/driver, tests/figures).
 OF_RECORD = {"time_max", "time_out", "time_history", *SECTIONS}
-# In test_materials.py, tests/start and test_maps.py.
-ELSEWHERE = {"contact", "start", "maps"}
+# In test_materials.py, tests/start, test_maps.py and test_terrain.py.
+ELSEWHERE = {"contact", "start", "maps", "terrain"}
 
 ROOT = {
     "dim": ["{other_dim}"],

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..model import Scenario
 from ..table import Only, Table, limited_keys
-from ..tables.sections import SECTIONS
+from ..tables.sections import SECTIONS, SINGLE_TABLES
 from ..values.toml_source import KeyPath, dotted
 
 
@@ -22,6 +22,9 @@ def check_meaning(scenario: Scenario) -> None:
 
 def _tables(scenario: Scenario) -> Iterator[tuple[KeyPath, Table]]:
     yield (), scenario
+    for section in SINGLE_TABLES:
+        if (table := getattr(scenario, section)) is not None:
+            yield (section,), table
     for section in SECTIONS:
         for name, table in getattr(scenario, section).items():
             yield (section, name), table

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..model import Scenario
+from ..tables.terrain.release import Release
 from ..tables.terrain.terrain import TERRAIN
 
 MAX_TILES = 2**31  # that particles can number
@@ -31,6 +32,13 @@ def check_terrain(scenario: Scenario) -> None:
             ("terrain", "material"),
             f'terrain.material = "{scenario.terrain.material}" is a fluid; a bed is a solid',
         )
+    for name, body in scenario.body.items():
+        if isinstance(body, Release) and scenario.materials[body.material].law != "fluid":
+            raise error(
+                ("body", name, "material"),
+                f'body.{name}.material = "{body.material}" is a solid; a release flows: take a '
+                "fluid, such as one with a yield stress or friction",
+            )
     low, high = scenario.bed.extent
     tiles = float(((high - low) / (COLUMNS[scenario.dim] * scenario.dp) + 2).prod())
     if tiles > MAX_TILES:

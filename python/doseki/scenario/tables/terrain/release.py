@@ -35,7 +35,7 @@ class Release(ShapedBody):
         None, description="the corners [x, y] of one area on the map, m; excludes file"
     )
     polygons: Annotated[Polygons | None, Only(dim=3), Measured(LENGTH)] = Field(
-        None, description="several areas, each a list of rings: its edge, then holes; excludes file"
+        None, description="several areas, each a list of rings (its edge, then holes) of corners [x, y], m"
     )
     between: Annotated[Place | None, Only(dim=2), Measured(LENGTH)] = Field(
         None, description="2-D: where along x it begins and ends, m"
@@ -60,6 +60,10 @@ class Release(ShapedBody):
             raise ValueError("thickness is missing, m normal to the slope")
         if self.fixed:
             raise ValueError("a release moves; it cannot be fixed")
+        if self.between is not None and not isinstance(self.thickness, float):
+            raise ValueError("thickness is one number of a release between two places")
+        if self.array is not None:
+            raise ValueError("a release has no array: list several polygons")
         if self.between is not None and not self.between[0] < self.between[1]:
             raise ValueError("between is [x, x], the smaller one first")
         return self
