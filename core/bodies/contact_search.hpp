@@ -69,22 +69,23 @@ void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, do
     }
 }
 
-/// Adds pairs of a contact point and a convex body that are nearer than `margin`.
+/// Adds pairs of a contact point and a solid that are nearer than `margin`.
 template <int D>
-void find_convex_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
-                       Array<ContactPair>& pairs) {
+void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
+                      Array<ContactPair>& pairs) {
     const ContactPoints<D>& points = bodies.points;
-    for (std::size_t s = 0; s < bodies.convex.size(); ++s) {
-        const ConvexBody<D>& convex = bodies.convex[s];
-        if (convex.removed) continue;
+    for (std::size_t s = 0; s < bodies.solids.size(); ++s) {
+        const ContactSolid<D>& solid = bodies.solids[s];
+        if (solid.removed) continue;
         for (std::size_t c = 0; c < points.size(); ++c) {
-            if (points.removed[c] || points.body[c] == convex.body ||
-                (points.fixed[c] && convex.fixed))
+            if (points.removed[c] || points.body[c] == solid.body ||
+                (points.fixed[c] && solid.fixed))
                 continue;
-            const Vec<double, D> r = nearest_image(domain, points.position[c] - convex.centre);
-            const double reach = points.radius[c] + margin, around = convex.shape->radius + reach;
+            const Vec<double, D> r = nearest_image(domain, points.position[c] - solid.centre);
+            const double reach = points.radius[c] + margin,
+                         around = solid.surface->radius() + reach;
             if (dot(r, r) > around * around) continue;
-            if (convex.shape->surface_from(rotated_back(convex.rotation, r)).distance < reach)
+            if (solid.surface->is_touched_by(rotated_back(solid.rotation, r), reach))
                 pairs.push_back({static_cast<std::int32_t>(c), -1 - static_cast<std::int32_t>(s)});
         }
     }

@@ -3,7 +3,7 @@
 
 #include "base/array.hpp"
 #include "base/error.hpp"
-#include "bodies/shape.hpp"
+#include "bodies/shapes/shape.hpp"
 #include "model/archive.hpp"
 
 namespace doseki {
@@ -99,6 +99,7 @@ struct RigidBodyColumns {
                 result[k].facets.emplace_back();
                 std::copy_n(corner, D, result[k].facets.back().begin());
             }
+            result[k].enclose();
             result[k].samples.assign(sample, sample + sample_count[k]);
             sample += sample_count[k];
         }

@@ -2,7 +2,7 @@
 // scenario chooses one are bound under their names, with their parameters in the order in which
 // they list them.
 
-#include "bodies/shape.hpp"
+#include "bodies/shapes/convex_surface.hpp"
 #include "model/material_laws.hpp"
 #include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
@@ -155,15 +155,15 @@ void bind_shape(nb::module_& m) {
     m.def(
         "surface_from",
         [](const Table& corners, const Table& points) {
-            Shape<D> shape;
+            Array<Facet<D>> facets;
             for (std::size_t k = 0; k + D <= corners.size(); k += D) {
-                shape.facets.emplace_back();
-                for (std::size_t a = 0; a < D; ++a)
-                    shape.facets.back()[a] = vector<D>(corners[k + a], 0);
+                facets.emplace_back();
+                for (std::size_t a = 0; a < D; ++a) facets.back()[a] = vector<D>(corners[k + a], 0);
             }
+            const ConvexSurface<D> shape(facets);
             Table result;
             for (const Column& point : points) {
-                const auto surface = shape.surface_from(vector<D>(point, 0));
+                const auto surface = shape.from(vector<D>(point, 0));
                 result.push_back({surface.distance});
                 result.back().insert(result.back().end(), surface.normal.component.begin(),
                                      surface.normal.component.end());
