@@ -64,9 +64,15 @@ Shape<D> BodyTables<D>::shape(const NamedValues& table) {
     }
     ColumnReader column(table, "shape", ColumnReader::any_rows);
     read_facets(column, shape);
-    shape.enclose();
     shape.samples = column.vectors<D>("samples");
+    shape.kind = ShapeKind::convex;
+    if (table.find("thickness")) {
+        shape.kind = ShapeKind::mesh;
+        shape.thickness = column.numbers<double>("thickness").at(0);
+        shape.radius += 0.5 * shape.thickness;
+    }
     column.finish();
+    shape.enclose();
     return shape;
 }
 

@@ -9,6 +9,7 @@ namespace nb = nanobind;
 
 void bind_simulation(nb::module_& m);
 void bind_elastic(nb::module_& m);
+void bind_mesh(nb::module_& m);
 void bind_physics(nb::module_& m);
 
 NB_MODULE(DOSEKI_MODULE, m) {
@@ -18,5 +19,6 @@ NB_MODULE(DOSEKI_MODULE, m) {
     m.def("threads", &doseki::thread_count);
     bind_simulation(m);
     bind_elastic(m);
+    bind_mesh(m);
     bind_physics(m);
 }
