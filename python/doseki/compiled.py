@@ -9,7 +9,10 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
+
+if TYPE_CHECKING:
+    import numpy as np
 
 # What a module was compiled for, and the processor flags that must be there for it.
 INSTRUCTION_SETS: dict[str, dict[str, set[str]]] = {
@@ -52,6 +55,22 @@ class Physics(PointFunctions, Protocol):
     least_relative_density: float  # of a liquid in the resolved scheme, over rho0
 
 
+class SurfaceMesh(Protocol):
+    """A mesh of triangles as the core searches it."""
+
+    def from_wall(self, position: np.ndarray, width: float) -> np.ndarray:
+        """Signed distance, negative inside, and outward normal (n, 4) of points (n, 3), m."""
+        ...
+
+    def winding(self, position: np.ndarray) -> np.ndarray:
+        """How often the mesh, which is closed, goes around each of the points (n, 3)."""
+        ...
+
+    def cuts(self) -> tuple[int, float, float, float]:
+        """How often an edge goes through another triangle, and where it does so first, m."""
+        ...
+
+
 class Core(Protocol):
     """A compiled module."""
 
@@ -73,6 +92,12 @@ class Core(Protocol):
 
         Raises ValueError for a key or word that is unknown, or a key that is missing.
         """
+        ...
+
+    def SurfaceMesh(  # noqa: N802 (a class)
+        self, corners: np.ndarray, thickness: float
+    ) -> SurfaceMesh:
+        """Triangles by their corners (3 m, 3), m; a thickness above 0 is that of a sheet."""
         ...
 
     def set_threads(self, n: int) -> None:

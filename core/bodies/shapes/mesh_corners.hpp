@@ -24,9 +24,10 @@ struct FacetPoint {
     Feature feature = Feature::face;
 };
 
-/// The point of a facet that is nearest to x.
+/// The point of a facet with normal n that is nearest to x.
 template <int D>
-FacetPoint<D> nearest_point(const Facet<D>& facet, const Vec<double, D>& x) {
+FacetPoint<D> nearest_point(const Facet<D>& facet, const Vec<double, D>& n,
+                            const Vec<double, D>& x) {
     auto on_edge = [&](int k) -> FacetPoint<D> {
         const Vec<double, D>&a = facet[static_cast<std::size_t>(k)],
                           &b = facet[static_cast<std::size_t>((k + 1) % D)];
@@ -39,7 +40,7 @@ FacetPoint<D> nearest_point(const Facet<D>& facet, const Vec<double, D>& x) {
     if constexpr (D == 2)
         return on_edge(0);
     else {
-        const Vec3 n = normal_of<D>(facet), foot = x - dot(x - facet[0], n) * n;
+        const Vec3 foot = x - dot(x - facet[0], n) * n;
         bool within = true;
         for (std::size_t k = 0; k < 3; ++k)
             within &= dot(cross(facet[(k + 1) % 3] - facet[k], foot - facet[k]), n) > 0.0;
@@ -77,7 +78,9 @@ public:
         for (Vec<double, D>& n : edge_normals_) make_unit(n);
     }
 
-    const Facet<D>& facet(std::uint32_t f) const { return facets_[f]; }
+    FacetPoint<D> nearest(std::uint32_t f, const Vec<double, D>& x) const {
+        return nearest_point<D>(facets_[f], normals_[f], x);
+    }
 
     /// Unit vector outwards.
     Vec<double, D> normal(std::uint32_t f, Feature at) const {

@@ -107,7 +107,7 @@ private:
     }
 
     Foot foot_on(std::uint32_t facet, const Vec<double, D>& x) const {
-        const FacetPoint<D> at = nearest_point<D>(mesh_.facet(facet), x);
+        const FacetPoint<D> at = mesh_.nearest(facet, x);
         const Vec<double, D> r = x - at.position;
         return {dot(r, r), facet, at};
     }

@@ -73,6 +73,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     """
     bodies, warnings = present(scenario, bodies_of(scenario)), list[Finding]()
     _check_size(bodies)
+    warnings += [finding for body in bodies.values() for finding in body.findings()]
     names = body_names(scenario)
     carried = carried_over(scenario, names)
     built = {n: body.particles(names) for n, body in bodies.items() if not body.is_of_bodies}

@@ -5,8 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from ...scenario.model import Scenario
-from ...scenario.tables.bodies import Box, Disc, Grains, Mesh, ParticleFile, Points, Polygon
+from ...scenario.tables.bodies import (
+    Box,
+    Disc,
+    Grains,
+    ParticleFile,
+    Points,
+    Polygon,
+    Polyhedron,
+)
 from ...scenario.tables.body import BodyTable
+from ...scenario.tables.mesh import Mesh
 from .body import Body
 from .box import BoxBody
 from .disc import DiscBody
@@ -15,6 +24,7 @@ from .grains import GrainsBody
 from .mesh import MeshBody
 from .points import PointsBody
 from .polygon import PolygonBody
+from .polyhedron import PolyhedronBody
 
 MADE_OF: dict[type[BodyTable], type[Body[Any]]] = {
     Box: BoxBody,
@@ -24,6 +34,7 @@ MADE_OF: dict[type[BodyTable], type[Body[Any]]] = {
     ParticleFile: FileBody,
     Points: PointsBody,
     Polygon: PolygonBody,
+    Polyhedron: PolyhedronBody,
 }
 
 
