@@ -148,7 +148,7 @@ def groove(left: float, right: float) -> trimesh.Trimesh:
 
 @pytest.mark.parametrize(("left", "right"), [(45, 45), (30, 60), (60, 60), (15, 15), (10, 75)])
 def test_a_ball_in_a_groove_is_held_by_both_sides(tmp_path, left, right):
-    """Without friction N = m g sin(other side)/sin(left + right), as Hertz has it of the overlaps."""
+    """Without friction N = m g sin(other side)/sin(left + right), by Hertz of the overlaps."""
     bottom = 0.1 / np.sin(0.5 * np.radians(180 - left - right))
     away = np.radians(90 + 0.5 * (left - right))
     start = bottom * np.array([-np.cos(away), 0, np.sin(away)])

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..shapes import MeshShape, Triangles
+from ..shapes.mesh_edges import sharp_edges
 from .evening import evened
 
 PARALLEL = 1e-6  # 1 - cosine of what counts as parallel, cosine of what counts as a right angle
@@ -39,7 +40,7 @@ def wall_layer(shape: MeshShape, dp: float, depth: float) -> np.ndarray:
 def lattice_axes(mesh: Triangles) -> np.ndarray:
     """Columns (3, 3): the normal with most of the surface, one at a right angle with most of that.
 
-    Where no face is at a right angle to the first, the longest of the sides that lie in it.
+    Where no face is at a right angle to the first, the longest sharp edge or rim that lies in it.
     """
     area = mesh.areas
     size = np.linalg.norm(area, axis=1)
@@ -49,8 +50,8 @@ def lattice_axes(mesh: Triangles) -> np.ndarray:
     if across.any():
         second = _best(normal[across], normal[across], size[across])
     else:
-        side = np.roll(mesh.corners, -1, axis=1) - mesh.corners
-        side = side.reshape(-1, 3)
+        start, end = mesh.vertices[sharp_edges(mesh.vertices, mesh.faces).T]
+        side = end - start
         length = np.linalg.norm(side, axis=1)
         flat = np.abs(side @ first) < 1e-4 * length
         axis = np.eye(3)[np.abs(first).argmin()]

@@ -38,6 +38,12 @@ def edge_points(vertices: np.ndarray, faces: np.ndarray, thickness: float, dp: f
     return np.asarray(points[np.sort(first)])
 
 
+def sharp_edges(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """The ends (k, 2) of rims and of edges at which the surface bends either way."""
+    edges = _edges(vertices, faces)
+    return np.asarray(edges.ends[np.abs(_bends(vertices, edges)) > FLAT])
+
+
 def _edges(vertices: np.ndarray, faces: np.ndarray) -> Edges:
     """Of edges at which more than two triangles meet, the first two."""
     a, b, c = np.moveaxis(vertices[faces], 1, 0)
