@@ -113,18 +113,41 @@ double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties&
 
 template <int D>
 void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
-    std::unordered_map<std::uint64_t, ContactSprings> stretched;
-    for (std::size_t k = 0; k < pairs_.size(); ++k)
-        if (contacts_[k].overlap > 0.0) stretched[key(pairs_[k])] = springs_[k];
+    std::unordered_map<std::uint64_t, std::size_t> before;  // first rows
+    for (std::size_t k = 0; k < pairs_.size(); ++k) before.try_emplace(key(pairs_[k]), k);
+    const Array<ContactSprings> springs = std::move(springs_);
+    const Array<Vec<double, D>> normals = std::move(normals_);
     pairs_.clear();
     find_ball_pairs(bodies.points, domain_, margin, pairs_);
-    find_convex_pairs(bodies, domain_, margin, pairs_);
+    find_solid_pairs(bodies, domain_, margin, pairs_);
     turn_to_surfaces(bodies, pairs_);
-    springs_.assign(pairs_.size(), {});
+    add_rows(bodies);
+    springs_.assign(pairs_.size(), {}), normals_.assign(pairs_.size(), {});
     for (std::size_t k = 0; k < pairs_.size(); ++k)
-        if (const auto found = stretched.find(key(pairs_[k])); found != stretched.end())
-            springs_[k] = found->second;
+        if (const auto found = before.find(key(pairs_[k])); found != before.end()) {
+            springs_[k] = springs[found->second], normals_[k] = normals[found->second];
+            ++found->second;  // the next row of the same pair
+        }
     restore(bodies);
+}
+
+template <int D>
+void Contacts<D>::add_rows(const ContactBodies<D>& bodies) {
+    Array<ContactPair> rows;
+    for (const ContactPair& pair : pairs_) {
+        const bool ball = bodies.points.radius[pair.first()] > 0.0;
+        const ContactSolid<D>* solid = bodies.solid(pair);
+        rows.insert(rows.end(), ball && solid ? solid->surface->most_touched() : 1, pair);
+    }
+    pairs_ = std::move(rows);
+}
+
+template <int D>
+std::size_t Contacts<D>::run_from(std::size_t k) const {
+    if (k > 0 && pairs_[k - 1] == pairs_[k]) return 0;
+    std::size_t end = k + 1;
+    while (end < pairs_.size() && pairs_[end] == pairs_[k]) ++end;
+    return end - k;
 }
 
 /// Each once, in rising order.
@@ -165,15 +188,17 @@ template <int D>
 void Contacts<D>::expect_pairs_of(const ContactBodies<D>& bodies) const {
     for (const std::int32_t material : bodies.points.material)
         expect_index(material, laws_.materials(), "body_material");
-    for (const ConvexBody<D>& convex : bodies.convex)
-        expect_index(convex.material, laws_.materials(), "body_material");
+    for (const ContactSolid<D>& solid : bodies.solids)
+        expect_index(solid.material, laws_.materials(), "body_material");
     for (const ContactPair& pair : pairs_) {
         expect_index(pair.a, bodies.points.size(), "contact_a");
         if (pair.with_shape())
-            expect_index(pair.shape(), bodies.convex.size() + bodies.surfaces.size(), "contact_b");
+            expect_index(pair.shape(), bodies.solids.size() + bodies.surfaces.size(), "contact_b");
         else
             expect_index(pair.b, bodies.points.size(), "contact_b");
     }
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+        expect_fit(run_from(k) <= SurfacePoints<D>::most, "contact_a");
 }
 
 template <int D>
@@ -188,8 +213,8 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
                 surface->nearest_vertex(x, domain_)};
     }
     if (pair.with_shape()) {
-        const ConvexBody<D>& convex = bodies.convex[pair.shape()];
-        return {first, convex.body, laws_.between(a, convex.side()), 0.0};
+        const ContactSolid<D>& solid = bodies.solids[pair.shape()];
+        return {first, solid.body, laws_.between(a, solid.side()), 0.0};
     }
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }
@@ -199,8 +224,7 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
 template <int D>
 void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
     pushes_.resize(pairs_.size());
-    for_each_contact(pairs_.size(),
-                     [&](std::size_t k) { pushes_[k] = push_of_pair(bodies, k, dt); });
+    for_each_contact(pairs_.size(), [&](std::size_t k) { push_pair(bodies, k, dt); });
     ContactPoints<D>& points = bodies.points;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const Push& push = pushes_[k];
@@ -214,41 +238,52 @@ void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
 }
 
 template <int D>
-std::optional<Overlap<D>> Contacts<D>::overlap_of_pair(const ContactBodies<D>& bodies,
-                                                       std::size_t k) const {
+Overlaps<D> Contacts<D>::overlaps_of_pair(const ContactBodies<D>& bodies, std::size_t k) const {
     const ContactPair& pair = pairs_[k];
     const ContactPoints<D>& points = bodies.points;
     if constexpr (D == 2)
         if (const Surface<D>* surface = bodies.surface(pair))
             return overlap_of(points, pair.first(), *surface, contacts_[k].vertex, domain_);
     if (pair.with_shape())
-        return overlap_of(points, pair.first(), bodies.convex[pair.shape()], domain_);
+        return overlaps_of(points, pair.first(), bodies.solids[pair.shape()], domain_);
     return overlap_of(points, pair.first(), pair.second(), domain_);
 }
 
 template <int D>
-auto Contacts<D>::push_of_pair(const ContactBodies<D>& bodies, std::size_t k, double dt) -> Push {
-    Contact& contact = contacts_[k];
-    const auto overlap = overlap_of_pair(bodies, k);
-    if (!overlap) {
-        if (contact.overlap > 0.0) contact.overlap = 0.0, springs_[k] = {};
-        return {};
+void Contacts<D>::push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt) {
+    const std::size_t rows = run_from(k);
+    if (rows == 0) return;
+    const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
+    const auto share = shares_of(overlaps);
+    const auto row = rows_of(overlaps, std::span<const Vec<double, D>>(normals_.data() + k, rows));
+    for (std::size_t n = k; n < k + rows; ++n) pushes_[n] = {}, contacts_[n].overlap = 0.0;
+    for (std::size_t place = 0; place < overlaps.size(); ++place) {
+        const std::size_t n = k + row[place];
+        pushes_[n] = push_at(bodies, n, overlaps[place], dt, share[place]);
     }
-    contact.overlap = overlap->depth;
+    for (std::size_t n = k; n < k + rows; ++n)
+        if (!pushes_[n].touches) springs_[n] = {}, normals_[n] = {};
+}
+
+template <int D>
+auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
+                          double dt, double share) -> Push {
+    Contact& contact = contacts_[k];
+    contact.overlap = overlap.depth, normals_[k] = overlap.normal;
     const ContactPoints<D>& points = bodies.points;
-    const MotionAt<D> b = motion_of_second(bodies, pairs_[k], *overlap);
+    const MotionAt<D> b = motion_of_second(bodies, pairs_[k], overlap);
     const std::size_t a = pairs_[k].first();
-    const Vec<double, D> v_a = points.velocity[a] +
-                               turning_velocity(points.spin[a], overlap->lever_a),
-                         v_b = b.velocity + turning_velocity(b.spin, overlap->lever_b);
-    const ContactAction on_a =
-        contact.law.act(springs_[k], overlap->depth, in_space(overlap->normal),
-                        {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
+    const Vec<double, D> v_a =
+                             points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
+                         v_b = b.velocity + turning_velocity(b.spin, overlap.lever_b);
+    ContactAction on_a = contact.law.act(springs_[k], overlap.depth, in_space(overlap.normal),
+                                         {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
+    on_a.force = share * on_a.force, on_a.moment = share * on_a.moment;
     auto torque = [&](const Vec<double, D>& lever) {
         return cross(in_space(lever), on_a.force) + on_a.moment;
     };
-    return {true, *overlap, in_run<D>(on_a.force), torque(overlap->lever_a),
-            -1.0 * torque(overlap->lever_b)};
+    return {true, overlap, in_run<D>(on_a.force), torque(overlap.lever_a),
+            -1.0 * torque(overlap.lever_b)};
 }
 
 }  // namespace doseki

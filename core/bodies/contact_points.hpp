@@ -5,13 +5,13 @@
 
 #include "base/array.hpp"
 #include "bodies/contact_law.hpp"
-#include "bodies/shape.hpp"
+#include "bodies/contact_surface.hpp"
 #include "bodies/surface.hpp"
 
 namespace doseki {
 
 /// Points at which bodies touch others, each a ball: a whole body, a sample of the surface of a
-/// convex one or (2-D) of a deformable one (radius 0), or (3-D) a surface particle of a deformable
+/// solid one or (2-D) of a deformable one (radius 0), or (3-D) a surface particle of a deformable
 /// one. Bodies are numbered over all kinds.
 template <int D>
 struct ContactPoints {
@@ -48,10 +48,10 @@ struct ContactPoints {
     }
 };
 
-/// A convex body that contact points of others may touch.
+/// A rigid body with a surface that contact points of others may touch.
 template <int D>
-struct ConvexBody {
-    const Shape<D>* shape = nullptr;
+struct ContactSolid {
+    const ContactSurface<D>* surface = nullptr;
     std::int32_t body = 0, material = 0;
     double mass = 0.0, diameter = 0.0;
     bool fixed = false, removed = false;
@@ -64,8 +64,7 @@ struct ConvexBody {
     ContactSide side() const { return {material, 0.0, mass, diameter, fixed, false, true}; }
 };
 
-/// Two contact points, or a contact point and shape number -1 - b: the convex bodies, then the
-/// surfaces.
+/// Two contact points, or a contact point and shape number -1 - b: the solids, then the surfaces.
 struct ContactPair {
     std::int32_t a, b;
 
@@ -80,16 +79,20 @@ struct ContactPair {
 template <int D>
 struct ContactBodies {
     ContactPoints<D> points;
-    Array<ConvexBody<D>> convex;
+    Array<ContactSolid<D>> solids;
     Array<Surface<D>> surfaces;
 
     ContactPair pair_with_surface(std::int32_t point, std::int32_t surface) const {
-        return {point, -1 - static_cast<std::int32_t>(convex.size()) - surface};
+        return {point, -1 - static_cast<std::int32_t>(solids.size()) - surface};
     }
     /// That of the pair; none where it is one of other things.
+    const ContactSolid<D>* solid(const ContactPair& pair) const {
+        if (!pair.with_shape() || pair.shape() >= solids.size()) return nullptr;
+        return &solids[pair.shape()];
+    }
     const Surface<D>* surface(const ContactPair& pair) const {
-        if (!pair.with_shape() || pair.shape() < convex.size()) return nullptr;
-        return &surfaces[pair.shape() - convex.size()];
+        if (!pair.with_shape() || pair.shape() < solids.size()) return nullptr;
+        return &surfaces[pair.shape() - solids.size()];
     }
     Surface<D>* surface(const ContactPair& pair) {
         return const_cast<Surface<D>*>(std::as_const(*this).surface(pair));

@@ -6,6 +6,7 @@
 
 #include "base/array.hpp"
 #include "bodies/contact_points.hpp"
+#include "bodies/shapes/box_tree.hpp"
 #include "model/domain.hpp"
 #include "pairs/neighbour_lists.hpp"
 
@@ -26,11 +27,7 @@ SortedBalls<D> sorted_balls(const ContactPoints<D>& points, const Domain<D>& dom
     Array<std::uint8_t> fixed;
     for (std::size_t c = 0; c < points.size(); ++c) {
         if (points.reach(c) <= 0.0 || points.removed[c]) continue;
-        Vec<double, D> x = points.position[c];
-        for (int axis = 0; axis < D; ++axis)
-            if (domain.periodic[axis])
-                x[axis] -= domain.length(axis) *
-                           std::floor((x[axis] - domain.low[axis]) / domain.length(axis));
+        const Vec<double, D> x = wrapped(domain, points.position[c]);
         balls.point.push_back(static_cast<std::int32_t>(c));
         balls.position.push_back(x), balls.support.push_back(2.0 * points.reach(c));
         fixed.push_back(points.fixed[c]);
@@ -69,22 +66,65 @@ void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, do
     }
 }
 
-/// Adds pairs of a contact point and a convex body that are nearer than `margin`.
+/// The contact points in space, to be found by where they are.
 template <int D>
-void find_convex_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
-                       Array<ContactPair>& pairs) {
-    const ContactPoints<D>& points = bodies.points;
-    for (std::size_t s = 0; s < bodies.convex.size(); ++s) {
-        const ConvexBody<D>& convex = bodies.convex[s];
-        if (convex.removed) continue;
+class PointsInSpace {
+public:
+    PointsInSpace(const ContactPoints<D>& points, const Domain<D>& domain) : domain_(domain) {
+        Array<Box<D>> places;
         for (std::size_t c = 0; c < points.size(); ++c) {
-            if (points.removed[c] || points.body[c] == convex.body ||
-                (points.fixed[c] && convex.fixed))
+            const Vec<double, D> x = wrapped(domain, points.position[c]);
+            places.push_back({x, x});
+            largest_ = std::max(largest_, points.radius[c]);
+        }
+        tree_ = BoxTree<D>(places);
+    }
+
+    /// In rising order all points of which a part may be nearer to x than `distance`, and others.
+    Array<std::uint32_t> near(const Vec<double, D>& x, double distance) const {
+        Array<std::uint32_t> found;
+        int images = 1;
+        for (int axis = 0; axis < D; ++axis) images *= domain_.periodic[axis] ? 3 : 1;
+        for (int image = 0; image < images; ++image) {
+            Vec<double, D> centre = wrapped(domain_, x);
+            for (int axis = 0, rest = image; axis < D; ++axis) {
+                if (!domain_.periodic[axis]) continue;
+                centre[axis] += (rest % 3 - 1) * domain_.length(axis);
+                rest /= 3;
+            }
+            double square = (distance + largest_) * (distance + largest_) * (1.0 + 1e-9);
+            tree_.visit_near(centre, square, [&](std::uint32_t c) { found.push_back(c); });
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+
+private:
+    const Domain<D>& domain_;
+    BoxTree<D> tree_;
+    double largest_ = 0.0;
+};
+
+/// Adds pairs of a contact point and a solid that are nearer than `margin`.
+template <int D>
+void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
+                      Array<ContactPair>& pairs) {
+    if (bodies.solids.empty()) return;
+    const ContactPoints<D>& points = bodies.points;
+    const PointsInSpace<D> space(points, domain);
+    for (std::size_t s = 0; s < bodies.solids.size(); ++s) {
+        const ContactSolid<D>& solid = bodies.solids[s];
+        if (solid.removed) continue;
+        for (const std::uint32_t c : space.near(solid.centre, solid.surface->radius() + margin)) {
+            if (points.removed[c] || points.body[c] == solid.body ||
+                (points.fixed[c] && solid.fixed))
                 continue;
-            const Vec<double, D> r = nearest_image(domain, points.position[c] - convex.centre);
-            const double reach = points.radius[c] + margin, around = convex.shape->radius + reach;
+            const Vec<double, D> r = nearest_image(domain, points.position[c] - solid.centre);
+            const double reach = points.radius[c] + margin,
+                         around = solid.surface->radius() + reach;
             if (dot(r, r) > around * around) continue;
-            if (convex.shape->surface_from(rotated_back(convex.rotation, r)).distance < reach)
+            if (solid.surface->is_touched_by(rotated_back(solid.rotation, r), reach))
                 pairs.push_back({static_cast<std::int32_t>(c), -1 - static_cast<std::int32_t>(s)});
         }
     }

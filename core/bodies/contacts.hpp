@@ -8,6 +8,7 @@
 #include "bodies/contact_law.hpp"
 #include "bodies/contact_search.hpp"
 #include "bodies/overlap.hpp"
+#include "bodies/places.hpp"
 #include "model/archive.hpp"
 
 namespace doseki {
@@ -49,8 +50,9 @@ public:
         Array<std::int32_t> a, b;
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);
         archive("contact_a", a), archive("contact_b", b), archive("contact_springs", springs_);
-        archive("worst_overlap", max_overlap_);
+        archive("contact_normals", normals_), archive("worst_overlap", max_overlap_);
         expect_fit(b.size() == a.size() && springs_.size() == a.size(), "contact_springs");
+        expect_fit(normals_.size() == a.size(), "contact_normals");
         pairs_.resize(a.size());
         for (std::size_t k = 0; k < a.size(); ++k) pairs_[k] = {a[k], b[k]};
     }
@@ -80,14 +82,24 @@ private:
     }
     void expect_pairs_of(const ContactBodies<D>& bodies) const;
     Contact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
-    std::optional<Overlap<D>> overlap_of_pair(const ContactBodies<D>& bodies, std::size_t k) const;
-    Push push_of_pair(const ContactBodies<D>& bodies, std::size_t k, double dt);
+    /// Length of the run of one pair that begins with row k; 0 where it began before.
+    std::size_t run_from(std::size_t k) const;
+    /// As many rows of the pair as it may have places.
+    void add_rows(const ContactBodies<D>& bodies);
+    Overlaps<D> overlaps_of_pair(const ContactBodies<D>& bodies, std::size_t k) const;
+    /// Finds what a pair does whose run of rows begins with k.
+    void push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt);
+    Push push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
+                 double dt, double share);
 
     Domain<D> domain_;
     ContactLaws<D> laws_;
+    // One row for each place at which a pair may touch: several in a row for a ball and a surface
+    // with hollows.
     Array<ContactPair> pairs_;
-    Array<std::int32_t> points_;
     Array<ContactSprings> springs_;
+    Array<Vec<double, D>> normals_;  // of what touches; zero: nothing
+    Array<std::int32_t> points_;
     Array<Contact> contacts_;
     Array<Push> pushes_;
     double timestep_ = std::numeric_limits<double>::infinity();

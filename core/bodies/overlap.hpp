@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -16,6 +17,25 @@ struct Overlap {
     SurfaceWeights at{};  // where the second one's surface is touched
 };
 
+/// Those of one pair, few.
+template <int D>
+class Overlaps {
+public:
+    Overlaps() = default;
+    Overlaps(const std::optional<Overlap<D>>& overlap) {
+        if (overlap) add(*overlap);
+    }
+    void add(const Overlap<D>& overlap) { overlaps_[count_++] = overlap; }
+    std::size_t size() const { return count_; }
+    const Overlap<D>& operator[](std::size_t k) const { return overlaps_[k]; }
+    const Overlap<D>* begin() const { return overlaps_.data(); }
+    const Overlap<D>* end() const { return overlaps_.data() + count_; }
+
+private:
+    std::array<Overlap<D>, SurfacePoints<D>::most> overlaps_;
+    std::size_t count_ = 0;
+};
+
 template <int D>
 std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t a, std::size_t b,
                                      const Domain<D>& domain) {
@@ -29,21 +49,23 @@ std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t
     return overlap;
 }
 
+/// At each place of the solid that the point touches, the nearest first.
 template <int D>
-std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t a,
-                                     const ConvexBody<D>& convex, const Domain<D>& domain) {
-    const Vec<double, D> r = nearest_image(domain, points.position[a] - convex.centre);
-    const double around = convex.shape->radius + points.radius[a];
-    if (dot(r, r) >= around * around) return {};
-    const SurfacePoint<D> surface = convex.shape->surface_from(rotated_back(convex.rotation, r));
-    if (surface.distance >= points.radius[a]) return {};
-    Overlap<D> overlap{points.radius[a] - surface.distance,
-                       -1.0 * rotated(convex.rotation, surface.normal),
-                       {},
-                       {}};
-    overlap.lever_a = (points.radius[a] - 0.5 * overlap.depth) * overlap.normal;
-    overlap.lever_b = r + overlap.lever_a;
-    return overlap;
+Overlaps<D> overlaps_of(const ContactPoints<D>& points, std::size_t a, const ContactSolid<D>& solid,
+                        const Domain<D>& domain) {
+    const Vec<double, D> r = nearest_image(domain, points.position[a] - solid.centre);
+    const double radius = points.radius[a], around = solid.surface->radius() + radius;
+    Overlaps<D> overlaps;
+    if (dot(r, r) >= around * around) return overlaps;
+    for (const SurfacePoint<D>& place :
+         solid.surface->touched_by(rotated_back(solid.rotation, r), radius)) {
+        Overlap<D> overlap{
+            radius - place.distance, -1.0 * rotated(solid.rotation, place.normal), {}, {}};
+        overlap.lever_a = (radius - 0.5 * overlap.depth) * overlap.normal;
+        overlap.lever_b = r + overlap.lever_a;
+        overlaps.add(overlap);
+    }
+    return overlaps;
 }
 
 /// Near a vertex of the surface.
@@ -66,15 +88,15 @@ struct MotionAt {
     Vec3 spin;
 };
 
-/// Of the second side of a pair: another point, a convex body or a surface.
+/// Of the second side of a pair: another point, a solid or a surface.
 template <int D>
 MotionAt<D> motion_of_second(const ContactBodies<D>& bodies, const ContactPair& pair,
                              const Overlap<D>& overlap) {
     if (const Surface<D>* surface = bodies.surface(pair))
         return {surface->mean(surface->velocity, overlap.at), surface->spin[overlap.at.nearest()]};
     if (pair.with_shape()) {
-        const ConvexBody<D>& convex = bodies.convex[pair.shape()];
-        return {convex.velocity, convex.spin};
+        const ContactSolid<D>& solid = bodies.solids[pair.shape()];
+        return {solid.velocity, solid.spin};
     }
     return {bodies.points.velocity[pair.second()], bodies.points.spin[pair.second()]};
 }
@@ -89,7 +111,7 @@ void push_second(ContactBodies<D>& bodies, const ContactPair& pair, const Overla
     if (Surface<D>* surface = bodies.surface(pair))
         surface->push(overlap.at, force, torque);
     else if (pair.with_shape())
-        add_to(bodies.convex[pair.shape()].force, bodies.convex[pair.shape()].torque);
+        add_to(bodies.solids[pair.shape()].force, bodies.solids[pair.shape()].torque);
     else
         add_to(bodies.points.force[pair.second()], bodies.points.torque[pair.second()]);
 }

@@ -195,22 +195,23 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         }
         side.radius = 0.0;
         for (std::size_t s = 0; s < shape(k).samples.size(); ++s) contact.points.add(number, side);
-        ConvexBody<D> convex;
-        convex.body = number, convex.material = body.material, convex.fixed = body.fixed;
-        convex.mass = body.mass, convex.diameter = diameter;
-        contact.convex.push_back(convex);
+        ContactSolid<D> solid;
+        solid.body = number, solid.material = body.material, solid.fixed = body.fixed;
+        solid.mass = body.mass, solid.diameter = diameter;
+        contact.solids.push_back(solid);
     }
 }
 
 template <int D>
 void RigidBodies<D>::show(ContactBodies<D>& contact, std::span<const std::int32_t> points) const {
-    for (ConvexBody<D>& convex : contact.convex) {
-        const auto k = static_cast<std::size_t>(convex.body);
+    for (ContactSolid<D>& solid : contact.solids) {
+        const auto k = static_cast<std::size_t>(solid.body);
         const RigidBodyState<D>& state = states_[k];
-        convex.shape = &shape(k), convex.centre = state.centre, convex.velocity = state.velocity;
-        convex.rotation = state.orientation.matrix(), convex.spin = spin(k);
-        convex.removed = state.is_removed();
-        convex.force = {}, convex.torque = {};
+        solid.surface = shape(k).surface.get();
+        solid.centre = state.centre, solid.velocity = state.velocity;
+        solid.rotation = state.orientation.matrix(), solid.spin = spin(k);
+        solid.removed = state.is_removed();
+        solid.force = {}, solid.torque = {};
     }
     ContactPoints<D>& shown = contact.points;
     Vec3 w;
@@ -248,10 +249,10 @@ void RigidBodies<D>::collect(const ContactBodies<D>& contact,
         contact_torque_[k] =
             contact_torque_[k] + shown.torque[c] + cross(lever, in_space(shown.force[c]));
     }
-    for (const ConvexBody<D>& convex : contact.convex) {
-        const auto k = static_cast<std::size_t>(convex.body);
-        contact_force_[k] = contact_force_[k] + convex.force;
-        contact_torque_[k] = contact_torque_[k] + convex.torque;
+    for (const ContactSolid<D>& solid : contact.solids) {
+        const auto k = static_cast<std::size_t>(solid.body);
+        contact_force_[k] = contact_force_[k] + solid.force;
+        contact_torque_[k] = contact_torque_[k] + solid.torque;
     }
 }
 

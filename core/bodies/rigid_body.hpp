@@ -3,7 +3,7 @@
 
 #include "base/array.hpp"
 #include "base/error.hpp"
-#include "bodies/shape.hpp"
+#include "bodies/shapes/shape.hpp"
 #include "model/archive.hpp"
 
 namespace doseki {
@@ -46,7 +46,8 @@ struct RigidBodyPoint {
 /// Shapes and rigid bodies as one vector for each member, as archives keep them.
 template <int D>
 struct RigidBodyColumns {
-    Array<double> radius, mass;
+    Array<std::uint8_t> kind;
+    Array<double> radius, thickness, mass;
     Array<Vec<double, D>> corners, samples;  // of all shapes in turn
     Array<std::int32_t> facet_count, sample_count, shape, material, group;
     Array<std::uint8_t> fixed;
@@ -55,7 +56,8 @@ struct RigidBodyColumns {
     RigidBodyColumns() = default;
     RigidBodyColumns(const Array<Shape<D>>& shapes, const Array<RigidBody<D>>& bodies) {
         for (const Shape<D>& each : shapes) {
-            radius.push_back(each.radius);
+            kind.push_back(static_cast<std::uint8_t>(each.kind));
+            radius.push_back(each.radius), thickness.push_back(each.thickness);
             for (const auto& facet : each.facets)
                 corners.insert(corners.end(), facet.begin(), facet.end());
             samples.insert(samples.end(), each.samples.begin(), each.samples.end());
@@ -70,7 +72,8 @@ struct RigidBodyColumns {
     }
 
     void serialise(Archive& archive) {
-        archive("shape_radius", radius), archive("shape_corners", corners),
+        archive("shape_kind", kind), archive("shape_radius", radius),
+            archive("shape_thickness", thickness), archive("shape_corners", corners),
             archive("shape_samples", samples);
         archive("shape_facets", facet_count), archive("shape_sample_count", sample_count);
         archive("body_shape", shape), archive("body_material", material),
@@ -81,7 +84,13 @@ struct RigidBodyColumns {
     /// Throws std::invalid_argument unless these are the columns of so many bodies.
     void expect_fit_of(std::size_t bodies) const {
         const std::size_t n = radius.size();
-        expect_fit(facet_count.size() == n && sample_count.size() == n, "shape_radius");
+        expect_fit(facet_count.size() == n && sample_count.size() == n && kind.size() == n &&
+                       thickness.size() == n,
+                   "shape_radius");
+        for (std::size_t k = 0; k < n; ++k) {
+            expect_index(kind[k], 3, "shape_kind");
+            expect_fit((facet_count[k] == 0) == (kind[k] == 0), "shape_kind");
+        }
         expect_parts(facet_count, corners.size(), D, "shape_facets");
         expect_parts(sample_count, samples.size(), 1, "shape_sample_count");
         expect_fit(shape.size() == bodies && material.size() == bodies && group.size() == bodies &&
@@ -94,11 +103,13 @@ struct RigidBodyColumns {
         Array<Shape<D>> result(radius.size());
         auto corner = corners.begin(), sample = samples.begin();
         for (std::size_t k = 0; k < result.size(); ++k) {
-            result[k].radius = radius[k];
+            result[k].kind = static_cast<ShapeKind>(kind[k]);
+            result[k].radius = radius[k], result[k].thickness = thickness[k];
             for (int f = 0; f < facet_count[k]; ++f, corner += D) {
                 result[k].facets.emplace_back();
                 std::copy_n(corner, D, result[k].facets.back().begin());
             }
+            result[k].enclose();
             result[k].samples.assign(sample, sample + sample_count[k]);
             sample += sample_count[k];
         }

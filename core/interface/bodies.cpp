@@ -14,7 +14,7 @@ void read_facets(ColumnReader& column, Shape<D>& shape) {
     for (const auto& x : vertices) shape.radius = std::max(shape.radius, norm(x));
     const auto faces = column.numbers<std::int32_t>("faces", D);
     for (std::size_t f = 0; f < faces.size() / D; ++f) {
-        typename Shape<D>::Facet facet;
+        Facet<D> facet;
         for (std::size_t a = 0; a < D; ++a)
             facet[a] = vertices.at(static_cast<std::size_t>(faces[f * D + a]));
         shape.facets.push_back(facet);
@@ -65,7 +65,14 @@ Shape<D> BodyTables<D>::shape(const NamedValues& table) {
     ColumnReader column(table, "shape", ColumnReader::any_rows);
     read_facets(column, shape);
     shape.samples = column.vectors<D>("samples");
+    shape.kind = ShapeKind::convex;
+    if (table.find("thickness")) {
+        shape.kind = ShapeKind::mesh;
+        shape.thickness = column.numbers<double>("thickness").at(0);
+        shape.radius += 0.5 * shape.thickness;
+    }
     column.finish();
+    shape.enclose();
     return shape;
 }
 

@@ -22,7 +22,8 @@ SolidPoints<D> solid_points(ColumnReader& column) {
 
 template <int D>
 struct BodyTables {
-    /// Balls {radius}, or convex shapes {vertices, faces, samples}.
+    /// Balls {radius}, convex shapes {vertices, faces, samples}, or meshes with a thickness too,
+    /// which is that of a sheet, [0] of one that encloses a body.
     static Shape<D> shape(const NamedValues& table);
     static void add_rigid(Bodies<D>& bodies, const NamedValues& columns);
     /// `body`: index of its rigid body for each particle, or -1.

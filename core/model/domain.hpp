@@ -28,4 +28,13 @@ Vec<double, D> nearest_image(const Domain<D>& domain, Vec<double, D> r) {
     return r;
 }
 
+/// The image inside the domain.
+template <int D>
+Vec<double, D> wrapped(const Domain<D>& domain, Vec<double, D> x) {
+    for (int c = 0; c < D; ++c)
+        if (domain.periodic[c])
+            x[c] -= domain.length(c) * std::floor((x[c] - domain.low[c]) / domain.length(c));
+    return x;
+}
+
 }  // namespace doseki

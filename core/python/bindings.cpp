@@ -9,6 +9,7 @@ namespace nb = nanobind;
 
 void bind_simulation(nb::module_& m);
 void bind_elastic(nb::module_& m);
+void bind_mesh(nb::module_& m);
 void bind_physics(nb::module_& m);
 void bind_terrain(nb::module_& m);
 
@@ -19,6 +20,7 @@ NB_MODULE(DOSEKI_MODULE, m) {
     m.def("threads", &doseki::thread_count);
     bind_simulation(m);
     bind_elastic(m);
+    bind_mesh(m);
     bind_physics(m);
     bind_terrain(m);
 }

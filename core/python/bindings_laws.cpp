@@ -2,7 +2,7 @@
 // scenario chooses one are bound under their names, with their parameters in the order in which
 // they list them.
 
-#include "bodies/shape.hpp"
+#include "bodies/shapes/shape.hpp"
 #include "model/material_laws.hpp"
 #include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
@@ -148,29 +148,58 @@ void bind_contact(nb::module_& m) {
                    });
 }
 
-/// Distance and normal of points (n, D) from the surface of the convex shape with the facets (m, D,
-/// D).
+/// Facets whose corners come one after another.
+template <int D>
+Array<Facet<D>> facets_of(const Table& corners) {
+    Array<Facet<D>> facets;
+    for (std::size_t k = 0; k + D <= corners.size(); k += D) {
+        facets.emplace_back();
+        for (std::size_t a = 0; a < D; ++a) facets.back()[a] = vector<D>(corners[k + a], 0);
+    }
+    return facets;
+}
+
+template <int D>
+void append(Column& row, const SurfacePoint<D>& place) {
+    row.push_back(place.distance);
+    row.insert(row.end(), place.normal.component.begin(), place.normal.component.end());
+}
+
+/// Distance and normal of points (n, D) from the surface of the convex shape or the mesh with the
+/// facets (m, D, D); of all places of a mesh that balls of a radius about these points touch.
 template <int D>
 void bind_shape(nb::module_& m) {
     m.def(
         "surface_from",
         [](const Table& corners, const Table& points) {
-            Shape<D> shape;
-            for (std::size_t k = 0; k + D <= corners.size(); k += D) {
-                shape.facets.emplace_back();
-                for (std::size_t a = 0; a < D; ++a)
-                    shape.facets.back()[a] = vector<D>(corners[k + a], 0);
-            }
-            Table result;
-            for (const Column& point : points) {
-                const auto surface = shape.surface_from(vector<D>(point, 0));
-                result.push_back({surface.distance});
-                result.back().insert(result.back().end(), surface.normal.component.begin(),
-                                     surface.normal.component.end());
-            }
+            const ConvexSurface<D> shape(facets_of<D>(corners));
+            Table result(points.size());
+            for (std::size_t k = 0; k < points.size(); ++k)
+                append(result[k], shape.from(vector<D>(points[k], 0)));
             return result;
         },
         nb::arg("corners"), nb::arg("points"));
+    m.def(
+        "mesh_from",
+        [](const Table& corners, double thickness, const Table& points) {
+            const MeshSurface<D> mesh(facets_of<D>(corners), thickness);
+            Table result(points.size());
+            for (std::size_t k = 0; k < points.size(); ++k)
+                append(result[k], mesh.from(vector<D>(points[k], 0)));
+            return result;
+        },
+        nb::arg("corners"), nb::arg("thickness"), nb::arg("points"));
+    m.def(
+        "mesh_touched",
+        [](const Table& corners, double thickness, const Table& points, double radius) {
+            const MeshSurface<D> mesh(facets_of<D>(corners), thickness);
+            Table result(points.size());
+            for (std::size_t k = 0; k < points.size(); ++k)
+                for (const auto& place : mesh.touched_by(vector<D>(points[k], 0), radius))
+                    append(result[k], place);
+            return result;
+        },
+        nb::arg("corners"), nb::arg("thickness"), nb::arg("points"), nb::arg("radius"));
 }
 
 }  // namespace

@@ -75,6 +75,22 @@ class HeightField(Protocol):
         ...
 
 
+class SurfaceMesh(Protocol):
+    """A mesh of triangles as the core searches it."""
+
+    def from_wall(self, position: np.ndarray, width: float) -> np.ndarray:
+        """Signed distance, negative inside, and outward normal (n, 4) of points (n, 3), m."""
+        ...
+
+    def winding(self, position: np.ndarray) -> np.ndarray:
+        """How often the mesh, which is closed, goes around each of the points (n, 3)."""
+        ...
+
+    def cuts(self) -> tuple[int, float, float, float]:
+        """How often an edge goes through another triangle, and where it does so first, m."""
+        ...
+
+
 class Core(Protocol):
     """A compiled module."""
 
@@ -104,6 +120,12 @@ class Core(Protocol):
 
     def HeightField3(self, table: Mapping[str, object]) -> HeightField:  # noqa: N802 (a class)
         """The same of a 3-D run."""
+        ...
+
+    def SurfaceMesh(  # noqa: N802 (a class)
+        self, corners: np.ndarray, thickness: float
+    ) -> SurfaceMesh:
+        """Triangles by their corners (3 m, 3), m; a thickness above 0 is that of a sheet."""
         ...
 
     def set_threads(self, n: int) -> None:

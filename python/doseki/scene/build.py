@@ -31,6 +31,7 @@ from .ground import ground_of
 from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
+from .meshes.meeting import without_common
 
 MAX_PARTICLES = 2_000_000_000
 BYTES_PER_PARTICLE = 500  # what a run holds, lists included
@@ -76,9 +77,10 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     """
     bodies, warnings = present(scenario, bodies_of(scenario)), list[Finding]()
     _check_size(bodies)
+    warnings += [finding for body in bodies.values() for finding in body.findings()]
     names = body_names(scenario)
     carried = carried_over(scenario, names)
-    built = {n: body.particles(names) for n, body in bodies.items() if not body.is_of_bodies}
+    built = _loose_particles(scenario, bodies, names)
     parts = placed_parts(scenario, carried, built)
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
     made = placed_groups(scenario, carried, made)
@@ -110,15 +112,25 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
 
 def particles_at_zero(scenario: Scenario, names: list[str]) -> dict[str, ParticleSet]:
     """The particles of each body as its table has it, before anything has moved or settled."""
-    made = {}
-    for name, body in bodies_of(scenario).items():
+    bodies = bodies_of(scenario)
+    loose, made = _loose_particles(scenario, bodies, names), {}
+    for name, body in bodies.items():
         if body.is_of_bodies:
             group = body.group()
             placed, owner = particles_of(group, body.spacing, scenario.dim)
             made[name] = body.particles_of_bodies(group, names, placed, owner)
         else:
-            made[name] = body.particles(names)
+            made[name] = loose[name]
     return made
+
+
+def _loose_particles(
+    scenario: Scenario, bodies: Mapping[str, Body[Any]], names: list[str]
+) -> dict[str, ParticleSet]:
+    """The particles of each body whose particles are no parts of bodies."""
+    loose = {name: body for name, body in bodies.items() if not body.is_of_bodies}
+    built = {name: body.particles(names) for name, body in loose.items()}
+    return without_common(scenario, built, {name: body.spacing for name, body in loose.items()})
 
 
 def _joined(

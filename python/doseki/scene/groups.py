@@ -9,7 +9,7 @@ import numpy as np
 from ..scenario.kinematics import ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
 from .periodic import nearest_image, periods, wrapped
-from .shapes import Particles, Shape
+from .shapes import MeshShape, Particles, Shape
 
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -96,6 +96,8 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
 
 def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
     """The particles of one body in its frame."""
+    if isinstance(shape, MeshShape):
+        raise TypeError("particles of a mesh are no parts of a body")
     if group.single:
         return shape.single()
     return shape.elastic_particles(spacing) if group.elastic else shape.particles(spacing)

@@ -250,7 +250,7 @@ class CoreSimulation(Simulation, Protocol):
         ...
 
     def add_shapes(self, shapes: Sequence[Table]) -> None:
-        """Balls {radius} or convex shapes {vertices, faces, samples}."""
+        """Balls {radius}, convex shapes {vertices, faces, samples}, or meshes {..., thickness}."""
         ...
 
     def add_rigid_bodies(self, bodies: Arrays) -> None:

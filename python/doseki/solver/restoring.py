@@ -17,9 +17,9 @@ ALIKE = (
         "bodies", "body_shape", "body_material", "body_named", "body_fixed", "body_mass",
         "body_inertia",
     ),
-    ("shape_radius", "shape_facets", "shape_sample_count"),
+    ("shape_radius", "shape_facets", "shape_sample_count", "shape_kind", "shape_thickness"),
     ("lists_moving", "lists_fixed"),
-    ("contact_a", "contact_b", "contact_springs"),
+    ("contact_a", "contact_b", "contact_springs", "contact_normals"),
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
@@ -35,7 +35,7 @@ POSITIVE = {"mass", "smoothing_length", "density", "shape_radius", "body_mass"}
 NOT_NEGATIVE = {
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
-    "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
+    "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
@@ -196,6 +196,7 @@ def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
         "motion": 4,
         "body_kind": 3,
         "body_shape": len(state["shape_radius"]),
+        "shape_kind": 3,
         "body_material": materials,
         "body_named": bodies,
         "elastic_body": len(state["elastic_apart"]),

@@ -68,6 +68,9 @@ def _copies(table: dict[str, Any], keys: KeyPath, part: Any, where: Where) -> Co
         return None
     kind = table_at(keys, table)
     is_tank = keys[0] == "body" and part.get("shape") == "tank"
+    if "array" in part and part.get("shape") == "release":
+        at = (*keys, "array")
+        raise where.error(at, f"{dotted(at)}: a release has no copies: list several polygons")
     has_array = "array" in part and kind is not None and "array" in kind.model_fields
     if not is_tank and not has_array:
         return None

@@ -24,6 +24,7 @@ from ..values.types import (
 )
 from ..values.units import LENGTH, Measured
 from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
+from .mesh import Mesh
 from .motion import Motion
 from .terrain.release import Release
 
@@ -177,7 +178,7 @@ class Polygon(TurnedBody):
     )
 
 
-class Mesh(TurnedBody):
+class Polyhedron(TurnedBody):
     """A closed convex polyhedron of a 3-D run."""
 
     only_dim: ClassVar[int | None] = 3
@@ -269,7 +270,8 @@ BODIES = Kinds(
         "disc": Disc,
         "sphere": Disc,
         "polygon": Polygon,
-        "stl": Mesh,
+        "stl": Polyhedron,
+        "mesh": Mesh,
         "points": Points,
         "file": ParticleFile,
         "tank": Tank,

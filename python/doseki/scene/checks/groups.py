@@ -10,7 +10,7 @@ import numpy as np
 
 from ...scenario.model import Scenario
 from ..groups import Group, matrices
-from ..shapes import Ball, Convex
+from ..shapes import Ball, Convex, MeshShape
 
 
 class _Ball(NamedTuple):
@@ -27,15 +27,32 @@ class _Block(NamedTuple):
     normal: np.ndarray  # (m, dim)
     offset: np.ndarray  # (m,) of the planes, normal.x <= offset inside
     corners: np.ndarray  # (faces, dim, dim)
+    samples: np.ndarray  # (n, dim) points of its edges
     reach: float
+
+
+class _Mesh(NamedTuple):
+    name: str
+    shape: MeshShape
+    centre: np.ndarray  # (3,)
+    turned: np.ndarray  # (3, 3)
+    samples: np.ndarray  # (n, 3) points of its edges
+
+    def distance(self, position: np.ndarray) -> np.ndarray:
+        """Of positions (n, 3) from its surface, m; below 0 inside."""
+        return -self.shape.wall((position - self.centre) @ self.turned, 1.0)[1]
 
 
 def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     """Raise UserError where a body that moves overlaps another by more than contacts may."""
     balls = [ball for group in groups for ball in _balls(group)]
-    blocks = [block for group in groups for block in _blocks(group, scenario.dim)]
+    blocks = [block for group in groups for block in _blocks(group, scenario)]
+    meshes = [mesh for group in groups for mesh in _meshes(group, scenario)]
     allowed = scenario.contact.overlap
-    for name, other, overlap, size in _overlaps(balls, blocks):
+    for name, other, overlap, size in [
+        *_overlaps(balls, blocks),
+        *_with_meshes(balls, blocks, meshes),
+    ]:
         if {name, other} <= scenario.carried:
             continue  # as deep as contacts have let them
         if overlap > allowed * size and not _is_held_by(scenario, name, other):
@@ -81,15 +98,41 @@ def _balls(group: Group) -> Iterator[_Ball]:
                 yield _Ball(group.name, group.fixed, centre, shape.radius)
 
 
-def _blocks(group: Group, dim: int) -> Iterator[_Block]:
-    for k, turned in enumerate(matrices(group.orientation, dim)):
+def _with_meshes(
+    balls: list[_Ball], blocks: list[_Block], meshes: list[_Mesh]
+) -> Iterator[Overlap]:
+    for mesh in meshes:
+        for ball in balls:
+            if not ball.fixed:
+                worst = ball.radius - mesh.distance(ball.centre).min()
+                yield ball.name, mesh.name, float(worst), 2 * ball.radius
+        for block in blocks:
+            if not block.fixed:
+                inside = (block.offset - mesh.samples @ block.normal.T).min(axis=1)
+                worst = max(-mesh.distance(block.samples).min(), inside.max(initial=-np.inf))
+                yield block.name, mesh.name, float(worst), 2 * block.reach
+
+
+def _meshes(group: Group, scenario: Scenario) -> Iterator[_Mesh]:
+    for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
+        shape = group.shapes[group.shape[k]]
+        if isinstance(shape, MeshShape):
+            samples = shape.samples(scenario.dp) @ turned.T + group.centre[k]
+            yield _Mesh(group.name, shape, group.centre[k], turned, samples)
+
+
+def _blocks(group: Group, scenario: Scenario) -> Iterator[_Block]:
+    for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
         shape = group.shapes[group.shape[k]]
         if isinstance(shape, Convex):
             centre, (normal, distance) = group.centre[k], shape.planes
             normal = normal @ turned.T
             corners = shape.vertices[shape.faces] @ turned.T + centre
+            samples = shape.samples(scenario.dp) @ turned.T + centre
             offset = distance + normal @ centre
-            yield _Block(group.name, group.fixed, centre, normal, offset, corners, shape.reach)
+            yield _Block(
+                group.name, group.fixed, centre, normal, offset, corners, samples, shape.reach
+            )
 
 
 def _of_balls(one: _Ball, other: _Ball) -> Iterator[Overlap]:

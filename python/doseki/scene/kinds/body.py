@@ -11,6 +11,7 @@ from ...record.particles import ParticleSet
 from ...scenario.model import Scenario
 from ...scenario.tables.body import BodyTable
 from ...scenario.values.expressions import ExpressionError, evaluate_at, is_expression
+from ...util.finding import Finding
 from ..bodies import ElasticBody
 from ..groups import Group
 from ..shapes import Particles
@@ -113,6 +114,10 @@ class Body(Generic[T]):
     def contact_shape(self) -> Group | None:
         """The one body that those which touch it meet, where it is fixed and its shape is whole."""
         return None
+
+    def findings(self) -> list[Finding]:
+        """What is doubtful about it."""
+        return []
 
     def sides(self, thickness: float) -> list[Group]:
         """Walls that hold it while it settles."""

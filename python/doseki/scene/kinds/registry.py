@@ -5,8 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from ...scenario.model import Scenario
-from ...scenario.tables.bodies import Box, Disc, Grains, Mesh, ParticleFile, Points, Polygon
+from ...scenario.tables.bodies import (
+    Box,
+    Disc,
+    Grains,
+    ParticleFile,
+    Points,
+    Polygon,
+    Polyhedron,
+)
 from ...scenario.tables.body import BodyTable
+from ...scenario.tables.mesh import Mesh
 from ...scenario.tables.terrain.release import Release
 from .body import Body
 from .box import BoxBody
@@ -16,6 +25,7 @@ from .grains import GrainsBody
 from .mesh import MeshBody
 from .points import PointsBody
 from .polygon import PolygonBody
+from .polyhedron import PolyhedronBody
 from .release import ReleaseBody
 
 MADE_OF: dict[type[BodyTable], type[Body[Any]]] = {
@@ -27,6 +37,7 @@ MADE_OF: dict[type[BodyTable], type[Body[Any]]] = {
     ParticleFile: FileBody,
     Points: PointsBody,
     Polygon: PolygonBody,
+    Polyhedron: PolyhedronBody,
 }
 
 

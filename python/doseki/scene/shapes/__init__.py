@@ -1,24 +1,29 @@
 """Shapes of bodies in their own frame, about their centre of mass: geometry and particles.
 
-Discs and spheres (Ball), convex polygons and polyhedra (Convex).  Lengths in m.  What a shape gives
-(particles, shares, normals, points of contact) has the symmetries of the shape and turns with it.
+Discs and spheres (Ball), convex polygons and polyhedra (Convex), fixed meshes (MeshShape).
+Lengths in m.  What a shape gives (particles, shares, normals, points of contact) has the symmetries
+of the shape and turns with it.
 """
 
 from .ball import Ball
 from .convex import Convex
 from .making import ShapeError, box_shape, mesh_shape, polygon_shape
+from .mesh import MeshShape, Triangles, core_mesh
 from .particles import EDGE, Particles, nearest_faces
 
-Shape = Ball | Convex
+Shape = Ball | Convex | MeshShape
 
 __all__ = [
     "EDGE",
     "Ball",
     "Convex",
+    "MeshShape",
     "Particles",
     "Shape",
     "ShapeError",
+    "Triangles",
     "box_shape",
+    "core_mesh",
     "mesh_shape",
     "nearest_faces",
     "polygon_shape",

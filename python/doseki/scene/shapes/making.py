@@ -71,11 +71,11 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
     """
     try:
         content = read_bytes(file, LARGEST_STL)
-        with readable(file, " as STL"), _quiet():
+        with readable(file, " as STL"), quiet():
             mesh = _closed_mesh(file, content, scale)
     except UserError as error:
         raise ShapeError(str(error)) from None
-    with _quiet():
+    with quiet():
         shape, centre = _from_mesh(mesh)
     normal, distance = shape.planes
     beyond = float((shape.vertices @ normal.T - distance).max())
@@ -87,7 +87,7 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Keep what is said of a file that somebody has damaged to the sentence that refuses it."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)

@@ -35,7 +35,8 @@ class Release(ShapedBody):
         None, description="the corners [x, y] of one area on the map, m; excludes file"
     )
     polygons: Annotated[Polygons | None, Only(dim=3), Measured(LENGTH)] = Field(
-        None, description="several areas, each a list of rings (its edge, then holes) of corners [x, y], m"
+        None,
+        description="several areas, each a list of rings (its edge, then holes) of corners [x, y], m",
     )
     between: Annotated[Place | None, Only(dim=2), Measured(LENGTH)] = Field(
         None, description="2-D: where along x it begins and ends, m"
@@ -62,8 +63,8 @@ class Release(ShapedBody):
             raise ValueError("a release moves; it cannot be fixed")
         if self.between is not None and not isinstance(self.thickness, float):
             raise ValueError("thickness is one number of a release between two places")
-        if self.array is not None:
-            raise ValueError("a release has no array: list several polygons")
+        if self.digest is not None and self.file is None:
+            raise ValueError("digest goes with file")
         if self.between is not None and not self.between[0] < self.between[1]:
             raise ValueError("between is [x, x], the smaller one first")
         return self

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "base/array.hpp"
+#include "bodies/contact_surface.hpp"
+#include "bodies/shapes/convex_surface.hpp"
+#include "bodies/shapes/mesh_surface.hpp"
+
+namespace doseki {
+
+enum class ShapeKind : std::uint8_t { ball, convex, mesh };
+
+/// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D
+/// a disc), what facets enclose, convex or not, or a sheet of facets.
+template <int D>
+struct Shape {
+    ShapeKind kind = ShapeKind::ball;
+    double radius = 0.0;     // of the ball, or of the ball around everything [m]
+    double thickness = 0.0;  // of a sheet [m]
+    Array<Facet<D>> facets;
+    Array<Vec<double, D>> samples;  // points of the surface that may touch another shape
+    std::shared_ptr<const ContactSurface<D>> surface;  // that others touch; none of a ball
+
+    bool is_ball() const { return kind == ShapeKind::ball; }
+
+    /// Makes the surface; call once everything else is there.
+    void enclose() {
+        if (kind == ShapeKind::convex)
+            surface = std::make_shared<const ConvexSurface<D>>(facets);
+        else if (kind == ShapeKind::mesh)
+            surface = std::make_shared<const MeshSurface<D>>(facets, thickness);
+    }
+};
+
+}  // namespace doseki

@@ -1,0 +1,1 @@
+"""Fixed surfaces of triangles: from their files to wall particles and what bodies touch."""

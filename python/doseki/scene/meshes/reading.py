@@ -1,0 +1,84 @@
+"""Triangles from STL, OBJ and PLY files, whoever made them."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import UserError
+from ...scenario.values.types import LARGEST
+from ...util.foreign import read_bytes, readable
+from ..shapes import ShapeError, Triangles
+from ..shapes.making import quiet
+
+LARGEST_FILE = 200_000_000  # bytes
+HEADER_PLY = 4096  # bytes in which a header must end
+
+
+def read_triangles(file: Path, scale: float) -> Triangles:
+    """The triangles of a file, in m: vertices of one place joined, those without area left out.
+
+    Raises ShapeError where the file cannot be read or holds nothing of use.
+    """
+    try:
+        content = read_bytes(file, LARGEST_FILE)
+        kind = file.suffix.lower()[1:]
+        with readable(file, f" as {kind.upper()}"), quiet():
+            _check_counts(file, kind, content)
+            vertices, faces = _parsed(file, kind, content)
+        return _joined(file, vertices, faces, scale)
+    except ShapeError:
+        raise
+    except UserError as error:
+        raise ShapeError(str(error)) from None
+
+
+def _check_counts(file: Path, kind: str, content: bytes) -> None:
+    """Refuse what says that it has more than fits, before room is made for it."""
+    if kind == "ply":
+        header = content[:HEADER_PLY].partition(b"end_header")[0]
+        for name, count in re.findall(rb"element\s+(\S+)\s+(\d+)", header):
+            if int(count[:20]) > len(content):
+                raise UserError(f"{file}: {name.decode('ascii', 'replace')[:30]}: more than it has")
+    if kind == "stl" and content[:5].lower() != b"solid":
+        count = int.from_bytes(content[80:84], "little")
+        if len(content) < 84 + 50 * count:
+            held = max(len(content) - 84, 0) // 50
+            raise UserError(f"{file}: {count} triangles are said to follow, it holds {held}")
+
+
+def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarray]:
+    import trimesh
+
+    options: dict[str, Any] = {"process": False, "skip_materials": True}
+    if kind == "stl":
+        options.pop("skip_materials")
+    mesh = trimesh.load_mesh(io.BytesIO(content), file_type=kind, **options)
+    faces = np.asarray(getattr(mesh, "faces", np.zeros((0, 3))), np.int64)
+    vertices = np.asarray(mesh.vertices, float)
+    if not len(faces):
+        raise UserError(f"{file}: no triangle")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise UserError(f"{file}: a triangle names a vertex that is not there")
+    return vertices, faces
+
+
+def _joined(file: Path, vertices: np.ndarray, faces: np.ndarray, scale: float) -> Triangles:
+    used = vertices[faces]
+    if not np.isfinite(used).all():
+        raise ShapeError(f"{file}: a vertex is not finite")
+    with np.errstate(over="ignore"):
+        used = used * scale
+    if not np.abs(used).max() <= LARGEST:
+        raise ShapeError(f"{file}: a vertex is beyond {LARGEST:g} m")
+    places, index = np.unique(used.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    found = Triangles(places, index.reshape(-1, 3).astype(np.int64))
+    size = float(np.ptp(places, axis=0).max())
+    kept = np.linalg.norm(found.areas, axis=1) > 1e-14 * size**2
+    if not kept.any():
+        raise ShapeError(f"{file}: its triangles have no area")
+    return Triangles(places, found.faces[kept])

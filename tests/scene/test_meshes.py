@@ -1,0 +1,271 @@
+"""Meshes as walls: their files, whoever made them, and particles below their surfaces."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial import cKDTree
+
+from doseki.errors import UserError
+from doseki.scenario.load import load_scenario
+from doseki.scene.build import build_scene
+from doseki.scene.meshes.making import made_mesh, wall_particles
+from doseki.scene.shapes import ShapeError
+from doseki.solver.build import build_simulation
+
+DP, DEPTH = 0.02, 0.06
+HEAD = """\
+dim = 3
+scheme = "{scheme}"
+dp = 0.02
+time_max = 0.02
+time_out = 0.02
+gravity = [0, 0, -9.81]
+{more}
+
+[body.wall]
+shape = "mesh"
+material = "basalt"
+file = "{file}"
+{keys}
+"""
+WATER = """
+[body.water]
+shape = "box"
+material = "water"
+min = [-0.2, -0.2, -0.2]
+max = [0.2, 0.2, 0.2]
+"""
+
+
+def box() -> trimesh.Trimesh:
+    return trimesh.creation.box(extents=(0.4, 0.3, 0.2))
+
+
+def ball() -> trimesh.Trimesh:
+    return trimesh.creation.icosphere(subdivisions=4, radius=0.3)
+
+
+def trapezium() -> trimesh.Trimesh:
+    """A dam with slanted sides."""
+    ends = [(x, y, z) for x, z in ((0, 0), (1, 0), (0.63, 0.5), (0.3, 0.5)) for y in (0, 0.6)]
+    return trimesh.convex.convex_hull(np.array(ends))
+
+
+def written(folder: Path, mesh: trimesh.Trimesh, name: str = "wall.ply") -> Path:
+    mesh.export(folder / name, **({"vertex_normal": False} if name.endswith("ply") else {}))
+    return folder / name
+
+
+def scenario(folder: Path, file: str = "wall.ply", *, body: str = "", **values: str) -> Path:
+    """The path of one with this mesh; `body`: others."""
+    text = HEAD.format(**{"scheme": "resolved", "more": "speed_max = 2", "keys": ""} | values,
+                       file=file)  # fmt: skip
+    (folder / "mesh.toml").write_text(text + body)
+    return folder / "mesh.toml"
+
+
+def wendland(r: np.ndarray, support: float) -> np.ndarray:
+    q = r / support
+    shape = np.where(q < 1, (1 - q) ** 8 * (1 + 8 * q + 25 * q**2 + 32 * q**3), 0)
+    return shape * 1365 / (64 * np.pi * support**3)
+
+
+def places(mesh: trimesh.Trimesh, away: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points of the surface, no nearer than `away` to its sharp edges, and their normals."""
+    points, face = trimesh.sample.sample_surface(mesh, 1500, seed=1)
+    sharp = mesh.face_adjacency_edges[mesh.face_adjacency_angles > 0.3]
+    keep = np.ones(len(points), bool)
+    for a, b in mesh.vertices[sharp]:
+        t = np.clip((points - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+        keep &= np.linalg.norm(points - a - t[:, None] * (b - a), axis=1) > away
+    return points[keep], mesh.face_normals[face[keep]]
+
+
+@pytest.mark.parametrize("make", [box, ball, trapezium])
+def test_a_wall_has_no_holes_and_an_even_face(tmp_path, make):
+    """What the kernel of a particle half a spacing above the surface sees of the wall."""
+    mesh = make()
+    made = made_mesh(written(tmp_path, mesh), 1.0, 0.0)
+    x = made.middle + wall_particles(made.shape, DP, DEPTH)
+    point, normal = places(mesh, 2.5 * DP)
+    probe = point + 0.5 * DP * normal
+    near = cKDTree(x).query_ball_point(probe, DEPTH)
+    seen = np.array([
+        DP**3 * wendland(np.linalg.norm(x[k] - p, axis=1), DEPTH).sum()
+        for k, p in zip(near, probe, strict=True)
+    ])  # fmt: skip
+    plane = 0.1797  # below a plane
+    assert seen.mean() == pytest.approx(plane, rel=0.05)
+    assert seen.std() < 0.1 * plane
+    assert seen.min() > 0.6 * plane, "a hole"
+    assert cKDTree(x).query(x, 2)[0][:, 1].min() > 0.6 * DP
+    _, depth = made.shape.wall(x - made.middle, DP)
+    assert depth.min() > 0.3 * DP
+    assert depth.max() < DEPTH + 0.5 * DP
+
+
+def test_particles_of_a_box_are_those_of_its_lattice(tmp_path):
+    made = made_mesh(written(tmp_path, box()), 1.0, 0.0)
+    x = wall_particles(made.shape, DP, DEPTH)
+    axes = [(np.arange(round(side / DP)) + 0.5) * DP - side / 2 for side in (0.4, 0.3, 0.2)]
+    lattice = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    shell = (np.array([0.2, 0.15, 0.1]) - np.abs(lattice)).min(axis=1) < DEPTH
+    assert len(x) == shell.sum()
+    assert cKDTree(lattice[shell]).query(x)[0].max() < 1e-6 * DP
+
+
+def test_a_mesh_that_is_turned_in_its_file_has_the_same_particles(tmp_path):
+    turn = trimesh.transformations.rotation_matrix(0.7, [1, 2, 3])
+    one = made_mesh(written(tmp_path, trapezium()), 1.0, 0.0)
+    two = made_mesh(written(tmp_path, trapezium().apply_transform(turn), "b.ply"), 1.0, 0.0)
+    x = one.middle + wall_particles(one.shape, DP, DEPTH)
+    y = two.middle + wall_particles(two.shape, DP, DEPTH)
+    assert len(x) == pytest.approx(len(y), rel=2e-3), "files hold single precision"
+    moved = x @ turn[:3, :3].T
+    assert np.median(cKDTree(y).query(moved)[0]) < 1e-3 * DP
+
+
+def test_normals_beside_an_edge_are_means(tmp_path):
+    made = made_mesh(written(tmp_path, box()), 1.0, 0.0)
+    below = np.array([[0.19, 0, 0.0], [0.19, 0.14, 0.0], [0.19, 0.14, 0.09], [0.19, 0.139, 0]])
+    normal, depth = made.shape.wall(below, DP)
+    r = np.sqrt([1, 1 / 2, 1 / 3])
+    exact = [[1, 0, 0], [r[1], r[1], 0], [r[2]] * 3]
+    assert normal[:3] == pytest.approx(np.array(exact), abs=1e-5)
+    assert normal[3] == pytest.approx(np.array([2, 1, 0]) / np.sqrt(5), abs=1e-5)
+    assert depth == pytest.approx(0.01, rel=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["stl", "obj", "ply"])
+def test_files_of_all_kinds_are_one_body(tmp_path, kind):
+    made = made_mesh(written(tmp_path, trapezium(), f"a.{kind}"), 2.0, 0.0)
+    assert made.shape.measure == pytest.approx(8 * trapezium().volume, rel=1e-5)
+    assert not made.findings("wall")
+
+
+@pytest.mark.parametrize("turned", [[0], [1, 4, 7], list(range(12))])
+def test_triangles_that_face_inwards_are_turned(tmp_path, turned):
+    mesh = box()
+    faces = np.array(mesh.faces)
+    faces[turned] = faces[turned][:, ::-1]
+    broken = trimesh.Trimesh(mesh.vertices, faces, process=False)
+    made = made_mesh(written(tmp_path, broken), 1.0, 0.0)
+    assert made.shape.contains(np.array([[0, 0, 0], [0, 0, 0.11]])).tolist() == [True, False]
+    _, depth = made.shape.wall(np.array([[0, 0, 0.09]]), DP)
+    assert depth == pytest.approx(0.01)
+    (finding,) = made.findings("wall")
+    assert f"wall: {len(turned)} of 12 triangles of its file faced inwards" in str(finding)
+
+
+def test_a_hollow_body_stays_hollow(tmp_path):
+    inner = trimesh.creation.box(extents=(0.2, 0.1, 0.1))
+    inner.invert()
+    made = made_mesh(written(tmp_path, trimesh.util.concatenate([box(), inner])), 1.0, 0.0)
+    assert made.shape.contains(np.array([[0, 0, 0], [0.15, 0, 0]])).tolist() == [False, True]
+    assert not made.findings("wall")
+
+
+def test_a_mesh_that_cuts_itself_is_told(tmp_path):
+    other = trimesh.creation.box(extents=(0.1, 0.1, 0.6))
+    made = made_mesh(written(tmp_path, trimesh.util.concatenate([box(), other])), 1.0, 0.0)
+    (finding,) = made.findings("wall")
+    assert "its surface cuts itself" in str(finding)
+    inside = made.shape.contains(np.array([[0, 0, 0], [0, 0, 0.29], [0.1, 0, 0.2]]))
+    assert inside.tolist() == [True, True, False]
+
+
+def stl_of(triangles: np.ndarray, count: int | None = None) -> bytes:
+    """A binary STL, which may lie about how many there are."""
+    rows = np.zeros(len(triangles), [("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
+    rows["v"] = triangles
+    declared = len(triangles) if count is None else count
+    return b"\0" * 80 + struct.pack("<I", declared) + rows.tobytes()
+
+
+HOSTILE = {
+    "header.stl": (stl_of(np.zeros((0, 3, 3)), 10**8), "100000000 triangles are said to follow"),
+    "empty.stl": (b"", "holds 0|cannot be read"),
+    "none.stl": (stl_of(np.zeros((0, 3, 3))), "no triangle|cannot be read"),
+    "nan.stl": (stl_of(np.where(np.arange(9) == 4, np.nan, box().triangles.reshape(-1, 9))
+                       .reshape(-1, 3, 3)), "not finite"),
+    "open.stl": (stl_of(box().triangles[1:]), "not closed: 3 edges .* set sheet = true"),
+    "flat.stl": (stl_of(np.zeros((8, 3, 3))), "no area"),
+    "far.stl": (stl_of(1e30 * box().triangles), "beyond"),
+    "many.ply": (b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999999\n"
+                 b"property float x\nend_header\n", "more than it has"),
+    "index.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "cannot be read|not there"),
+    "text.obj": (b"hello", "no triangle|cannot be read"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_bad_file_is_refused_in_one_sentence(tmp_path, capfd, name):
+    content, said = HOSTILE[name]
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(ShapeError, match=said) as caught:
+        made_mesh(tmp_path / name, 1.0, 0.0)
+    assert str(caught.value).count("\n") == 0
+    assert capfd.readouterr() == ("", "")
+
+
+def test_triangles_without_area_are_left_out(tmp_path):
+    corners = box().triangles
+    needle = np.array([[corners[0][0], corners[0][0], corners[0][1]]])
+    (tmp_path / "a.stl").write_bytes(stl_of(np.concatenate([corners, needle])))
+    assert len(made_mesh(tmp_path / "a.stl", 1.0, 0.0).shape.mesh.faces) == 12
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("fixed = false", 'a mesh is fixed; a convex body that moves is shape = "stl"'),
+        ("normal = [0, 0, 1]", "its normals are those of its triangles"),
+        ("thickness = 0.1", "set sheet = true"),
+        ("spin = [1, 0, 0]", "spin"),
+        ('ks = 0.01', "ks goes with wall"),
+    ],
+)  # fmt: skip
+def test_keys_that_mean_nothing_are_refused(tmp_path, keys, said):
+    written(tmp_path, box())
+    with pytest.raises(UserError, match=said):
+        load_scenario(str(scenario(tmp_path, keys=keys)))
+
+
+def test_a_file_of_another_kind_is_refused(tmp_path):
+    with pytest.raises(UserError, match=r"must end in one of .stl, .obj, .ply"):
+        load_scenario(str(scenario(tmp_path, "wall.step")))
+
+
+def test_water_makes_room_for_all_that_the_mesh_encloses(tmp_path):
+    written(tmp_path, trimesh.creation.box(extents=(0.4, 0.28, 0.2)))
+    path = scenario(tmp_path, body=WATER, keys="position = [0.06, 0, 0]\nrotate = 90")
+    scene = build_scene(load_scenario(str(path)))
+    water = scene.particles.position[scene.particles.motion == 0]
+    inside = (np.abs(water - [0.06, 0, 0]) < [0.1, 0.14, 0.2]).all(axis=1)
+    assert not inside.any()
+    assert len(water) == 20**3 - 10 * 14 * 20
+
+
+def test_a_thin_wall_is_told(tmp_path):
+    written(tmp_path, trimesh.creation.box(extents=(0.4, 0.3, 0.04)))
+    scene = build_scene(load_scenario(str(scenario(tmp_path))))
+    (warning,) = [str(w) for w in scene.warnings]
+    assert "walls down to 0.04 m thick; the kernel sees 0.06 m" in warning
+
+
+def test_the_printed_scheme_has_meshes_too(tmp_path):
+    written(tmp_path, box())
+    path = scenario(tmp_path, scheme="ueta2022", more="xi = 0.01", body=WATER)
+    simulation, _ = build_simulation(load_scenario(str(path)))
+    before = simulation.state()
+    simulation.advance(limit=0.01, pause=0.01, max_steps=10**6)
+    after = simulation.state()
+    fixed = before["motion"] == 1
+    assert fixed.sum() > 1000
+    assert np.array_equal(before["position"][fixed], after["position"][fixed])
+    assert np.isfinite(after["velocity"]).all()
