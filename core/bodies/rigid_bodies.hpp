@@ -18,6 +18,7 @@ template <int D>
 class RigidBodies {
 public:
     Array<Shape<D>> shapes;
+    std::shared_ptr<const ContactSurface<D>> ground;  // of a run on a terrain
 
     bool any_moves() const { return moving_ > 0; }
     std::size_t size() const { return bodies_.size(); }
@@ -157,7 +158,7 @@ template <int D>
 void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
     const Array<RigidBodyState<D>> states = std::move(states_);
     columns.expect_fit_of(states.size());
-    shapes = columns.shapes();
+    shapes = columns.shapes(ground);
     bodies_.clear(), states_.clear(), moving_ = 0;
     contact_force_.clear(), contact_torque_.clear(), mean_contact_force_.clear();
     for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});

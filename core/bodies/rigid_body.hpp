@@ -88,8 +88,9 @@ struct RigidBodyColumns {
                        thickness.size() == n,
                    "shape_radius");
         for (std::size_t k = 0; k < n; ++k) {
-            expect_index(kind[k], 3, "shape_kind");
-            expect_fit((facet_count[k] == 0) == (kind[k] == 0), "shape_kind");
+            expect_index(kind[k], 4, "shape_kind");
+            const bool facets = Shape<D>{static_cast<ShapeKind>(kind[k])}.has_facets();
+            expect_fit((facet_count[k] > 0) == facets, "shape_kind");
         }
         expect_parts(facet_count, corners.size(), D, "shape_facets");
         expect_parts(sample_count, samples.size(), 1, "shape_sample_count");
@@ -99,7 +100,8 @@ struct RigidBodyColumns {
         for (const std::int32_t k : shape) expect_index(k, n, "body_shape");
     }
 
-    Array<Shape<D>> shapes() const {
+    /// `ground` is that of the run.
+    Array<Shape<D>> shapes(const std::shared_ptr<const ContactSurface<D>>& ground) const {
         Array<Shape<D>> result(radius.size());
         auto corner = corners.begin(), sample = samples.begin();
         for (std::size_t k = 0; k < result.size(); ++k) {
@@ -109,7 +111,7 @@ struct RigidBodyColumns {
                 result[k].facets.emplace_back();
                 std::copy_n(corner, D, result[k].facets.back().begin());
             }
-            result[k].enclose();
+            result[k].enclose(ground);
             result[k].samples.assign(sample, sample + sample_count[k]);
             sample += sample_count[k];
         }

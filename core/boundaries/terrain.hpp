@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "base/array.hpp"
 #include "boundaries/height_field.hpp"
@@ -130,16 +131,15 @@ class Terrain {
 
 public:
     bool is_there() const { return wall_.layers > 0; }
-    const HeightField<D>& field() const { return field_; }
 
-    void set(HeightField<D> field, const TerrainWall& wall) {
+    /// `field` has its lean.
+    void set(std::shared_ptr<const HeightField<D>> field, const TerrainWall& wall) {
         field_ = std::move(field), wall_ = wall;
-        field_.measure_lean();
         side_ = tile_columns * wall.dp;
         for (int a = 0; a < axes; ++a) {
             // One tile more on each side, for what flows along the edge of the map.
-            low_[a] = field_.origin[a] - side_;
-            const double tiles = std::ceil((field_.end(a) + side_ - low_[a]) / side_);
+            low_[a] = field_->origin[a] - side_;
+            const double tiles = std::ceil((field_->end(a) + side_ - low_[a]) / side_);
             tiles_[a] = static_cast<std::int64_t>(tiles);
         }
     }
@@ -158,7 +158,7 @@ public:
     /// Whether a particle is free and beyond the map, or where the map says nothing.
     bool leaves(const Particles<D>& particles, std::size_t p) const {
         return is_there() && particles.is_free(p) &&
-               field_.is_unknown(horizontal(particles.position[p]));
+               field_->is_unknown(horizontal(particles.position[p]));
     }
 
     void serialise(Archive& archive) {
@@ -234,7 +234,7 @@ private:
     void add_particle(Particles<D>& particles, std::int64_t tile, double depth,
                       const typename TileLayer<D>::Foot& foot, std::int64_t id) const;
 
-    HeightField<D> field_;
+    std::shared_ptr<const HeightField<D>> field_;
     TerrainWall wall_;
     double side_ = 0.0;                       // of a tile [m]
     Horizontal<D> low_{};                     // corner of the first tile
@@ -314,7 +314,7 @@ auto Terrain<D>::from_numbers(const Array<double>& numbers) -> Array<Occupied> {
 /// No bed in the tile is higher [m]: from samples, with room for what lies between them.
 template <int D>
 double Terrain<D>::highest(std::int64_t tile) const {
-    const int samples = 2 + std::min(30, static_cast<int>(2.0 * side_ / field_.cell));
+    const int samples = 2 + std::min(30, static_cast<int>(2.0 * side_ / field_->cell));
     double top = -std::numeric_limits<double>::infinity(), low = -top;
     const Horizontal<D> corner = corner_of(tile);
     const auto step = [&](int i) { return i * side_ / samples; };
@@ -323,7 +323,7 @@ double Terrain<D>::highest(std::int64_t tile) const {
             Horizontal<D> place = corner;
             place[0] += step(i);
             if constexpr (D == 3) place[1] += step(j);
-            const double height = field_.height(place);
+            const double height = field_->height(place);
             top = std::max(top, height), low = std::min(low, height);
         }
     return top + 0.25 * (top - low);
@@ -334,7 +334,7 @@ template <class Gather>
 void Terrain<D>::look(const Particles<D>& particles, double support, double margin,
                       const Gather& gather, Array<std::uint8_t>& removed) {
     // Normals lean, so that a particle may lie beside its tile by part of how deep it is.
-    const double reach = support + margin + field_.lean() * wall_.layers * wall_.dp;
+    const double reach = support + margin + field_->lean() * wall_.layers * wall_.dp;
     Array<std::int64_t> kept;
     to_fill_.clear();
     const Array<double> numbers = gather(as_numbers(occupied(particles)));
@@ -363,7 +363,7 @@ void Terrain<D>::fill(Particles<D>& particles, std::int64_t& next_id, bool adds)
     for (const std::int64_t tile : to_fill_)
         for (int layer = 0; layer < wall_.layers; ++layer) {
             const double depth = (layer + 0.5) * wall_.dp;
-            const TileLayer<D> made(field_, corner_of(tile), side_, wall_.dp, depth);
+            const TileLayer<D> made(*field_, corner_of(tile), side_, wall_.dp, depth);
             for (const auto& foot : made.feet()) {
                 if (adds) add_particle(particles, tile, depth, foot, next_id);
                 ++next_id;
@@ -377,7 +377,7 @@ void Terrain<D>::fill(Particles<D>& particles, std::int64_t& next_id, bool adds)
 template <int D>
 void Terrain<D>::add_particle(Particles<D>& particles, std::int64_t tile, double depth,
                               const typename TileLayer<D>::Foot& foot, std::int64_t id) const {
-    const auto surface = field_.at(foot.place);
+    const auto surface = field_->at(foot.place);
     Vec<double, D> x{};
     for (int a = 0; a < axes; ++a) x[a] = foot.place[a];
     x[axes] = surface.height;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/phase_timer.hpp"
+#include "bodies/shapes/ground_surface.hpp"
 #include "interface/any_simulation.hpp"
 #include "interface/archive.hpp"
 #include "interface/bodies.hpp"
@@ -47,7 +48,8 @@ public:
     }
     void add_shapes(const std::vector<NamedValues>& shapes) override {
         for (const NamedValues& shape : shapes)
-            sim_.bodies.rigid.shapes.push_back(BodyTables<D>::shape(shape));
+            sim_.bodies.rigid.shapes.push_back(
+                BodyTables<D>::shape(shape, sim_.bodies.rigid.ground));
     }
     void add_rigid_bodies(const NamedValues& columns) override {
         BodyTables<D>::add_rigid(sim_.bodies, columns);
@@ -68,8 +70,10 @@ public:
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
     void set_terrain(const NamedValues& field, const NamedValues& wall) override {
-        sim_.terrain.set(BoundaryTables<D>::height_field(field),
-                         BoundaryTables<D>::terrain_wall(wall));
+        auto bed = std::make_shared<HeightField<D>>(BoundaryTables<D>::height_field(field));
+        bed->measure_lean();
+        sim_.bodies.rigid.ground = std::make_shared<const GroundSurface<D>>(bed);
+        sim_.terrain.set(std::move(bed), BoundaryTables<D>::terrain_wall(wall));
     }
     void set_stresses(const NamedValues& columns) override {
         if (auto* const stress = sim_.scheme().own_fields().deviatoric_stress)

@@ -33,7 +33,8 @@ public:
     /// Faces between which fluid stands though no particle fits, for all particles; after
     /// set_walls and before bind_points.
     virtual void set_faces(const NamedValues& columns) = 0;
-    /// Balls {radius}, or convex shapes {vertices, faces, samples}, which bodies name by index.
+    /// Balls {radius}, the ground {radius, ground}, or convex shapes {vertices, faces, samples},
+    /// which bodies name by index.
     virtual void add_shapes(const std::vector<NamedValues>& shapes) = 0;
     virtual void add_rigid_bodies(const NamedValues& columns) = 0;
     /// `body`: index of its rigid body for each particle in the order of adding, or -1; after

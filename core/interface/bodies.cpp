@@ -54,12 +54,17 @@ DeformableBody read_elastic_body(const NamedValues& table, const Array<const cha
 }
 
 template <int D>
-Shape<D> BodyTables<D>::shape(const NamedValues& table) {
+Shape<D> BodyTables<D>::shape(const NamedValues& table,
+                              const std::shared_ptr<const ContactSurface<D>>& ground) {
     Shape<D> shape;
     if (table.find("radius")) {
         Reader read(table, "shape");
-        read("radius", shape.radius);
+        bool is_ground = false;
+        read("radius", shape.radius), read("ground", is_ground, optional);
         read.finish();
+        if (is_ground && !ground) throw std::invalid_argument("shape: there is no terrain");
+        if (is_ground) shape.kind = ShapeKind::ground;
+        shape.enclose(ground);
         return shape;
     }
     ColumnReader column(table, "shape", ColumnReader::any_rows);
@@ -72,7 +77,7 @@ Shape<D> BodyTables<D>::shape(const NamedValues& table) {
         shape.radius += 0.5 * shape.thickness;
     }
     column.finish();
-    shape.enclose();
+    shape.enclose(ground);
     return shape;
 }
 

@@ -9,10 +9,10 @@
 
 namespace doseki {
 
-enum class ShapeKind : std::uint8_t { ball, convex, mesh };
+enum class ShapeKind : std::uint8_t { ball, convex, mesh, ground };
 
 /// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D
-/// a disc), what facets enclose, convex or not, or a sheet of facets.
+/// a disc), what facets enclose, convex or not, a sheet of facets, or the ground of a terrain.
 template <int D>
 struct Shape {
     ShapeKind kind = ShapeKind::ball;
@@ -22,11 +22,14 @@ struct Shape {
     Array<Vec<double, D>> samples;  // points of the surface that may touch another shape
     std::shared_ptr<const ContactSurface<D>> surface;  // that others touch; none of a ball
 
+    bool has_facets() const { return kind == ShapeKind::convex || kind == ShapeKind::mesh; }
     bool is_ball() const { return kind == ShapeKind::ball; }
 
-    /// Makes the surface; call once everything else is there.
-    void enclose() {
-        if (kind == ShapeKind::convex)
+    /// Makes the surface; call once everything else is there. `ground` is that of the run.
+    void enclose(const std::shared_ptr<const ContactSurface<D>>& ground) {
+        if (kind == ShapeKind::ground)
+            surface = ground;
+        else if (kind == ShapeKind::convex)
             surface = std::make_shared<const ConvexSurface<D>>(facets);
         else if (kind == ShapeKind::mesh)
             surface = std::make_shared<const MeshSurface<D>>(facets, thickness);

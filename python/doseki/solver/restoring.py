@@ -38,6 +38,7 @@ NOT_NEGATIVE = {
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
+BALL = 0  # the kind of a shape without sides
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
 # Infinite where nothing limits a step.
 MAY_BE_INFINITE = {"next_timestep"}
@@ -176,16 +177,16 @@ def _check_bodies(state: Arrays) -> None:
 
 def _check_contacts(state: Arrays) -> None:
     """Pairs of contact points, or of one and the convex body number -1 - b."""
-    facets, samples = (
-        state[name][state["body_shape"]] for name in ("shape_facets", "shape_sample_count")
+    kind, samples = (
+        state[name][state["body_shape"]] for name in ("shape_kind", "shape_sample_count")
     )
     a, b = state["contact_a"], state["contact_b"]
     if len(state["surface_point"]):  # the core knows how many points such surfaces have
         _expect(a >= 0, "contact_a", "is no point of a body")
         return
-    points = int(np.where(facets == 0, 1, samples).sum())
+    points = int(np.where(kind == BALL, 1, samples).sum())
     _expect((a >= 0) & (a < points), "contact_a", "is no point of a body")
-    _expect((b >= -int((facets > 0).sum())) & (b < points), "contact_b", "is no body")
+    _expect((b >= -int((kind != BALL).sum())) & (b < points), "contact_b", "is no body")
 
 
 def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
@@ -196,7 +197,7 @@ def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
         "motion": 4,
         "body_kind": 3,
         "body_shape": len(state["shape_radius"]),
-        "shape_kind": 3,
+        "shape_kind": 4,
         "body_material": materials,
         "body_named": bodies,
         "elastic_body": len(state["elastic_apart"]),

@@ -8,9 +8,11 @@ import numpy as np
 
 from ..record.fields import GRAIN_FIELDS
 from ..scenario.model import Scenario
+from ..scenario.tables.terrain.terrain import TERRAIN
 from ..scene.bodies import Bodies
-from ..scene.groups import Group
+from ..scene.groups import UPRIGHT, Group
 from .elastic_bodies import add_elastic_bodies
+from .placed import origin_of
 from .protocol import CoreSimulation, Simulation
 
 
@@ -24,8 +26,29 @@ def rigid_tables(
         for key, values in _columns(scenario, group, names, len(shapes)).items():
             columns.setdefault(key, []).append(values)
         shapes += [shape.table(scenario.dp) for shape in group.shapes]
+    velocity, spin = bodies.velocity, bodies.spin
+    if scenario.bed is not None:
+        for key, values in _ground_columns(scenario, names, len(shapes)).items():
+            columns[key].append(values)
+        shapes.append({"radius": 1.0, "ground": True})
+        velocity, spin = np.pad(velocity, ((0, 1), (0, 0))), np.pad(spin, ((0, 1), (0, 0)))
     table = {key: np.ascontiguousarray(np.concatenate(v)) for key, v in columns.items()}
-    return shapes, table | {"velocity": bodies.velocity, "spin": bodies.spin}
+    return shapes, table | {"velocity": velocity, "spin": spin}
+
+
+def _ground_columns(scenario: Scenario, names: list[str], shape: int) -> dict[str, np.ndarray]:
+    """The terrain as a fixed body, whose frame is that of the core."""
+    assert scenario.terrain is not None
+    return {
+        "shape": np.full(1, shape, np.int32),
+        "centre": origin_of(scenario)[None, :],
+        "orientation": UPRIGHT[None, :],
+        "mass": np.ones(1),
+        "inertia": np.eye(3)[None, :, :],
+        "material": np.full(1, scenario.material_names.index(scenario.terrain.material), np.int32),
+        "body": np.full(1, names.index(TERRAIN), np.int32),
+        "fixed": np.full(1, True),
+    }
 
 
 def _columns(

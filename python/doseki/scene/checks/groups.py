@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...scenario.model import Scenario
+from ...scenario.tables.terrain.terrain import TERRAIN
+from ..ground import ground_of
 from ..groups import Group, matrices
 from ..shapes import Ball, Convex, MeshShape
 
@@ -52,6 +54,7 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     for name, other, overlap, size in [
         *_overlaps(balls, blocks),
         *_with_meshes(balls, blocks, meshes),
+        *_with_ground(scenario, balls, blocks),
     ]:
         if {name, other} <= scenario.carried:
             continue  # as deep as contacts have let them
@@ -96,6 +99,21 @@ def _balls(group: Group) -> Iterator[_Ball]:
             centre = group.centre[group.shape == k]
             if len(centre):
                 yield _Ball(group.name, group.fixed, centre, shape.radius)
+
+
+def _with_ground(scenario: Scenario, balls: list[_Ball], blocks: list[_Block]) -> Iterator[Overlap]:
+    """What moves and lies in the ground of a terrain."""
+    if scenario.bed is None:
+        return
+    ground = ground_of(scenario.bed)
+    for ball in balls:
+        if not ball.fixed:
+            deepest = ball.radius - ground.height_above(ball.centre).min()
+            yield ball.name, TERRAIN, float(deepest), 2 * ball.radius
+    for block in blocks:
+        if not block.fixed:
+            deepest = -ground.height_above(block.samples).min()
+            yield block.name, TERRAIN, float(deepest), 2 * block.reach
 
 
 def _with_meshes(

@@ -36,7 +36,8 @@ class Release(ShapedBody):
     )
     polygons: Annotated[Polygons | None, Only(dim=3), Measured(LENGTH)] = Field(
         None,
-        description="several areas, each a list of rings (its edge, then holes) of corners [x, y], m",
+        description="several areas, each a list of rings (its edge, then holes) of corners "
+        "[x, y], m",
     )
     between: Annotated[Place | None, Only(dim=2), Measured(LENGTH)] = Field(
         None, description="2-D: where along x it begins and ends, m"
