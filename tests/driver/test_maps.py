@@ -9,6 +9,7 @@ import pytest
 from tests.run.channel import run_channel
 
 from doseki.errors import UserError
+from doseki.figures.plot import draw_run
 from doseki.geodata.raster import read_raster
 from doseki.record.reader import load
 from doseki.run.resume import resume_run
@@ -92,6 +93,13 @@ def test_the_maps_of_a_run(straight):
     assert total[2, 2] >= 0.9 * 1000 * 9.8 * 0.3
 
 
+def test_figures_have_the_maps(straight):
+    drawn = draw_run(straight)
+    assert straight / "maps/peak_depth.png" in drawn.pictures
+    assert any("deposit is not drawn" in note for note in drawn.notes)
+    assert drawn.failures == []
+
+
 def test_the_summary_tells_the_area(straight):
     said = load(straight).summary["runout"]
     depth = read_raster(straight / "maps/peak_depth.asc").values
@@ -169,9 +177,9 @@ def test_wrong_maps_are_refused(collapse, tmp_path, setting, word):
 
 
 def test_without_a_grid_maps_are_refused(collapse, tmp_path):
-    text = collapse.read_text().partition("cell =")[0]
+    text = collapse.read_text().partition("extent =")[0]
     (tmp_path / "none.toml").write_text(text)
-    with pytest.raises(UserError, match="has no terrain; give"):
+    with pytest.raises(UserError, match=r"maps\.extent is missing: the run has no terrain"):
         run_channel(tmp_path / "none.toml", tmp_path / "run")
 
 

@@ -92,7 +92,9 @@ def test_a_profile_along_a_path(slide, tmp_path, as_file):
         geometry = {"type": "LineString", "coordinates": points}
         path = str(tmp_path / "path.geojson")
         (tmp_path / "path.geojson").write_text(json.dumps(geometry))
-    write_pictures(slide, MapOptions(path=path))
+    said = write_pictures(slide, MapOptions(path=path))
+    (line,) = (line for line in said if line.startswith("along the path"))
+    assert line == "along the path: reached from 5 to 61 m, at 26.6 degrees"
     header, *rows = (slide / "maps/profile.csv").read_text().splitlines()
     assert header.startswith("distance [m],x [m],y [m],bed [m],peak_depth [m]")
     table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
