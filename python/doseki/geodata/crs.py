@@ -12,6 +12,7 @@ PROJECTED = (
     "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS",
 )  # fmt: skip
 FEET = re.compile(r'UNIT\[\s*"([^"]*(?:foot|feet|ft|yard|link|chain)[^"]*)"', re.IGNORECASE)
+MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG
 IN_DEGREES = re.compile(r"(?:^|:)(?:CRS84h?|EPSG:[^:]*:?(?:4326|4258|4979))$", re.IGNORECASE)
 
 
@@ -95,6 +96,3 @@ def same_crs(one: str | None, other: str | None) -> bool | None:
     except CRSError:
         return None
     return bool(first == second) or (codes[0] is not None and codes[0] == codes[1])
-
-
-MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG

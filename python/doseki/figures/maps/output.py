@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...errors import UserError
+from ...geodata.crs import same_crs
 from ...geodata.features import read_features
 from ...geodata.grid import Raster
 from ...measure.maps.files import read_maps, write_maps
@@ -51,7 +52,7 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
     run = load(directory)
     refuse_links(run.folder)
     maps, bed, said = _maps(run, options)
-    profile = None if options.path is None else along_path(maps, bed, _path(options.path))
+    profile = None if options.path is None else along_path(maps, bed, _path(options.path, bed.crs))
     with plain_text() as complaints:
         files = list(_draw(run, maps, bed))
         if profile is not None:
@@ -120,8 +121,8 @@ def _save(run: Run, name: str, figure: Figure) -> Path:
     return path
 
 
-def _path(given: str) -> np.ndarray:
-    """Points (n, 2) of a path: of the line in a file, or as they are given."""
+def _path(given: str, crs: str | None) -> np.ndarray:
+    """Points (n, 2) of a path on the map of `crs`: of the line in a file, or as they are given."""
     if not Path(given).exists():
         try:
             rows = [[float(number) for number in point.split(",")] for point in given.split()]
@@ -134,7 +135,13 @@ def _path(given: str) -> np.ndarray:
                 '5200000"'
             )
         return points
-    lines = read_features(given).lines
+    found = read_features(given)
+    if same_crs(found.crs, crs) is False:
+        raise UserError(
+            f"{given}: is in another coordinate reference system than the terrain; convert it with "
+            "ogr2ogr -t_srs"
+        )
+    lines = found.lines
     if len(lines) != 1:
         raise UserError(f"{given}: holds {len(lines)} lines; a profile goes along one")
     return lines[0].vertices
