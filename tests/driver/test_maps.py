@@ -8,12 +8,18 @@ import numpy as np
 import pytest
 from tests.run.channel import run_channel
 
+from doseki.assess.summary import summary_text
+from doseki.driver.maps import RunningMaps
+from doseki.driver.ranks import OneRank
 from doseki.errors import UserError
-from doseki.geodata.raster import read_raster
+from doseki.figures.plot import draw_run
+from doseki.geodata.raster import Raster, read_raster, write_raster
+from doseki.record.folder import RunFolder
 from doseki.record.reader import load
 from doseki.run.resume import resume_run
 from doseki.run.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
+from doseki.solver.build import filled_simulation
 
 WEST, SOUTH = 460_000, 5_200_000
 COLLAPSE = f"""\
@@ -92,6 +98,31 @@ def test_the_maps_of_a_run(straight):
     assert total[2, 2] >= 0.9 * 1000 * 9.8 * 0.3
 
 
+def test_the_summary_on_one_screen(collapse, tmp_path):
+    section = f"""
+[gauge.line]
+kind = "section"
+left = [{WEST + 0.4}, {SOUTH + 0.5}]
+right = [{WEST + 0.4}, {SOUTH}]
+interval = 0.01
+"""
+    file = tmp_path / "section.toml"
+    file.write_text(COLLAPSE + section)
+    run_channel(file, tmp_path / "run", "time_max=0.04")
+    run = load(tmp_path / "run")
+    lines = {line[:18].strip(): line[18:] for line in summary_text(run).splitlines()}
+    assert lines["section line"].startswith("flow from 0 s on, peak ")
+    assert lines["maps"].startswith(f"covered {run.summary['runout']['area']:.4g} m2; ")
+    assert run.gauges["line"]["discharge"][-1] > 0
+
+
+def test_figures_have_the_maps(straight):
+    drawn = draw_run(straight)
+    assert straight / "maps/peak_depth.png" in drawn.pictures
+    assert any("deposit is not drawn" in note for note in drawn.notes)
+    assert drawn.failures == []
+
+
 def test_the_summary_tells_the_area(straight):
     said = load(straight).summary["runout"]
     depth = read_raster(straight / "maps/peak_depth.asc").values
@@ -131,13 +162,41 @@ def test_the_steps_end_at_looks(collapse, straight, tmp_path):
     assert load(straight).summary["step"] > without["step"]
 
 
+def test_a_terrain_in_the_folder_gives_the_cells(collapse, tmp_path):
+    """Its heights too: the weight on a slope is less, and there is a run-out."""
+    scenario = load_scenario(collapse)
+    simulation, _, _ = filled_simulation(scenario)
+    simulation.start()
+    found = {}
+    for slope in (0.0, 1.0):
+        folder = tmp_path / f"slope-{slope}"
+        folder.mkdir()
+        terrain = Raster(np.zeros((20, 40)), WEST - 0.5, SOUTH - 0.25, 0.05, nodata=-1.0)
+        heights = np.tile(100 - slope * (terrain.x - WEST), (20, 1))
+        write_raster(folder / "terrain.asc", terrain.with_values(heights))
+        maps = RunningMaps(scenario, RunFolder(folder), OneRank())
+        maps.look(simulation)
+        maps.write(simulation)
+        found[slope] = read_raster(folder / "maps/peak_total_pressure.asc")
+    assert found[1.0].extent == pytest.approx((WEST, SOUTH, WEST + 1, SOUTH + 0.5))
+    assert found[1.0].cell == 0.1
+    ratio = found[1.0].values[2, 2] / found[0.0].values[2, 2]
+    assert ratio == pytest.approx(0.5)  # cos2 of 45 degrees
+    told = maps.runout  # across a water body of 0.3 x 0.3 m, whose slope is 45 degrees eastwards
+    assert told["distance"] == pytest.approx(np.hypot(0.2, 0.3))
+    assert told["top"][2] - told["toe"][2] == pytest.approx(0.2)
+    assert told["angle"] == pytest.approx(np.degrees(np.arctan2(0.2, np.hypot(0.2, 0.3))))
+
+
 def test_an_overwritten_run_leaves_no_maps(collapse, tmp_path):
     run_channel(collapse, tmp_path / "run", "time_max=0.01")
+    (tmp_path / "run/terrain.asc").write_text("of the earlier run")
     text = collapse.read_text().partition("[maps]")[0]
     (tmp_path / "none.toml").write_text(text)
     scenario = load_scenario(tmp_path / "none.toml", ["time_max=0.01"])
     run_scenario(scenario, tmp_path / "run", RunOptions(1, overwrite=True))
     assert not list((tmp_path / "run/maps").iterdir())
+    assert not (tmp_path / "run/terrain.asc").exists()
 
 
 def test_what_is_beside_the_map_is_told(collapse, tmp_path):
@@ -169,9 +228,9 @@ def test_wrong_maps_are_refused(collapse, tmp_path, setting, word):
 
 
 def test_without_a_grid_maps_are_refused(collapse, tmp_path):
-    text = collapse.read_text().partition("cell =")[0]
+    text = collapse.read_text().partition("extent =")[0]
     (tmp_path / "none.toml").write_text(text)
-    with pytest.raises(UserError, match="has no terrain; give"):
+    with pytest.raises(UserError, match=r"maps\.extent is missing: the run has no terrain"):
         run_channel(tmp_path / "none.toml", tmp_path / "run")
 
 

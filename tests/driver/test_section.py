@@ -115,6 +115,21 @@ def test_the_passage():
     assert found.speed == pytest.approx(SPEED)
 
 
+def test_a_film_is_no_depth():
+    """Beside the stream is a film a tenth of dp deep: it has area and discharge, not width."""
+
+    class WithFilm(Stream):
+        def sample(self, low, high):
+            found = super().sample(low, high)
+            film = found["position"][:, 1] - SOUTH < WIDE / 2
+            return found | {"mass": np.where(film, 0.02, 1.0) * found["mass"]}
+
+    both = record(section(WithFilm()), WithFilm(), [2.0])
+    assert both["width"][0] == pytest.approx(WIDE / 2, rel=0.06)
+    assert both["depth"][0] == pytest.approx(DEEP, rel=0.06)
+    assert both["area"][0] == pytest.approx(1.02 * WIDE / 2 * DEEP, rel=1e-6)
+
+
 def test_a_dry_section():
     stream = Stream()
     found = record(section(stream, x=500.0), stream, [0.0, 1.0])

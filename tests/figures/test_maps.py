@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,7 +93,9 @@ def test_a_profile_along_a_path(slide, tmp_path, as_file):
         geometry = {"type": "LineString", "coordinates": points}
         path = str(tmp_path / "path.geojson")
         (tmp_path / "path.geojson").write_text(json.dumps(geometry))
-    write_pictures(slide, MapOptions(path=path))
+    said = write_pictures(slide, MapOptions(path=path))
+    (line,) = (line for line in said if line.startswith("along the path"))
+    assert line == "along the path: reached from 5 to 61 m, at 26.6 degrees"
     header, *rows = (slide / "maps/profile.csv").read_text().splitlines()
     assert header.startswith("distance [m],x [m],y [m],bed [m],peak_depth [m]")
     table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
@@ -113,6 +116,22 @@ def test_a_file_of_several_lines_is_refused(slide, tmp_path):
     (tmp_path / "two.geojson").write_text(text)
     with pytest.raises(UserError, match="2 lines"):
         write_pictures(slide, MapOptions(path=str(tmp_path / "two.geojson")))
+
+
+def test_a_path_on_another_map_is_refused(slide, tmp_path):
+    pytest.importorskip("rasterio", reason="rasterio: pip install 'doseki[terrain]'")
+    write_raster(slide / "terrain.tif", replace(hill(), crs="EPSG:32633", driver="GTiff"))
+    points = [[WEST + 1, SOUTH + 24.5], [WEST + 79, SOUTH + 24.5]]
+    geometry = {"type": "LineString", "coordinates": points}
+    crs = {"type": "name", "properties": {"name": "EPSG:31287"}}
+    path = tmp_path / "path.geojson"
+    path.write_text(json.dumps({"type": "Feature", "geometry": geometry, "crs": crs}))
+    with pytest.raises(UserError, match="another coordinate reference system"):
+        write_pictures(slide, MapOptions(path=str(path)))
+    path.write_text(path.read_text().replace("31287", "32633"))
+    said = write_pictures(slide, MapOptions(path=str(path)))
+    assert any(line.startswith("along the path") for line in said)
+    assert read_raster(slide / "maps/peak_depth.tif").crs is not None
 
 
 def test_a_run_that_kept_its_maps_keeps_them(slide):

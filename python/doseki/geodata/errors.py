@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from types import ModuleType
 
 from ..errors import UserError
@@ -13,8 +14,6 @@ class GeodataError(UserError, ValueError):
 
 def needed(module: str, path: object, what: str) -> ModuleType:
     """A module of the extra `terrain`; raises GeodataError where it is not installed."""
-    from importlib import import_module
-
     try:
         return import_module(module)
     except ImportError:

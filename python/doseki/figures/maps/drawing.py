@@ -129,7 +129,8 @@ def draw_profile(profile: Mapping[str, np.ndarray], title: str) -> Figure:
         axes[0].legend(frameon=False, fontsize="small")
     depths, speeds = axes[-2:]
     depths.plot(distance, profile[PEAK_DEPTH.name], color="tab:blue", label="largest")
-    depths.plot(distance, profile[DEPOSIT.name], color="tab:brown", label="deposit")
+    if np.nansum(profile[DEPOSIT.name]) > 0:
+        depths.plot(distance, profile[DEPOSIT.name], color="tab:brown", label="deposit")
     depths.set_ylabel("depth (m)")
     depths.legend(frameon=False, fontsize="small")
     speeds.plot(distance, profile[PEAK_SPEED.name], color="tab:purple")

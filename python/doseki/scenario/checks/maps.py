@@ -8,10 +8,17 @@ MAX_LOOKS = 1e6
 
 
 def check_maps(scenario: Scenario) -> None:
-    """Raise UserError for maps that would be looked at too often, or of too small cells."""
+    """Raise UserError for maps that would be looked at too often, of too small cells or of none."""
     maps = scenario.maps
     if maps is None:
         return
+    if getattr(scenario, "terrain", None) is None:
+        for key in ("extent", "cell"):
+            if getattr(maps, key) is None:
+                raise scenario.where.error(
+                    ("maps",),
+                    f"maps.{key} is missing: the run has no terrain whose grid it could be",
+                )
     if maps.interval is not None and scenario.time_max / maps.interval > MAX_LOOKS:
         raise scenario.where.error(
             ("maps", "interval"),
