@@ -15,29 +15,38 @@ from ..record.units import unit_in
 from .trust.report import trust_lines
 
 WIDTH = 18  # of the column of names
+Row = tuple[str, str]
 
 
 def summary_text(run: Run) -> str:
     """What was run, how it went and the key results: about 20 lines."""
-    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run), _warnings(run)]
-    parts.append(_trust(run))
-    return "\n".join(line for part in parts for line in part)
+    rows = [*key_rows(run), *_warnings(run), *_trust(run)]
+    return "\n".join([title_of(run), "", *(f"{name:<{WIDTH}}{text}" for name, text in rows)])
 
 
-def _line(name: str, text: str) -> str:
-    return f"{name:<{WIDTH}}{text}"
+def title_of(run: Run) -> str:
+    """The title of the scenario, or the folder."""
+    return run.scenario.get("title") or str(run.directory)
 
 
-def _title(run: Run) -> Iterator[str]:
-    yield run.scenario.get("title") or str(run.directory)
-    yield ""
+def key_rows(run: Run) -> Iterator[Row]:
+    """How a run went and its key results: (name, text); an empty name goes on with the last one."""
+    for part in (_status, _computed, _state, _ledger, _results):
+        yield from part(run)
+
+
+def _line(name: str, text: str) -> Row:
+    return name, text
+
+
+def _status(run: Run) -> Iterator[Row]:
     if status := run.summary.get("status"):
         yield _line("status", status)
     if failure := run.summary.get("failure"):
         yield _line("failure", failure)
 
 
-def _computed(run: Run) -> Iterator[str]:
+def _computed(run: Run) -> Iterator[Row]:
     """How much was computed: particles, time, steps, wall time, memory."""
     said = run.summary
     scheme, dim = run.scenario.get("scheme", ""), run.scenario["dim"]
@@ -60,7 +69,7 @@ def duration_text(seconds: float) -> str:
     return f"{minutes:.0f} min {rest:.0f} s" if minutes else f"{rest:.1f} s"
 
 
-def _state(run: Run) -> Iterator[str]:
+def _state(run: Run) -> Iterator[Row]:
     """Particles and speeds at the end, by material."""
     if not len(run):
         return
@@ -76,7 +85,7 @@ def _state(run: Run) -> Iterator[str]:
             yield _line(f"  {name}", text)
 
 
-def _ledger(run: Run) -> Iterator[str]:
+def _ledger(run: Run) -> Iterator[Row]:
     """Mass: initial + entered = inside + left."""
     said = run.summary
     names = ("mass_initial", "mass_entered", "mass_left", "mass_inside")
@@ -89,7 +98,7 @@ def _ledger(run: Run) -> Iterator[str]:
     yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")
 
 
-def _results(run: Run) -> Iterator[str]:
+def _results(run: Run) -> Iterator[Row]:
     """The front and the windows, where a fluid flows."""
     flow = measure_flow(run)
     if flow is None:
@@ -112,12 +121,12 @@ def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
     return text
 
 
-def _warnings(run: Run) -> Iterator[str]:
+def _warnings(run: Run) -> Iterator[Row]:
     for warning in run.summary.get("warnings", ()):
         yield _line("warning", warning)
 
 
-def _trust(run: Run) -> Iterator[str]:
+def _trust(run: Run) -> Iterator[Row]:
     """The verdicts on the run, worst first."""
     for k, (word, text) in enumerate(trust_lines(run.trust) if run.trust else ()):
         yield _line("" if k else "trust", f"{word}: {text}")

@@ -75,6 +75,11 @@ class RunFolder:
         return self.path / "checkpoints"
 
     @property
+    def provenance(self) -> Path:
+        """With what the run was computed."""
+        return self.path / "provenance.json"
+
+    @property
     def failure(self) -> Path:
         """Why the run failed, for programs."""
         return self.path / "failure.json"
@@ -147,8 +152,9 @@ class RunFolder:
 
     def recorded(self) -> list[Path]:
         """What a run may have written while it went on."""
+        plain = (self.history, self.series, self.log, self.provenance)
         return [
-            *(file for file in (self.history, self.series, self.log) if file.exists()),
+            *(file for file in plain if file.exists()),
             *self.snapshot_files(),
             *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),

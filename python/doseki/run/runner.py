@@ -16,6 +16,7 @@ from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError
 from ..record.beginning import check_free
+from ..record.provenance import note_provenance
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
@@ -141,6 +142,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
     core.set_threads(threads)
     if not (options.threads or chosen_threads() or run.ranks.count > 1):
         run.threads = ThreadChoice(threads, core.set_threads)
+    run.ranks.on_root(lambda: note_provenance(run.folder, fresh, threads, run.ranks.count))
     run.ranks.working_in(directory, run.simulation)
     stop = StopRequests(directory)
     try:

@@ -1,0 +1,122 @@
+"""The report on a run: DIR/report.html."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..errors import UserError, one_line
+from ..figures.plot import draw_run
+from ..record.beginning import refuse_links
+from ..record.reader import Run, load
+from ..util.files import write_whole_text
+from .markup import Content, Markup, section, tag
+from .page import page, viewer
+from .parts.facts import facts, heading, title_of
+from .parts.findings import findings
+from .parts.gauges import gauges
+from .parts.ledger import ledgers
+from .parts.pictures import Album, gallery
+from .parts.provenance import provenance
+from .parts.tables import tables_of
+from .view.scene import Scene, make_scene
+from .view.terrain import Grid
+
+MB = 1e6
+DEFAULT_MB = 20.0
+LEAST_VIEW = 0.4  # of the size, kept for the view: pictures take no more than the rest
+NAME = "report.html"
+
+
+@dataclass
+class Report:
+    """The file that was written, its bytes, and what was left out of it."""
+
+    path: Path
+    size: int
+    notes: list[str] = field(default_factory=list)
+
+
+def write_report(
+    directory: str | Path, size_mb: float = DEFAULT_MB, output: Path | None = None
+) -> Report:
+    """Write the report on the run in `directory` into DIR/report.html, or `output`.
+
+    It is at most about `size_mb` 10^6 bytes: particles, then snapshots, of the view are left out
+    so that it is. Raises UserError where there is no run, or a file of it is damaged, and
+    ResourceError where the disk is full.
+    """
+    run = _checked(load(directory))
+    path = output or run.folder.path / NAME
+    if path.is_symlink():
+        raise UserError(f"{path}: is a symbolic link; nothing is written through it")
+    album = Album((1 - LEAST_VIEW) * size_mb * MB)
+    terrain = _terrain(run, album)
+    before, after = _before(run), _after(run, album)
+    rest = len(page("", [before, after], None).encode("utf-8"))
+    scene, note = _scene(run, size_mb * MB - rest, terrain)
+    notes = [*(scene.notes if scene else [note]), *album.notes]
+    shown: Content = viewer(scene) if scene else section("The flow", tag("p", note), name="view")
+    text = page(title_of(run), [*before, shown, *after, _end(album)], scene)
+    write_whole_text(path, text)
+    return Report(path, len(text.encode("utf-8")), notes)
+
+
+def _checked(run: Run) -> Run:
+    """A run whose plain files are what they should be; raises UserError for others."""
+    for name, found in (("summary", run.summary), ("trust", run.trust)):
+        if not isinstance(found, dict):
+            raise UserError(f"{getattr(run.folder, name)}: holds no table")
+    for key, kind in (("dim", int), ("time_max", (int, float)), ("dp", (int, float))):
+        if not isinstance(run.scenario.get(key), kind):
+            raise UserError(f"{run.folder.scenario}: {key} is missing or no number")
+    return run
+
+
+def _before(run: Run) -> list[Content]:
+    """What comes before the view."""
+    return [heading(run), facts(run)]
+
+
+def _after(run: Run, album: Album) -> list[Content]:
+    """What comes after it. Where a section fails, a sentence takes its place."""
+    folder = run.folder.path
+    makers: list[tuple[str, Callable[[], Markup | None]]] = [
+        ("trust", lambda: findings(run)),
+        ("ledgers", lambda: ledgers(run)),
+        ("figures", lambda: _figures(run, album)),
+        ("maps", lambda: gallery("Maps", album.folder(folder / "maps"), "maps")),
+        ("loads", lambda: tables_of(folder, "loads", "Loads", album)),
+        ("sections", lambda: tables_of(folder, "sections", "Sections", album)),
+        ("gauges", lambda: gauges(run, album)),
+        ("provenance", lambda: provenance(run)),
+    ]
+    return [make() for _, make in makers]
+
+
+def _figures(run: Run, album: Album) -> Markup | None:
+    """The figures of the run; where there are none yet, they are drawn."""
+    if len(run) and not any(run.folder.figures.glob("*.png")):
+        refuse_links(run.folder)
+        drawn = draw_run(run.folder.path)
+        album.notes += [one_line(f"{text}.") for text in drawn.failures]
+    return gallery("Figures", album.folder(run.folder.figures), "figures")
+
+
+def _terrain(run: Run, album: Album) -> Grid | None:
+    return None
+
+
+def _scene(run: Run, room: float, terrain: Grid | None) -> tuple[Scene | None, str]:
+    """The view, or why there is none."""
+    if not len(run):
+        return None, "The run has no snapshot yet."
+    return make_scene(run, room, terrain), ""
+
+
+def _end(album: Album) -> Content:
+    """What was left out."""
+    if not album.notes:
+        return None
+    return tag("footer", tag("h2", "Left out"), tag("ul", [tag("li", n) for n in album.notes]))
