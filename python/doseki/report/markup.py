@@ -51,11 +51,19 @@ def table(
     head: Sequence[Content], rows: Iterable[Sequence[Content]], caption: str = ""
 ) -> Markup:
     """A table that scrolls sideways where it is wide; cells that look like numbers go right."""
-    lines = [tag("tr", [_cell(cell) for cell in row]) for row in rows]
-    heads = tag("thead", tag("tr", [tag("th", cell, scope="col") for cell in head]))
+    body = [list(row) for row in rows]
+    lines = [tag("tr", [_cell(cell) for cell in row]) for row in body]
+    heads = tag("thead", tag("tr", [_head(cell, k, body) for k, cell in enumerate(head)]))
     title = tag("caption", caption) if caption else None
     return tag("div", tag("table", title, heads if head else None, tag("tbody", lines)),
                class_="scroll")  # fmt: skip
+
+
+def _head(cell: Content, column: int, rows: Sequence[Sequence[Content]]) -> Markup:
+    """The head of a column, which stands over its numbers where it has them."""
+    cells = [row[column] for row in rows if column < len(row) and row[column] != ""]
+    numbers = bool(cells) and all(map(_is_number, cells))
+    return tag("th", cell, scope="col", class_="number" if numbers else None)
 
 
 def _cell(cell: Content) -> Markup:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from ..figures.plot import draw_run
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..util.files import write_whole_text
+from ..util.foreign import readable
 from .markup import Content, Markup, section, tag
 from .page import page, viewer
 from .parts.facts import facts, heading, title_of
@@ -74,25 +75,37 @@ def _checked(run: Run) -> Run:
     return run
 
 
+Maker = Callable[[], Content]
+
+
+def _made(run: Run, makers: Mapping[str, Maker]) -> list[Content]:
+    """Sections by their names; raises UserError where a file of the run is not what it should be."""
+    made = []
+    for name, make in makers.items():
+        with readable(run.folder.path, f" for the section {name} of its report"):
+            made.append(make())
+    return made
+
+
 def _before(run: Run) -> list[Content]:
     """What comes before the view."""
-    return [heading(run), facts(run)]
+    return _made(run, {"title": lambda: heading(run), "summary": lambda: facts(run)})
 
 
 def _after(run: Run, album: Album) -> list[Content]:
-    """What comes after it. Where a section fails, a sentence takes its place."""
+    """What comes after it."""
     folder = run.folder.path
-    makers: list[tuple[str, Callable[[], Markup | None]]] = [
-        ("trust", lambda: findings(run)),
-        ("ledgers", lambda: ledgers(run)),
-        ("figures", lambda: _figures(run, album)),
-        ("maps", lambda: gallery("Maps", album.folder(folder / "maps"), "maps")),
-        ("loads", lambda: tables_of(folder, "loads", "Loads", album)),
-        ("sections", lambda: tables_of(folder, "sections", "Sections", album)),
-        ("gauges", lambda: gauges(run, album)),
-        ("provenance", lambda: provenance(run)),
-    ]
-    return [make() for _, make in makers]
+    makers: dict[str, Maker] = {
+        "trust": lambda: findings(run),
+        "ledgers": lambda: ledgers(run),
+        "figures": lambda: _figures(run, album),
+        "maps": lambda: gallery("Maps", album.folder(folder / "maps"), "maps"),
+        "loads": lambda: tables_of(folder, "loads", "Loads", album),
+        "sections": lambda: tables_of(folder, "sections", "Sections", album),
+        "gauges": lambda: gauges(run, album),
+        "provenance": lambda: provenance(run),
+    }
+    return _made(run, makers)
 
 
 def _figures(run: Run, album: Album) -> Markup | None:
@@ -112,7 +125,8 @@ def _scene(run: Run, room: float, terrain: Grid | None) -> tuple[Scene | None, s
     """The view, or why there is none."""
     if not len(run):
         return None, "The run has no snapshot yet."
-    return make_scene(run, room, terrain), ""
+    with readable(run.folder.snapshots, " for the view of its report"):
+        return make_scene(run, room, terrain), ""
 
 
 def _end(album: Album) -> Content:

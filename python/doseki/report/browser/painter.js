@@ -186,7 +186,7 @@ class Painter {
     this.resize(width, height);
     const { view, projection, near, far, back } = camera.matrices(width / height);
     const shared = { view, projection, flatness: camera.flat ? 1 : 0, size: this.scene.size, back,
-      low: camera.focus[0], high: camera.focus[1] };
+      low: this.scene.flowBox[0], high: this.scene.flowBox[1] };
     const { radius, swell, wallSwell } = this.scene;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target.frame);
     gl.viewport(0, 0, width, height);
@@ -195,8 +195,8 @@ class Painter {
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.colours);
     if (look.terrain) this.paintTerrain(shared, look);
-    if (look.walls) this.paintCloud("particles", this.walls, shared, { plain: [...look.wallColour, 1], largest: radius * wallSwell, hides: look.hides && !camera.flat ? 1 : 0 });
-    if (look.flow) this.paintCloud("particles", this.flow, shared, { plain: [0, 0, 0, 0], largest: radius * swell, hides: 0 });
+    if (look.walls) this.paintCloud("particles", this.walls, shared, { plain: [...look.wallColour, 1], largest: radius * wallSwell, roundness: 0.2, cuts: camera.up.map((v) => (look.hides && !camera.flat && Math.abs(v) < 0.7 ? 1 : 0)) });
+    if (look.flow) this.paintCloud("particles", this.flow, shared, { plain: [0, 0, 0, 0], largest: radius * swell, roundness: 0.55, cuts: [0, 0, 0] });
     if (look.bodies) this.paintBodies(shared, look.bodyColour);
     this.paintScreen({ near, far, background: look.background, strength: camera.flat ? 0 : 22 }, height);
   }

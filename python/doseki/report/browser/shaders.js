@@ -18,7 +18,7 @@ vec3 colourOf(int value) {
 
 const LIGHT = `
 uniform float flatness;      // 1: colours as they are
-uniform vec3 shadeColour;
+uniform float roundness;     // how much each particle is shaded as a ball
 vec3 lit(vec3 colour, vec3 normal, float strength) {
   float light = 0.5 + 0.5 * dot(normal, normalize(vec3(-0.45, 0.55, 0.70)));
   return colour * mix(1.0, 0.42 + 0.63 * light, strength * (1.0 - flatness));
@@ -32,14 +32,15 @@ layout(location = 1) in vec4 place;  // shares of the box; of the largest radius
 layout(location = 2) in uint value;
 ${COMMON}
 uniform vec3 size, back, low, high;
-uniform float largest, hides;
+uniform vec3 cuts;           // 1 for the axes along which walls are cut
+uniform float largest;
 out vec2 at;
 out vec3 centre;
 flat out float radius;
 flat out vec3 colour;
 bool isBefore(vec3 p) {
   for (int k = 0; k < 3; k++) {
-    if (abs(back[k]) > 0.2 && sign(back[k]) * (p[k] - (back[k] > 0.0 ? high[k] : low[k])) > 0.0) return true;
+    if (cuts[k] > 0.0 && abs(back[k]) > 0.2 && sign(back[k]) * (p[k] - (back[k] > 0.0 ? high[k] : low[k])) > 0.0) return true;
   }
   return false;
 }
@@ -50,7 +51,7 @@ void main() {
   colour = colourOf(int(value));
   centre = (view * vec4(p, 1.0)).xyz;
   gl_Position = projection * vec4(centre + vec3(corner * radius, 0.0), 1.0);
-  if (hides > 0.0 && isBefore(p)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (isBefore(p)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
 const PARTICLE_FRAGMENT = `${HEAD}
@@ -67,7 +68,7 @@ void main() {
   vec3 normal = vec3(at, sqrt(1.0 - r2));
   vec4 clip = projection * vec4(centre + radius * normal * (1.0 - flatness), 1.0);
   gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
-  pixel = vec4(lit(colour, normal, 0.55), 1.0);
+  pixel = vec4(lit(colour, normal, roundness), 1.0);
 }`;
 
 // Rigid balls: a great circle on each shows how it turns. Flat ones have a radius drawn.

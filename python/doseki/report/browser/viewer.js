@@ -13,7 +13,7 @@ class Viewer {
     this.camera = new Camera(scene);
     this.painter = new Painter(this.canvas, scene);
     this.moments = scene.frames.map(() => null); // once they are unpacked
-    this.frame = 0;
+    this.frame = scene.start;
     this.field = scene.fields[0];
     this.shown = Object.fromEntries(LAYERS.map((name) => [name, true]));
     this.hides = true;

@@ -29,5 +29,5 @@ def facts(run: Run) -> Markup | None:
     """The section of the summary."""
     about: Content = None
     if text := str(run.scenario.get("description", "")).strip():
-        about = tag("p", text, class_="about")
+        about = [tag("p", " ".join(part.split())) for part in text.split("\n\n")]
     return section("Summary", about, terms(key_rows(run)), name="summary")

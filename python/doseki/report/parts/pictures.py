@@ -15,6 +15,7 @@ from ...errors import UserError, one_line
 from ...util.foreign import read_bytes
 from ..markup import Content, Markup, section, tag
 
+WIDE = 1150  # pixels: a picture that is wider takes the whole width of the page
 WIDEST = 2000  # pixels: a picture that is wider is made smaller
 MOST_PIXELS = 60_000_000  # of a picture that is opened at all
 MOST_BYTES = 40 * 2**20  # of a file
@@ -42,11 +43,13 @@ class Album:
             return None
         self.room -= len(text)
         source = f"data:image/png;base64,{text}"
-        return tag("img", src=source, alt=name, width=str(width), height=str(height), loading="lazy")
+        size = {"width": str(width), "height": str(height)}
+        return tag("img", src=source, alt=name, class_="wide" if width > WIDE else None, **size)
 
     def folder(self, path: Path) -> list[Markup]:
-        """The PNG files of a folder as figures, by name."""
-        files = sorted(path.glob("*.png")) if path.is_dir() else []
+        """The PNG files of a folder as figures: an overview first, then by name."""
+        found = path.glob("*.png") if path.is_dir() else []
+        files = sorted(found, key=lambda file: (file.stem != "overview", file.name))
         if len(files) > MOST:
             self.notes.append(f"{len(files) - MOST} of {len(files)} pictures in {path.name}/ are left out.")
         return [made for file in files[:MOST] if (made := self._file(file)) is not None]

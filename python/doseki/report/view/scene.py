@@ -132,20 +132,37 @@ def _table(maker: SceneMaker) -> dict[str, Any]:
     if not up.any():
         up[box.dim - 1] = 1.0
     times = maker.run.times
-    apart = float(np.min(np.diff(times))) if len(times) > 1 else 1.0
     return {
         "dim": box.dim,
         "corner": box.corner.tolist(),
         "size": box.size.tolist(),
+        "flowBox": [end.tolist() for end in box.flow],
         "focus": [end.tolist() for end in box.focus],
         "up": up.tolist(),
         "axes": list("xyz"[: box.dim]),
-        "digits": int(np.clip(np.ceil(1e-9 - np.log10(max(apart, 1e-9))), 0, 8)),
+        "digits": _digits(times),
+        "start": 0,
         "radius": maker.packer.largest,
         "scale": scale(),
         "fields": [each.as_json() for each in maker.fields],
         "frames": [],
     }
+
+
+def _digits(times: np.ndarray) -> int:
+    """Digits after the point with which times, s, are told apart and look as they are."""
+    apart = float(np.median(np.diff(times))) if len(times) > 1 else 1.0
+    close = (n for n in range(9) if np.all(np.abs(np.round(times, n) - times) < 0.01 * apart))
+    return next(close, 9)
+
+
+def _liveliest(run: Run, times: Sequence[float]) -> int:
+    """The index of the moment with the most kinetic energy: with it the view begins."""
+    history = run.history
+    if "kinetic_energy" not in history or not len(history["time"]):
+        return 0
+    energy = np.interp(times, history["time"], history["kinetic_energy"])
+    return int(np.argmax(np.nan_to_num(energy)))
 
 
 def _add_walls(maker: SceneMaker, scene: Scene, walls: Thinning) -> int:
@@ -180,6 +197,8 @@ def _add_frames(
             block = shapes.block(snapshot, maker.box, maker.fields)
             frame["bodies"] = scene.add(f"bodies{number}", block)
         scene.table["frames"].append(frame)
+    times = [frame["time"] for frame in scene.table["frames"]]
+    scene.table["start"] = _liveliest(maker.run, times)
     return blocks
 
 

@@ -10,6 +10,7 @@ import numpy as np
 FEWEST_FRAMES = 40  # of a film that still moves smoothly; particles are thinned out then
 FEWEST_AT_ALL = 12  # where one particle in ten would be left
 SPARSE = 0.1
+MANY_PARTICLES = 100_000  # of a frame: with more of them, those that no one sees are left out
 MOST_PARTICLES = 600_000  # of a frame: more than a telephone draws
 CELL = 1.2  # spacings: a particle is hidden where all cells around its own hold others
 TRIES = 6
@@ -73,7 +74,7 @@ def thinned(
     """
     found = Thinning(all_frames)
     each, count = cost(found)
-    if in_space and (each * found.frames > most or count > MOST_PARTICLES):
+    if in_space and (each * found.frames > most or count > MANY_PARTICLES):
         found = replace(found, shell=True)
         each, count = cost(found)
     if each * found.frames > most:
