@@ -26,7 +26,13 @@ OPTIONS = (
 
 def _browse(page: Path, asked: str, *options: str, profile: Path) -> str:
     assert CHROMIUM
-    command = [CHROMIUM, *OPTIONS, f"--user-data-dir={profile}", *options, f"{page.as_uri()}#{asked}"]
+    command = [
+        CHROMIUM,
+        *OPTIONS,
+        f"--user-data-dir={profile}",
+        *options,
+        f"{page.as_uri()}#{asked}",
+    ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr[-2000:]
     return done.stdout

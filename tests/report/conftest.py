@@ -21,11 +21,13 @@ def block(sizes, start=(0.0, 0.0, 0.0)):
 
 def map_state(time):
     """Water that moves 1 m/s along x over a bed, and a cube that turns about z."""
-    water = block((8, 6, 5)) + [time, 0.0, 0.0]
+    water = block((8, 6, 5)) + np.array([time, 0.0, 0.0])
     bed = block((30, 6, 2), (0.0, 0.0, -0.2))
     cube = block((3, 3, 3), (-0.15, -0.15, -0.15))
     angle = time
-    turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+    turn = np.array(
+        [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
+    )
     centre = np.array([2.5, 0.3, 0.2])
     position = np.concatenate([water, bed, cube @ turn.T + centre]) + CORNER
     kind = np.repeat([0, 2, 1], [len(water), len(bed), len(cube)])

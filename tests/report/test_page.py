@@ -16,7 +16,7 @@ from doseki.record.writer import Recorder
 from doseki.report.markup import Markup, markup, table, tag
 from doseki.report.report import write_report
 
-EVIL = '</title><script>alert(1)</script><img src=x onerror=alert(2)>"\'&'
+EVIL = "</title><script>alert(1)</script><img src=x onerror=alert(2)>\"'&"
 VOID = {"meta", "img", "input", "br"}
 
 
@@ -82,7 +82,9 @@ def test_sections_come_in_order_and_only_where_there_is_something(flow_folder, m
     (flow_folder / "maps").mkdir()
     Image.new("RGB", (30, 20), "red").save(flow_folder / "maps" / "arrival_time.png")
     (flow_folder / "loads.csv").write_text("time [s],force_x [N]\n0.0,12.5\n1.0,-3.25e4\n")
-    (flow_folder / "sections.json").write_text('{"gorge": {"peak": 1.5}, "rows": [{"a": 1}, {"b": "<i>"}]}')
+    (flow_folder / "sections.json").write_text(
+        '{"gorge": {"peak": 1.5}, "rows": [{"a": 1}, {"b": "<i>"}]}'
+    )
     (flow_folder / "gauges").mkdir()
     page = page_of(flow_folder)
     names = [given["id"] for given, _ in page.all("section")]
@@ -111,11 +113,15 @@ def test_nothing_is_fetched(map_run, page_of):
     page = page_of(map_run)
     for name, given, _ in page.elements:
         for key in ("src", "href", "srcset", "action", "data", "poster"):
-            assert given.get(key, "data:").startswith("data:image/png;base64,") or key not in given, name
+            assert (
+                given.get(key, "data:").startswith("data:image/png;base64,") or key not in given
+            ), name
         assert not any(key.startswith("on") or key == "style" for key in given)
     text = (map_run / "report.html").read_text(encoding="utf-8")
     rest = re.sub(r"base64,[\w+/=]+", "", text).replace("http://www.w3.org/2000/svg", "")
-    assert not re.search(r"https?://|//[a-z]+\.|@import|url\(|\bfetch\(|XMLHttpRequest|WebSocket", rest)
+    assert not re.search(
+        r"https?://|//[a-z]+\.|@import|url\(|\bfetch\(|XMLHttpRequest|WebSocket", rest
+    )
     (policy,) = [
         given["content"]
         for given, _ in page.all("meta")
@@ -129,15 +135,19 @@ def test_nothing_is_fetched(map_run, page_of):
 def test_what_a_file_says_is_text(tmp_path, page_of):
     text = SCENARIO.format(dim=2, zeros="").replace('"synthetic"', json.dumps(EVIL))
     materials, bodies = (EVIL, "basalt", "aluminium"), (f"</script>{EVIL}", "grain", "bed")
-    recorder = Recorder(tmp_path / "run", text + f"description = {json.dumps(EVIL)}\n", materials, bodies, 2)
+    recorder = Recorder(
+        tmp_path / "run", text + f"description = {json.dumps(EVIL)}\n", materials, bodies, 2
+    )
     recorder.snapshot(random_state(20, 2), time=0.0, step=0, dt=0.1)
     recorder.history(history_row(0.0))
     recorder.close({"status": "done", "warnings": [EVIL]})
     folder = tmp_path / "run"
     check = {"name": EVIL, "value": 1.0, "limits": [1, 2], "verdict": "bad", "remedy": EVIL}
     (folder / "trust.json").write_text(json.dumps({"verdict": "bad", "checks": [check]}))
-    (folder / "provenance.json").write_text(json.dumps({"runs": [{"doseki": EVIL, "command": [EVIL]}]}))
-    (folder / "loads.csv").write_text(f'{EVIL.replace(chr(34), "")},b\n1,2\n')
+    (folder / "provenance.json").write_text(
+        json.dumps({"runs": [{"doseki": EVIL, "command": [EVIL]}]})
+    )
+    (folder / "loads.csv").write_text(f"{EVIL.replace(chr(34), '')},b\n1,2\n")
     page = page_of(folder)
     scripts = page.all("script")
     types = [given.get("type") for given, _ in scripts]
@@ -174,7 +184,10 @@ def test_the_inputs_are_named_with_their_digests(flow_folder, page_of):
 
 def test_markup_escapes_all_but_itself():
     assert markup(["<", None, Markup("<b>"), ["&"]]) == "&lt;<b>&amp;"
-    assert tag("p", "a\x00b", title='"', hidden=True, id=None) == '<p title="&quot;" hidden>a\ufffdb</p>'
+    assert (
+        tag("p", "a\x00b", title='"', hidden=True, id=None)
+        == '<p title="&quot;" hidden>a\ufffdb</p>'
+    )
     made = Page(table(["a", "b"], [("x", "1.5"), ("y", "-2e3")]))
     assert [given.get("class") for given, _ in made.all("td")] == [None, "number"] * 2
     assert [given.get("class") for given, _ in made.all("th")] == [None, "number"]

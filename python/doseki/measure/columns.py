@@ -8,8 +8,8 @@ import numpy as np
 def column_depth(position: np.ndarray, volume: np.ndarray, cell: float) -> np.ndarray:
     """Depth (N,), m, of the flow where each particle is, along the last axis.
 
-    It is the volume of the particles `position` (N, dim), m, of `volume` (N,), m3 (2-D: m2), in the
-    square cell of side `cell`, m, over the area of that cell: what pores and gaps hold is not in it.
+    It is the volume of the particles `position` (N, dim), m, of `volume` (N,), m3 (2-D: m2), in
+    the square cell of side `cell`, m, over the area of that cell, without pores and gaps.
     """
     if not len(position):
         return np.zeros(0)

@@ -35,7 +35,7 @@ def _printable(text: str) -> str:
 
 
 def tag(name: str, /, *content: Content, **attributes: str | bool | None) -> Markup:
-    """An element; of attributes `class_` is "class", `data_x` "data-x", True one without a value."""
+    """An element; the attribute `class_` is "class", `data_x` "data-x", True is one alone."""
     given = ""
     for key, value in attributes.items():
         if value is None or value is False:
@@ -47,9 +47,7 @@ def tag(name: str, /, *content: Content, **attributes: str | bool | None) -> Mar
     return Markup(f"<{name}{given}>{markup(content)}</{name}>")
 
 
-def table(
-    head: Sequence[Content], rows: Iterable[Sequence[Content]], caption: str = ""
-) -> Markup:
+def table(head: Sequence[Content], rows: Iterable[Sequence[Content]], caption: str = "") -> Markup:
     """A table that scrolls sideways where it is wide; cells that look like numbers go right."""
     body = [list(row) for row in rows]
     lines = [tag("tr", [_cell(cell) for cell in row]) for row in body]

@@ -72,8 +72,13 @@ def viewer(scene: Scene) -> Markup:
             "div",
             tag("div", picture, overlay, class_="stage"),
             tag("div", times, class_="times"),
-            tag("div", colour, part("span", "layers", class_="layers"), tag("span", views),
-                class_="tools"),  # fmt: skip
+            tag(
+                "div",
+                colour,
+                part("span", "layers", class_="layers"),
+                tag("span", views),
+                class_="tools",
+            ),
             id="viewer",
             class_="flat" if scene.table["dim"] == 2 else None,
         ),
@@ -83,9 +88,7 @@ def viewer(scene: Scene) -> Markup:
     )
 
 
-def _part(
-    name: str, part: str, /, *content: Content, **attributes: str | None
-) -> Markup:
+def _part(name: str, part: str, /, *content: Content, **attributes: str | None) -> Markup:
     """An element that the script finds by the name `part`."""
     return tag(name, *content, data_part=part, **attributes)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..assess.summary import title_of
 from ..errors import UserError, one_line
 from ..figures.plot import draw_run
 from ..record.beginning import refuse_links
@@ -14,7 +15,7 @@ from ..util.files import write_whole_text
 from ..util.foreign import readable
 from .markup import Content, Markup, section, tag
 from .page import page, viewer
-from .parts.facts import facts, heading, title_of
+from .parts.facts import facts, heading
 from .parts.findings import findings
 from .parts.gauges import gauges
 from .parts.ledger import ledgers
@@ -79,7 +80,7 @@ Maker = Callable[[], Content]
 
 
 def _made(run: Run, makers: Mapping[str, Maker]) -> list[Content]:
-    """Sections by their names; raises UserError where a file of the run is not what it should be."""
+    """Sections by their names; raises UserError where a file is not what it should be."""
     made = []
     for name, make in makers.items():
         with readable(run.folder.path, f" for the section {name} of its report"):

@@ -131,7 +131,18 @@ class Viewer {
     if (walls) painter.setParticles(painter.walls, walls);
     painter.setColours(new Uint8Array(field.table.buffer));
     if (bodies) painter.setBodies(...placedBodies(bodies, this.scene.bodies, this.meshes, this.scene.size, bodies.values[field.name]));
-    this.counts = { flow: flow.count, bodies: bodies ? bodies.there.reduce((sum, on) => sum + on, 0) : 0 };
+    this.counts = { flow: flow.count, extent: this.extentOf(flow), bodies: bodies ? bodies.there.reduce((sum, on) => sum + on, 0) : 0 };
+  }
+
+  // Lower and upper corner of particles, in map coordinates.
+  extentOf({ place }) {
+    const { corner, size, dim } = this.scene, low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < place.length; i++) {
+      const axis = i % 4;
+      if (place[i] < low[axis]) low[axis] = place[i];
+      if (place[i] > high[axis]) high[axis] = place[i];
+    }
+    return [low, high].map((end) => end.slice(0, dim).map((v, k) => corner[k] + (v / 65535) * size[k]));
   }
 
   setPlaying(playing) {

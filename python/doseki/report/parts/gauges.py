@@ -26,7 +26,9 @@ def gauges(run: Run, album: Album) -> Markup | None:
     if len(wanted) > MOST:
         album.notes.append(f"{len(wanted) - MOST} of {len(wanted)} gauges are left out.")
     figures = list(_figures(run, wanted[:MOST], album))
-    return section("Gauges", tag("div", figures, class_="gallery"), name="gauges") if figures else None
+    return (
+        section("Gauges", tag("div", figures, class_="gallery"), name="gauges") if figures else None
+    )
 
 
 def _figures(run: Run, names: list[str], album: Album) -> Iterator[Markup]:

@@ -51,7 +51,9 @@ class Album:
         found = path.glob("*.png") if path.is_dir() else []
         files = sorted(found, key=lambda file: (file.stem != "overview", file.name))
         if len(files) > MOST:
-            self.notes.append(f"{len(files) - MOST} of {len(files)} pictures in {path.name}/ are left out.")
+            self.notes.append(
+                f"{len(files) - MOST} of {len(files)} pictures in {path.name}/ are left out."
+            )
         return [made for file in files[:MOST] if (made := self._file(file)) is not None]
 
     def _file(self, file: Path) -> Markup | None:

@@ -43,7 +43,10 @@ def _rows(entry: Mapping[str, Any]) -> Iterator[tuple[str, Content]]:
     if isinstance(command, list):
         yield "command", tag("code", shlex.join(map(str, command)))
     yield "doseki", f"{entry.get('doseki', '?')}, commit {entry.get('commit') or 'not known'}"
-    yield "core", f"{entry.get('core', '?')}, {entry.get('threads')} threads, {entry.get('ranks')} ranks"
+    yield (
+        "core",
+        f"{entry.get('core', '?')}, {entry.get('threads')} threads, {entry.get('ranks')} ranks",
+    )
     if isinstance(libraries, dict):
         named = ", ".join(f"{name} {version}" for name, version in libraries.items())
         yield "libraries", f"Python {entry.get('python', '?')}, {named}"

@@ -22,18 +22,17 @@ DIGITS = 5
 
 
 def tables_of(folder: Path, stem: str, title: str, album: Album) -> Markup | None:
-    """The section of STEM.csv, STEM.json and the same in a folder STEM/, with its pictures.
+    """The section of STEM.csv, or STEM.json without it, and of a folder STEM/ with its pictures.
 
     A file that cannot be read is left out, with a note.
     """
-    files = [folder / f"{stem}{ending}" for ending in (".csv", ".json")]
+    both = [folder / f"{stem}{ending}" for ending in (".csv", ".json")]
+    files = [file for file in both if file.exists()][:1]
     inside = folder / stem
     if inside.is_dir():
         files += sorted(f for f in inside.iterdir() if f.suffix in (".csv", ".json"))
     shown: list[Content] = []
     for file in files:
-        if not file.exists():
-            continue
         try:
             shown.append([tag("h3", file.name), list(_shown(file))])
         except UserError as error:
@@ -74,7 +73,9 @@ def _value(value: Any, depth: int) -> Iterator[Content]:
         rows = [[_text(each.get(name, "")) for name in names] for each in value]
         yield from _rows([names, *rows])
     elif isinstance(value, dict) and depth < DEEPEST:
-        plain = {str(k): _cell(_text(v)) for k, v in value.items() if not isinstance(v, dict | list)}
+        plain = {
+            str(k): _cell(_text(v)) for k, v in value.items() if not isinstance(v, dict | list)
+        }
         if plain:
             yield terms(plain)
         for key, inner in value.items():
@@ -95,4 +96,6 @@ def _cell(text: str) -> str:
         number = float(text)
     except ValueError:
         return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
-    return f"{number:.{DIGITS}g}" if math.isfinite(number) and not text.isdigit() else text[:LONGEST]
+    return (
+        f"{number:.{DIGITS}g}" if math.isfinite(number) and not text.isdigit() else text[:LONGEST]
+    )

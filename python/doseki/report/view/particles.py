@@ -36,7 +36,9 @@ class ParticlePacker:
         first = samples[0]
         self._fluid = np.isin(first.material_names, sorted(fluid_names(run)))
         self._rank = _ranks(samples)
-        self.largest = max((float(np.max(self._radius(s), initial=0.0)) for s in samples), default=0)
+        self.largest = max(
+            (float(np.max(self._radius(s), initial=0.0)) for s in samples), default=0
+        )
         self.largest = self.largest or 1e-3 * float(box.size.max())
 
     def flow(self, snapshot: Snapshot, thinning: Thinning, as_bodies: np.ndarray) -> Block:
@@ -79,5 +81,7 @@ def _ranks(samples: Sequence[Snapshot]) -> np.ndarray:
     density = np.zeros(count)
     for snapshot in samples:
         for material in np.unique(snapshot.stored("material")):
-            density[material] = np.median(snapshot["density"][snapshot.stored("material") == material])
+            density[material] = np.median(
+                snapshot["density"][snapshot.stored("material") == material]
+            )
     return (1 + np.argsort(np.argsort(density))) / (count + 2)

@@ -14,7 +14,7 @@ from ...record.quantities import CATEGORIES
 from ...record.reader import Run, Snapshot
 from ...scene.groups import matrices
 from .box import Box
-from .coding import packed, small, wide
+from .coding import packed, wide
 from .colours import SPEED, Field
 from .particles import Block
 
@@ -76,7 +76,7 @@ class RigidShapes:
             "body": np.array([names[str(name)] for name in table["body"][rows]]),
         }
         colours = [each.share(known[each.name]) for each in fields if each.name in KNOWN]
-        planes = [*wide(np.nan_to_num(position)).T, *turn.T, small(there), *colours]
+        planes = [*wide(np.nan_to_num(position)).T, *turn.T, there.astype(np.uint8), *colours]
         return Block(count, packed(planes), count)
 
 

@@ -202,9 +202,7 @@ def _add_frames(
     return blocks
 
 
-def _left_out(
-    run: Run, thinning: Thinning, blocks: Sequence[Block], walls: Thinning
-) -> list[str]:
+def _left_out(run: Run, thinning: Thinning, blocks: Sequence[Block], walls: Thinning) -> list[str]:
     """What the view leaves out, in sentences."""
     notes = []
     if thinning.frames < len(run):

@@ -18,7 +18,7 @@ TRIES = 6
 
 @dataclass(frozen=True)
 class Thinning:
-    """`frames` snapshots of a run; all particles, or those of the `shell`, or a `share` of these."""
+    """`frames` snapshots; all particles, or those of the `shell`, or a `share` of these."""
 
     frames: int
     shell: bool = False
@@ -65,7 +65,7 @@ def hidden(position: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def thinned(
-    all_frames: int, in_space: bool, most: int, cost: Callable[[Thinning], tuple[float, int]]
+    all_frames: int, in_space: bool, most: float, cost: Callable[[Thinning], tuple[float, int]]
 ) -> Thinning:
     """What fits into `most` bytes.
 

@@ -1,0 +1,87 @@
+"""The view in a browser: it is drawn, it follows what it is asked for, and it is true to scale."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.record.reader import load
+from doseki.report.report import write_report
+
+from .browser import needs_browser, picture_of, state_of
+
+pytestmark = [needs_browser, pytest.mark.minutes]
+YELLOW, VIOLET = (253, 231, 37), (68, 1, 84)  # the ends of the colour scale
+
+
+def near(picture, colour, by=45):
+    """Number of pixels of about a colour."""
+    return int(np.sum(np.abs(picture - colour).max(axis=2) < by))
+
+
+def changed(a, b):
+    """Number of pixels that differ."""
+    return int(np.sum(np.abs(a - b).max(axis=2) > 30))
+
+
+@pytest.fixture
+def page(map_run):
+    """The report on the run on a map."""
+    return write_report(map_run).path
+
+
+def test_the_view_says_what_it_shows(page, map_run, tmp_path):
+    run = load(map_run)
+    state = state_of(page, "field=pressure&frame=3", tmp_path / "profile")
+    assert state["ready"]
+    assert (state["field"], state["frame"], state["frames"]) == ("pressure", 3, 5)
+    assert state["time"] == pytest.approx(0.75)
+    assert (state["flow"], state["bodies"], state["walls"]) == (240, 1, 360)
+    snapshot = run[3]
+    water = snapshot["position"][~snapshot["fixed"] & (snapshot["grain"] < 0)]
+    assert np.allclose(state["extent"], [water.min(axis=0), water.max(axis=0)], rtol=0, atol=5e-5)
+    assert 460000 < state["target"][0] < 460003
+    assert state["high"] == pytest.approx(load(map_run)[0]["pressure"].max(), rel=0.2)
+
+
+def test_colours_and_places_follow_what_is_asked_for(page, tmp_path):
+    asked = (
+        "field=speed&frame=0",
+        "field=material&frame=0",
+        "field=speed&frame=4",
+        "field=speed&frame=0&zoom=3",
+    )
+    speed, material, later, closer = (
+        picture_of(page, text, tmp_path / f"profile{k}") for k, text in enumerate(asked)
+    )
+    assert near(speed, YELLOW) > 150
+    assert near(speed, VIOLET) > 300
+    for other in (material, later, closer):
+        assert changed(speed, other) > 3000
+    water_blue = (49, 130, 189)
+    assert near(material, water_blue, 60) > near(speed, water_blue, 60) + 2000
+
+
+def test_a_flat_run_is_drawn_face_on_in_place(flow_folder, tmp_path):
+    page = write_report(flow_folder).path
+    state = state_of(page, "field=body&frame=0", tmp_path / "profile")
+    assert state["dim"] == 2
+    assert state["legend"] == ["sea", "grain", "bed"]
+    first, last = (
+        picture_of(page, f"field=material&frame={k}", tmp_path / f"p{k}") for k in (0, 12)
+    )
+    assert changed(first, last) > 800
+
+
+def test_names_that_are_programs_do_not_run(tmp_path, record_run):
+    folder = tmp_path / "run"
+    record_run(folder)[0].close(
+        {"status": "done", "warnings": ["<script>document.title='ran'</script>"]}
+    )
+    page = write_report(folder).path
+    text = page.read_text(encoding="utf-8")
+    # Even a script that gets into the page is refused: its digest is not in the policy.
+    page.write_text(
+        text.replace("</main>", "</main><script>document.body.innerHTML=''</script>"), "utf-8"
+    )
+    assert state_of(page, "", tmp_path / "profile")["ready"]
