@@ -8,6 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..measure.flow import Flow, WindowFlow, measure_flow
+from ..measure.hydrographs import passage
+from ..measure.maps.runout import Runout, runout_lines
 from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
@@ -31,7 +33,7 @@ def title_of(run: Run) -> str:
 
 def key_rows(run: Run) -> Iterator[Row]:
     """How a run went and its key results: (name, text); an empty name goes on with the last one."""
-    for part in (_status, _computed, _state, _ledger, _results):
+    for part in (_status, _computed, _state, _ledger, _results, _sections, _runout):
         yield from part(run)
 
 
@@ -119,6 +121,31 @@ def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
     if entry.grain_count[k]:
         text += f"; {entry.grain_count[k]} grains, mean speed {entry.grain_speed[k]:.3g} m/s"
     return text
+
+
+def _sections(run: Run) -> Iterator[Row]:
+    """What passed the sections."""
+    for name, table in run.scenario.get("gauge", {}).items():
+        record = run.gauges.get(name)
+        if table.get("kind") != "section" or record is None or not len(record["time"]):
+            continue
+        found = passage(record)
+        text = "nothing yet"
+        if found.arrival is not None:
+            text = (
+                f"flow from {found.arrival:.3g} s on, peak {found.peak:.3g} m3/s at"
+                f" {found.peak_time:.3g} s, {found.volume:.3g} m3 passed, depth up to"
+                f" {found.depth:.3g} m, speed up to {found.speed:.3g} m/s"
+            )
+        yield _line(f"section {name}", text)
+
+
+def _runout(run: Run) -> Iterator[Row]:
+    """How far the flow went, where the run kept maps."""
+    said = run.summary.get("runout")
+    if said:
+        for k, line in enumerate(runout_lines(Runout(**said))):
+            yield _line("" if k else "maps", line)
 
 
 def _warnings(run: Run) -> Iterator[Row]:

@@ -9,7 +9,7 @@ import typer
 
 from .. import __version__
 from .project import bench, list_scenarios, new, validate
-from .results import census, export, plot, report
+from .results import census, export, maps, plot, report
 from .simulate import check, explain, resume, run
 from .studies import compare, trust
 
@@ -54,6 +54,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "report": report,
     "compare": compare,
     "census": census,
+    "maps": maps,
     "export": export,
     "list": list_scenarios,
     "new": new,

@@ -106,6 +106,34 @@ def census(
         typer.echo(line)
 
 
+def maps(
+    directory: Directory,
+    cell: Annotated[
+        float | None,
+        typer.Option(
+            parser=number(1e-12), metavar="M", help="Side of cells.", show_default="the terrain's"
+        ),
+    ] = None,
+    extent: Annotated[
+        tuple[float, float, float, float] | None,
+        typer.Option(
+            metavar="WEST SOUTH EAST NORTH", help="What is mapped, m.", show_default="all terrain"
+        ),
+    ] = None,
+    path: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE|POINTS", help='Also a profile along a line: a file, or "x,y x,y ...".'
+        ),
+    ] = None,
+) -> None:
+    """Draw maps of a 3-D run into DIR/maps: largest depth, speed, pressure, arrival, deposit."""
+    from ..figures.maps.output import MapOptions, write_pictures
+
+    for line in write_pictures(directory, MapOptions(cell, extent, path)):
+        typer.echo(line)
+
+
 def export(
     directory: Directory,
     vtu: Annotated[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -14,6 +15,7 @@ from ..solver.rigid_bodies import grain_table
 from ..util.finding import Finding
 from .checkpoint import Checkpoint, CheckpointFolder, Position
 from .gauges import GaugeReader, build_gauges
+from .maps import RunningMaps
 from .means import Means, build_means
 from .ranks import OneRank
 from .rewind import Rewind
@@ -71,7 +73,6 @@ class ActiveRun:
         self.simulation = simulation
         self.recorder = recorder
         self.body_names = body_names
-        self.warnings = warnings
         self.ranks = ranks
         self.folder = RunFolder(recorder.directory)
         self.checkpoints = CheckpointFolder(self.folder.checkpoints)
@@ -86,6 +87,8 @@ class ActiveRun:
         ]
         readers = [gauge for gauge, _ in self.gauges]
         self.sensors, self.means = build_sensors(readers), build_means(readers)
+        self.maps = RunningMaps(scenario, self.folder, ranks) if scenario.maps else None
+        self.warnings = [*warnings, *(self.maps.findings if self.maps else ())]
         self._started = time.perf_counter()
 
     @property
@@ -136,7 +139,8 @@ class ActiveRun:
         now = {"wall_seconds": self.wall_seconds, "sensors": sensors}
         position = Position(**vars(self.position) | now)
         names = self.scenario.material_names, self.body_names
-        return Checkpoint(self.simulation.checkpoint(), position, *names)
+        maps = self.maps.state if self.maps else {}
+        return Checkpoint(self.simulation.checkpoint(), position, *names, maps)
 
     def write_checkpoint(self, clock: CheckpointClock | None = None) -> None:
         """Put the state safely on the disk, and `clock` forward if it was that which said so."""
@@ -158,6 +162,7 @@ class ActiveRun:
     def limit_at(self, simulated: float) -> float:
         """The limit that steps have at a simulated time: the next snapshot or sample."""
         times = [self.outputs, *(times for _, times in self.gauges)]
+        times += [self.maps.times] if self.maps else []
         limit = min(each.after(simulated) for each in times)
         return min(limit, self.scenario.time_max)
 
@@ -171,6 +176,8 @@ class ActiveRun:
         self._follow()
         for gauge, _ in self.gauges:
             self.record_gauge(gauge)
+        if self.maps:
+            self.maps.look(self.simulation)
         self.write_checkpoint()
 
     @property
@@ -178,13 +185,15 @@ class ActiveRun:
         """What remembers something of the time before, by name of the gauge."""
         return {**self.sensors, **self.means}
 
-    def go_on_from(self, position: Position) -> None:
+    def go_on_from(self, checkpoint: Checkpoint) -> None:
         """Stand in the record where a checkpoint did; raises ValueError for one of another run."""
-        self.position = position
+        self.position = position = checkpoint.position
         if set(position.sensors) != set(self._with_memory):
             raise ValueError("the gauges with filter_hz or means are not those of its checkpoint")
         for name, each in self._with_memory.items():
             each.state = position.sensors[name]
+        if self.maps:
+            self.maps.go_on_from(checkpoint.maps)
 
     def advance(self, clock: CheckpointClock, progress: Progress, stop: StopRequests) -> bool:
         """Steps to the end, or to the first look after a stop request; true if it came to the end.
@@ -205,12 +214,19 @@ class ActiveRun:
         if stopped:
             self.record_snapshot()
             self.record_history()
+        self.write_maps()
         return not stopped
+
+    def write_maps(self) -> None:
+        """Write the maps of the run so far, if it has any."""
+        if self.maps:
+            self.maps.write(self.simulation)
 
     def _burst(self, steps: int, pause: float) -> int:
         """Steps and records; returns how many steps to take next time."""
         simulation, limit = self.simulation, self.limit_at(self.simulation.time)
         samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
+        look = self.maps.times.after(simulation.time) if self.maps else math.inf
         started, processor, first = time.perf_counter(), time.process_time(), simulation.steps
         pause = min(limit, pause, self.position.next_history)
         self._step(limit, pause, steps)
@@ -223,6 +239,8 @@ class ActiveRun:
         for gauge, planned in samples:
             if self.outputs.is_due(simulation.time, planned):
                 self.record_gauge(gauge)
+        if self.maps and self.outputs.is_due(simulation.time, look):
+            self.maps.look(simulation)
         if simulation.time >= min(self.position.next_history, self.scenario.time_max):
             self.record_history()
         return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))

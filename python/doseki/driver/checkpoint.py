@@ -24,6 +24,7 @@ VERSION = 3
 KEPT = 2  # files; the older one serves where the newer one is damaged
 DIGEST_BYTES = 64
 AROUND_STATE = "doseki"  # JSON, as bytes
+MAP = "map_"  # before the names of arrays that are not of the core
 
 
 Count = Annotated[int, Field(ge=0, le=2**53)]
@@ -52,6 +53,7 @@ class Checkpoint:
     position: Position
     material_names: list[str]
     body_names: list[str]
+    maps: dict[str, np.ndarray] = field(default_factory=dict)  # state of measure.maps.peaks
 
     @property
     def time(self) -> float:
@@ -98,7 +100,8 @@ def to_bytes(checkpoint: Checkpoint) -> memoryview:
         }
         # No attribute, which holds 64 kB at most.
         file[AROUND_STATE] = np.frombuffer(json.dumps(said).encode(), np.uint8)
-        for name, values in checkpoint.state.items():
+        of_maps = {f"{MAP}{name}": values for name, values in checkpoint.maps.items()}
+        for name, values in (checkpoint.state | of_maps).items():
             file.create_dataset(name, data=values)
     digest = hashlib.blake2b(image.getbuffer()).digest()
     image.seek(0, io.SEEK_END)
@@ -127,10 +130,13 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
             place = ".".join(map(str, first["loc"]))
             raise file.error(place, f"is wrong: {first['msg']}") from None
         state = {name: file.numbers(name) for name in file.names() if name != AROUND_STATE}
+    maps = {name: state.pop(name) for name in list(state) if name.startswith(MAP)}
     for name in ("time", "steps", "lanes"):
         if name not in state or state[name].shape != (1,):
             raise UserError(f'{path}: "{name}" is missing, or not one number')
-    return Checkpoint(state, around.position, around.material_names, around.body_names)
+    names = around.material_names, around.body_names
+    maps = {name.removeprefix(MAP): values for name, values in maps.items()}
+    return Checkpoint(state, around.position, *names, maps)
 
 
 class CheckpointFolder:

@@ -10,6 +10,8 @@ from pathlib import Path
 from ..errors import UserError
 from ..util.foreign import read_text, readable
 
+RASTERS = (".tif", ".asc")  # endings of rasters
+MAP_FILES = (*RASTERS, ".prj", ".png", ".csv", ".json")
 INPUTS = "inputs"  # folder of copies of the files that a scenario names
 
 
@@ -99,6 +101,17 @@ class RunFolder:
         return self.gauges / f"{name}.csv"
 
     @property
+    def terrain(self) -> Path | None:
+        """The bed as the run has it, a raster; None where it has none."""
+        found = (self.path / f"terrain{suffix}" for suffix in RASTERS)
+        return next((path for path in found if path.is_file()), None)
+
+    @property
+    def maps(self) -> Path:
+        """The folder of maps: rasters, and pictures of them."""
+        return self.path / "maps"
+
+    @property
     def figures(self) -> Path:
         """The folder of the pictures."""
         return self.path / "figures"
@@ -112,6 +125,7 @@ class RunFolder:
             self.figures,
             self.checkpoints,
             self.gauges,
+            self.maps,
         )
         inside = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
         return sorted(file for file in inside if file.is_symlink())
@@ -158,6 +172,7 @@ class RunFolder:
             *self.snapshot_files(),
             *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),
+            *(file for file in self.maps.glob("*") if file.suffix in MAP_FILES),
         ]
 
 

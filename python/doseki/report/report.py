@@ -9,6 +9,7 @@ from pathlib import Path
 from ..assess.summary import title_of
 from ..errors import UserError, one_line
 from ..figures.plot import draw_run
+from ..geodata.raster import read_raster
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..util.files import write_whole_text
@@ -23,7 +24,7 @@ from .parts.pictures import Album, gallery
 from .parts.provenance import provenance
 from .parts.tables import tables_of
 from .view.scene import Scene, make_scene
-from .view.terrain import Grid
+from .view.terrain import Grid, grid_of
 
 MB = 1e6
 DEFAULT_MB = 20.0
@@ -100,7 +101,7 @@ def _after(run: Run, album: Album) -> list[Content]:
         "trust": lambda: findings(run),
         "ledgers": lambda: ledgers(run),
         "figures": lambda: _figures(run, album),
-        "maps": lambda: gallery("Maps", album.folder(folder / "maps"), "maps"),
+        "maps": lambda: gallery("Maps", album.folder(run.folder.maps), "maps"),
         "loads": lambda: tables_of(folder, "loads", "Loads", album),
         "sections": lambda: tables_of(folder, "sections", "Sections", album),
         "gauges": lambda: gauges(run, album),
@@ -119,7 +120,15 @@ def _figures(run: Run, album: Album) -> Markup | None:
 
 
 def _terrain(run: Run, album: Album) -> Grid | None:
-    return None
+    """The terrain of a 3-D run as it was used; what cannot be read is left out, with a note."""
+    file = run.folder.terrain
+    if file is None or run.scenario["dim"] != 3:
+        return None
+    try:
+        return grid_of(read_raster(file))
+    except UserError as error:
+        album.notes.append(one_line(f"{file.name} is left out: {error}."))
+        return None
 
 
 def _scene(run: Run, room: float, terrain: Grid | None) -> tuple[Scene | None, str]:

@@ -25,7 +25,7 @@ OF_STATE = ("young_modulus", "poisson_ratio")
 # With which no rate of change changes, and no list of neighbours.
 OF_RECORD = {
     "time_max", "time_out", "time_history", "title", "description", "gauge", "window", "figure",
-    "start", "parameters", "cflnumber", "cfl_force",
+    "maps", "start", "parameters", "cflnumber", "cfl_force",
 }  # fmt: skip
 
 

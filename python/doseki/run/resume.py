@@ -121,7 +121,7 @@ def _restored(
     recorder = ranks.recorder(directory, lambda: Recorder.reopen(directory, *written))
     run = ActiveRun(scenario, simulation, recorder, checkpoint.body_names, ranks)
     try:
-        run.go_on_from(position)
+        run.go_on_from(checkpoint)
     except ValueError as error:
         raise UserError(f"{directory}: {error}") from None
     ranks.on_root(lambda: run.checkpoints.drop_later(checkpoint.step))

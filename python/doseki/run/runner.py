@@ -81,7 +81,8 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "list_entries_per_particle": simulation.entries_per_particle,
         "ledger_residual": balance,
         "largest_overlap": simulation.grains()["worst_overlap"],
-        "warnings": sentences(run.warnings),
+        "warnings": sentences(run.warnings) + (run.maps.remarks if run.maps else []),
+        **({"runout": run.maps.runout} if run.maps else {}),
         **last,
     }
 
@@ -130,6 +131,7 @@ def _explained(run: ActiveRun, message: str) -> Failure:
     state, time, steps = simulation.state(), simulation.time, simulation.steps
     rewound = run.step_back()
     run.record_snapshot()
+    run.write_maps()
     failure = Failure(kind, particle, position, message, state, time, steps, rewound)
     explain_failure(run, failure)
     return failure

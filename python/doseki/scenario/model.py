@@ -162,8 +162,9 @@ class Scenario(ScenarioTable):
 
     @property
     def sampled_intervals(self) -> list[float]:
-        """Times between the outputs at which a step ends exactly, s: snapshots and gauges."""
-        return [self.time_out, *(self.interval_of(gauge) for gauge in self.gauge.values())]
+        """Times between the outputs at which a step ends exactly, s: snapshots, gauges and maps."""
+        maps = [] if self.maps is None else [self.maps.interval or self.time_out]
+        return [self.time_out, *(self.interval_of(gauge) for gauge in self.gauge.values()), *maps]
 
     def setting(self, body_names: Sequence[str] = ()) -> Setting:
         """What surrounds its gauges; `body_names` are those that particles index."""

@@ -11,6 +11,7 @@ from .gauge import Gauge
 from .mass_centre import MassCentre
 from .motion import Motion
 from .pressure import PressureGauge
+from .section import Section
 from .surface_height import SurfaceHeight
 from .velocity_profile import VelocityProfile
 
@@ -24,6 +25,7 @@ GAUGES = Kinds.by_word(
     ForceGauge,
     MassCentre,
     Motion,
+    Section,
 )
 
 if TYPE_CHECKING:

@@ -28,6 +28,7 @@ from .bodies import AnyBody
 from .contact import Contact
 from .figure import FigureTable
 from .inflow import Inflow
+from .maps import Maps
 from .material import MaterialTable
 from .parameter import Parameter
 from .region import Outflow, Window
@@ -119,6 +120,7 @@ class ScenarioTable(Table):
     domain_max: Position | None = Field(None, description="upper corner of the periodic domain, m")
     contact: Annotated[Contact, OF_RESOLVED] = Field(default_factory=Contact)
     start: Start | None = None
+    maps: Annotated[Maps | None, Only(dim=3)] = None
     parameters: dict[str, Parameter] = Field(default_factory=dict)
     material: dict[str, MaterialTable] = Field(default_factory=dict)
     body: dict[str, AnyBody] = Field(default_factory=dict)

@@ -135,6 +135,15 @@ def _digest(value: str) -> str:
     return value
 
 
+def _entries(count: int) -> AfterValidator:
+    def check(vector: list[Any]) -> list[Any]:
+        if len(vector) != count:
+            raise ValueError(f"{count} entries are needed here, not {len(vector)}")
+        return vector
+
+    return AfterValidator(check)
+
+
 @dataclass(frozen=True)
 class RefersTo:
     """What a key names: a table of this section."""
@@ -203,5 +212,7 @@ Grading = Annotated[
 ]
 Depth = Annotated[float | str, AfterValidator(_depth), Measured(LENGTH, words=("normal",))]
 Hydrograph = Annotated[Any, AfterValidator(_hydrograph), MeasuredColumns((TIME, RATE))]
+MapPoint = Annotated[list[Coordinate], _entries(2), Measured(LENGTH)]  # x, y on a map
+Extent = Annotated[list[Coordinate], _entries(4), Measured(LENGTH)]  # west, south, east, north
 Axis = Literal["x", "y", "z"]
 Skin = Annotated[float | str, AfterValidator(_skin)]

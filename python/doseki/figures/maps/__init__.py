@@ -1,0 +1,1 @@
+"""Pictures of maps, and of what was along a path."""

@@ -1,0 +1,137 @@
+"""What `doseki maps` leaves in DIR/maps: rasters, pictures, a profile, and the run-out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...errors import UserError
+from ...geodata.features import read_features
+from ...geodata.grid import Raster
+from ...measure.maps.files import read_maps, write_maps
+from ...measure.maps.grid import MapSettings, few_particles, map_grid
+from ...measure.maps.profile import COLUMNS, along_path
+from ...measure.maps.quantities import QUANTITIES
+from ...measure.maps.runout import runout, runout_lines
+from ...measure.maps.snapshots import maps_from_snapshots
+from ...record.beginning import refuse_links
+from ...record.reader import Run, load
+from ...record.writer import jsonable
+from ...util.files import write_whole, write_whole_text
+from ..nothing import NothingToDrawError
+from ..text import plain_text
+from .drawing import draw_map, draw_profile
+
+
+@dataclass(frozen=True)
+class MapOptions:
+    """What of the maps is asked for."""
+
+    cell: float | None = None  # m
+    extent: Sequence[float] | None = None  # west, south, east, north, m
+    path: str | None = None  # of a profile: a file of a line, or "x,y x,y ..."
+
+
+def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
+    """Draw the maps of the run in `directory`; returns lines that tell of them.
+
+    A run with [maps] has kept them; those of others are made of its snapshots.
+
+    Raises:
+        UserError: there is no run, no terrain and no grid, or the path is no path.
+
+    """
+    run = load(directory)
+    refuse_links(run.folder)
+    maps, bed, said = _maps(run, options)
+    path = None if options.path is None else _path(options.path)
+    with plain_text() as complaints:
+        files = list(_draw(run, maps, bed))
+        if path is not None:
+            files += _profile(run, maps, bed, path)
+    found = runout(maps, bed)
+    write_whole_text(run.folder.maps / "runout.json", json.dumps(jsonable(asdict(found))) + "\n")
+    return [*said, *map(str, files), *runout_lines(found), *complaints]
+
+
+def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, list[str]]:
+    """The maps, the bed on their cells, and how they were made."""
+    table = run.scenario.get("maps")
+    settings = MapSettings.of(table, run.scenario["dp"])
+    kept = read_maps(run.folder) if table is not None else {}
+    if kept:
+        if options.cell is not None or options.extent is not None:
+            raise UserError(
+                f"{run.directory}: the run has kept its maps with the cells of its scenario; "
+                "--cell and --extent are for runs without [maps]"
+            )
+        return kept, map_grid(run.folder, settings), []
+    settings = replace(
+        settings,
+        cell=settings.cell if options.cell is None else options.cell,
+        extent=settings.extent if options.extent is None else options.extent,
+    )
+    bed = map_grid(run.folder, settings)
+    maps = maps_from_snapshots(run, bed, settings)
+    write_maps(run.folder, maps, float(run.times[-1]))
+    said = [
+        f"from {len(run)} snapshots: what peaked between them is missed; a table [maps] in the "
+        "scenario keeps maps while a run goes on"
+    ]
+    if warning := few_particles(bed, settings.dp):
+        said.append(f"warning: {warning}")
+    return maps, bed, said
+
+
+def _draw(run: Run, maps: Mapping[str, Raster], bed: Raster) -> Iterator[Path]:
+    """Draw every map that shows anything."""
+    title = str(run.scenario.get("title", ""))
+    for quantity in QUANTITIES:
+        try:
+            figure = draw_map(quantity, maps[quantity.name], bed, title)
+        except NothingToDrawError:
+            continue
+        yield _save(run, quantity.name, figure)
+
+
+def _save(run: Run, name: str, figure: Figure) -> Path:
+    path = run.folder.maps / f"{name}.png"
+    write_whole(path, lambda temporary: figure.savefig(temporary, format="png"))
+    return path
+
+
+def _path(given: str) -> np.ndarray:
+    """Points (n, 2) of a path: of the line in a file, or as they are given."""
+    if not Path(given).exists():
+        try:
+            rows = [[float(number) for number in point.split(",")] for point in given.split()]
+            points = np.array(rows, dtype=np.float64)
+        except ValueError:
+            points = np.empty(0)
+        if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+            raise UserError(
+                f'--path {given[:80]}: neither a file nor points such as "460000,5200000 460100,'
+                '5200000"'
+            )
+        return points
+    lines = read_features(given).lines
+    if len(lines) != 1:
+        raise UserError(f"{given}: holds {len(lines)} lines; a profile goes along one")
+    return lines[0].vertices
+
+
+def _profile(run: Run, maps: Mapping[str, Raster], bed: Raster, path: np.ndarray) -> Iterator[Path]:
+    """The table and the picture of a profile."""
+    found = along_path(maps, bed, path)
+    header = ",".join(f"{name} [{unit}]" for name, unit in COLUMNS.items())
+    rows = np.column_stack([found[name] for name in COLUMNS])
+    text = "\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())])
+    table = run.folder.maps / "profile.csv"
+    write_whole_text(table, text + "\n")
+    yield table
+    yield _save(run, "profile", draw_profile(found, str(run.scenario.get("title", ""))))

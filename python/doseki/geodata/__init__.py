@@ -1,0 +1,1 @@
+"""What geographic programs use: grids of heights, polygons and lines on a map."""

@@ -1,0 +1,96 @@
+"""Coordinate reference systems, as far as a program that computes in metres must know them."""
+
+from __future__ import annotations
+
+import re
+
+from .errors import GeodataError
+
+GEOGRAPHIC = ("GEOGCS", "GEOGCRS", "GEODCRS", "GEODETICCRS", "GEOGRAPHICCRS", "GEOCCS")
+PROJECTED = (
+    "PROJCS", "PROJCRS", "PROJECTEDCRS", "COMPD_CS", "COMPOUNDCRS", "BOUNDCRS",
+    "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS",
+)  # fmt: skip
+FEET = re.compile(r'UNIT\[\s*"([^"]*(?:foot|feet|ft|yard|link|chain)[^"]*)"', re.IGNORECASE)
+IN_DEGREES = re.compile(r"(?:^|:)(?:CRS84h?|EPSG:[^:]*:?(?:4326|4258|4979))$", re.IGNORECASE)
+
+
+def check_map_coordinates(path: object, crs: str) -> None:
+    """Raise GeodataError where coordinates of this system are not metres on a map.
+
+    `crs` is a WKT, or the name of an authority such as "EPSG:32633"; empty says nothing.
+    """
+    if not crs:
+        return
+    keyword = re.match(r"[A-Za-z_]+", crs)
+    word = keyword[0].upper() if keyword and "[" in crs else ""
+    if word in GEOGRAPHIC or IN_DEGREES.search(crs):
+        raise GeodataError(in_degrees(path))
+    if word in PROJECTED:
+        if unit := FEET.search(crs):
+            raise GeodataError(not_metres(path, unit[1]))
+        return
+    if ":" not in crs:
+        raise GeodataError(
+            f'{path}: "{crs[:40]}" is no coordinate reference system in WKT; write one with '
+            f"gdalsrsinfo -o wkt_esri EPSG:CODE"
+        )
+    _check_named(path, crs)
+
+
+def _check_named(path: object, name: str) -> None:
+    """The same for a system of which only the name is known, where rasterio can look it up."""
+    try:
+        from rasterio.crs import CRS
+        from rasterio.errors import CRSError
+    except ImportError:
+        return
+    try:
+        found = CRS.from_user_input(name)
+    except CRSError:
+        raise GeodataError(
+            f'{path}: no coordinate reference system is called "{name[:40]}"'
+        ) from None
+    if found.is_geographic:
+        raise GeodataError(in_degrees(path))
+    if found.is_projected and found.linear_units_factor[1] != 1.0:
+        raise GeodataError(not_metres(path, found.linear_units))
+
+
+def in_degrees(path: object) -> str:
+    """What is said of coordinates that are longitudes and latitudes."""
+    return (
+        f"{path}: coordinates are degrees, and metres are needed; convert it with "
+        f"gdalwarp -t_srs EPSG:CODE IN OUT (vectors: ogr2ogr -t_srs EPSG:CODE OUT IN), such as "
+        f"32633 for UTM zone 33 N"
+    )
+
+
+def not_metres(path: object, unit: str) -> str:
+    """What is said of a map in feet."""
+    return f'{path}: the unit is "{unit}", and metres are needed; convert it with gdalwarp -t_srs'
+
+
+def same_crs(one: str | None, other: str | None) -> bool | None:
+    """Whether two systems (WKT, or names such as "EPSG:32633") are the same.
+
+    None where that cannot be told: one is not known, or rasterio is not installed.
+    """
+    if one is None or other is None:
+        return None
+    if one == other:
+        return True
+    try:
+        from rasterio.crs import CRS
+        from rasterio.errors import CRSError
+    except ImportError:
+        return None
+    try:
+        first, second = CRS.from_user_input(one), CRS.from_user_input(other)
+        codes = first.to_epsg(MIN_CONFIDENCE), second.to_epsg(MIN_CONFIDENCE)
+    except CRSError:
+        return None
+    return bool(first == second) or (codes[0] is not None and codes[0] == codes[1])
+
+
+MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG

@@ -1,0 +1,133 @@
+"""GeoTIFF, by rasterio (GDAL)."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..util.files import write_whole
+from ..util.foreign import readable
+from ..util.memory import available_bytes
+from .ascii_grid import SQUARE, not_square
+from .crs import in_degrees, not_metres
+from .errors import GeodataError, needed
+from .grid import Raster
+
+MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+WHAT = "a GeoTIFF"
+METRES = ("", "m", "metre", "meter", "metres", "meters")
+BYTES = 32  # of memory for a cell while it is read
+
+
+def is_tiff(start: bytes) -> bool:
+    """Whether a file that begins like this is a TIFF."""
+    return start[:4] in MAGIC
+
+
+def read_geotiff(path: Path) -> Raster:
+    """The raster of a file with one band.
+
+    Raises:
+        GeodataError: it is damaged, not in metres, not of square cells, or rasterio is missing.
+        UserError: it cannot be read.
+
+    """
+    rasterio = needed("rasterio", path, WHAT)
+    with warnings.catch_warnings(), readable(path, " as a GeoTIFF"):
+        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+        # Only this driver: others would follow what a file says to other files.
+        with rasterio.open(path, driver="GTiff") as dataset:
+            _check(path, dataset)
+            return _raster(path, dataset)
+
+
+def _check(path: Path, dataset: Any) -> None:
+    """Raise GeodataError for what a flow cannot be computed on."""
+    if dataset.count != 1:
+        raise GeodataError(
+            f"{path}: {dataset.count} bands where one is needed; take one with "
+            f"gdal_translate -b 1 IN OUT"
+        )
+    at = dataset.transform
+    if at.is_identity:
+        raise GeodataError(f"{path}: says nowhere where on the map it lies")
+    if not all(map(math.isfinite, at)):
+        raise GeodataError(f"{path}: its place on the map is not finite")
+    if at.b or at.d or at.a < 0:
+        raise GeodataError(f"{path}: is rotated; turn it north up with gdalwarp IN OUT")
+    if abs(abs(at.e) - at.a) > SQUARE * at.a or at.a == 0:
+        raise GeodataError(not_square(path, at.a, abs(at.e)))
+    if dataset.crs and dataset.crs.is_geographic:
+        raise GeodataError(in_degrees(path))
+    if dataset.crs and dataset.crs.is_projected and dataset.crs.linear_units_factor[1] != 1.0:
+        raise GeodataError(not_metres(path, dataset.crs.linear_units))
+    unit = dataset.units[0] or ""
+    if unit.lower() not in METRES:
+        raise GeodataError(not_metres(path, unit))
+    if np.dtype(dataset.dtypes[0]).kind not in "iuf":
+        raise GeodataError(f"{path}: holds {dataset.dtypes[0]}, and numbers are needed")
+    if dataset.width * dataset.height * BYTES > available_bytes():
+        raise GeodataError(
+            f"{path}: {dataset.width} x {dataset.height} cells are more than this machine can hold"
+        )
+
+
+def _raster(path: Path, dataset: Any) -> Raster:
+    raw = dataset.read(1)
+    values = raw.astype(np.float64) * dataset.scales[0] + dataset.offsets[0]
+    values[_unknown(raw, dataset)] = np.nan
+    if np.isinf(values).any():
+        raise GeodataError(f"{path}: holds infinite values")
+    at = dataset.transform
+    if at.e > 0:  # its rows run from south to north
+        values = values[::-1]
+    return Raster(
+        np.ascontiguousarray(values),
+        at.c,
+        at.f + min(at.e, 0.0) * dataset.height,
+        at.a,
+        dataset.crs.to_wkt() if dataset.crs else None,
+        "GTiff",
+        dataset.nodata,
+    )
+
+
+def _unknown(raw: np.ndarray, dataset: Any) -> np.ndarray:
+    """Where there is no data: by the mask of the file, or its number, rounded as its values are."""
+    unknown = dataset.read_masks(1) == 0
+    if raw.dtype.kind == "f":
+        unknown |= np.isnan(raw)
+    nodata = dataset.nodata
+    if nodata is not None and math.isfinite(nodata) and raw.dtype.kind == "f":
+        with np.errstate(over="ignore"):
+            unknown |= raw == raw.dtype.type(nodata)
+    return np.asarray(unknown)
+
+
+def write_geotiff(path: Path, raster: Raster, tags: dict[str, str]) -> None:
+    """Write a raster as float64, compressed without loss; `tags` are names and texts."""
+    rasterio = needed("rasterio", path, WHAT)
+    nodata = math.nan if raster.nodata is None else raster.nodata
+    at = rasterio.Affine(raster.cell, 0.0, raster.west, 0.0, -raster.cell, raster.north)
+    about = {
+        "driver": "GTiff", "dtype": "float64", "count": 1, "compress": "deflate", "predictor": 3,
+        "height": raster.shape[0], "width": raster.shape[1], "transform": at, "nodata": nodata,
+        "crs": None if raster.crs is None else rasterio.crs.CRS.from_user_input(raster.crs),
+    }  # fmt: skip
+    values = np.where(np.isnan(raster.values), nodata, raster.values)
+
+    def write(temporary: Path) -> None:
+        with rasterio.open(temporary, "w", **about) as dataset:
+            dataset.write(values, 1)
+            dataset.update_tags(**tags)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+        try:
+            write_whole(path, write)
+        except (rasterio.errors.RasterioError, rasterio.errors.CRSError) as error:
+            raise GeodataError(f"{path}: cannot be written: {error}") from None

@@ -1,0 +1,178 @@
+"""A raster: numbers on the square cells of a map, and what is done with them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from .errors import GeodataError
+from .interpolation import area_mean, bilinear, locally_linear
+
+TOLERANCE = 1e-6  # of a cell, by which edges of grids may differ
+MAX_CELLS = 400_000_000  # of a grid that is made; 3.2 GB
+SUFFIX = {"GTiff": ".tif", "AAIGrid": ".asc"}
+
+
+@dataclass(frozen=True, eq=False)
+class Raster:
+    """Numbers on square cells, north up.
+
+    Attributes:
+        values: (rows, cols) float64; row 0 is the northernmost, NaN is "no data".
+        west, south: outer corner of the grid, m, in map coordinates.
+        cell: side of a cell, m.
+        crs: the coordinate reference system as WKT, or None where it is not known.
+        driver: GDAL's name of the format in which it came and is written.
+        nodata: the number that files hold where there is no data; None lets the writer choose.
+
+    Raises GeodataError where these do not make a grid.
+
+    """
+
+    values: np.ndarray
+    west: float
+    south: float
+    cell: float
+    crs: str | None = None
+    driver: Literal["GTiff", "AAIGrid"] = "AAIGrid"
+    nodata: float | None = None
+
+    def __post_init__(self) -> None:
+        values = np.asarray(self.values, dtype=np.float64)
+        if values.ndim != 2 or values.size == 0:
+            raise GeodataError(f"a raster has rows and columns, not the shape {values.shape}")
+        if not (math.isfinite(self.cell) and self.cell > 0):
+            raise GeodataError(f"a raster's cell must be a length above 0, not {self.cell:g}")
+        if not (math.isfinite(self.west) and math.isfinite(self.south)):
+            raise GeodataError(f"a raster's corner must be finite: {self.west:g}, {self.south:g}")
+        if np.isinf(values).any():
+            raise GeodataError("a raster holds infinite values")
+        object.__setattr__(self, "values", values)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        rows, cols = self.values.shape
+        return rows, cols
+
+    @property
+    def east(self) -> float:
+        """Outer edge, m."""
+        return self.west + self.cell * self.shape[1]
+
+    @property
+    def north(self) -> float:
+        """Outer edge, m."""
+        return self.south + self.cell * self.shape[0]
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Outer edges: west, south, east, north, m."""
+        return self.west, self.south, self.east, self.north
+
+    @property
+    def x(self) -> np.ndarray:
+        """Centres of the columns from west to east (cols,), m."""
+        return self.west + self.cell * (np.arange(self.shape[1]) + 0.5)
+
+    @property
+    def y(self) -> np.ndarray:
+        """Centres of the rows from north to south, as `values` has them (rows,), m."""
+        return self.south + self.cell * (np.arange(self.shape[0])[::-1] + 0.5)
+
+    @property
+    def suffix(self) -> str:
+        """The ending of a file of its format: .tif or .asc."""
+        return SUFFIX[self.driver]
+
+    def with_values(self, values: np.ndarray) -> Raster:
+        """The same grid with other values (rows, cols)."""
+        if np.shape(values) != self.shape:
+            raise GeodataError(f"{np.shape(values)} values for a raster of {self.shape}")
+        return replace(self, values=values)
+
+    def same_grid(self, other: Raster) -> bool:
+        """Whether cells lie on those of another raster, to a millionth of a cell."""
+        near = TOLERANCE * self.cell
+        return self.shape == other.shape and all(
+            abs(mine - its) <= near for mine, its in zip(self.extent, other.extent, strict=True)
+        )
+
+    def window(self, west: float, south: float, east: float, north: float) -> Raster:
+        """The whole cells that cover a rectangle of the map, m.
+
+        Raises:
+            GeodataError: it is empty, or reaches beyond the raster.
+
+        """
+        asked = f"window [{west:.10g}, {south:.10g}, {east:.10g}, {north:.10g}]"
+        if not (west < east and south < north):
+            raise GeodataError(f"{asked} must be west < east and south < north")
+        first, last = self._cells(west - self.west, east - self.west)
+        low, high = self._cells(south - self.south, north - self.south)
+        rows, cols = self.shape
+        if first < 0 or low < 0 or last > cols or high > rows:
+            edges = ", ".join(f"{edge:.10g}" for edge in self.extent)
+            raise GeodataError(f"{asked} reaches beyond the raster, which has [{edges}]")
+        values = self.values[rows - high : rows - low, first:last].copy()
+        west, south = self.west + first * self.cell, self.south + low * self.cell
+        return replace(self, values=values, west=west, south=south)
+
+    def _cells(self, start: float, end: float) -> tuple[int, int]:
+        """The first cell, and the one after the last, that cover a stretch from an edge, m."""
+        first = math.floor(start / self.cell + TOLERANCE)
+        return first, max(math.ceil(end / self.cell - TOLERANCE), first + 1)
+
+    def resampled(self, cell: float) -> Raster:
+        """The raster on cells of another size, from the same south-western corner.
+
+        Finer cells are bilinear between centres, and go on linearly beyond the outermost ones and
+        towards cells without data; they have data where the cell in which their centre lies has.
+        Coarser ones are the mean over their area of what has data, where at least half of it has.
+        Only whole cells: a strip narrower than one is left out in the north and the east.
+        """
+        if not (math.isfinite(cell) and cell > 0):
+            raise GeodataError(f"a raster's cell must be a length above 0, not {cell:g}")
+        ratio = cell / self.cell
+        rows, cols = (math.floor(min(n / ratio + TOLERANCE, 1e18)) for n in self.shape)
+        if min(rows, cols) < 1:
+            raise GeodataError(f"cells of {cell:g} m are larger than the raster")
+        if rows * cols > MAX_CELLS:
+            raise GeodataError(
+                f"cells of {cell:g} m make {rows * cols:.3g} of them; at most {MAX_CELLS:.3g}"
+            )
+        if ratio > 1 + TOLERANCE:
+            upward = area_mean(self.values[::-1], (rows, cols), ratio)
+        else:
+            centres = [(np.arange(n) + 0.5) * ratio - 0.5 for n in (rows, cols)]
+            upward = bilinear(self.values[::-1], centres[0][:, None], centres[1][None, :])
+        return replace(self, values=upward[::-1], cell=cell)
+
+    def smoothed(self, length: float) -> Raster:
+        """The raster smoothed by a Gaussian of standard deviation `length`, m.
+
+        Each cell gets the value of the plane that fits its surroundings with Gaussian weights
+        (Cleveland 1979, locally weighted regression). Away from edges that is the normalised
+        Gaussian mean; at edges and beside cells without data a plane stays the plane that it was.
+        Cells without data stay without, and add nothing to others.
+        """
+        if not (math.isfinite(length) and length >= 0):
+            raise GeodataError(f"smoothing must be a length of 0 or more, not {length:g}")
+        if length > self.cell * max(self.shape):
+            raise GeodataError(f"smoothing over {length:g} m is longer than the raster")
+        if length == 0:
+            return self
+        return self.with_values(locally_linear(self.values, length / self.cell))
+
+    def sampled(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Bilinear values at points of the map, m; arrays that broadcast.
+
+        Beyond the outermost centres, and towards cells without data, it goes on linearly. NaN
+        outside the raster, and where the cell in which a point lies has no data.
+        """
+        column = (np.asarray(x, np.float64) - self.west) / self.cell - 0.5
+        row = (np.asarray(y, np.float64) - self.south) / self.cell - 0.5
+        return bilinear(self.values[::-1], row, column)

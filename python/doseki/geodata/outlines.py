@@ -1,0 +1,87 @@
+"""Polygons and lines of a map with their attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .inside import inside_rings, ring_area
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon:
+    """An area with holes.
+
+    Attributes:
+        outer: vertices (n, 2) of its outer ring, m; the first is not repeated at the end.
+        holes: the same for each hole.
+        attributes: what the file says of it: names, and numbers, texts, truths or None.
+
+    """
+
+    outer: np.ndarray
+    holes: tuple[np.ndarray, ...] = ()
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def rings(self) -> tuple[np.ndarray, ...]:
+        """The outer ring, then the holes."""
+        return (self.outer, *self.holes)
+
+    @property
+    def area(self) -> float:
+        """Its area without holes, m2."""
+        return abs(ring_area(self.outer)) - sum(abs(ring_area(hole)) for hole in self.holes)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """West, south, east, north, m."""
+        (west, south), (east, north) = self.outer.min(axis=0), self.outer.max(axis=0)
+        return float(west), float(south), float(east), float(north)
+
+    def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Which points of the map lie inside; arrays that broadcast.
+
+        By the even-odd rule. Of polygons that share an edge, one has the points on it.
+        """
+        return inside_rings(self.rings, x, y)
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line through points.
+
+    Attributes:
+        vertices: (n, 2), m.
+        heights: (n,), m, where the file has them.
+        attributes: what the file says of it.
+
+    """
+
+    vertices: np.ndarray
+    heights: np.ndarray | None = None
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """What a file holds; parts of one feature are polygons or lines of equal attributes.
+
+    `crs` is its coordinate reference system, as WKT or by a name such as "EPSG:32633"; None where
+    the file does not tell, and then coordinates are those of the terrain.
+    """
+
+    polygons: tuple[Polygon, ...] = ()
+    lines: tuple[Line, ...] = ()
+    crs: str | None = None
+
+    def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Which points of the map lie in one of the polygons; arrays that broadcast."""
+        x, y = np.broadcast_arrays(x, y)
+        inside = np.zeros(x.shape, dtype=bool)
+        for polygon in self.polygons:
+            inside |= polygon.contains(x, y)
+        return inside

@@ -1,0 +1,78 @@
+"""Rasters read from files and written: ESRI ASCII grids, and GeoTIFF with the extra `terrain`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..util.foreign import open_regular
+from .ascii_grid import is_ascii_grid, read_ascii_grid, write_ascii_grid
+from .errors import GeodataError
+from .geotiff import is_tiff, read_geotiff, write_geotiff
+from .grid import Raster
+
+__all__ = ["Raster", "read_raster", "write_raster"]
+
+ASCII_SUFFIXES = (".asc", ".txt", ".grd")
+TIFF_SUFFIXES = (".tif", ".tiff", ".geotiff")
+START = 64  # bytes that tell what a file is
+
+
+def read_raster(path: Path | str) -> Raster:
+    """A raster, by what its file holds, not by its name.
+
+    Of a GeoTIFF: any compression, tiling and kind of number, scale and offset applied; one band.
+    Of an ESRI ASCII grid: lines xllcorner or xllcenter, in capitals or not; its .prj beside it.
+
+    Raises:
+        GeodataError: it is damaged or of another format, has no square cells with north up, is not
+            in metres, or rasterio is missing.
+        UserError: it cannot be read.
+
+    """
+    path = Path(path)
+    with open_regular(path) as (file, _):
+        start = file.read(START)
+    if is_tiff(start):
+        return read_geotiff(path)
+    if is_ascii_grid(start):
+        return read_ascii_grid(path)
+    raise GeodataError(
+        f"{path}: neither a GeoTIFF nor an ESRI ASCII grid; convert it with "
+        f"gdal_translate -of GTiff IN OUT"
+    )
+
+
+def write_raster(path: Path | str, raster: Raster, tags: Mapping[str, str] | None = None) -> None:
+    """Write a raster, whole or not at all; .asc is an ESRI ASCII grid, .tif a GeoTIFF.
+
+    Numbers are read back as they were. `tags` are metadata of a GeoTIFF; ASCII grids have none.
+
+    Raises:
+        GeodataError: the ending is none of these, rasterio is missing, or its `nodata` is also the
+            value of a cell that has data.
+        UserError, ResourceError: it cannot be written.
+
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in ASCII_SUFFIXES + TIFF_SUFFIXES:
+        raise GeodataError(f"{path}: rasters are written as .asc or .tif")
+    _check_nodata(path, raster, suffix)
+    if suffix in ASCII_SUFFIXES:
+        write_ascii_grid(path, raster)
+    else:
+        write_geotiff(path, raster, dict(tags or {}))
+
+
+def _check_nodata(path: Path, raster: Raster, suffix: str) -> None:
+    """Raise GeodataError where a cell with data would be read back as one without."""
+    nodata = raster.nodata
+    if nodata is None:
+        if suffix in TIFF_SUFFIXES:
+            return
+        nodata = -9999.0
+    if np.any(raster.values == nodata):
+        raise GeodataError(f"{path}: a cell holds {nodata:g}, which is to mean no data")

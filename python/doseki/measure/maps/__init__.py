@@ -1,0 +1,1 @@
+"""Maps of a flow on the grid of a terrain: largest depth, speed and pressure, arrival, deposit."""

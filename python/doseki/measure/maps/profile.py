@@ -1,0 +1,43 @@
+"""Maps along a path: the bed, and what was on it, against the distance from its first point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...errors import UserError
+from ...geodata.grid import Raster
+from .quantities import QUANTITIES
+
+COLUMNS = {"distance": "m", "x": "m", "y": "m", "bed": "m"} | {q.name: q.unit for q in QUANTITIES}
+
+
+def along_path(maps: Mapping[str, Raster], bed: Raster, path: np.ndarray) -> dict[str, np.ndarray]:
+    """COLUMNS at points of a path (n, 2) on the map, m, one cell apart, and at its vertices.
+
+    Of maps it is the value of the cell in which a point lies, for a peak is that of its cell; the
+    bed is bilinear. NaN where a point lies outside, or there are no data.
+
+    Raises:
+        UserError: the path has no length, or none of it lies on the map.
+
+    """
+    steps = np.hypot(*np.diff(path, axis=0).T)
+    at_vertex = np.concatenate([[0.0], np.cumsum(steps)])
+    if len(path) < 2 or not at_vertex[-1] > 0:
+        raise UserError("the path of a profile needs two points that differ")
+    between = np.arange(bed.cell / 2, at_vertex[-1], bed.cell)
+    distance = np.unique(np.concatenate([between, at_vertex]))
+    x, y = (np.interp(distance, at_vertex, path[:, axis]) for axis in (0, 1))
+    column = np.floor((x - bed.west) / bed.cell).astype(np.int64)
+    row = np.floor((bed.north - y) / bed.cell).astype(np.int64)
+    inside = (column >= 0) & (column < bed.shape[1]) & (row >= 0) & (row < bed.shape[0])
+    if not inside.any():
+        raise UserError("the path of the profile lies beside the map")
+    found = {"distance": distance, "x": x, "y": y, "bed": bed.sampled(x, y)}
+    for quantity in QUANTITIES:
+        values = np.full(len(distance), np.nan)
+        values[inside] = maps[quantity.name].values[row[inside], column[inside]]
+        found[quantity.name] = values
+    return found

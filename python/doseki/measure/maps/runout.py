@@ -1,0 +1,78 @@
+"""How far a flow went: area covered, deposit, and the angle of its run-out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geodata.grid import Raster
+from .files import reached
+from .quantities import ARRIVAL_TIME, DEPOSIT
+
+
+@dataclass(frozen=True)
+class Runout:
+    """How far a flow went.
+
+    Attributes:
+        area: covered at any time, m2.
+        deposit_area: m2.
+        deposit_volume: m3.
+        top: x, y, z of the highest cell that was covered when the flow was first seen, m.
+        toe: x, y, z of the covered cell that is farthest from there on the map, m.
+        distance: between them on the map, m.
+        angle: of the line from top to toe, degrees (Heim's Fahrboeschung).
+
+    The last four are None where the run has no terrain, or nothing flows.
+
+    """
+
+    area: float
+    deposit_area: float
+    deposit_volume: float
+    top: tuple[float, float, float] | None = None
+    toe: tuple[float, float, float] | None = None
+    distance: float | None = None
+    angle: float | None = None
+
+
+def runout(maps: Mapping[str, Raster], bed: Raster) -> Runout:
+    """From maps on the grid of `bed`, the heights of the terrain."""
+    covered, square = reached(maps), bed.cell**2
+    lying = np.nan_to_num(maps[DEPOSIT.name].values)
+    areas = (
+        float(covered.sum() * square),
+        float(np.count_nonzero(lying) * square),
+        float(lying.sum() * square),
+    )
+    known = covered & ~np.isnan(bed.values)
+    if not known.any():
+        return Runout(*areas)
+    x, y = np.meshgrid(bed.x, bed.y)
+    arrival = maps[ARRIVAL_TIME.name].values
+    first = known & (arrival == np.nanmin(arrival[known]))
+    top = np.unravel_index(np.argmax(np.where(first, bed.values, -np.inf)), bed.shape)
+    away = np.where(known, np.hypot(x - x[top], y - y[top]), -1.0)
+    toe = np.unravel_index(np.argmax(away), bed.shape)
+    points = [(float(x[at]), float(y[at]), float(bed.values[at])) for at in (top, toe)]
+    distance = float(away[toe])
+    angle = math.degrees(math.atan2(points[0][2] - points[1][2], distance)) if distance else None
+    return Runout(*areas, points[0], points[1], distance, angle)
+
+
+def runout_lines(found: Runout) -> Iterator[str]:
+    """Area, deposit and run-out as sentences."""
+    lying = f"{found.deposit_volume:.4g} m3 lie on {found.deposit_area:.4g} m2"
+    yield f"covered {found.area:.4g} m2; {lying}"
+    if found.angle is not None and found.top is not None and found.toe is not None:
+        yield (
+            f"run-out {found.distance:.4g} m at {found.angle:.3g} degrees, from {_point(found.top)}"
+            f" to {_point(found.toe)}"
+        )
+
+
+def _point(point: tuple[float, float, float]) -> str:
+    return f"({point[0]:.1f}, {point[1]:.1f}, {point[2]:.1f}) m"
