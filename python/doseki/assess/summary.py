@@ -105,9 +105,14 @@ def _results(run: Run) -> Iterator[Row]:
     flow = measure_flow(run)
     if flow is None:
         return
-    yield _line("front", f"x = {flow.front[-1]:.4g} m at {flow.times[-1]:.4g} s")
+    yield _line("front", f"x = {_place(flow.front[-1])} m at {flow.times[-1]:.4g} s")
     for name, entry in flow.windows.items():
         yield _line(f"window {name}", _window(run, flow, entry))
+
+
+def _place(coordinate: float) -> str:
+    """A coordinate in m; one of a map to a decimetre."""
+    return f"{coordinate:.4g}" if abs(coordinate) < 1e4 else f"{coordinate:.1f}"
 
 
 def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:

@@ -175,7 +175,7 @@ float line(float every) {
 }
 void main() {
   float light = dot(normalize(facing), normalize(vec3(-0.5, 0.5, 0.7)));
-  vec3 colour = soil * (0.50 + 0.62 * max(light, 0.0));
+  vec3 colour = soil * (0.62 + 0.48 * max(light, 0.0));
   colour *= 1.0 - max(0.14 * line(interval), 0.26 * line(5.0 * interval));
   pixel = vec4(colour, 1.0);
 }`;

@@ -189,8 +189,9 @@ class Viewer {
     ];
     fillLegend(this.part("legend"), this.field, extra);
     this.part("time").value = this.frame;
-    this.part("time").setAttribute("aria-valuetext", `${time} s`);
-    this.part("clock").textContent = `${time.toFixed(scene.digits)} s`;
+    const clock = `${(scene.clock.factor * time).toFixed(scene.clock.digits)} ${scene.clock.unit}`;
+    this.part("time").setAttribute("aria-valuetext", clock);
+    this.part("clock").textContent = clock;
     this.part("field").value = this.field.name;
     drawScaleBar(this.part("bar"), camera, canvas.clientWidth, canvas.clientHeight);
     drawAxes(this.part("axes"), camera, scene.axes);

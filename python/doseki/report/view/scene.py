@@ -21,6 +21,7 @@ from .thinning import Thinning, spread, thinned
 SAMPLES = 6  # snapshots that limits and sizes are taken from
 TESTED = 3  # snapshots that are packed to see what they take
 WALLS = 0.2  # of the room, for what does not move
+SHORT = 0.1  # s: of shorter runs times are in ms, as in figures
 TERRAIN_BODY = "terrain"  # the body that stands for the terrain in a record
 KEYS = ("position", "velocity", "mass", "density", "pressure", "material", "body", "motion", "id",
         "grain")  # fmt: skip
@@ -140,7 +141,7 @@ def _table(maker: SceneMaker) -> dict[str, Any]:
         "focus": [end.tolist() for end in box.focus],
         "up": up.tolist(),
         "axes": list("xyz"[: box.dim]),
-        "digits": _digits(times),
+        "clock": _clock(times),
         "start": 0,
         "radius": maker.packer.largest,
         "scale": scale(),
@@ -149,11 +150,13 @@ def _table(maker: SceneMaker) -> dict[str, Any]:
     }
 
 
-def _digits(times: np.ndarray) -> int:
-    """Digits after the point with which times, s, are told apart and look as they are."""
-    apart = float(np.median(np.diff(times))) if len(times) > 1 else 1.0
-    close = (n for n in range(9) if np.all(np.abs(np.round(times, n) - times) < 0.01 * apart))
-    return next(close, 9)
+def _clock(times: np.ndarray) -> dict[str, Any]:
+    """How times, s, are written: in ms where all are short, with the digits that tell them apart."""
+    unit, factor = ("ms", 1e3) if times[-1] < SHORT else ("s", 1.0)
+    shown = factor * times
+    apart = float(np.median(np.diff(shown))) if len(times) > 1 else 1.0
+    close = (n for n in range(9) if np.all(np.abs(np.round(shown, n) - shown) < 0.01 * apart))
+    return {"unit": unit, "factor": factor, "digits": next(close, 9)}
 
 
 def _liveliest(run: Run, times: Sequence[float]) -> int:
