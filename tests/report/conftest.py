@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from PIL import Image
 from tests.synthetic_runs import BODIES, MATERIALS, SCENARIO, history_row, make_plain_state
 
 from doseki.record.writer import Recorder
@@ -58,6 +59,19 @@ def grain_table(centre, angle):
     }
 
 
+def give_figure(folder):
+    """A small picture among the figures of a run, so that none are drawn."""
+    (folder / "figures").mkdir()
+    Image.new("RGB", (40, 30), "navy").save(folder / "figures" / "overview.png")
+
+
+@pytest.fixture
+def drawn_flow(flow_folder):
+    """The folder of the run of flow_state, whose figures are there."""
+    give_figure(flow_folder)
+    return flow_folder
+
+
 @pytest.fixture
 def map_run(tmp_path):
     """The folder of a 3-D run on a map: five snapshots, water, a bed, a cube."""
@@ -73,4 +87,5 @@ def record_map(path, shape, frames=5):
         recorder.snapshot(state, time=0.25 * k, step=k, dt=0.1, grains=grains)
         recorder.history(history_row(0.25 * k))
     recorder.close({"status": "done", "warnings": ["the <b>bed</b> is thin"]} | history_row(1.0))
+    give_figure(path)
     return path

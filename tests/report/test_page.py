@@ -60,7 +60,6 @@ def page_of():
 
 
 def test_the_numbers_of_a_run_are_in_it(flow_folder, page_of):
-    (flow_folder / "gauges").mkdir()
     page = page_of(flow_folder)
     assert page.all("h1")[0][1] == "synthetic"
     summary = page.by_id("summary")
@@ -76,17 +75,17 @@ def test_the_numbers_of_a_run_are_in_it(flow_folder, page_of):
     assert "not recorded" in scenario
 
 
-def test_sections_come_in_order_and_only_where_there_is_something(flow_folder, map_run, page_of):
+def test_sections_come_in_order_and_only_where_there_is_something(drawn_flow, map_run, page_of):
     names = [given["id"] for given, _ in page_of(map_run).all("section")]
     assert names == ["summary", "view", "trust", "ledgers", "figures", "provenance"]
-    (flow_folder / "maps").mkdir()
-    Image.new("RGB", (30, 20), "red").save(flow_folder / "maps" / "arrival_time.png")
-    (flow_folder / "loads.csv").write_text("time [s],force_x [N]\n0.0,12.5\n1.0,-3.25e4\n")
-    (flow_folder / "sections.json").write_text(
+    (drawn_flow / "maps").mkdir()
+    Image.new("RGB", (30, 20), "red").save(drawn_flow / "maps" / "arrival_time.png")
+    (drawn_flow / "loads.csv").write_text("time [s],force_x [N]\n0.0,12.5\n1.0,-3.25e4\n")
+    (drawn_flow / "sections.json").write_text(
         '{"gorge": {"peak": 1.5}, "rows": [{"a": 1}, {"b": "<i>"}]}'
     )
-    (flow_folder / "gauges").mkdir()
-    page = page_of(flow_folder)
+    (drawn_flow / "gauges").mkdir()
+    page = page_of(drawn_flow)
     names = [given["id"] for given, _ in page.all("section")]
     assert names[3:8] == ["ledgers", "figures", "maps", "loads", "sections"]
     assert "arrival time" in page.by_id("maps")
@@ -174,10 +173,10 @@ def test_provenance_is_that_of_the_run(write, tmp_path, page_of):
     assert "commit" in said
 
 
-def test_the_inputs_are_named_with_their_digests(flow_folder, page_of):
-    (flow_folder / "inputs").mkdir()
-    (flow_folder / "inputs" / "bed.csv").write_text("x,y\n")
-    text = page_of(flow_folder).by_id("provenance")
+def test_the_inputs_are_named_with_their_digests(drawn_flow, page_of):
+    (drawn_flow / "inputs").mkdir()
+    (drawn_flow / "inputs" / "bed.csv").write_text("x,y\n")
+    text = page_of(drawn_flow).by_id("provenance")
     assert "bed.csv" in text
     assert re.search(r"[0-9a-f]{32}", text)
 
@@ -201,15 +200,15 @@ def test_a_run_without_snapshots_has_a_report_without_a_view(tmp_path, page_of):
     assert "has not ended" in page.all("header")[0][1]
 
 
-def test_a_large_picture_is_made_smaller_or_left_out(flow_folder, page_of):
-    (flow_folder / "maps").mkdir()
+def test_a_large_picture_is_made_smaller_or_left_out(drawn_flow, page_of):
+    (drawn_flow / "maps").mkdir()
     random = np.random.default_rng(1).integers(0, 255, (300, 3000, 3), np.uint8)
-    Image.fromarray(random).save(flow_folder / "maps" / "depth.png")
-    (flow_folder / "maps" / "fake.png").write_text("<script>")
-    sizes = {given["alt"]: given["width"] for given, _ in page_of(flow_folder).all("img")}
+    Image.fromarray(random).save(drawn_flow / "maps" / "depth.png")
+    (drawn_flow / "maps" / "fake.png").write_text("<script>")
+    sizes = {given["alt"]: given["width"] for given, _ in page_of(drawn_flow).all("img")}
     assert sizes["depth.png"] == "2000"
     assert "fake.png" not in sizes
-    written = write_report(flow_folder, size_mb=1.5)
+    written = write_report(drawn_flow, size_mb=1.5)
     assert written.size < 1.5e6
     assert any("depth.png is left out" in note for note in written.notes)
     assert any("fake.png is left out" in note for note in written.notes)

@@ -50,9 +50,9 @@ def test_no_run(tmp_path, capsys):
         ("snapshots/000000.vtkhdf", ""),
     ],
 )
-def test_a_damaged_file(flow_folder, capsys, file, text):
-    (flow_folder / file).write_text(text, encoding="latin-1")
-    refused(capsys, flow_folder)
+def test_a_damaged_file(drawn_flow, capsys, file, text):
+    (drawn_flow / file).write_text(text, encoding="latin-1")
+    refused(capsys, drawn_flow)
 
 
 @pytest.mark.parametrize("harm", HARMS)
@@ -61,10 +61,10 @@ def test_a_hostile_snapshot(run_folder, capsys, harm):
     refused(capsys, run_folder)
 
 
-def test_an_absurd_scenario_of_figures(flow_folder, capsys):
-    with (flow_folder / "scenario.toml").open("a") as file:
+def test_an_absurd_scenario_of_figures(drawn_flow, capsys):
+    with (drawn_flow / "scenario.toml").open("a") as file:
         file.write('\n[gauge.x]\nkind = "thermometer"\n')
-    assert "gauge.x" in refused(capsys, flow_folder)
+    assert "gauge.x" in refused(capsys, drawn_flow)
 
 
 def test_nothing_is_written_through_a_link(run_folder, tmp_path, capsys):
@@ -72,6 +72,19 @@ def test_nothing_is_written_through_a_link(run_folder, tmp_path, capsys):
     (run_folder / "report.html").symlink_to(outside)
     assert "symbolic link" in refused(capsys, run_folder)
     assert not outside.exists()
+
+
+def test_what_is_no_report_is_not_overwritten(run_folder, tmp_path, capsys):
+    (tmp_path / "letter.html").write_text("<html>Dear all</html>")
+    with pytest.raises(SystemExit) as ended:
+        main(["report", str(run_folder), "-o", str(tmp_path / "letter.html")])
+    assert ended.value.code == 2
+    assert "no report of doseki" in capsys.readouterr().err
+    assert "Dear" in (tmp_path / "letter.html").read_text()
+    for _ in range(2):
+        with pytest.raises(SystemExit) as ended:
+            main(["report", str(run_folder)])
+        assert ended.value.code == 0
 
 
 @pytest.mark.parametrize("size", ["0", "-1", "nan", "1e9", "much"])
@@ -82,14 +95,14 @@ def test_an_impossible_size(run_folder, capsys, size):
     assert "size-mb" in capsys.readouterr().err
 
 
-def test_pipes_and_devices_among_pictures_and_tables(flow_folder, capsys):
+def test_pipes_and_devices_among_pictures_and_tables(drawn_flow, capsys):
     """They are left out, and said to be."""
-    (flow_folder / "maps").mkdir()
-    os.mkfifo(flow_folder / "maps" / "pipe.png")
-    os.mkfifo(flow_folder / "loads.csv")
-    (flow_folder / "sections.json").write_text("[" * 100000)
+    (drawn_flow / "maps").mkdir()
+    os.mkfifo(drawn_flow / "maps" / "pipe.png")
+    os.mkfifo(drawn_flow / "loads.csv")
+    (drawn_flow / "sections.json").write_text("[" * 100000)
     with pytest.raises(SystemExit) as ended:
-        main(["report", str(flow_folder)])
+        main(["report", str(drawn_flow)])
     assert ended.value.code == 0
     said = capsys.readouterr().out
     for name in ("pipe.png", "loads.csv", "sections.json"):

@@ -82,6 +82,11 @@ class RunFolder:
         return self.path / "provenance.json"
 
     @property
+    def report(self) -> Path:
+        """The report, where one was written."""
+        return self.path / "report.html"
+
+    @property
     def failure(self) -> Path:
         """Why the run failed, for programs."""
         return self.path / "failure.json"
@@ -166,7 +171,7 @@ class RunFolder:
 
     def recorded(self) -> list[Path]:
         """What a run may have written while it went on."""
-        plain = (self.history, self.series, self.log, self.provenance)
+        plain = (self.history, self.series, self.log, self.provenance, self.report)
         return [
             *(file for file in plain if file.exists()),
             *self.snapshot_files(),

@@ -8,6 +8,7 @@ import platform
 import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -18,6 +19,7 @@ import psutil
 
 from .. import __version__
 from ..compiled import load_core
+from ..errors import UserError
 from ..util.files import write_whole_text
 from ..util.foreign import read_text, readable
 from .folder import RunFolder
@@ -52,9 +54,13 @@ def provenance_now(threads: int = 0, ranks: int = 1) -> dict[str, Any]:
 def note_provenance(folder: RunFolder, fresh: bool, threads: int, ranks: int) -> None:
     """Write down with what a run starts, or goes on where it is not `fresh`.
 
-    Raises ResourceError or UserError where it cannot be written.
+    What was written before is lost where it is damaged: a run goes on all the same. Raises
+    ResourceError or UserError where nothing can be written.
     """
-    before = [] if fresh else read_provenance(folder)
+    before: list[dict[str, Any]] = []
+    if not fresh:
+        with suppress(UserError):
+            before = read_provenance(folder)
     text = json.dumps({"runs": [*before, provenance_now(threads, ranks)]}, indent=1) + "\n"
     write_whole_text(folder.provenance, text)
 

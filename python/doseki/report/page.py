@@ -15,10 +15,10 @@ BROWSER = Path(__file__).resolve().parent / "browser"
 SCRIPTS = (
     "unpack", "algebra", "camera", "shaders", "shapes", "painter", "controls", "legend", "viewer",
 )  # fmt: skip
-HINT = (
-    "Drag to turn (2-D: to move), two fingers or shift to move, wheel or pinch to zoom after a "
-    "click, double-click to go back."
-)
+GENERATOR = "doseki report"
+TURN = "Drag to turn, with shift or two fingers to move"
+MOVE = "Drag to move"
+HINT = "; pinch to zoom, or use the wheel after a click; double-click to go back."
 
 
 def page(title: str, content: Sequence[Content], scene: Scene | None) -> str:
@@ -29,6 +29,7 @@ def page(title: str, content: Sequence[Content], scene: Scene | None) -> str:
         tag("meta", charset="utf-8"),
         tag("meta", http_equiv="Content-Security-Policy", content=_policy(style, script)),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name="generator", content=GENERATOR),
         tag("meta", name="referrer", content="no-referrer"),
         tag("meta", name="color-scheme", content="light dark"),
         tag("title", title),
@@ -42,7 +43,7 @@ def page(title: str, content: Sequence[Content], scene: Scene | None) -> str:
 
 def viewer(scene: Scene) -> Markup:
     """The interactive view; browser/viewer.js fills it."""
-    part = _part
+    part, is_flat = _part, scene.table["dim"] == 2
     overlay = [
         part("div", "legend", class_="legend"),
         part("div", "bar", class_="bar"),
@@ -80,10 +81,11 @@ def viewer(scene: Scene) -> Markup:
                 class_="tools",
             ),
             id="viewer",
-            class_="flat" if scene.table["dim"] == 2 else None,
+            class_="flat" if is_flat else None,
         ),
         tag("noscript", tag("p", "The interactive view needs JavaScript; the figures do not.")),
-        tag("p", HINT, " ".join(["", *scene.notes]), class_="small"),
+        tag("p", MOVE if is_flat else TURN, HINT, class_="small"),
+        tag("p", " ".join(scene.notes), class_="small") if scene.notes else None,
         id="view",
     )
 

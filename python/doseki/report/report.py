@@ -13,9 +13,9 @@ from ..geodata.raster import read_raster
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..util.files import write_whole_text
-from ..util.foreign import readable
+from ..util.foreign import open_regular, readable
 from .markup import Content, Markup, section, tag
-from .page import page, viewer
+from .page import GENERATOR, page, viewer
 from .parts.facts import facts, heading
 from .parts.findings import findings
 from .parts.gauges import gauges
@@ -29,7 +29,7 @@ from .view.terrain import Grid, grid_of
 MB = 1e6
 DEFAULT_MB = 20.0
 LEAST_VIEW = 0.4  # of the size, kept for the view: pictures take no more than the rest
-NAME = "report.html"
+HEAD_BYTES = 4096  # of a report, in which it says that it is one
 
 
 @dataclass
@@ -51,9 +51,8 @@ def write_report(
     ResourceError where the disk is full.
     """
     run = _checked(load(directory))
-    path = output or run.folder.path / NAME
-    if path.is_symlink():
-        raise UserError(f"{path}: is a symbolic link; nothing is written through it")
+    path = output or run.folder.report
+    _check_free(path)
     album = Album((1 - LEAST_VIEW) * size_mb * MB)
     terrain = _terrain(run, album)
     before, after = _before(run), _after(run, album)
@@ -61,9 +60,19 @@ def write_report(
     scene, note = _scene(run, size_mb * MB - rest, terrain)
     notes = [*(scene.notes if scene else [note]), *album.notes]
     shown: Content = viewer(scene) if scene else section("The flow", tag("p", note), name="view")
-    text = page(title_of(run), [*before, shown, *after, _end(album)], scene)
+    text = page(str(title_of(run)), [*before, shown, *after, _end(album)], scene)
     write_whole_text(path, text)
     return Report(path, len(text.encode("utf-8")), notes)
+
+
+def _check_free(path: Path) -> None:
+    """Raise UserError where something is that is no report: it is not overwritten."""
+    if path.is_symlink():
+        raise UserError(f"{path}: is a symbolic link; nothing is written through it")
+    if path.exists():
+        with open_regular(path) as (file, _):
+            if GENERATOR.encode() not in file.read(HEAD_BYTES):
+                raise UserError(f"{path}: exists and is no report of doseki; not overwritten")
 
 
 def _checked(run: Run) -> Run:

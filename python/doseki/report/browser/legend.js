@@ -1,5 +1,7 @@
 // What is written over and beside the picture: colours and what they mean, scale bar, axes.
 
+const MOST_NAMES = 12; // more of them are not told apart by colour
+
 function numberText(value) {
   const size = Math.abs(value);
   return size !== 0 && (size >= 1e5 || size < 1e-3) ? value.toExponential(1) : String(Number(value.toPrecision(3)));
@@ -15,7 +17,9 @@ function element(name, text = "", className = "") {
 // The scale of a field, or the colour of each of its names.
 function fillLegend(place, field, extra) {
   const title = element("p", field.unit ? `${field.label} (${field.unit})` : field.label, "legend-title");
-  const entries = (field.names ?? []).map((name, k) => [name, field.colours[k]]);
+  // What nothing has that moves has no colour.
+  const named = (field.names ?? []).map((name, k) => [name, field.colours[k]]).filter(([, colour]) => colour);
+  const entries = named.length > MOST_NAMES ? [[`${named.length} names`, "transparent"]] : named;
   const swatches = [...entries, ...extra].map(([name, colour]) => {
     const entry = element("span", name, "swatch");
     const square = element("i");

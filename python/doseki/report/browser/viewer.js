@@ -31,7 +31,8 @@ class Viewer {
     return table;
   }
 
-  async start() {
+  // What stays where it is. A browser may take the graphics processor away, and give it back.
+  async fillStill() {
     const { scene, painter } = this;
     if (scene.terrain) {
       const planes = new Planes(await inflated(scene.terrain.id), scene.terrain.columns * scene.terrain.rows);
@@ -39,6 +40,16 @@ class Viewer {
     }
     if (scene.walls?.id) painter.setParticles(painter.walls, await readParticles(scene.walls, []));
     this.meshes = (scene.bodies?.meshes ?? []).map((mesh) => painter.mesh(...flatTriangles(mesh.points, mesh.triangles)));
+  }
+
+  async start() {
+    await this.fillStill();
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.canvas.addEventListener("webglcontextrestored", async () => {
+      this.painter = new Painter(this.canvas, this.scene);
+      await this.fillStill();
+      await this.show();
+    });
     this.buildPanel();
     attachControls(this.canvas, this.camera, (moving) => this.changed(moving), {
       " ": () => this.setPlaying(!this.playing), ",": () => this.show({ frame: this.frame - 1 }),
@@ -153,7 +164,15 @@ class Viewer {
     if (!this.playing) return this.draw();
     if (this.frame === frames.length - 1) this.frame = -1;
     const pause = clamp((1000 * PLAY_SECONDS) / frames.length, 50, 400);
-    this.clock = setInterval(() => this.show({ frame: (this.frame + 1) % frames.length }), pause);
+    this.clock = setInterval(() => this.step(), pause);
+  }
+
+  // The next moment, unless the last one is still being drawn.
+  async step() {
+    if (this.busy) return;
+    this.busy = true;
+    await this.show({ frame: (this.frame + 1) % this.scene.frames.length });
+    this.busy = false;
   }
 
   // Moving pictures are drawn quickly; when they rest, finely.

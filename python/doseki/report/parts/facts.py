@@ -22,7 +22,7 @@ def heading(run: Run) -> Markup:
     end = f"{times[-1]:.4g} s of {said['time_max']:.4g} s" if len(times) else "nothing recorded"
     kind = f"{said['dim']}-D, scheme {said.get('scheme', '')}"
     line = f"{kind}; simulated {end}; {HOW.get(status, status)}"
-    return tag("header", tag("h1", title_of(run)), tag("p", line, class_="subtitle"))
+    return tag("header", tag("h1", str(title_of(run))), tag("p", line, class_="subtitle"))
 
 
 def facts(run: Run) -> Markup | None:

@@ -151,7 +151,7 @@ def _table(maker: SceneMaker) -> dict[str, Any]:
 
 
 def _clock(times: np.ndarray) -> dict[str, Any]:
-    """How times, s, are written: in ms where all are short, with the digits that tell them apart."""
+    """How times, s, are written: in ms where all are short, with digits that tell them apart."""
     unit, factor = ("ms", 1e3) if times[-1] < SHORT else ("s", 1.0)
     shown = factor * times
     apart = float(np.median(np.diff(shown))) if len(times) > 1 else 1.0
