@@ -1,10 +1,12 @@
 // What is written over and beside the picture: colours and what they mean, scale bar, axes.
 
+const UNITS = [[1000, 1e-3, "km"], [1, 1, "m"], [0.01, 100, "cm"], [0, 1000, "mm"]]; // from which length on
 const MOST_NAMES = 12; // more of them are not told apart by colour
 
 function numberText(value) {
   const size = Math.abs(value);
-  return size !== 0 && (size >= 1e5 || size < 1e-3) ? value.toExponential(1) : String(Number(value.toPrecision(3)));
+  if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(1);
+  return String(Number(value.toPrecision(3)));
 }
 
 function element(name, text = "", className = "") {
@@ -47,9 +49,9 @@ function scaleOf(field) {
 function drawScaleBar(place, camera, width, height) {
   const metres = (2 * camera.height) / height; // of a pixel
   const length = niceLength(0.22 * width * metres);
-  const units = length >= 1000 ? [1e-3, "km"] : length >= 1 ? [1, "m"] : length >= 0.01 ? [100, "cm"] : [1000, "mm"];
+  const [, factor, unit] = UNITS.find(([least]) => length >= least);
   place.style.width = `${length / metres}px`;
-  place.textContent = `${Number((length * units[0]).toPrecision(2))} ${units[1]}`;
+  place.textContent = `${Number((length * factor).toPrecision(2))} ${unit}`;
 }
 
 // The axes of the coordinates, as lines from a point (SVG).

@@ -23,7 +23,9 @@ class Painter {
     this.balls = this.ballCloud();
     this.solids = [];
     this.colours = gl.createTexture();
-    this.target = { width: 0, height: 0, frame: gl.createFramebuffer(), picture: gl.createTexture(), depths: gl.createTexture() };
+    this.target = { width: 0, height: 0, frame: gl.createFramebuffer() };
+    this.target.picture = gl.createTexture();
+    this.target.depths = gl.createTexture();
     this.nothing = gl.createVertexArray();
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
@@ -67,7 +69,9 @@ class Painter {
 
   cloud() {
     const gl = this.gl;
-    const made = { array: gl.createVertexArray(), place: gl.createBuffer(), value: gl.createBuffer(), count: 0 };
+    const made = { array: gl.createVertexArray(), count: 0 };
+    made.place = gl.createBuffer();
+    made.value = gl.createBuffer();
     gl.bindVertexArray(made.array);
     this.attribute(0, this.square, 2, gl.FLOAT, 0);
     this.attribute(1, made.place, 4, gl.UNSIGNED_SHORT, 1);
@@ -195,8 +199,17 @@ class Painter {
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.colours);
     if (look.terrain) this.paintTerrain(shared, look);
-    if (look.walls) this.paintCloud("particles", this.walls, shared, { plain: [...look.wallColour, 1], largest: radius * wallSwell, roundness: 0.2, cuts: camera.up.map((v) => (look.hides && !camera.flat && Math.abs(v) < 0.7 ? 1 : 0)) });
-    if (look.flow) this.paintCloud("particles", this.flow, shared, { plain: [0, 0, 0, 0], largest: radius * swell, roundness: 0.55, cuts: [0, 0, 0] });
+    if (look.walls) {
+      const cuts = camera.up.map((v) => (look.hides && !camera.flat && Math.abs(v) < 0.7 ? 1 : 0));
+      const plain = [...look.wallColour, 1];
+      const largest = radius * wallSwell;
+      this.paintCloud("particles", this.walls, shared, { plain, cuts, largest, roundness: 0.2 });
+    }
+    if (look.flow) {
+      const [plain, cuts] = [[0, 0, 0, 0], [0, 0, 0]];
+      const largest = radius * swell;
+      this.paintCloud("particles", this.flow, shared, { plain, cuts, largest, roundness: 0.55 });
+    }
     if (look.bodies) this.paintBodies(shared, look.bodyColour);
     this.paintScreen({ near, far, background: look.background, strength: camera.flat ? 0 : 22 }, height);
   }
@@ -240,9 +253,9 @@ class Painter {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
     const places = this.use("screen", {}, numbers);
-    for (const [unit, key, texture] of [[2, "picture", this.target.picture], [3, "depths", this.target.depths]]) {
+    for (const [unit, key] of [[2, "picture"], [3, "depths"]]) {
       gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.bindTexture(gl.TEXTURE_2D, this.target[key]);
       gl.uniform1i(places[key], unit);
     }
     gl.uniform1i(places.reach, Math.max(1, Math.round(height / 500)));

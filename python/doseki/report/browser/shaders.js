@@ -40,7 +40,8 @@ flat out float radius;
 flat out vec3 colour;
 bool isBefore(vec3 p) {
   for (int k = 0; k < 3; k++) {
-    if (cuts[k] > 0.0 && abs(back[k]) > 0.2 && sign(back[k]) * (p[k] - (back[k] > 0.0 ? high[k] : low[k])) > 0.0) return true;
+    if (cuts[k] == 0.0 || abs(back[k]) < 0.2) continue;
+    if (back[k] > 0.0 ? p[k] > high[k] : p[k] < low[k]) return true;
   }
   return false;
 }

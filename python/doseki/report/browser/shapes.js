@@ -34,7 +34,7 @@ function flatTriangles(points, triangles) {
 }
 
 // Balls and solids of one moment, as Painter.setBodies takes them.
-function placedBodies(frame, bodies, meshes, size, values) {
+function placedBodies(frame, { bodies, size }, meshes, values) {
   const balls = { ball: [], turn: [], value: [] }, solids = [];
   for (let k = 0; k < frame.count; k++) {
     if (!frame.there[k]) continue;

@@ -1,6 +1,5 @@
 // The picture of a run: which moment is shown, by which field it is coloured, from where.
 
-const LAYERS = ["flow", "walls", "bodies", "terrain"];
 const PLAY_SECONDS = 8; // about how long a run takes to play
 const REST = 180; // ms without a movement, then the picture is drawn finer
 
@@ -27,7 +26,7 @@ class Viewer {
   tableOf(field) {
     const table = new Uint8ClampedArray(1024).fill(255);
     const given = field.names ? field.colours : this.scene.scale;
-    for (let k = 0; k < 256; k++) table.set(rgbOf(given[k % Math.max(1, given.length)] ?? "#808080"), 4 * k);
+    for (let k = 0; k < 256; k++) table.set(rgbOf(given[k % Math.max(1, given.length)] || "#808080"), 4 * k);
     return table;
   }
 
@@ -39,7 +38,8 @@ class Viewer {
       painter.setTerrain(scene.terrain, planes.wide(new Uint16Array(planes.count)));
     }
     if (scene.walls?.id) painter.setParticles(painter.walls, await readParticles(scene.walls, []));
-    this.meshes = (scene.bodies?.meshes ?? []).map((mesh) => painter.mesh(...flatTriangles(mesh.points, mesh.triangles)));
+    const meshes = scene.bodies?.meshes ?? [];
+    this.meshes = meshes.map((mesh) => painter.mesh(...flatTriangles(mesh.points, mesh.triangles)));
   }
 
   async start() {
@@ -50,7 +50,7 @@ class Viewer {
       await this.fillStill();
       await this.show();
     });
-    this.buildPanel();
+    buildPanel(this);
     attachControls(this.canvas, this.camera, (moving) => this.changed(moving), {
       " ": () => this.setPlaying(!this.playing), ",": () => this.show({ frame: this.frame - 1 }),
       ".": () => this.show({ frame: this.frame + 1 }), Home: () => this.show({ frame: 0 }),
@@ -64,47 +64,11 @@ class Viewer {
   // What the address says after its #: frame, field, azimuth, elevation, zoom.
   asked() {
     const asked = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
-    const numbers = ["frame", "azimuth", "elevation", "zoom"].filter((key) => Number.isFinite(parseFloat(asked[key])));
-    return { ...(this.names.includes(asked.field) && { field: asked.field }), ...Object.fromEntries(numbers.map((key) => [key, Number(asked[key])])) };
-  }
-
-  buildPanel() {
-    const { scene } = this, slider = this.part("time"), select = this.part("field");
-    slider.max = scene.frames.length - 1;
-    slider.addEventListener("input", () => this.show({ frame: Number(slider.value) }));
-    select.replaceChildren(...scene.fields.map((field) => new Option(field.label, field.name)));
-    select.addEventListener("change", () => this.show({ field: select.value }));
-    this.part("play").addEventListener("click", () => this.setPlaying(!this.playing));
-    this.part("play").disabled = slider.disabled = scene.frames.length < 2;
-    this.part("home").addEventListener("click", () => {
-      this.camera.reset();
-      this.draw();
-    });
-    this.part("whole").addEventListener("click", () => (document.fullscreenElement ? document.exitFullscreen() : this.place.requestFullscreen?.()));
-    for (const [key, azimuth, elevation] of [["top", -90, 89], ["front", -90, 0], ["side", 0, 0]]) {
-      this.part(key).hidden = this.camera.flat;
-      this.part(key).addEventListener("click", () => this.show({ azimuth, elevation }));
+    const found = this.names.includes(asked.field) ? { field: asked.field } : {};
+    for (const key of ["frame", "azimuth", "elevation", "zoom"]) {
+      if (asked[key] && Number.isFinite(Number(asked[key]))) found[key] = Number(asked[key]);
     }
-    this.buildLayers();
-  }
-
-  buildLayers() {
-    const there = { flow: true, walls: this.scene.walls, bodies: this.scene.bodies, terrain: this.scene.terrain };
-    const boxes = LAYERS.filter((name) => there[name]).map((name) => this.checkbox(name, (on) => (this.shown[name] = on)));
-    const cut = this.scene.walls && !this.camera.flat ? [this.checkbox("cut walls in front", (on) => (this.hides = on))] : [];
-    this.part("layers").replaceChildren(...(boxes.length > 1 ? boxes : []), ...cut);
-  }
-
-  checkbox(name, set) {
-    const label = element("label", name), box = document.createElement("input");
-    box.type = "checkbox";
-    box.checked = true;
-    box.addEventListener("change", () => {
-      set(box.checked);
-      this.draw();
-    });
-    label.prepend(box);
-    return label;
+    return found;
   }
 
   // Changes what is shown; what is not named stays. Resolves when it has been drawn.
@@ -112,7 +76,7 @@ class Viewer {
     const last = this.scene.frames.length - 1;
     this.frame = clamp(Math.round(frame), 0, last);
     this.field = this.scene.fields[Math.max(0, this.names.indexOf(field))];
-    if (azimuth !== undefined || elevation !== undefined) this.camera.look(azimuth ?? this.camera.azimuth, elevation ?? this.camera.elevation);
+    this.camera.look(azimuth ?? this.camera.azimuth, elevation ?? this.camera.elevation);
     const moment = await this.moment(this.frame);
     if (moment !== this.moments[this.frame]) return; // another one has been asked for since
     this.hand(moment);
@@ -141,13 +105,16 @@ class Viewer {
     painter.setParticles(painter.flow, flow, flow.values[field.name]);
     if (walls) painter.setParticles(painter.walls, walls);
     painter.setColours(new Uint8Array(field.table.buffer));
-    if (bodies) painter.setBodies(...placedBodies(bodies, this.scene.bodies, this.meshes, this.scene.size, bodies.values[field.name]));
-    this.counts = { flow: flow.count, extent: this.extentOf(flow), bodies: bodies ? bodies.there.reduce((sum, on) => sum + on, 0) : 0 };
+    this.counts = { flow: flow.count, extent: this.extentOf(flow), bodies: 0 };
+    if (!bodies) return;
+    painter.setBodies(...placedBodies(bodies, this.scene, this.meshes, bodies.values[field.name]));
+    this.counts.bodies = bodies.there.reduce((sum, on) => sum + on, 0);
   }
 
   // Lower and upper corner of particles, in map coordinates.
   extentOf({ place }) {
-    const { corner, size, dim } = this.scene, low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const { corner, size, dim } = this.scene;
+    const low = Array(3).fill(Infinity), high = Array(3).fill(-Infinity);
     for (let i = 0; i < place.length; i++) {
       const axis = i % 4;
       if (place[i] < low[axis]) low[axis] = place[i];
@@ -190,12 +157,19 @@ class Viewer {
   draw() {
     const { canvas, camera, scene } = this, style = getComputedStyle(this.place);
     const colour = (name) => rgbOf(style.getPropertyValue(name).trim()).map((v) => v / 255);
-    const ratio = Math.min(devicePixelRatio || 1, 2) * (this.fine && !this.playing ? 2 : 1);
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.max(1, Math.round(v * Math.min(ratio, 3))));
+    const ratio = Math.min(3, Math.min(devicePixelRatio || 1, 2) * (this.fine && !this.playing ? 2 : 1));
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.max(1, Math.round(v * ratio)));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     const known = !scene.bodies || scene.bodies.fields.includes(this.field.name);
     const began = performance.now();
-    this.painter.paint(camera, { ...this.shown, hides: this.hides, background: colour("--picture"), wallColour: colour("--wall"), soil: colour("--soil"), bodyColour: known ? null : colour("--body") });
+    this.painter.paint(camera, {
+      ...this.shown,
+      hides: this.hides,
+      background: colour("--picture"),
+      wallColour: colour("--wall"),
+      soil: colour("--soil"),
+      bodyColour: known ? null : colour("--body"),
+    });
     this.drawn = performance.now() - began;
     this.write(known);
   }
@@ -244,7 +218,8 @@ async function openViewer() {
   } catch (error) {
     const said = typeof DecompressionStream === "undefined" ? "the browser is older than 2023" : error.message;
     place.dataset.state = JSON.stringify({ ready: false, error: String(said) });
-    place.replaceChildren(element("p", `The interactive view cannot be shown here: ${said}. The figures below show the run.`, "failure"));
+    const text = `The interactive view cannot be shown here: ${said}. The figures below show the run.`;
+    place.replaceChildren(element("p", text, "failure"));
   }
 }
 

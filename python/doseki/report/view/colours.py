@@ -98,6 +98,11 @@ def _number(name: str, samples: Sequence[Snapshot]) -> Field:
     return Field(name, unit, low, high)
 
 
+def _of_bodies(name: str, samples: Sequence[Snapshot]) -> set[str]:
+    """The names of rigid bodies, which may have no particle of their own in a sample."""
+    return {str(b) for s in samples for b in s.grains.get("body", ())} if name == "body" else set()
+
+
 def _category(name: str, samples: Sequence[Snapshot], fluids: set[str]) -> Field:
     """Names that nothing has which moves have no colour of their own: they are never looked up."""
     first = samples[0]
@@ -105,7 +110,7 @@ def _category(name: str, samples: Sequence[Snapshot], fluids: set[str]) -> Field
     used: set[int] = set()
     for snapshot in samples:
         used |= set(np.unique(snapshot.stored(name)[~snapshot["fixed"]]).tolist())
-    kinds = sorted(names[k] for k in used if 0 <= k < len(names))
+    kinds = sorted({*(names[k] for k in used if 0 <= k < len(names)), *_of_bodies(name, samples)})
     colour = palette(kinds, name, fluids)
     return Field(
         name,
