@@ -8,7 +8,6 @@ import zlib
 import numpy as np
 import pytest
 
-from doseki.measure.columns import column_depth
 from doseki.record.reader import load
 from doseki.report.view.box import box_of
 from doseki.report.view.coding import morton_order, packed, wide
@@ -17,7 +16,7 @@ from doseki.report.view.scene import make_scene
 from doseki.report.view.terrain import NO_DATA, STEPS, contour_interval, grid_of
 from doseki.report.view.thinning import Thinning, hidden, spread, thinned
 
-from .conftest import CORNER, block, map_state, record_map
+from .conftest import CORNER, map_state, record_map
 
 PLENTY = 1e9  # bytes
 
@@ -92,17 +91,6 @@ def test_fields_span_what_moves(map_run):
     )
     shown = np.sort(planes[4]) / 255 * fields["speed"]["high"]
     assert np.abs(shown - np.minimum(speeds, fields["speed"]["high"])).max() < 0.6 * 1.5 / 255
-
-
-def test_depth_is_that_of_the_columns():
-    position = block((20, 10, 7))
-    volume = np.full(len(position), 0.001)
-    assert np.allclose(column_depth(position, volume, 0.5), 0.7)
-    assert np.allclose(column_depth(position + CORNER, volume, 0.5), 0.7)
-    flat = block((20, 7))
-    assert np.allclose(column_depth(flat, np.full(len(flat), 0.01), 0.5), 0.7)
-    lower = position[position[:, 2] < 0.3]
-    assert np.allclose(column_depth(lower, volume[: len(lower)], 0.5), 0.3)
 
 
 def test_a_cube_is_a_hull_and_a_sphere_is_a_ball(map_run, tmp_path):

@@ -16,7 +16,6 @@ from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError
 from ..record.beginning import check_free
-from ..record.provenance import note_provenance
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
@@ -26,6 +25,7 @@ from ..util.cores import chosen_threads
 from ..util.finding import Finding, sentences
 from ..util.telling import Tell, say_nothing
 from .first_state import first_state
+from .provenance import note_provenance
 
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost
 

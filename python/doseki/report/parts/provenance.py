@@ -6,8 +6,8 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ...record.provenance import commit, provenance_now, read_provenance
 from ...record.reader import Run
+from ...run.provenance import commit, provenance_now, read_provenance
 from ...util.foreign import read_text
 from ...util.input_file import digest_of
 from ..markup import Content, Markup, section, table, tag, terms

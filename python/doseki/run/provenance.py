@@ -20,9 +20,9 @@ import psutil
 from .. import __version__
 from ..compiled import load_core
 from ..errors import UserError
+from ..record.folder import RunFolder
 from ..util.files import write_whole_text
 from ..util.foreign import read_text, readable
-from .folder import RunFolder
 
 LIBRARIES = (
     "numpy", "scipy", "h5py", "matplotlib", "pydantic", "simpleeval", "threadpoolctl", "trimesh",
