@@ -13,7 +13,8 @@ from .view.scene import Scene
 
 BROWSER = Path(__file__).resolve().parent / "browser"
 SCRIPTS = (
-    "unpack", "algebra", "camera", "shaders", "shapes", "painter", "controls", "legend", "panel", "viewer",
+    "unpack", "algebra", "camera", "shaders", "shapes", "painter", "controls", "legend", "panel",
+    "viewer",
 )  # fmt: skip
 GENERATOR = "doseki report"
 TURN = "Drag to turn, with shift or two fingers to move"
