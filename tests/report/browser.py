@@ -40,9 +40,18 @@ def _browse(page: Path, asked: str, *options: str, profile: Path) -> str:
 
 def state_of(page: Path, asked: str, profile: Path) -> dict[str, Any]:
     """What the view says of itself, when it was asked for something by the address."""
+    return _data(page, asked, "state", profile)
+
+
+def told(page: Path, asked: str, profile: Path) -> list[dict[str, Any]]:
+    """What a script of a test has put down in the page."""
+    return _data(page, asked, "said", profile)
+
+
+def _data(page: Path, asked: str, name: str, profile: Path) -> Any:
     text = _browse(page, asked, "--dump-dom", profile=profile)
-    found = re.search(r'data-state="([^"]*)"', text)
-    assert found, "the view has not been drawn"
+    found = re.search(f'data-{name}="([^"]*)"', text)
+    assert found, f"the page has no data-{name}"
     return json.loads(html.unescape(found[1]))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from doseki.geodata.raster import write_raster
 from doseki.record.reader import load
 from doseki.report.report import write_report
 
-from .browser import needs_browser, picture_of, state_of
+from .browser import needs_browser, picture_of, state_of, told
 from .conftest import CORNER
 
 pytestmark = [needs_browser, pytest.mark.minutes]
@@ -104,3 +106,66 @@ def test_names_that_are_programs_do_not_run(tmp_path, record_run):
         text.replace("</main>", "</main><script>document.body.innerHTML=''</script>"), "utf-8"
     )
     assert state_of(page, "", tmp_path / "profile")["ready"]
+
+
+# What a hand does: a drag, the wheel, keys, the box of a layer, play; then the state is read again.
+HAND = """
+<script>
+HTMLElement.prototype.setPointerCapture = () => {};
+const rest = (ms) => new Promise((done) => setTimeout(done, ms));
+(async () => {
+  while (!window.doseki?.state().extent) await rest(50);
+  const said = [], tell = () => said.push(doseki.state());
+  const canvas = document.querySelector("[data-part=picture]");
+  const finger = (kind, id, x, y) => canvas.dispatchEvent(
+    new PointerEvent(kind, { pointerId: id, clientX: x, clientY: y, bubbles: true, buttons: 1 }));
+  tell();
+  finger("pointerdown", 1, 300, 300);
+  finger("pointermove", 1, 380, 320);
+  finger("pointerup", 1, 380, 320);
+  tell();
+  finger("pointerdown", 1, 300, 300);
+  finger("pointerdown", 2, 400, 300);
+  finger("pointermove", 2, 500, 300);
+  finger("pointerup", 1, 300, 300);
+  finger("pointerup", 2, 500, 300);
+  tell();
+  canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: 120, ctrlKey: true, cancelable: true }));
+  tell();
+  canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "." }));
+  await rest(500);
+  tell();
+  document.querySelector("[data-part=play]").click();
+  await rest(3000);
+  tell();
+  document.querySelector("[data-part=play]").click();
+  document.querySelector("[data-part=top]").click();
+  const select = document.querySelector("[data-part=field]");
+  select.value = "depth";
+  select.dispatchEvent(new Event("change"));
+  await rest(500);
+  tell();
+  document.body.dataset.said = JSON.stringify(said);
+})();
+</script>
+"""
+
+
+def test_it_follows_the_hand(page, tmp_path):
+    text = page.read_text(encoding="utf-8")
+    changed = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", text)
+    assert changed != text
+    page.write_text(changed.replace("</body>", f"{HAND}</body>"), encoding="utf-8")
+    states = told(page, "frame=1", tmp_path / "profile")
+    first, turned, pinched, wheeled, keyed, played, chosen = states
+    assert turned["azimuth"] < first["azimuth"]
+    assert turned["elevation"] > first["elevation"]
+    assert turned["target"] == first["target"]
+    assert pinched["height"] == pytest.approx(turned["height"] / 2, rel=0.01)
+    assert pinched["target"] != turned["target"]
+    assert wheeled["height"] > pinched["height"]
+    assert (first["frame"], keyed["frame"]) == (1, 2)
+    assert played["playing"]
+    assert played["frame"] != 2
+    assert not chosen["playing"]
+    assert (chosen["field"], chosen["elevation"]) == ("depth", 89)

@@ -173,6 +173,14 @@ def test_provenance_is_that_of_the_run(write, tmp_path, page_of):
     assert "commit" in said
 
 
+def test_a_failed_run_says_why(map_run, page_of):
+    said = {"kind": "speed", "step": 7, "time": 0.5, "message": "too <fast>", "advice": "raise xi"}
+    (map_run / "failure.json").write_text(json.dumps(said))
+    text = page_of(map_run).by_id("trust")
+    assert "Why it failed" in text
+    assert "after step 7" in text
+
+
 def test_the_inputs_are_named_with_their_digests(drawn_flow, page_of):
     (drawn_flow / "inputs").mkdir()
     (drawn_flow / "inputs" / "bed.csv").write_text("x,y\n")
