@@ -55,13 +55,14 @@ def test_colours_and_places_follow_what_is_asked_for(page, tmp_path):
         "field=material&frame=0",
         "field=speed&frame=4",
         "field=speed&frame=0&zoom=3",
+        "field=speed&frame=0&clear=1",
     )
-    speed, material, later, closer = (
+    speed, material, later, closer, clear = (
         picture_of(page, text, tmp_path / f"profile{k}") for k, text in enumerate(asked)
     )
     assert near(speed, YELLOW) > 150
     assert near(speed, VIOLET) > 300
-    for other in (material, later, closer):
+    for other in (material, later, closer, clear):
         assert changed(speed, other) > 3000
     water_blue = (49, 130, 189)
     assert near(material, water_blue, 60) > near(speed, water_blue, 60) + 2000

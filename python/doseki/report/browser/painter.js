@@ -1,6 +1,7 @@
 // Draws a scene with WebGL2: particles, rigid bodies, terrain, then the shading of depths.
 
 const SQUARE = new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]);
+const CLEAR = 0.45; // how much a clear flow covers what is behind it
 const EMPTY_FRAME = { count: 0, place: new Uint16Array(0) };
 
 class Painter {
@@ -184,8 +185,15 @@ class Painter {
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, target.depths, 0);
   }
 
-  // `look`: background, wall and soil colours, shown layers, whether walls in front are hidden.
+  // `look`: background, wall and soil colours, shown layers, whether walls in front are hidden. A
+  // clear flow is laid over the picture that there is without it.
   paint(camera, look) {
+    const clear = look.clear && look.flow && !camera.flat;
+    if (clear) this.paintLayers(camera, { ...look, flow: false }, 1);
+    this.paintLayers(camera, look, clear ? CLEAR : 1);
+  }
+
+  paintLayers(camera, look, opacity) {
     const gl = this.gl, { width, height } = gl.canvas;
     this.resize(width, height);
     const { view, projection, near, far, back } = camera.matrices(width / height);
@@ -211,7 +219,8 @@ class Painter {
       this.paintCloud("particles", this.flow, shared, { plain, cuts, largest, roundness: 0.55 });
     }
     if (look.bodies) this.paintBodies(shared, look.bodyColour);
-    this.paintScreen({ near, far, background: look.background, strength: camera.flat ? 0 : 22 }, height);
+    const strength = camera.flat ? 0 : 22;
+    this.paintScreen({ near, far, background: look.background, strength, opacity }, height);
   }
 
   paintCloud(name, cloud, shared, numbers) {
@@ -252,6 +261,8 @@ class Painter {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     const places = this.use("screen", {}, numbers);
     for (const [unit, key] of [[2, "picture"], [3, "depths"]]) {
       gl.activeTexture(gl.TEXTURE0 + unit);
@@ -261,6 +272,7 @@ class Painter {
     gl.uniform1i(places.reach, Math.max(1, Math.round(height / 500)));
     gl.bindVertexArray(this.nothing);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.BLEND);
     gl.enable(gl.DEPTH_TEST);
   }
 }

@@ -32,8 +32,11 @@ function checkboxes(viewer) {
   const names = LAYERS.filter((name) => name === "flow" || scene[name]);
   const boxes = names.map((name) => checkbox(viewer, name, (on) => (viewer.shown[name] = on)));
   if (boxes.length < 2) return [];
-  if (!scene.walls || camera.flat) return boxes;
-  return [...boxes, checkbox(viewer, "cut walls in front", (on) => (viewer.hides = on))];
+  if (camera.flat) return boxes;
+  const clear = checkbox(viewer, "clear flow", (on) => (viewer.clear = on));
+  viewer.clearBox = clear.querySelector("input");
+  const cut = scene.walls ? [checkbox(viewer, "cut walls in front", (on) => (viewer.hides = on))] : [];
+  return [...boxes, clear, ...cut];
 }
 
 function checkbox(viewer, name, set) {

@@ -191,7 +191,7 @@ void main() {
 const SCREEN_FRAGMENT = `${HEAD}
 uniform sampler2D picture, depths;
 uniform vec3 background;
-uniform float near, far, strength;
+uniform float near, far, strength, opacity;
 uniform int reach;               // pixels
 out vec4 pixel;
 float distanceAt(ivec2 at) {
@@ -207,5 +207,5 @@ void main() {
     ivec2 step = ivec2(round(float(reach) * vec2(cos(angle), sin(angle))));
     behind += clamp(here - distanceAt(at + step), 0.0, 0.06);
   }
-  pixel = vec4(mix(background, found.rgb * exp(-strength * behind / 8.0), found.a), 1.0);
+  pixel = vec4(mix(background, found.rgb * exp(-strength * behind / 8.0), found.a), opacity);
 }`;

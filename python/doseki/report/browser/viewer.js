@@ -16,6 +16,7 @@ class Viewer {
     this.field = scene.fields[0];
     this.shown = Object.fromEntries(LAYERS.map((name) => [name, true]));
     this.hides = true;
+    this.clear = false;
     this.fine = true;
     this.playing = false;
     this.names = scene.fields.map((field) => field.name);
@@ -61,18 +62,19 @@ class Viewer {
     await this.show(this.asked());
   }
 
-  // What the address says after its #: frame, field, azimuth, elevation, zoom.
+  // What the address says after its #: frame, field, azimuth, elevation, zoom, clear (1: one sees through the flow).
   asked() {
     const asked = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
     const found = this.names.includes(asked.field) ? { field: asked.field } : {};
-    for (const key of ["frame", "azimuth", "elevation", "zoom"]) {
+    for (const key of ["frame", "azimuth", "elevation", "zoom", "clear"]) {
       if (asked[key] && Number.isFinite(Number(asked[key]))) found[key] = Number(asked[key]);
     }
     return found;
   }
 
   // Changes what is shown; what is not named stays. Resolves when it has been drawn.
-  async show({ frame = this.frame, field = this.field.name, azimuth, elevation, zoom } = {}) {
+  async show({ frame = this.frame, field = this.field.name, azimuth, elevation, zoom, clear } = {}) {
+    this.clear = Boolean(clear ?? this.clear);
     const last = this.scene.frames.length - 1;
     this.frame = clamp(Math.round(frame), 0, last);
     this.field = this.scene.fields[Math.max(0, this.names.indexOf(field))];
@@ -165,6 +167,7 @@ class Viewer {
     this.painter.paint(camera, {
       ...this.shown,
       hides: this.hides,
+      clear: this.clear,
       background: colour("--picture"),
       wallColour: colour("--wall"),
       soil: colour("--soil"),
@@ -186,6 +189,7 @@ class Viewer {
     this.part("time").setAttribute("aria-valuetext", clock);
     this.part("clock").textContent = clock;
     this.part("field").value = this.field.name;
+    if (this.clearBox) this.clearBox.checked = this.clear;
     drawScaleBar(this.part("bar"), camera, canvas.clientWidth, canvas.clientHeight);
     drawAxes(this.part("axes"), camera, scene.axes);
     this.place.dataset.state = JSON.stringify(this.state());
@@ -199,7 +203,7 @@ class Viewer {
       field: field.name, fields: this.names, low: field.low, high: field.high, legend: field.names,
       ...this.counts, walls: this.painter.walls.count, terrain: Boolean(this.painter.terrain),
       dim: scene.dim, azimuth: camera.azimuth, elevation: camera.elevation, height: camera.height,
-      target: camera.target.map((v, k) => v + scene.corner[k]), playing: this.playing, drawn: this.drawn,
+      target: camera.target.map((v, k) => v + scene.corner[k]), clear: this.clear, playing: this.playing, drawn: this.drawn,
     };
   }
 }
