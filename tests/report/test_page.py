@@ -210,13 +210,23 @@ def test_a_run_without_snapshots_has_a_report_without_a_view(tmp_path, page_of):
 
 def test_a_large_picture_is_made_smaller_or_left_out(drawn_flow, page_of):
     (drawn_flow / "maps").mkdir()
-    random = np.random.default_rng(1).integers(0, 255, (300, 3000, 3), np.uint8)
+    random = np.random.default_rng(1).integers(0, 255, (900, 3000, 3), np.uint8)
     Image.fromarray(random).save(drawn_flow / "maps" / "depth.png")
     (drawn_flow / "maps" / "fake.png").write_text("<script>")
-    sizes = {given["alt"]: given["width"] for given, _ in page_of(drawn_flow).all("img")}
-    assert sizes["depth.png"] == "2000"
-    assert "fake.png" not in sizes
-    written = write_report(drawn_flow, size_mb=1.5)
-    assert written.size < 1.5e6
+    for size, width in ((20, "2000"), (1.5, "700")):
+        widths = {
+            given["alt"]: given["width"]
+            for given, _ in page_of(drawn_flow, size_mb=size).all("img")
+        }
+        assert widths["depth.png"] == width
+        assert "fake.png" not in widths
+        assert (drawn_flow / "report.html").stat().st_size < 1e6 * size
+    written = write_report(drawn_flow, size_mb=0.6)
+    assert written.size < 0.6e6
     assert any("depth.png is left out" in note for note in written.notes)
     assert any("fake.png is left out" in note for note in written.notes)
+
+
+def test_the_file_is_no_larger_than_it_may_be(map_run):
+    for size in (0.5, 0.1, 0.08):
+        assert write_report(map_run, size_mb=size).size < 1e6 * size

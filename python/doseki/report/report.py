@@ -29,7 +29,10 @@ from .view.terrain import Grid, grid_of
 MB = 1e6
 DEFAULT_MB = 20.0
 LEAST_VIEW = 0.4  # of the size, kept for the view: pictures take no more than the rest
+SPARE = 12_000  # bytes of what stands around the view, and of notes
 HEAD_BYTES = 4096  # of a report, in which it says that it is one
+
+Maker = Callable[[], Content]  # of a section
 
 
 @dataclass
@@ -56,8 +59,8 @@ def write_report(
     album = Album((1 - LEAST_VIEW) * size_mb * MB)
     terrain = _terrain(run, album)
     before, after = _before(run), _after(run, album)
-    rest = len(page("", [before, after], None).encode("utf-8"))
-    scene, note = _scene(run, size_mb * MB - rest, terrain)
+    rest = len(page("", [before, after], Scene({})).encode("utf-8"))
+    scene, note = _scene(run, size_mb * MB - rest - SPARE, terrain)
     notes = [*(scene.notes if scene else [note]), *album.notes]
     shown: Content = viewer(scene) if scene else section("The flow", tag("p", note), name="view")
     text = page(str(title_of(run)), [*before, shown, *after, _end(album)], scene)
@@ -84,9 +87,6 @@ def _checked(run: Run) -> Run:
         if not isinstance(run.scenario.get(key), kind):
             raise UserError(f"{run.folder.scenario}: {key} is missing or no number")
     return run
-
-
-Maker = Callable[[], Content]
 
 
 def _made(run: Run, makers: Mapping[str, Maker]) -> list[Content]:

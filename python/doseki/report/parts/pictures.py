@@ -16,7 +16,7 @@ from ...util.foreign import read_bytes
 from ..markup import Content, Markup, section, tag
 
 WIDE = 1150  # pixels: a picture that is wider takes the whole width of the page
-WIDEST = 2000  # pixels: a picture that is wider is made smaller
+WIDTHS = (2000, 1200, 700)  # pixels: none is wider than the first; of others, the first with room
 MOST_PIXELS = 60_000_000  # of a picture that is opened at all
 MOST_BYTES = 40 * 2**20  # of a file
 MOST = 60  # pictures of a folder
@@ -32,12 +32,10 @@ class Album:
     def picture(self, data: bytes, name: str) -> Markup | None:
         """A PNG as an element; None, and a note, where it is none or there is no room for it."""
         try:
-            small = _made_small(data)
+            text, (width, height) = self._fitting(data)
         except (OSError, ValueError, Image.DecompressionBombError, Image.DecompressionBombWarning):
             self.notes.append(f"{name} is left out: it is not a PNG that can be shown.")
             return None
-        content, (width, height) = small
-        text = base64.b64encode(content).decode("ascii")
         if len(text) > self.room:
             self.notes.append(f"{name} is left out: no room for its {len(text) / 1e6:.2g} MB.")
             return None
@@ -45,6 +43,15 @@ class Album:
         source = f"data:image/png;base64,{text}"
         size = {"width": str(width), "height": str(height)}
         return tag("img", src=source, alt=name, class_="wide" if width > WIDE else None, **size)
+
+    def _fitting(self, data: bytes) -> tuple[str, tuple[int, int]]:
+        """Base64 and size of the widest form that there is room for, or of the smallest."""
+        for widest in WIDTHS:
+            content, size = _made_small(data, widest)
+            text = base64.b64encode(content).decode("ascii")
+            if len(text) <= self.room:
+                break
+        return text, size
 
     def folder(self, path: Path) -> list[Markup]:
         """The PNG files of a folder as figures: an overview first, then by name."""
@@ -82,17 +89,20 @@ def gallery(title: str, figures: Iterable[Markup], name: str) -> Markup | None:
     return section(title, tag("div", found, class_="gallery"), name=name) if found else None
 
 
-def _made_small(data: bytes) -> tuple[bytes, tuple[int, int]]:
-    """A PNG, no wider than WIDEST, and its size; raises ValueError or OSError for what is none."""
+def _made_small(data: bytes, widest: int) -> tuple[bytes, tuple[int, int]]:
+    """A PNG of at most so many pixels a row, and its size; raises ValueError or OSError for others.
+
+    Raises also Pillow's complaints about pictures that unpack to too much.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("error", Image.DecompressionBombWarning)
         with Image.open(io.BytesIO(data), formats=["PNG"]) as image:
             if image.width * image.height > MOST_PIXELS:
                 raise ValueError("too many pixels")
             image.load()
-            if image.width <= WIDEST:
+            if image.width <= widest:
                 return data, image.size
-            size = WIDEST, max(1, round(image.height * WIDEST / image.width))
+            size = widest, max(1, round(image.height * widest / image.width))
             made = image.convert("RGBA" if "transparency" in image.info else "RGB").resize(size)
     file = io.BytesIO()
     made.save(file, "PNG", optimize=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,8 @@ from .thinning import Thinning, spread, thinned
 
 SAMPLES = 6  # snapshots that limits and sizes are taken from
 TESTED = 3  # snapshots that are packed to see what they take
+TRIES = 3  # where the snapshots that were packed take less than the others
+FRAME = 300  # bytes that the page takes for a frame beside its numbers
 WALLS = 0.2  # of the room, for what does not move
 SHORT = 0.1  # s: of shorter runs times are in ms, as in figures
 TERRAIN_BODY = "terrain"  # the body that stands for the terrain in a record
@@ -76,6 +78,10 @@ class SceneMaker:
             of_terrain = snapshot.stored("body") == index
         return self.packer.walls(snapshot, thinning, of_terrain)
 
+    def bodies(self, snapshot: Snapshot) -> Block | None:
+        """Where the bodies are that are drawn as shapes; None without any."""
+        return self.shapes.block(snapshot, self.box, self.fields) if self.shapes else None
+
     def snapshot(self, index: int) -> Snapshot:
         """A snapshot with all that is drawn of it read."""
         found = self.run[index]
@@ -87,9 +93,12 @@ class SceneMaker:
         indices = spread(min(TESTED, len(self.run)), len(self.run))
 
         def cost(thinning: Thinning) -> tuple[float, int]:
-            blocks = [self.flow(self.snapshot(k), thinning) for k in indices]
-            bytes_each = max(1.0, float(np.mean([len(block.text) for block in blocks])))
-            return bytes_each, max(block.count for block in blocks)
+            snapshots = [self.snapshot(k) for k in indices]
+            flows = [self.flow(snapshot, thinning) for snapshot in snapshots]
+            bodies = [self.bodies(snapshot) for snapshot in snapshots]
+            texts = [block.text for block in [*flows, *bodies] if block is not None]
+            bytes_each = FRAME + sum(map(len, texts)) / len(snapshots)
+            return bytes_each, max(block.count for block in flows)
 
         return thinned(len(self.run), self.box.dim == 3, most, cost)
 
@@ -118,9 +127,19 @@ def make_scene(run: Run, most: float, terrain: Grid | None = None) -> Scene:
         scene.blocks["terrain"] = terrain.text()
         scene.table["terrain"] = terrain.as_json(maker.box, "terrain")
         most -= len(scene.blocks["terrain"])
+    if maker.shapes is not None:
+        scene.table["bodies"] = maker.shapes.as_json(maker.fields)
+        most -= len(json.dumps(scene.table["bodies"]))
     walls = maker.choose_walls(WALLS * most, len(run))
-    thinning = maker.choose(most - _add_walls(maker, scene, walls))
+    most -= _add_walls(maker, scene, walls)
+    thinning = maker.choose(most)
     blocks = _add_frames(maker, scene, thinning, walls)
+    for _ in range(TRIES):
+        used = sum(FRAME + len(block.text) for block in blocks) + _bytes_of_bodies(scene)
+        if used <= most:
+            break
+        thinning = replace(thinning, share=0.97 * thinning.share * most / used)
+        blocks = _add_frames(maker, scene, thinning, walls)
     scene.notes = _left_out(run, thinning, blocks, walls)
     return scene
 
@@ -146,7 +165,6 @@ def _table(maker: SceneMaker) -> dict[str, Any]:
         "radius": maker.packer.largest,
         "scale": scale(),
         "fields": [each.as_json() for each in maker.fields],
-        "frames": [],
     }
 
 
@@ -185,9 +203,7 @@ def _add_frames(
 ) -> list[Block]:
     """All snapshots that are shown; returns their blocks of what moves."""
     blocks = []
-    shapes = maker.shapes
-    if shapes is not None:
-        scene.table["bodies"] = shapes.as_json(maker.fields)
+    scene.table["frames"] = []
     scene.table["swell"] = thinning.swell
     scene.table["wallSwell"] = walls.swell
     for number, index in enumerate(spread(thinning.frames, len(maker.run))):
@@ -196,13 +212,16 @@ def _add_frames(
         frame = {"time": snapshot.time, "flow": scene.add(f"flow{number}", blocks[-1])}
         if maker.walls_go and "walls" in scene.table:
             frame["walls"] = scene.add(f"walls{number}", maker.walls(snapshot, walls))
-        if shapes is not None:
-            block = shapes.block(snapshot, maker.box, maker.fields)
-            frame["bodies"] = scene.add(f"bodies{number}", block)
+        if (bodies := maker.bodies(snapshot)) is not None:
+            frame["bodies"] = scene.add(f"bodies{number}", bodies)
         scene.table["frames"].append(frame)
     times = [frame["time"] for frame in scene.table["frames"]]
     scene.table["start"] = _liveliest(maker.run, times)
     return blocks
+
+
+def _bytes_of_bodies(scene: Scene) -> int:
+    return sum(len(text) for name, text in scene.blocks.items() if name.startswith("bodies"))
 
 
 def _left_out(run: Run, thinning: Thinning, blocks: Sequence[Block], walls: Thinning) -> list[str]:
