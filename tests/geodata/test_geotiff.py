@@ -163,6 +163,12 @@ def test_what_is_written_is_read_back(tmp_path, hills, nodata):
         assert dataset.compression.name == "deflate"
 
 
+def test_an_unknown_reference_system_is_refused(tmp_path, hills, refusal):
+    raster = Raster(hills.values, *hills.extent[:2], hills.cell, "EPSG:999999", "GTiff")
+    assert "cannot be written" in refusal(write_raster, tmp_path / "a.tif", raster)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_gdal_sees_what_was_written(tmp_path, hills, gdal):
     raster = Raster(hills.values, *hills.extent[:2], hills.cell, UTM, "GTiff", -9999.0)
     write_raster(tmp_path / "a.tif", raster)

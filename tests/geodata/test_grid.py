@@ -61,6 +61,13 @@ def test_coarse_cells_have_the_mean_of_the_fine_ones(hills):
     assert np.isnan(coarse.values).any()
 
 
+@pytest.mark.parametrize(("known", "expected"), [(4, 2.5), (3, 2.0), (2, 1.5), (1, np.nan)])
+def test_half_of_a_coarse_cell_must_be_known(known, expected):
+    values = np.where(np.arange(4) < known, np.arange(1.0, 5.0), np.nan)
+    coarse = Raster(values.reshape(2, 2), 0.0, 0.0, 1.0).resampled(2.0)
+    np.testing.assert_allclose(coarse.values, [[expected]])
+
+
 def test_coarse_cells_keep_the_volume(hills):
     """Also where fine cells are cut; controlled by a sum without the cut ones."""
     filled = hills.with_values(np.nan_to_num(hills.values, nan=700.0))

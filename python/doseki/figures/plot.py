@@ -24,6 +24,7 @@ from .kinds.panels import Panels
 from .kinds.registry import draw
 from .kinds.series import MASSES, draw_history
 from .kinds.snapshot import draw_panels
+from .maps.output import map_makers
 from .nothing import NothingToDrawError
 from .text import plain_text
 
@@ -44,7 +45,7 @@ class Drawn:
 
 
 def draw_run(directory: str | Path) -> Drawn:
-    """Draw every figure of the run in `directory` into DIR/figures, as PNG files.
+    """Draw every figure of the run in `directory` into DIR/figures, as PNG files, and its maps.
 
     A figure that fails keeps no other from being drawn.  Raises UserError when there is no run, or
     no snapshot.
@@ -55,17 +56,26 @@ def draw_run(directory: str | Path) -> Drawn:
     refuse_links(run.folder)
     drawn = Drawn()
     for name, make in _makers(run):
-        try:
-            with plain_text() as complaints:
-                drawn.pictures.append(_save(make(), run, name))
-            drawn.warnings += [f"figure {name}: {text}" for text in complaints]
-        except NothingToDrawError as reason:
-            drawn.notes.append(one_line(f"figure {name} is not drawn: {reason}"))
-        except Exception as error:
-            # Whatever a picture stumbles over: the run, and the other pictures, do not.
-            said = str(error) if isinstance(error, DosekiError) else repr(error)
-            drawn.failures.append(one_line(f"figure {name} could not be drawn: {said}"))
+        _add(drawn, run.folder.figures / f"{name}.png", make)
+    for name, make in map_makers(run):
+        _add(drawn, run.folder.maps / f"{name}.png", make)
     return drawn
+
+
+def _add(drawn: Drawn, path: Path, make: Callable[[], Figure]) -> None:
+    """Draw one figure, or say why there is none."""
+    name = path.stem
+    try:
+        with plain_text() as complaints:
+            _save(make(), path)
+        drawn.pictures.append(path)
+        drawn.warnings += [f"figure {name}: {text}" for text in complaints]
+    except NothingToDrawError as reason:
+        drawn.notes.append(one_line(f"figure {name} is not drawn: {reason}"))
+    except Exception as error:
+        # Whatever a picture stumbles over: the run, and the other pictures, do not.
+        said = str(error) if isinstance(error, DosekiError) else repr(error)
+        drawn.failures.append(one_line(f"figure {name} could not be drawn: {said}"))
 
 
 def plot_run(directory: str | Path) -> list[Path]:
@@ -126,9 +136,7 @@ GENERAL: dict[str, Callable[[Run], Figure]] = {
 }
 
 
-def _save(figure: Figure, run: Run, name: str) -> Path:
-    path = run.folder.figures / f"{name}.png"
+def _save(figure: Figure, path: Path) -> None:
     with clear_errors(path):
         path.parent.mkdir(exist_ok=True)
     write_whole(path, lambda temporary: figure.savefig(temporary, format="png"))
-    return path

@@ -41,12 +41,14 @@ def check_map_coordinates(path: object, crs: str) -> None:
 def _check_named(path: object, name: str) -> None:
     """The same for a system of which only the name is known, where rasterio can look it up."""
     try:
+        from rasterio import Env
         from rasterio.crs import CRS
         from rasterio.errors import CRSError
     except ImportError:
         return
     try:
-        found = CRS.from_user_input(name)
+        with Env():  # else what PROJ has to say goes to the terminal
+            found = CRS.from_user_input(name)
     except CRSError:
         raise GeodataError(
             f'{path}: no coordinate reference system is called "{name[:40]}"'
@@ -81,13 +83,15 @@ def same_crs(one: str | None, other: str | None) -> bool | None:
     if one == other:
         return True
     try:
+        from rasterio import Env
         from rasterio.crs import CRS
         from rasterio.errors import CRSError
     except ImportError:
         return None
     try:
-        first, second = CRS.from_user_input(one), CRS.from_user_input(other)
-        codes = first.to_epsg(MIN_CONFIDENCE), second.to_epsg(MIN_CONFIDENCE)
+        with Env():
+            first, second = CRS.from_user_input(one), CRS.from_user_input(other)
+            codes = first.to_epsg(MIN_CONFIDENCE), second.to_epsg(MIN_CONFIDENCE)
     except CRSError:
         return None
     return bool(first == second) or (codes[0] is not None and codes[0] == codes[1])

@@ -40,7 +40,8 @@ def read_geotiff(path: Path) -> Raster:
     with warnings.catch_warnings(), readable(path, " as a GeoTIFF"):
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         # Only this driver: others would follow what a file says to other files.
-        with rasterio.open(path, driver="GTiff") as dataset:
+        # Within an Env what GDAL has to say does not go to the terminal.
+        with rasterio.Env(), rasterio.open(path, driver="GTiff") as dataset:
             _check(path, dataset)
             return _raster(path, dataset)
 
@@ -112,22 +113,24 @@ def write_geotiff(path: Path, raster: Raster, tags: dict[str, str]) -> None:
     """Write a raster as float64, compressed without loss; `tags` are names and texts."""
     rasterio = needed("rasterio", path, WHAT)
     nodata = math.nan if raster.nodata is None else raster.nodata
-    at = rasterio.Affine(raster.cell, 0.0, raster.west, 0.0, -raster.cell, raster.north)
-    about = {
-        "driver": "GTiff", "dtype": "float64", "count": 1, "compress": "deflate", "predictor": 3,
-        "height": raster.shape[0], "width": raster.shape[1], "transform": at, "nodata": nodata,
-        "crs": None if raster.crs is None else rasterio.crs.CRS.from_user_input(raster.crs),
-    }  # fmt: skip
     values = np.where(np.isnan(raster.values), nodata, raster.values)
+    about: dict[str, Any] = {
+        "driver": "GTiff", "dtype": "float64", "count": 1, "compress": "deflate", "predictor": 3,
+        "height": raster.shape[0], "width": raster.shape[1], "nodata": nodata,
+        "transform": rasterio.Affine(raster.cell, 0, raster.west, 0, -raster.cell, raster.north),
+    }  # fmt: skip
 
     def write(temporary: Path) -> None:
+        if raster.crs is not None:
+            about["crs"] = rasterio.crs.CRS.from_user_input(raster.crs)
         with rasterio.open(temporary, "w", **about) as dataset:
             dataset.write(values, 1)
             dataset.update_tags(**tags)
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
+    errors = rasterio.errors
+    with warnings.catch_warnings(), rasterio.Env():
+        warnings.simplefilter("ignore", errors.NotGeoreferencedWarning)
         try:
             write_whole(path, write)
-        except (rasterio.errors.RasterioError, rasterio.errors.CRSError) as error:
+        except (errors.RasterioError, errors.CRSError) as error:
             raise GeodataError(f"{path}: cannot be written: {error}") from None

@@ -178,6 +178,7 @@ class RunFolder:
             *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),
             *(file for file in self.maps.glob("*") if file.suffix in MAP_FILES),
+            *(file for file in self.path.glob("terrain.*") if file.suffix in MAP_FILES),
         ]
 
 

@@ -72,6 +72,8 @@ GAUGE = {
     "width": ["0.1"],
     "bodies": ['["far"]'],
     "about": ["[1, {zeros}1]"],
+    "left": ["[0.3, 0.55]"],
+    "right": ["[0.3, 0.05]"],
 }
 FAR = BLOCK.replace("block", "far").replace("velocity", "# ") + "fixed = true\n"
 
@@ -93,6 +95,8 @@ def test_gauges(tmp_path, kind, scheme, dim):
     ]
     if kind == "discharge":
         needed += ["length = 0.3\n"]
+    if kind == "section":
+        needed += ["left = [0.3, 0.5]\nright = [0.3, 0.1]\n"]
     path = tmp_path / "case.toml"
     path.write_text(text_of(scheme, dim, f'{FAR}[gauge.g]\nkind = "{kind}"\n{"".join(needed)}'))
     if outcome(str(path), ()) == REFUSED:

@@ -9,7 +9,8 @@ from .walk import BLOCK, NONE, SCHEMES, WORDS, cases, ignored, text_of
 
 # Not what a run computes: when it writes, and what is drawn of it (tests/driver, tests/figures).
 OF_RECORD = {"time_max", "time_out", "time_history", *SECTIONS}
-ELSEWHERE = {"contact", "start"}  # in test_materials.py and in tests/start
+# In test_materials.py, tests/start and test_maps.py.
+ELSEWHERE = {"contact", "start", "maps"}
 
 ROOT = {
     "dim": ["{other_dim}"],

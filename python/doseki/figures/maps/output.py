@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,7 @@ from ...geodata.features import read_features
 from ...geodata.grid import Raster
 from ...measure.maps.files import read_maps, write_maps
 from ...measure.maps.grid import MapSettings, few_particles, map_grid
-from ...measure.maps.profile import COLUMNS, along_path
+from ...measure.maps.profile import COLUMNS, along_path, path_lines
 from ...measure.maps.quantities import QUANTITIES
 from ...measure.maps.runout import runout, runout_lines
 from ...measure.maps.snapshots import maps_from_snapshots
@@ -49,14 +51,15 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
     run = load(directory)
     refuse_links(run.folder)
     maps, bed, said = _maps(run, options)
-    path = None if options.path is None else _path(options.path)
+    profile = None if options.path is None else along_path(maps, bed, _path(options.path))
     with plain_text() as complaints:
         files = list(_draw(run, maps, bed))
-        if path is not None:
-            files += _profile(run, maps, bed, path)
+        if profile is not None:
+            files += _profile(run, profile)
     found = runout(maps, bed)
+    told = [*runout_lines(found), *(path_lines(profile) if profile is not None else ())]
     write_whole_text(run.folder.maps / "runout.json", json.dumps(jsonable(asdict(found))) + "\n")
-    return [*said, *map(str, files), *runout_lines(found), *complaints]
+    return [*said, *map(str, files), *told, *complaints]
 
 
 def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, list[str]]:
@@ -88,15 +91,27 @@ def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, lis
     return maps, bed, said
 
 
-def _draw(run: Run, maps: Mapping[str, Raster], bed: Raster) -> Iterator[Path]:
-    """Draw every map that shows anything."""
+def map_makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    """The name of each map that a run has kept, and what draws it or raises NothingToDrawError."""
+    if run.scenario.get("maps") is None or not (maps := read_maps(run.folder)):
+        return
+    bed = map_grid(run.folder, MapSettings.of(run.scenario["maps"], run.scenario["dp"]))
+    yield from _makers(run, maps, bed)
+
+
+def _makers(
+    run: Run, maps: Mapping[str, Raster], bed: Raster
+) -> Iterator[tuple[str, Callable[[], Figure]]]:
     title = str(run.scenario.get("title", ""))
     for quantity in QUANTITIES:
-        try:
-            figure = draw_map(quantity, maps[quantity.name], bed, title)
-        except NothingToDrawError:
-            continue
-        yield _save(run, quantity.name, figure)
+        yield quantity.name, partial(draw_map, quantity, maps[quantity.name], bed, title)
+
+
+def _draw(run: Run, maps: Mapping[str, Raster], bed: Raster) -> Iterator[Path]:
+    """Draw every map that shows anything."""
+    for name, make in _makers(run, maps, bed):
+        with suppress(NothingToDrawError):
+            yield _save(run, name, make())
 
 
 def _save(run: Run, name: str, figure: Figure) -> Path:
@@ -125,13 +140,12 @@ def _path(given: str) -> np.ndarray:
     return lines[0].vertices
 
 
-def _profile(run: Run, maps: Mapping[str, Raster], bed: Raster, path: np.ndarray) -> Iterator[Path]:
+def _profile(run: Run, profile: Mapping[str, np.ndarray]) -> Iterator[Path]:
     """The table and the picture of a profile."""
-    found = along_path(maps, bed, path)
     header = ",".join(f"{name} [{unit}]" for name, unit in COLUMNS.items())
-    rows = np.column_stack([found[name] for name in COLUMNS])
+    rows = np.column_stack([profile[name] for name in COLUMNS])
     text = "\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())])
     table = run.folder.maps / "profile.csv"
     write_whole_text(table, text + "\n")
     yield table
-    yield _save(run, "profile", draw_profile(found, str(run.scenario.get("title", ""))))
+    yield _save(run, "profile", draw_profile(profile, str(run.scenario.get("title", ""))))

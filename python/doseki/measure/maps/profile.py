@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from ...errors import UserError
 from ...geodata.grid import Raster
-from .quantities import QUANTITIES
+from .quantities import PEAK_DEPTH, QUANTITIES
 
 COLUMNS = {"distance": "m", "x": "m", "y": "m", "bed": "m"} | {q.name: q.unit for q in QUANTITIES}
 
@@ -41,3 +41,20 @@ def along_path(maps: Mapping[str, Raster], bed: Raster, path: np.ndarray) -> dic
         values[inside] = maps[quantity.name].values[row[inside], column[inside]]
         found[quantity.name] = values
     return found
+
+
+def path_lines(profile: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """The run-out along the path as a sentence: from the first point that was reached to the last.
+
+    Its angle is that of the line between them, with the distance along the path.
+    """
+    reached = np.flatnonzero(profile[PEAK_DEPTH.name] > 0)
+    if not len(reached):
+        yield "along the path: nothing was reached"
+        return
+    start, end = ((profile["distance"][k], profile["bed"][k]) for k in (reached[0], reached[-1]))
+    length = end[0] - start[0]
+    text = f"along the path: reached from {start[0]:.4g} to {end[0]:.4g} m"
+    if length > 0 and np.isfinite(start[1] - end[1]):
+        text += f", at {np.degrees(np.arctan2(start[1] - end[1], length)):.3g} degrees"
+    yield text

@@ -8,6 +8,7 @@ from ..schemes import RESOLVED, UETA2022
 from .bodies import check_bodies
 from .effort import check_effort
 from .gauges import check_figures, check_gauges
+from .maps import check_maps
 from .meaning import check_meaning
 from .motions import check_motions
 from .start import check_start
@@ -29,6 +30,7 @@ def check_scenario(scenario: Scenario) -> None:
     check_motions(scenario)
     check_gauges(scenario)
     check_figures(scenario)
+    check_maps(scenario)
     check_start(scenario)
 
 

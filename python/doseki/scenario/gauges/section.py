@@ -69,8 +69,8 @@ class Section(Gauge):
         """The time; volume and mass that cross per second; area, width, mean depth and speed.
 
         Discharge counts positive downstream: to the left of the line from the left bank to the
-        right one.  The area is that of the flow across the line, the width that of what is wet of
-        it, depth their ratio, speed discharge over area: nan where nothing is.
+        right one.  The area is that of the flow across the line; the width that of its strips that
+        are wet, and depth the mean over them; speed is discharge over area. nan where it is dry.
         """
         assert self.left is not None
         assert self.right is not None
@@ -89,14 +89,13 @@ class Section(Gauge):
         share *= (across >= 0) & (across < wide)
         speed = share * (around.velocity[:, :2] @ normal)
         discharge, area = float(around.volume @ speed), float(around.volume @ share)
-        width = _wet_width(across, around.volume * share, wide, setting.dp)
-        depth = area / width if width else float("nan")
+        width, depth = _wet(across, around.volume * share, wide, setting.dp)
         mean = discharge / area if width else float("nan")
         return [[run.time, discharge, float(around.mass @ speed), area, width, depth, mean]]
 
 
-def _wet_width(across: np.ndarray, area: np.ndarray, wide: float, dp: float) -> float:
-    """Width, m, of the strips of a section in which the flow is deeper than DRY.
+def _wet(across: np.ndarray, area: np.ndarray, wide: float, dp: float) -> tuple[float, float]:
+    """Width, m, of the strips of a section in which the flow is deeper than DRY; depth in them, m.
 
     `across` (n,) says where along the section, m, particles add to its `area` (n,), m2.
     """
@@ -104,5 +103,8 @@ def _wet_width(across: np.ndarray, area: np.ndarray, wide: float, dp: float) -> 
     strip = wide / strips
     inside = (across >= 0) & (across < wide)
     index = np.minimum((across[inside] / strip).astype(np.int64), strips - 1)
-    areas = np.bincount(index, weights=area[inside], minlength=strips)
-    return float(np.count_nonzero(areas > DRY * dp * strip) * strip)
+    depths = np.bincount(index, weights=area[inside], minlength=strips) / strip
+    wet = depths > DRY * dp
+    if not wet.any():
+        return 0.0, float("nan")
+    return float(np.count_nonzero(wet) * strip), float(depths[wet].mean())

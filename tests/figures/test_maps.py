@@ -1,0 +1,196 @@
+"""Maps and profiles drawn, and the command that does it."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from doseki.cli.app import app
+from doseki.errors import UserError
+from doseki.figures.maps.drawing import draw_map, draw_profile
+from doseki.figures.maps.output import MapOptions, write_pictures
+from doseki.figures.nothing import NothingToDrawError
+from doseki.geodata.grid import Raster
+from doseki.geodata.raster import read_raster, write_raster
+from doseki.measure.maps.profile import along_path
+from doseki.measure.maps.quantities import ARRIVAL_TIME, PEAK_DEPTH, QUANTITIES
+
+WEST, SOUTH = 460_000.0, 5_200_000.0
+TITLE = "a slide"
+
+
+def hill():
+    """A slope with a channel, at coordinates of a map."""
+    grid = Raster(np.zeros((24, 40)), WEST, SOUTH, 2.0)
+    x, y = grid.x[None, :] - WEST, grid.y[:, None] - SOUTH
+    return grid.with_values(900 - 0.5 * x + 0.01 * (y - 24) ** 2)
+
+
+def sliding(time):
+    """A block of 8 x 8 x 2 m that slides 10 m/s eastwards, and stops at 5 s."""
+    axes = [np.arange(a + 0.25, b, 0.5) for a, b in ((6, 14), (20, 28), (0, 2))]
+    x = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+    x = x + np.array([WEST + 10 * time, SOUTH, 900 - 5 * time])
+    n, speed = len(x), 10.0 if time < 5 else 0.0
+    zeros = np.zeros((n, 3, 3))
+    return {
+        "position": x, "velocity": np.tile([speed, 0, 0], (n, 1)), "mass": np.full(n, 125.0),
+        "density": np.full(n, 1000.0), "pressure": np.zeros(n), "stress": zeros,
+        "smoothing_length": np.full(n, 0.6), "deviatoric_stress": zeros,
+        "sound_speed": np.full(n, 10.0), "material": np.zeros(n, np.int32),
+        "body": np.zeros(n, np.int32), "motion": np.zeros(n, np.int32), "id": np.arange(n),
+        "grain": np.full(n, -1),
+    }  # fmt: skip
+
+
+@pytest.fixture
+def slide(tmp_path, record_run):
+    """The folder of a run of the block, with a terrain."""
+    times = tuple(np.arange(0, 5.01, 0.25))
+    recorder, _ = record_run(tmp_path / "run", dim=3, times=times, state_at=sliding)
+    recorder.close({"status": "done"})
+    write_raster(tmp_path / "run/terrain.asc", hill())
+    return tmp_path / "run"
+
+
+def test_a_run_without_maps_is_mapped_from_its_snapshots(slide):
+    said = write_pictures(slide, MapOptions())
+    assert said[0].startswith("from 21 snapshots: what peaked between them is missed")
+    depth = read_raster(slide / "maps/peak_depth.asc").values
+    assert depth.max() == pytest.approx(2.0)
+    assert read_raster(slide / "maps/peak_speed.asc").values.max() == pytest.approx(10.0)
+    lying = read_raster(slide / "maps/deposit.asc").values
+    assert lying.sum() * 4 == pytest.approx(128.0)  # m3
+    arrival = read_raster(slide / "maps/arrival_time.asc").values
+    assert np.nanmax(arrival) == 5.0
+    found = json.loads((slide / "maps/runout.json").read_text())
+    assert found["angle"] == pytest.approx(np.degrees(np.arctan(0.5)), abs=1.0)
+    assert found["area"] == pytest.approx(58 * 8, rel=0.05)
+    assert any(line.startswith("run-out") for line in said)
+    for quantity in QUANTITIES:
+        picture = imread(slide / f"maps/{quantity.name}.png")
+        assert picture.std() > 0.05
+
+
+def test_other_cells(slide):
+    said = write_pictures(slide, MapOptions(cell=4.0))
+    assert read_raster(slide / "maps/peak_depth.asc").shape == (12, 20)
+    assert not any("warning" in line for line in said)
+    part = (WEST, SOUTH + 10, WEST + 40, SOUTH + 40)
+    write_pictures(slide, MapOptions(extent=part))
+    assert read_raster(slide / "maps/peak_depth.asc").extent == part
+
+
+@pytest.mark.parametrize("as_file", [False, True])
+def test_a_profile_along_a_path(slide, tmp_path, as_file):
+    points = [[WEST + 1, SOUTH + 24.5], [WEST + 79, SOUTH + 24.5]]
+    path = " ".join(f"{x},{y}" for x, y in points)
+    if as_file:
+        geometry = {"type": "LineString", "coordinates": points}
+        path = str(tmp_path / "path.geojson")
+        (tmp_path / "path.geojson").write_text(json.dumps(geometry))
+    said = write_pictures(slide, MapOptions(path=path))
+    (line,) = (line for line in said if line.startswith("along the path"))
+    assert line == "along the path: reached from 5 to 61 m, at 26.6 degrees"
+    header, *rows = (slide / "maps/profile.csv").read_text().splitlines()
+    assert header.startswith("distance [m],x [m],y [m],bed [m],peak_depth [m]")
+    table = np.array([[float(cell) for cell in row.split(",")] for row in rows])
+    covered = table[:, 4] > 0
+    assert np.ptp(table[covered, 0]) == pytest.approx(58, abs=4)
+    assert (slide / "maps/profile.png").is_file()
+
+
+@pytest.mark.parametrize("path", ["", "1,2", "1,2 3", "a,b c,d", "nan,1 2,3", "1,2,3 4,5,6"])
+def test_a_path_that_is_none_is_refused(slide, path):
+    with pytest.raises(UserError):
+        write_pictures(slide, MapOptions(path=path))
+
+
+def test_a_file_of_several_lines_is_refused(slide, tmp_path):
+    lines = [[[0, 0], [1, 1]], [[2, 2], [3, 3]]]
+    text = json.dumps({"type": "MultiLineString", "coordinates": lines})
+    (tmp_path / "two.geojson").write_text(text)
+    with pytest.raises(UserError, match="2 lines"):
+        write_pictures(slide, MapOptions(path=str(tmp_path / "two.geojson")))
+
+
+def test_a_run_that_kept_its_maps_keeps_them(slide):
+    """Peaks between snapshots are in the files: they are drawn, not made anew."""
+    write_pictures(slide, MapOptions())
+    kept = read_raster(slide / "maps/peak_depth.asc")
+    write_raster(slide / "maps/peak_depth.asc", kept.with_values(2 * kept.values))
+    scenario = slide / "scenario.toml"
+    scenario.write_text(scenario.read_text().replace("\n", "\n", 1) + "\n[maps]\n")
+    said = write_pictures(slide, MapOptions())
+    assert not any("snapshots" in line for line in said)
+    assert read_raster(slide / "maps/peak_depth.asc").values.max() == pytest.approx(4.0)
+    with pytest.raises(UserError, match="kept its maps"):
+        write_pictures(slide, MapOptions(cell=4.0))
+
+
+def test_a_run_without_terrain_needs_a_grid(slide):
+    (slide / "terrain.asc").unlink()
+    with pytest.raises(UserError, match="has no terrain"):
+        write_pictures(slide, MapOptions())
+    extent = (WEST, SOUTH, WEST + 80, SOUTH + 48)
+    said = write_pictures(slide, MapOptions(cell=2.0, extent=extent))
+    assert not any(line.startswith("run-out") for line in said)
+    assert (slide / "maps/peak_depth.png").is_file()
+
+
+def test_a_2d_run_has_no_map(run_folder):
+    write_raster(run_folder / "terrain.asc", hill())
+    with pytest.raises(UserError, match="2-D run has no map"):
+        write_pictures(run_folder, MapOptions())
+
+
+def test_the_command(slide, capsys):
+    app(["maps", str(slide), "--cell", "4"], standalone_mode=False)
+    said = capsys.readouterr().out
+    assert "peak_depth.png" in said
+    assert "run-out" in said
+
+
+def test_what_a_map_shows():
+    """Coordinates in full, the relief and contours of the bed, and only what was reached."""
+    bed = hill()
+    values = np.zeros(bed.shape)
+    values[10:14, 5:30] = 1.5
+    figure = draw_map(PEAK_DEPTH, bed.with_values(values), bed, TITLE)
+    axes = figure.axes[0]
+    assert axes.get_title() == TITLE
+    relief, shown = axes.images
+    assert np.isnan(shown.get_array().filled(np.nan)).sum() > 0
+    assert np.nanmax(shown.get_array().filled(np.nan)) == 1.5
+    assert np.ptp(relief.get_array()) > 0
+    figure.canvas.draw()
+    texts = [label.get_text() for label in axes.get_xticklabels()]
+    assert all(text.startswith("4600") for text in texts if text)
+    assert "largest depth" in figure.axes[1].get_ylabel()
+    west, east = axes.get_xlim()
+    assert west >= WEST
+    assert east <= bed.east
+    assert west < WEST + 10 < WEST + 60 < east
+
+
+def test_nothing_is_no_picture():
+    bed = hill()
+    with pytest.raises(NothingToDrawError, match="peak depth"):
+        draw_map(PEAK_DEPTH, bed.with_values(np.zeros(bed.shape)), bed, TITLE)
+    with pytest.raises(NothingToDrawError, match="arrival time"):
+        draw_map(ARRIVAL_TIME, bed.with_values(np.full(bed.shape, np.nan)), bed, TITLE)
+
+
+def test_what_a_profile_shows():
+    bed = hill()
+    maps = {quantity.name: bed.with_values(np.ones(bed.shape)) for quantity in QUANTITIES}
+    path = np.array([[WEST, SOUTH + 10], [WEST + 80, SOUTH + 10]])
+    figure = draw_profile(along_path(maps, bed, path), TITLE)
+    assert [axes.get_ylabel() for axes in figure.axes] == [
+        "height (m)", "depth (m)", "largest speed (m/s)",
+    ]  # fmt: skip
+    heights = figure.axes[0].lines[0].get_ydata()
+    assert heights[0] > heights[-1]
