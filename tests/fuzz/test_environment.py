@@ -120,6 +120,8 @@ def test_output_that_cannot_be_printed(good, tmp_path, command):
         ("plot", "x" * 300),
         ("census", "x" * 300),
         ("explain", "x" * 300),
+        ("report", "x" * 300),
+        ("report", ".", "--size-mb", "nan"),
         ("run", "x" * 300 + ".toml"),
         ("check", "/proc/self/mem"),
         ("check", "good.toml", "--set", 'body.block.shape="file"'),

@@ -17,29 +17,38 @@ from ..record.units import unit_in
 from .trust.report import trust_lines
 
 WIDTH = 18  # of the column of names
+Row = tuple[str, str]
 
 
 def summary_text(run: Run) -> str:
     """What was run, how it went and the key results: about 20 lines."""
-    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run)]
-    parts += [_sections(run), _runout(run), _warnings(run), _trust(run)]
-    return "\n".join(line for part in parts for line in part)
+    rows = [*key_rows(run), *_warnings(run), *_trust(run)]
+    return "\n".join([title_of(run), "", *(f"{name:<{WIDTH}}{text}" for name, text in rows)])
 
 
-def _line(name: str, text: str) -> str:
-    return f"{name:<{WIDTH}}{text}"
+def title_of(run: Run) -> str:
+    """The title of the scenario, or the folder."""
+    return run.scenario.get("title") or str(run.directory)
 
 
-def _title(run: Run) -> Iterator[str]:
-    yield run.scenario.get("title") or str(run.directory)
-    yield ""
+def key_rows(run: Run) -> Iterator[Row]:
+    """How a run went and its key results: (name, text); an empty name goes on with the last one."""
+    for part in (_status, _computed, _state, _ledger, _results, _sections, _runout):
+        yield from part(run)
+
+
+def _line(name: str, text: str) -> Row:
+    return name, text
+
+
+def _status(run: Run) -> Iterator[Row]:
     if status := run.summary.get("status"):
         yield _line("status", status)
     if failure := run.summary.get("failure"):
         yield _line("failure", failure)
 
 
-def _computed(run: Run) -> Iterator[str]:
+def _computed(run: Run) -> Iterator[Row]:
     """How much was computed: particles, time, steps, wall time, memory."""
     said = run.summary
     scheme, dim = run.scenario.get("scheme", ""), run.scenario["dim"]
@@ -62,7 +71,7 @@ def duration_text(seconds: float) -> str:
     return f"{minutes:.0f} min {rest:.0f} s" if minutes else f"{rest:.1f} s"
 
 
-def _state(run: Run) -> Iterator[str]:
+def _state(run: Run) -> Iterator[Row]:
     """Particles and speeds at the end, by material."""
     if not len(run):
         return
@@ -78,7 +87,7 @@ def _state(run: Run) -> Iterator[str]:
             yield _line(f"  {name}", text)
 
 
-def _ledger(run: Run) -> Iterator[str]:
+def _ledger(run: Run) -> Iterator[Row]:
     """Mass: initial + entered = inside + left."""
     said = run.summary
     names = ("mass_initial", "mass_entered", "mass_left", "mass_inside")
@@ -91,14 +100,19 @@ def _ledger(run: Run) -> Iterator[str]:
     yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")
 
 
-def _results(run: Run) -> Iterator[str]:
+def _results(run: Run) -> Iterator[Row]:
     """The front and the windows, where a fluid flows."""
     flow = measure_flow(run)
     if flow is None:
         return
-    yield _line("front", f"x = {flow.front[-1]:.4g} m at {flow.times[-1]:.4g} s")
+    yield _line("front", f"x = {_place(flow.front[-1])} m at {flow.times[-1]:.4g} s")
     for name, entry in flow.windows.items():
         yield _line(f"window {name}", _window(run, flow, entry))
+
+
+def _place(coordinate: float) -> str:
+    """A coordinate in m; one of a map to a decimetre."""
+    return f"{coordinate:.4g}" if abs(coordinate) < 1e4 else f"{coordinate:.1f}"
 
 
 def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
@@ -114,7 +128,7 @@ def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
     return text
 
 
-def _sections(run: Run) -> Iterator[str]:
+def _sections(run: Run) -> Iterator[Row]:
     """What passed the sections."""
     for name, table in run.scenario.get("gauge", {}).items():
         record = run.gauges.get(name)
@@ -131,7 +145,7 @@ def _sections(run: Run) -> Iterator[str]:
         yield _line(f"section {name}", text)
 
 
-def _runout(run: Run) -> Iterator[str]:
+def _runout(run: Run) -> Iterator[Row]:
     """How far the flow went, where the run kept maps."""
     said = run.summary.get("runout")
     if said:
@@ -139,12 +153,12 @@ def _runout(run: Run) -> Iterator[str]:
             yield _line("" if k else "maps", line)
 
 
-def _warnings(run: Run) -> Iterator[str]:
+def _warnings(run: Run) -> Iterator[Row]:
     for warning in run.summary.get("warnings", ()):
         yield _line("warning", warning)
 
 
-def _trust(run: Run) -> Iterator[str]:
+def _trust(run: Run) -> Iterator[Row]:
     """The verdicts on the run, worst first."""
     for k, (word, text) in enumerate(trust_lines(run.trust) if run.trust else ()):
         yield _line("" if k else "trust", f"{word}: {text}")

@@ -9,7 +9,7 @@ import typer
 
 from .. import __version__
 from .project import bench, list_scenarios, new, validate
-from .results import census, export, maps, plot
+from .results import census, export, maps, plot, report
 from .simulate import check, explain, resume, run
 from .studies import compare, trust
 
@@ -51,6 +51,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "explain": explain,
     "trust": trust,
     "plot": plot,
+    "report": report,
     "compare": compare,
     "census": census,
     "maps": maps,

@@ -1,4 +1,4 @@
-"""Commands that read a run: plot, census, export."""
+"""Commands that read a run: plot, report, census, export."""
 
 from __future__ import annotations
 
@@ -37,6 +37,33 @@ def plot(
         typer.echo(f"warning: {remark}", err=True)
     if drawn.failures:
         raise UserError(f"{len(drawn.failures)} of the figures could not be drawn")
+
+
+def report(
+    directory: Directory,
+    size_mb: Annotated[
+        float,
+        typer.Option(
+            "--size-mb",
+            parser=number(0.5, 2000.0),
+            metavar="MB",
+            help="Largest size of the file: particles and snapshots are left out to keep it.",
+        ),
+    ] = 20.0,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE", help="The file.", show_default="DIR/report.html"
+        ),
+    ] = None,
+) -> None:
+    """Write the report on a run: one HTML file with a view of it that turns, to be sent."""
+    from ..report.report import write_report
+
+    written = write_report(directory, size_mb, output)
+    typer.echo(f"{written.path} ({written.size / 1e6:.2g} MB)")
+    for note in written.notes:
+        typer.echo(f"  {note}")
 
 
 def census(

@@ -50,7 +50,7 @@ class CategoryColours:
         for snapshot in snapshots:
             free |= set(snapshot[name][~snapshot["fixed"]].tolist())
             fixed |= set(snapshot[name][snapshot["fixed"]].tolist())
-        self._free = _palette(sorted(free), name, fluid_names(run))
+        self._free = palette(sorted(free), name, fluid_names(run))
         self._fixed = sorted(fixed)
 
     def rgba(self, snapshot: Snapshot) -> np.ndarray:
@@ -84,7 +84,7 @@ class ScaleColours:
         self._name = name
         self.heading = quantity_label(name, snapshots[0].dim)
         values = [quantity(s, name)[select(s, view)] for s in snapshots]
-        self._limits = _limits(np.concatenate(values))
+        self._limits = limits(np.concatenate(values))
         self._norm = colors.Normalize(*self._limits)
 
     def rgba(self, snapshot: Snapshot) -> np.ndarray:
@@ -115,7 +115,7 @@ def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) ->
     return ScaleColours(snapshots, name, view)
 
 
-def _palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str]:
+def palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str]:
     if name != "material":
         return {k: OTHER_COLOURS[i % len(OTHER_COLOURS)] for i, k in enumerate(kinds)}
     flowing = [kind for kind in kinds if kind in fluids]
@@ -124,7 +124,7 @@ def _palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str
     return colours | {k: SOLID_COLOURS[i % len(SOLID_COLOURS)] for i, k in enumerate(solid)}
 
 
-def _limits(values: np.ndarray) -> tuple[float, float]:
+def limits(values: np.ndarray) -> tuple[float, float]:
     """Ends of the colour scale: never the same number twice."""
     values = values[np.isfinite(values)]
     if len(values) == 0:

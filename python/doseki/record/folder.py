@@ -78,6 +78,16 @@ class RunFolder:
         return self.path / "checkpoints"
 
     @property
+    def provenance(self) -> Path:
+        """With what the run was computed."""
+        return self.path / "provenance.json"
+
+    @property
+    def report(self) -> Path:
+        """The report, where one was written."""
+        return self.path / "report.html"
+
+    @property
     def failure(self) -> Path:
         """Why the run failed, for programs."""
         return self.path / "failure.json"
@@ -162,8 +172,9 @@ class RunFolder:
 
     def recorded(self) -> list[Path]:
         """What a run may have written while it went on."""
+        plain = (self.history, self.series, self.log, self.provenance, self.report)
         return [
-            *(file for file in (self.history, self.series, self.log) if file.exists()),
+            *(file for file in plain if file.exists()),
             *ground_files(self.path),
             *self.snapshot_files(),
             *self.gauges.glob("*.csv"),

@@ -26,6 +26,7 @@ from ..util.cores import chosen_threads
 from ..util.finding import Finding, sentences
 from ..util.telling import Tell, say_nothing
 from .first_state import first_state
+from .provenance import note_provenance
 
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost
 
@@ -147,6 +148,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
     core.set_threads(threads)
     if not (options.threads or chosen_threads() or run.ranks.count > 1):
         run.threads = ThreadChoice(threads, core.set_threads)
+    run.ranks.on_root(lambda: note_provenance(run.folder, fresh, threads, run.ranks.count))
     run.ranks.working_in(directory, run.simulation)
     stop = StopRequests(directory)
     try:

@@ -79,12 +79,12 @@ def balls_of(
     radius, grain = grain_radius(snapshot), snapshot["grain"]
     alone = free & ~clear & (grain < 0)
     # A round grain is one ball, in place of the first of its particles.
-    first = _first_of_each(grain, _is_round(run, snapshot))
+    first = _first_of_each(grain, is_round(run, snapshot))
     if len(first):
         table = snapshot.grains
         position[first] = space.view.coordinates(table["position"])[grain[first]]
         radius[first] = 0.5 * table["diameter"][grain[first]]
-        shown &= ~_is_round(run, snapshot)[grain] | (grain < 0)
+        shown &= ~is_round(run, snapshot)[grain] | (grain < 0)
         shown[first] = space.shows(snapshot, position, camera.away)[first]
         alone[first] = True
     rgba = colours.rgba(snapshot)
@@ -93,7 +93,7 @@ def balls_of(
     )  # fmt: skip
 
 
-def _is_round(run: Run, snapshot: Snapshot) -> np.ndarray:
+def is_round(run: Run, snapshot: Snapshot) -> np.ndarray:
     """Which of the bodies that move are balls (n,), and of none in the end for grain -1."""
     tables = run.scenario.get("body", {})
     names = snapshot.grains.get("body", np.zeros(0, str))
