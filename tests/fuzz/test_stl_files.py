@@ -1,4 +1,4 @@
-"""Whatever an STL file holds: a convex body, or one sentence."""
+"""Whatever a file of triangles holds: a body or a wall, or one sentence."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
+from doseki.scene.meshes.layers import layer_count
+from doseki.scene.meshes.making import made_mesh
 from doseki.scene.shapes import Convex, ShapeError, mesh_shape
 
 from .examples import examples
@@ -62,6 +64,40 @@ def test_any_stl(folder, data, scale):
     assert np.isfinite(shape.vertices).all()
     assert np.isfinite(centre).all()
     assert shape.measure > 0
+
+
+def image_of(kind: str) -> bytes:
+    """A ring in a file of this kind."""
+    image = io.BytesIO()
+    trimesh.creation.annulus(0.5, 1, 1, sections=8).export(image, file_type=kind)
+    return image.getvalue()
+
+
+KINDS = {kind: image_of(kind) for kind in ("stl", "ply", "obj")}
+
+
+@examples(60, 10_000)
+@given(
+    data=st.sampled_from(sorted(KINDS)).flatmap(
+        lambda kind: st.tuples(st.just(kind), damaged(KINDS[kind]))
+    ),
+    scale=st.sampled_from([1.0, 1e-300, 1e300]),
+    thickness=st.sampled_from([0.0, 0.1]),
+)
+@pytest.mark.filterwarnings("error")
+def test_any_mesh(folder, data, scale, thickness):
+    kind, content = data
+    (folder / f"m.{kind}").write_bytes(content)
+    try:
+        made = made_mesh(folder / f"m.{kind}", scale, thickness)
+    except ShapeError:
+        return
+    assert np.isfinite(made.shape.mesh.vertices).all()
+    assert np.isfinite(made.middle).all()
+    assert made.shape.area > 0
+    assert layer_count(made.shape, 0.1, 0.3) > 0
+    _, depth = made.shape.wall(np.zeros((1, 3)), 0.1)
+    assert np.isfinite(depth).all()
 
 
 @pytest.mark.parametrize("flipped", [[0], [1, 4, 7], list(range(12))])

@@ -100,9 +100,9 @@ def test_a_wall_has_no_holes_and_an_even_face(tmp_path, make):
         for k, p in zip(near, probe, strict=True)
     ])  # fmt: skip
     plane = 0.1797  # below a plane
-    assert seen.mean() == pytest.approx(plane, rel=0.05)
-    assert seen.std() < 0.1 * plane
-    assert seen.min() > 0.6 * plane, "a hole"
+    assert seen.mean() == pytest.approx(plane, rel=0.08)
+    assert seen.std() < 0.08 * plane
+    assert seen.min() > 0.7 * plane, "a hole"
     assert cKDTree(x).query(x, 2)[0][:, 1].min() > 0.6 * DP
     _, depth = made.shape.wall(x - made.middle, DP)
     assert depth.min() > 0.3 * DP

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from doseki.compiled import load_core
 from doseki.errors import UserError
 
 from ..flows import Flows
@@ -308,6 +309,38 @@ def test_a_ball_that_goes_on_from_a_checkpoint_has_the_same_bits(tmp_path):
     one, two = to(simulation, 0.6).grains(), to(other, 0.6).grains()
     for key in one:
         assert np.array_equal(one[key], two[key]), key
+
+
+def test_threads_do_not_change_a_bit(tmp_path):
+    """Eighty balls that fall on a bed of 1600 triangles, many at several places."""
+    packing = """
+[body.balls]
+shape = "sphere"
+material = "rock"
+d = 0.12
+min = [-0.45, -0.45, 0.02]
+max = [0.45, 0.45, 0.5]
+count = 80
+"""
+    text = head(restitution=0.3) + packing + bed(tmp_path, bumpy())
+    core, found = load_core(), []
+    for threads in (1, 2):
+        core.set_threads(threads)
+        found.append(to(Flows(tmp_path)(text), 0.12).grains())
+    assert (found[0]["contacts"] > 1).any()
+    for key in found[0]:
+        assert np.array_equal(found[0][key], found[1][key]), key
+
+
+def bumpy() -> trimesh.Trimesh:
+    """A block with hollows and humps of 0.02 m on its top."""
+    mesh = trimesh.creation.box(bounds=[[-0.6, -0.6, -0.3], [0.6, 0.6, 0]])
+    for _ in range(4):
+        mesh = mesh.subdivide()
+    v = mesh.vertices.copy()
+    top = np.isclose(v[:, 2], 0)
+    v[top, 2] -= 0.01 + 0.01 * (np.cos(30 * v[top, 0]) * np.cos(30 * v[top, 1]))
+    return trimesh.Trimesh(v, mesh.faces, process=False)
 
 
 @pytest.mark.parametrize("what", ["ball", "block"])

@@ -23,6 +23,10 @@ SUBJECTS = {  # tables [body.subject]: what they say beside material
     ),
     "polygon": ('shape = "polygon"\nvertices = [[0.6, 0], [1.1, 0], [0.6, 0.4]]\n', "polygon"),
     "stl": ('shape = "stl"\nfile = "cube.stl"\nscale = 0.4\ncentre = [0.8, 0.3, 0.2]\n', "stl"),
+    "mesh": (
+        'shape = "mesh"\nfile = "cube.stl"\nscale = 0.4\nposition = [0.8, 0.3, 0.2]\n',
+        "mesh",
+    ),
     "tank": ('shape = "tank"\nmin = [-0.3, @-0]\nmax = [1.6, @+0.6]\n', "tank"),
     "points": ('shape = "points"\nposition = [[0.7, @10.2], [1.0, @10.2]]\nmass = 20\n', "points"),
 }
@@ -72,6 +76,7 @@ BODY = {
     "digest": ["0" * 32],
     "scale": ["0.45"],
     "thickness": ["0.2"],
+    "sheet": ["true"],
     "open": ['["-x"]'],
 }  # fmt: skip
 
@@ -101,8 +106,11 @@ def test_bodies(tmp_path, subject, scheme, dim, way):
     if subject == "one":
         del values["kinematics"][1]  # single, which fill says already
         del values["ks"][1]  # friction needs a surface of several
-    if subject == "tank":
+    if subject in ("tank", "mesh"):
         del values["fixed"][0]  # it is
+    if subject == "mesh":
+        values["position"] = ["[0.85, 0.3, 0.2]"]
+        values["thickness"] = ["0.2 with body.subject.sheet=true", "0.2"]
     fields = set(BODIES.tables[kind].model_fields) - WORDS
     assert ignored(str(path), "body.subject.", sorted(fields), values) == NONE
 

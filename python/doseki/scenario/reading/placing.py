@@ -17,6 +17,9 @@ VECTORS = ("velocity", "normal", "direction")
 SPINS = ("spin", "angular_velocity")
 OF_SPACE = ("where", "clamped", "pressure", "displacement", "velocity")
 
+# What says where the triangles of a file are.
+OF_TRIANGLES = {"stl": "centre", "mesh": "position"}
+
 Part = dict[str, Any]
 Map = Callable[[np.ndarray], np.ndarray]
 
@@ -26,6 +29,8 @@ def moved(part: Part, shift: np.ndarray) -> Part:
     if not np.any(shift):
         return part
     _refuse_fields(part)
+    if (shape := part.get("shape")) in OF_TRIANGLES and OF_TRIANGLES[shape] not in part:
+        raise ValueError(f"copies of a file of triangles need its {OF_TRIANGLES[shape]}")
 
     def move(x: np.ndarray) -> np.ndarray:
         return x + shift
@@ -63,8 +68,8 @@ def turned(part: Part, kind: type[Table], degrees: float, about: np.ndarray) -> 
 def mirrored(part: Part, axis: int, at: float) -> Part:
     """The part mirrored across the plane in which the coordinate along `axis` is `at`, m."""
     _refuse_fields(part)
-    if part.get("shape") == "stl" or "rotate_axis" in part:
-        raise ValueError("an stl, or a part with a rotate_axis, has no mirrored copy")
+    if part.get("shape") in OF_TRIANGLES or "rotate_axis" in part:
+        raise ValueError("an stl, a mesh, or a part with a rotate_axis has no mirrored copy")
 
     def reflect(x: np.ndarray) -> np.ndarray:
         x = x.copy()

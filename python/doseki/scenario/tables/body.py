@@ -163,7 +163,7 @@ class TurnedBody(ShapedBody):
     pivot: Position | None = Field(
         None,
         description="point about which it is rotated, m; default: `min` of a box, the centre of a "
-        "disc, sphere or stl, the centre of mass of a polygon",
+        "disc, sphere or stl, the centre of mass of a polygon, the `position` of a mesh",
     )
 
     @model_validator(mode="after")

@@ -1,7 +1,8 @@
 """Particles of a wall, shifted until they are evenly spaced below its surface.  Lengths in m.
 
 Particles repel each other, and what would lie beyond the surface repels them as a lattice does
-whose first plane is half a spacing outside.  A lattice along a face is at rest.
+whose first plane is half a spacing outside; those of the first row are drawn to half a spacing
+below it.  A lattice along a face is at rest.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ OFF = 0.05  # dp: a particle so far from its layer is out of place
 STEPS = 12  # later ones change little, but take particles away from the surface
 GAIN = 0.2  # dp of shift for a repulsion of 1
 LONGEST = 0.1  # dp in one step
+FIRST_ROW = 1.0  # force on a particle of the first row that is 1 dp away from its place
 OUTSIDE = 0.9  # of a lattice beyond the surface: particles without order press less than one
 SHALLOWEST = 0.35  # dp below the surface
 
@@ -48,7 +50,7 @@ def _shifted(shape: MeshShape, x: np.ndarray, moving: np.ndarray, dp: float) -> 
     start = x[own].copy()
     normal, below = shape.wall(start, dp)
     for _ in range(STEPS):
-        force = _repulsion(x, moving, dp)[own] - OUTSIDE * _of_outside(below / dp)[:, None] * normal
+        force = _repulsion(x, moving, dp)[own] - _inwards(below / dp)[:, None] * normal
         shift = GAIN * dp * force
         length = np.linalg.norm(shift, axis=1)
         shift *= np.minimum(1.0, LONGEST * dp / np.maximum(length, 1e-300))[:, None]
@@ -73,6 +75,11 @@ def _repulsion(x: np.ndarray, moving: np.ndarray, dp: float) -> np.ndarray:
     for a in range(3):
         force[:, a] = np.bincount(i, pull[:, a], len(x)) - np.bincount(j, pull[:, a], len(x))
     return force
+
+
+def _inwards(depth: np.ndarray) -> np.ndarray:
+    """Force from the surface: of what would lie beyond it, and towards the first row's place."""
+    return OUTSIDE * _of_outside(depth) + FIRST_ROW * np.where(depth < 1, 0.5 - depth, 0.0)
 
 
 def _of_outside(depth: np.ndarray) -> np.ndarray:

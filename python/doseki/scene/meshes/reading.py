@@ -60,6 +60,8 @@ def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarr
     mesh = trimesh.load_mesh(io.BytesIO(content), file_type=kind, **options)
     faces = np.asarray(getattr(mesh, "faces", np.zeros((0, 3))), np.int64)
     vertices = np.asarray(mesh.vertices, float)
+    if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
+        raise UserError(f"{file}: its vertices are no points of space, or its faces no triangles")
     if not len(faces):
         raise UserError(f"{file}: no triangle")
     if faces.min() < 0 or faces.max() >= len(vertices):
