@@ -19,7 +19,8 @@ namespace doseki {
 /// `State`: Particles and the scheme's own fields, all listed in for_each_field(f(name, field)).
 template <class State>
 concept SchemeState = std::derived_from<State, Particles<State::dim>> &&
-                      std::constructible_from<StateOf<State>, const Array<Material>&> &&
+                      std::constructible_from<StateOf<State>, const Array<Material>&,
+                                              const Options<State::dim>&> &&
                       requires(State& state, const State& known, std::size_t p, double dt) {
                           state.for_each_field([](const char*, auto&) {});
                           state.enter(p);     // a particle that an inflow has just added

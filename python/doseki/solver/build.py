@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -64,7 +65,7 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """What only the resolved scheme has."""
     names = "dp kernel viscosity shifting turbulence smagorinsky".split()
     return {name: getattr(scenario, name) for name in names} | {
-        "walls": [_wall_condition(scenario.body.get(name)) for name in body_names]
+        "walls": [_wall_condition(scenario, scenario.body.get(name)) for name in body_names]
     }
 
 
@@ -76,10 +77,20 @@ def _contact_options(scenario: Scenario) -> dict[str, Any]:
     return options
 
 
-def _wall_condition(body: BodyTable | None) -> dict[str, Any]:
+def _wall_condition(scenario: Scenario, body: BodyTable | None) -> dict[str, Any]:
     wall = (body.given("wall") if body is not None else None) or "no_slip"
-    ks = body.given("ks") if body is not None and wall == "rough" else 0.0
-    return {"no_slip": wall == "no_slip", "ks": ks}
+    condition: dict[str, Any] = {"no_slip": wall == "no_slip", "ks": 0.0}
+    if body is not None and wall == "rough":
+        condition["ks"] = body.given("ks")
+    if body is not None and wall == "voellmy":
+        xi = body.given("turbulent_xi")
+        condition |= {
+            "voellmy": True,
+            "mu": body.given("mu"),
+            "turbulent_xi": math.inf if xi is None else xi,
+            "effective_share": 1 - next(iter(scenario.pore_pressure_ratios), 0.0),
+        }
+    return condition
 
 
 def core_material(material: Material, xi: float, eos: str) -> dict[str, Any]:

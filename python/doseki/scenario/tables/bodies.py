@@ -25,6 +25,7 @@ from ..values.types import (
 from ..values.units import LENGTH, Measured
 from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
 from .motion import Motion
+from .wall import WallKeys
 
 Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 
@@ -222,7 +223,7 @@ class ParticleFile(BodyTable):
     )
 
 
-class Tank(BodyTable):
+class Tank(WallKeys, BodyTable):
     """Fixed walls outside an inner box: a body NAME.-x, NAME.+x ... for each side."""
 
     shape: Literal["tank"]
@@ -237,10 +238,6 @@ class Tank(BodyTable):
         None, description='sides without a wall, such as ["-x", "+y"]; default: the top'
     )
     motion: Motion | None = Field(None, description="prescribed motion")
-    wall: Literal["no_slip", "free_slip", "rough"] = Field(
-        "no_slip", description="resolved scheme: how fluid meets it"
-    )
-    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
 
     @model_validator(mode="after")
     def _has_room(self) -> Tank:
