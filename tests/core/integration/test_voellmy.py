@@ -207,3 +207,44 @@ def test_fluids_of_two_pore_pressure_ratios_are_refused(flows):
     flows.scenario(other)
     with pytest.raises(UserError, match="grains has 0.5 and water has 0"):
         flows.scenario(other, "pore=0.5")
+
+
+STONE = """
+[body.stone]
+shape = "box"
+material = "basalt"
+min = [0.2, 0]
+max = [0.4, 0.2]
+"""
+
+
+def test_the_friction_of_a_stone_on_the_bed_is_that_of_contacts(core, flows):
+    """The mean of its material's and the bed's, 0.5, whatever the bed does to what flows."""
+    text = SLAB.format(dim=2).replace('periodic = { d2 = ["x"], d3 = ["x", "y"] }', "")
+    text = text[: text.index("[body.slab]")] + STONE
+    text = text.replace("max = { d2 = [0.6, 0]", "max = { d2 = [2.6, 0]")
+    text = text.replace("min = { d2 = [0, -0.15]", "min = { d2 = [-2, -0.15]")
+    speeds = []
+    for mu in (0, 0.9):
+        simulation = flows(text, f"body.bed.mu={mu}", "angle=40")
+        simulation.advance(limit=0.3, pause=0.3, max_steps=10**6)
+        speeds.append(np.asarray(simulation.grains()["velocity"]).sum(axis=0))  # one moves
+    angle = math.radians(40)
+    exact = 0.3 * G * (math.sin(angle) - 0.5 * math.cos(angle))
+    assert speeds[0] @ down(2) == pytest.approx(exact, rel=0.01)
+    np.testing.assert_array_equal(speeds[0], speeds[1])
+
+
+def test_a_stone_that_is_carried_weighs_on_the_bed(core, flows):
+    """All of it slides as one: the bed's friction is that of slab and stone together."""
+    stone = STONE.replace('"box"', '"disc"').replace("min = [0.2, 0]\nmax = [0.4, 0.2]", "")
+    text = SLAB.format(dim=2).replace("[0.6, 0.2]", "[0.6, 0.5]").replace("(0.2 - y)", "(0.5 - y)")
+    text += stone + "centre = [0.3, 0.275]\nradius = 0.13\n"
+    simulation = flows(text, "speed_max=4", "stiff=3e4")
+    momentum = []
+    for time in (0.1, 0.4):
+        simulation.advance(limit=time, pause=time, max_steps=10**6)
+        momentum.append(np.array(simulation.totals()["momentum"]))
+    change = (momentum[1] - momentum[0]) @ down(2) / 0.3 / simulation.totals()["mass"]
+    exact = G * (math.sin(ANGLE) - MU * math.cos(ANGLE))
+    assert change == pytest.approx(exact, rel=0.02)
