@@ -124,11 +124,9 @@ private:
         const Vec<double, D>& g = model_.options.gravity;
         const double rho = sums.density / sums.weight, pressed = -dot(sums.force, n) / area,
                      speed = std::sqrt(dot(u, u));
-        const double stress =
-            voellmy_stress(wall.mu, wall.effective_share * pressed, rho, std::sqrt(dot(g, g)),
-                           speed, wall.turbulent_xi);
-        const BedSpring spring =
-            BedSpring::of(rho, model_.constants.c, model_.options.flow.dp);
+        const double stress = voellmy_stress(wall.mu, wall.effective_share * pressed, rho,
+                                             std::sqrt(dot(g, g)), speed, wall.turbulent_xi);
+        const BedSpring spring = BedSpring::of(rho, model_.constants.c, model_.options.flow.dp);
         slip = tangential(slip, n);
         // The fluid is held; the wall gets the opposite.
         return -1.0 * sliding_spring(slip, u, dt_, area * spring.stiffness, area * spring.damping,

@@ -102,7 +102,10 @@ def block_of(name):
         (ASPEN.replace("0.4", "0.09"), ["material.aspen: cv = 0.09", "from 0.1 to 0.45"]),
         (ASPEN.replace("cv = 0.4", ""), ['preset = "obrien_julien" needs cv']),
         (ASPEN.replace("obrien_julien", "glass_beads"), ['soil is not a key of preset = "glass']),
-        (ASPEN.replace('preset = "obrien_julien"', ""), ['soil goes with preset = "obrien_julien"']),
+        (
+            ASPEN.replace('preset = "obrien_julien"', ""),
+            ['soil goes with preset = "obrien_julien"'],
+        ),
         (ASPEN + 'based_on = "water"', ["based_on is decided by preset"]),
         (ASPEN + 'rheology = "casson"', ["rheology is decided by preset"]),
         ('[material.beads]\npreset = "glass_beads"', ["needs viscosity_max, greater than 0"]),

@@ -12,9 +12,9 @@ struct MuI {
     static constexpr bool has_yield_stress = false;
 
     T mu_s{}, mu_2{}, I_0{};
-    T grain_diameter{};  // [m]
-    T grain_density{};   // [kg/m^3]
-    T max_viscosity{};   // [Pa s]
+    T grain_diameter{};       // [m]
+    T grain_density{};        // [kg/m^3]
+    T max_viscosity{};        // [Pa s]
     T pore_pressure_ratio{};  // of the pore water's pressure over all of it
 
     template <class F>

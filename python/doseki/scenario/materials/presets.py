@@ -27,9 +27,9 @@ class Mudflow(NamedTuple):
     viscosity_b: float
 
 
-# O'Brien & Julien, J. Hydraul. Eng. 114(8), 877-887 (1988), table 2, field samples of Colorado.  The
-# names of the second pit, the watershed and the source area are those of later tables of the same
-# rows: the paper has "pit 4", "natural soil source" and "mine fill source".
+# O'Brien & Julien, J. Hydraul. Eng. 114(8), 877-887 (1988), table 2, field samples of Colorado.
+# The names of the second pit, the watershed and the source area are those of later tables of the
+# same rows; the paper has "natural soil source" and "mine fill source" for the last two.
 SOILS = {
     "aspen_pit_1": Mudflow(0.181, 25.7, 0.0360, 22.1),
     "aspen_pit_2": Mudflow(2.72, 10.4, 0.0538, 14.5),

@@ -15,7 +15,7 @@ from ..materials import (
     MaterialParameter,
 )
 from ..table import Only, Table
-from ..values.units import Measured, unit_named
+from ..values.units import DENSITY, Measured, unit_named
 
 
 def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
@@ -54,7 +54,7 @@ _FIELDS: dict[str, Any] = {
         Field(None, gt=0, lt=1, description="volume of sediment over all of it (obrien_julien)"),
     ),
     "solid_density": (
-        Annotated[float | None, Measured(unit_named("kg/m3"))],
+        Annotated[float | None, Measured(DENSITY)],
         Field(None, gt=0, lt=1e15, description="of the sediment, kg/m3 (obrien_julien; 2650)"),
     ),
     "based_on": (str | None, Field(None, description="material that supplies what is not given")),

@@ -16,7 +16,7 @@ GAIN, BURIED = "acceleration", "acceleration with pore pressure"
 TERMINAL, HELD = "terminal speed", "way at rest / dp"
 TURNED, HELD_TURNED = "acceleration on a turned bed", "way at rest on a turned bed / dp"
 # Rest: a bed of 15 degrees, whose tangent is 0.268, under a block that would creep by itself.
-REST = ("angle=15", "speed=1", "stiffness=400")
+REST = ("angle=15", "speed=1", "stiffness=25*particles**2")
 
 
 def pull(mu: float) -> float:
@@ -98,7 +98,7 @@ SLAB = Case(
     name="voellmy-slab",
     title="Endless slab on Voellmy's bed",
     across="depth/dp",
-    resolutions=(4, 8, 16),
+    resolutions=(4, 6, 8),
     run=slab,
     criteria=(
         Criterion(GAIN, (within(0.02),), "friction of the whole weight, whatever dp is", "m/s2"),
@@ -107,16 +107,13 @@ SLAB = Case(
         Criterion(HELD, (at_most(0.1),), AT_REST),
     ),
     axes=("time (s)", "mean speed (m/s)"),
-    controls=(
-        Control("mu = 0", GAIN, lambda n: slab(n, NO_FRICTION)),
-        Control("mu = 0", HELD, lambda n: slab(n, NO_FRICTION)),
-    ),
+    controls=(Control("mu = 0", GAIN, lambda n: slab(n, NO_FRICTION)),),
 )
 BLOCK = Case(
     name="voellmy-block",
     title="Block on Voellmy's bed",
     across="height/dp",
-    resolutions=(4, 8, 16),
+    resolutions=(4, 6, 8),
     run=block,
     criteria=(
         Criterion(GAIN, (within(0.02),), "friction of the whole weight, ends and all", "m/s2"),
@@ -125,9 +122,6 @@ BLOCK = Case(
         Criterion(HELD_TURNED, (at_most(0.1),), AT_REST),
     ),
     axes=("time (s)", "mean speed (m/s)"),
-    controls=(
-        Control("mu = 0", TURNED, lambda n: block(n, NO_FRICTION)),
-        Control("mu = 0", HELD_TURNED, lambda n: block(n, NO_FRICTION)),
-    ),
+    controls=(Control("mu = 0", HELD_TURNED, lambda n: block(n, NO_FRICTION)),),
 )
 CASES = (SLAB, BLOCK)
