@@ -29,7 +29,8 @@ def complete_materials(
 
     A table holds only given values: `law`, any of MATERIAL_PARAMETERS, and `based_on`, the name of
     the material that supplies the rest, or a preset with its keys.  `eos` is the equation of state
-    of the run, where its parameters are to be checked.  Raises MaterialError when a value is missing or of no use.
+    of the run, where its parameters are to be checked.  Raises MaterialError when a value is
+    missing or of no use.
     """
     names = [*BUILT_IN, *(name for name in tables if name not in BUILT_IN)]
     materials = {name: _complete(name, tables, ()) for name in names}

@@ -16,7 +16,7 @@ GAIN, BURIED = "acceleration", "acceleration with pore pressure"
 TERMINAL, HELD = "terminal speed", "way at rest / dp"
 TURNED, HELD_TURNED = "acceleration on a turned bed", "way at rest on a turned bed / dp"
 # Rest: a bed of 15 degrees, whose tangent is 0.268, under a block that would creep by itself.
-REST = ("angle=15", "speed=1", "stiffness=25*particles**2")
+REST = ("angle=15", "speed=1", "stiffness== 25*particles**2")
 
 
 def pull(mu: float) -> float:
