@@ -1,4 +1,7 @@
 #pragma once
+#include <algorithm>
+#include <limits>
+
 #include "base/array.hpp"
 #include "base/named.hpp"
 #include "base/vec.hpp"
@@ -17,12 +20,20 @@ enum class Turbulence { none, smagorinsky, mixing_length };
 
 /// How fluid meets the fixed particles of a body.
 struct WallCondition {
-    bool no_slip = true;  // otherwise free slip, and friction where ks > 0
-    double ks = 0.0;      // equivalent sand roughness [m]
+    bool no_slip = true;   // otherwise free slip, and friction where ks > 0 or `voellmy`
+    double ks = 0.0;       // equivalent sand roughness [m]
+    bool voellmy = false;  // Coulomb's and turbulent friction
+    double mu = 0.0;       // coefficient of friction
+    double turbulent_xi = std::numeric_limits<double>::infinity();  // [m/s^2]
+    double effective_share = 1.0;  // of the normal stress, that grains carry and not pore water
+
+    bool has_friction() const { return ks > 0.0 || voellmy; }
 
     template <class F>
     void members(F&& f) {
-        f("no_slip", no_slip), f("ks", ks);
+        f("no_slip", no_slip), f("ks", ks), f("voellmy", voellmy, optional);
+        f("mu", mu, optional), f("turbulent_xi", turbulent_xi, optional);
+        f("effective_share", effective_share, optional);
     }
 };
 
@@ -51,6 +62,11 @@ struct FlowOptions {
     Turbulence turbulence = Turbulence::none;
     double smagorinsky = 0.12;
     Array<WallCondition> walls;  // by body
+
+    bool has_voellmy_walls() const {
+        return std::any_of(walls.begin(), walls.end(),
+                           [](const WallCondition& wall) { return wall.voellmy; });
+    }
 
     template <class F>
     void members(F&& f) {

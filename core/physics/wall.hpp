@@ -32,6 +32,27 @@ inline double bed_friction(double rho, double z, double ks) {
     return rho * root * root;
 }
 
+/// Stress that Voellmy's bed takes from what slides over it at a speed |u| under the effective
+/// normal stress `normal_stress` (Voellmy, Schweiz. Bauzeitung 73, 1955): tau = mu sigma' + rho g
+/// u^2/xi [Pa]. An infinite xi leaves Coulomb's friction alone.
+inline double voellmy_stress(double mu, double normal_stress, double rho, double g, double speed,
+                             double xi) {
+    return mu * std::max(0.0, normal_stress) + rho * g * speed * speed / xi;
+}
+
+/// Spring and dashpot by which a bed holds what does not slide: no creep, and no force that could
+/// reverse a motion within a step. Stiffness over area K = kappa rho c^2/dp, such that a layer of
+/// particles swings slowly against sound; damping over area 2 zeta sqrt(K rho dp).
+struct BedSpring {
+    static constexpr double kappa = 0.5, zeta = 0.5;
+    double stiffness;  // [Pa/m]
+    double damping;    // [Pa s/m]
+
+    static BedSpring of(double rho, double c, double dp) {
+        return {kappa * rho * c * c / dp, 2.0 * zeta * std::sqrt(kappa) * rho * c};
+    }
+};
+
 /// Sum of V W over a plane lattice of spacing dp at this distance.
 template <class Kernel, int D>
 double weight_of_row(double dp, double support, double distance) {

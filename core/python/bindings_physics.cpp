@@ -82,6 +82,10 @@ void bind_flow_numbers(nb::module_& m) {
     define_numbers(m, "bed_friction", 1, [](const auto& in, auto& out) {  // rho, z, ks
         out[0] = bed_friction(in[0], in[1], in[2]);
     });
+    define_numbers(m, "voellmy_stress", 1, [](const auto& in, auto& out) {
+        // mu, effective normal stress, rho, g, speed, xi
+        out[0] = voellmy_stress(in[0], in[1], in[2], in[3], in[4], in[5]);
+    });
     define_numbers(m, "mixing_length", 1, [](const auto& in, auto& out) {  // z, d, least
         out[0] = mixing_length(in[0], in[1], in[2]);
     });

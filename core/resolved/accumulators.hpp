@@ -23,7 +23,7 @@ struct FlowConstants {
 template <class T, int D>
 struct FluidAccumulators {
     Vec<T, D> force;     // of viscosity, dissipation and shifting, over V_i/2
-    Vec<T, D> traction;  // of rough walls, over V_i
+    Vec<T, D> traction;  // of beds with friction, over V_i
     T density_rate{};    // over rho_i
     T power{};           // that pairs dissipate, over V_i
     T made_power{};      // that shifting and walls make, over V_i

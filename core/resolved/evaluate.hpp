@@ -28,9 +28,9 @@ void Resolved<D, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& h
         set_mixing_lengths(state, lists, halo.ranks);
     pack(state, halo, half_dt);
     if (model_->options.flow.wide_kernel)
-        sum_all<WendlandC6<D>>(state, lists, halo);
+        sum_all<WendlandC6<D>>(state, lists, halo, 2.0 * half_dt);
     else
-        sum_all<WendlandC2<D>>(state, lists, halo);
+        sum_all<WendlandC2<D>>(state, lists, halo, 2.0 * half_dt);
     reduce_summaries();
     const std::int64_t left = is_poisoned_run() ? survivor<double>(state.acceleration) : -1;
     if (left >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(left));
@@ -146,7 +146,7 @@ void Resolved<D, Backend>::update_mean_pressure(State& state, std::size_t p, dou
 /// beds, come.
 template <int D, class Backend>
 template <class Kernel>
-void Resolved<D, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo) {
+void Resolved<D, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt) {
     const std::size_t first_ghost_wall = fluid_count_;
     halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
                 halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
@@ -154,30 +154,30 @@ void Resolved<D, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& ha
     const bool has_fluid = fluid_count_ + halo.moving_ghosts() > 0,
                has_walls = records.count > records.fluid_count && has_fluid;
     if (!has_fluid) std::fill(state.wall.force.begin(), state.wall.force.end(), Vec<double, D>{});
-    const bool rough = model_->has_rough_walls();
-    if (rough || halo.alone()) {
+    const bool friction = model_->has_bed_friction();
+    if (friction || halo.alone()) {
         halo.finish();
-        if (has_walls) sum_walls<Kernel>(state, lists, records);
-        if (rough)
+        if (has_walls) sum_walls<Kernel>(state, lists, records, dt);
+        if (friction)
             halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed,
                                     first_ghost_wall)});
         sum_fluid<Kernel>(state, lists, halo, records);
     } else {
         sum_fluid<Kernel>(state, lists, halo, records);
-        if (has_walls) sum_walls<Kernel>(state, lists, records);
+        if (has_walls) sum_walls<Kernel>(state, lists, records, dt);
     }
 }
 
 template <int D, class Backend>
 template <class Kernel>
 void Resolved<D, Backend>::sum_walls(State& state, const Lists& lists,
-                                     const FlowRecords<D>& records) {
+                                     const FlowRecords<D>& records, double dt) {
     const auto timing = phases_.measure(Phase::pass_1);
     const std::size_t first = fluid_count_ / Backend::width;
     Backend::sum_pairs(lists,
                        {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},
                        WallTerm<Kernel, D>{records, model_->constants, model_->options.gravity},
-                       WallEpilogue<D>(*model_, wall_, fluid_count_, summary_, state));
+                       WallEpilogue<D>(*model_, wall_, fluid_count_, summary_, state, dt));
 }
 
 template <int D, class Backend>

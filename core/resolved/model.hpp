@@ -76,9 +76,9 @@ struct ResolvedModel {
     const WallCondition& wall_condition(const Tag& tag) const {
         return options.flow.walls.at(static_cast<std::size_t>(tag.body));
     }
-    bool has_rough_walls() const {
+    bool has_bed_friction() const {
         return std::any_of(options.flow.walls.begin(), options.flow.walls.end(),
-                           [](const WallCondition& wall) { return wall.ks > 0.0; });
+                           [](const WallCondition& wall) { return wall.has_friction(); });
     }
 
     /// Tension holds inside; a free surface takes none.

@@ -28,7 +28,7 @@ struct FluidFields {
 template <class T, int D>
 struct WallFields {
     Vec<T, D> normal;    // into the fluid
-    Vec<T, D> traction;  // force of a rough bed on a fluid particle over V_i W
+    Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
     T volume;
     T depth;     // below the surface of the wall [m]
     T g_normal;  // see wall_excess_pressure

@@ -99,9 +99,9 @@ private:
     void pack_wall(const State& state, std::size_t p);
     void update_mean_pressure(State& state, std::size_t p, double dt);
     template <class Kernel>
-    void sum_all(State& state, const Lists& lists, Halo<D>& halo);
+    void sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
-    void sum_walls(State& state, const Lists& lists, const FlowRecords<D>& records);
+    void sum_walls(State& state, const Lists& lists, const FlowRecords<D>& records, double dt);
     template <class Kernel>
     void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<D>& records);
     void reduce_summaries();

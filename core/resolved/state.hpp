@@ -1,6 +1,7 @@
 #pragma once
 #include "base/array.hpp"
 #include "model/material.hpp"
+#include "model/options.hpp"
 #include "model/particles.hpp"
 
 namespace doseki {
@@ -9,7 +10,10 @@ namespace doseki {
 /// free-surface indicator are those of the last evaluation, which the next one reads.
 template <int D>
 struct ResolvedState : Particles<D> {
-    explicit ResolvedState(const Array<Material>&) { this->wall.in_use = true; }
+    ResolvedState(const Array<Material>&, const Options<D>& options)
+        : has_bed_slip(options.flow.has_voellmy_walls()) {
+        this->wall.in_use = true;
+    }
 
     Field<Vec<double, D>> pressure_gradient;  // [Pa/m]
     Field<Mat<double, D>> velocity_gradient;  // [1/s]
@@ -20,6 +24,9 @@ struct ResolvedState : Particles<D> {
     Field<double> surface;        // free-surface indicator
     Field<double> mixing_length;  // [m]
     Field<double> mean_pressure;  // over a time, where friction depends on it [Pa]
+    bool has_bed_slip;            // without, the field below stays empty
+    /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
+    Field<Vec<double, D>> bed_slip;  // [m]
 
     template <class F>
     void for_each_field(F&& f) {
@@ -27,6 +34,7 @@ struct ResolvedState : Particles<D> {
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
         f("correction_excess", correction_excess), f("shift", shift), f("surface", surface);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
+        if (has_bed_slip) f("bed_slip", bed_slip);
     }
 
     /// Stresses of a fluid are not part of its state.

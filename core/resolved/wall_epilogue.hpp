@@ -3,24 +3,27 @@
 #include <span>
 
 #include "base/pack.hpp"
+#include "physics/contact.hpp"
 #include "resolved/flow_summary.hpp"
 #include "resolved/model.hpp"
 
 namespace doseki {
 
-/// What the scheme makes of the sums of a wall particle: force, pressure and, on a rough bed, the
-/// friction that fluid particles near it share.
+/// What the scheme makes of the sums of a wall particle: force, pressure and, on a rough bed or
+/// Voellmy's, the friction that fluid particles near it share.
 template <int D>
 class WallEpilogue {
 public:
+    /// `dt`: since the evaluation before.
     WallEpilogue(const ResolvedModel<D>& model, std::span<WallRecord<D>> records,
                  std::size_t first_wall, std::span<FlowSummary<D>> summaries,
-                 ResolvedState<D>& state)
+                 ResolvedState<D>& state, double dt)
         : model_(model),
           records_(records),
           first_wall_(first_wall),
           summaries_(summaries),
-          state_(state) {}
+          state_(state),
+          dt_(dt) {}
 
     void operator()(std::size_t p, const WallAccumulators<double, D>& sums) const {
         if (p < first_wall_) return;  // a fluid particle in the first cluster of walls
@@ -35,10 +38,11 @@ public:
             // The film has no particles whose energy could pay for this.
             summary.work.power += dot(film, state_.velocity[p]);
         }
-        const double ks = model_.wall_condition(state_.tag[p]).ks;
-        if (ks > 0.0 && record.depth < model_.options.flow.dp && sums.weight > min_filled) {
-            const Vec<double, D> drag = bed_drag(p, sums, ks);
-            record.traction = (-1.0 / sums.weight) * drag;
+        const WallCondition& condition = model_.wall_condition(state_.tag[p]);
+        if (condition.has_friction()) {
+            const Vec<double, D> drag =
+                condition.voellmy ? voellmy_drag(p, sums, condition) : bed_drag(p, sums, condition);
+            if (dot(drag, drag) > 0.0) record.traction = (-1.0 / sums.weight) * drag;
             force = force + drag;
             // What the fluid loses by friction and a bed that moves does not get.
             summary.power -= dot(drag, state_.velocity[p]);
@@ -48,6 +52,7 @@ public:
 
 private:
     static constexpr double min_filled = 0.05;  // of the kernel, by fluid
+    static constexpr double min_weight = 1e-9;  // the same; less presses with nothing
 
     /// The film takes the pressure of the fluid and of the faces around it as they were a step
     /// before: it spreads from the rim of a contact inwards. Air has none; where a face sees hardly
@@ -88,14 +93,44 @@ private:
         return dot(hidden, all) > 0.0 ? state_.wall.rows[p] * hidden : Vec<double, D>{};
     }
 
-    Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
-                            double ks) const {
+    /// Velocity along the wall of the fluid around against it.
+    Vec<double, D> sliding(std::size_t p, const WallAccumulators<double, D>& sums) const {
         const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - state_.velocity[p];
-        const Vec<double, D> along = tangential(u, state_.wall.normal[p]);
+        return tangential(u, state_.wall.normal[p]);
+    }
+
+    /// On a particle of the first row that is near enough to the fluid, Eq. (39).
+    Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
+                            const WallCondition& wall) const {
+        const bool is_first = records_[p - first_wall_].depth < model_.options.flow.dp;
+        if (!is_first || !(sums.weight > min_filled)) return {};
+        const Vec<double, D> along = sliding(p, sums);
         const double rho = sums.density / sums.weight;
         const double friction =
-            bed_friction(rho, sums.height / sums.weight, ks) * model_.spacing_power[D - 1];
+            bed_friction(rho, sums.height / sums.weight, wall.ks) * model_.spacing_power[D - 1];
         return friction * std::sqrt(dot(along, along)) * along;
+    }
+
+    /// Eqs. (92) and (93). Each row takes the friction of the force that the fluid presses on it
+    /// with, so that friction belongs to the whole weight of what lies on the bed, whatever its
+    /// depth is and wherever it ends.
+    Vec<double, D> voellmy_drag(std::size_t p, const WallAccumulators<double, D>& sums,
+                                const WallCondition& wall) const {
+        const Vec<double, D>& n = state_.wall.normal[p];
+        Vec<double, D>& slip = state_.bed_slip[p];
+        const double area = records_[p - first_wall_].volume * dot(sums.area, n);
+        if (!(sums.weight > min_weight) || !(area > 0.0)) return slip = {};
+        const Vec<double, D> u = sliding(p, sums);
+        const Vec<double, D>& g = model_.options.gravity;
+        const double rho = sums.density / sums.weight, pressed = -dot(sums.force, n) / area,
+                     speed = std::sqrt(dot(u, u));
+        const double stress = voellmy_stress(wall.mu, wall.effective_share * pressed, rho,
+                                             std::sqrt(dot(g, g)), speed, wall.turbulent_xi);
+        const BedSpring spring = BedSpring::of(rho, model_.constants.c, model_.options.flow.dp);
+        slip = tangential(slip, n);
+        // The fluid is held; the wall gets the opposite.
+        return -1.0 * sliding_spring(slip, u, dt_, area * spring.stiffness, area * spring.damping,
+                                     area * stress);
     }
 
     const ResolvedModel<D>& model_;
@@ -103,6 +138,7 @@ private:
     std::size_t first_wall_;
     std::span<FlowSummary<D>> summaries_;
     ResolvedState<D>& state_;
+    double dt_;
 };
 
 }  // namespace doseki

@@ -24,7 +24,7 @@ class RunningScheme final : public AnyScheme<ListsOf<SchemeOf>> {
 
 public:
     RunningScheme(Array<Material> materials, const Options<D>& options)
-        : state_(materials), scheme_(std::move(materials), options) {}
+        : state_(materials, options), scheme_(std::move(materials), options) {}
 
     static std::unique_ptr<AnyScheme<Lists>> make(Array<Material> materials,
                                                   const Options<D>& options) {

@@ -18,18 +18,17 @@ namespace doseki {
 
 /// `State`: Particles and the scheme's own fields, all listed in for_each_field(f(name, field)).
 template <class State>
-concept SchemeState = std::derived_from<State, Particles<State::dim>> &&
-                      std::constructible_from<StateOf<State>, const Array<Material>&> &&
-                      requires(State& state, const State& known, std::size_t p, double dt) {
-                          state.for_each_field([](const char*, auto&) {});
-                          state.enter(p);     // a particle that an inflow has just added
-                          state.kick(p, dt);  // the scheme's own fields, over half a step
-                          { known.transport_velocity(p) } -> std::same_as<Vec<double, State::dim>>;
-                          { known.has_density(p) } -> std::same_as<bool>;
-                          {
-                              known.sum_of_fields(p)
-                          } -> std::same_as<double>;  // not finite where a field is not
-                      };
+concept SchemeState =
+    std::derived_from<State, Particles<State::dim>> &&
+    std::constructible_from<StateOf<State>, const Array<Material>&, const Options<State::dim>&> &&
+    requires(State& state, const State& known, std::size_t p, double dt) {
+        state.for_each_field([](const char*, auto&) {});
+        state.enter(p);     // a particle that an inflow has just added
+        state.kick(p, dt);  // the scheme's own fields, over half a step
+        { known.transport_velocity(p) } -> std::same_as<Vec<double, State::dim>>;
+        { known.has_density(p) } -> std::same_as<bool>;
+        { known.sum_of_fields(p) } -> std::same_as<double>;  // not finite where a field is not
+    };
 
 template <class S>
 concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, S::dim> &&

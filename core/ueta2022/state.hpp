@@ -3,6 +3,7 @@
 
 #include "base/array.hpp"
 #include "model/material.hpp"
+#include "model/options.hpp"
 #include "model/particles.hpp"
 
 namespace doseki {
@@ -11,7 +12,7 @@ namespace doseki {
 /// materials with strength.
 template <int D>
 struct Ueta2022State : Particles<D> {
-    explicit Ueta2022State(const Array<Material>& materials)
+    Ueta2022State(const Array<Material>& materials, const Options<D>&)
         : has_strength(std::any_of(materials.begin(), materials.end(),
                                    [](const Material& m) { return m.shear_modulus > 0.0; })) {}
 

@@ -97,6 +97,14 @@ duration = 1
 """
 
 
+def test_a_mass_that_is_weaker_than_its_bed_is_named(doubts):
+    wall = 'max = [0.5, 0]\nwall = "voellmy"\nmu = 0.3'
+    told = doubts(replace=("max = [0.5, 0]", wall), scheme="resolved")
+    assert any("body.floor.mu = 0.3: water has less friction inside" in doubt for doubt in told)
+    smooth = doubts(replace=("max = [0.5, 0]", wall.replace("0.3", "0")), scheme="resolved")
+    assert not any("friction inside" in doubt for doubt in smooth)
+
+
 # Water makes room for whole boxes, not for one that is cut.
 CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"')}
 

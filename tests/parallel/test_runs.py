@@ -28,6 +28,8 @@ CASES = {
     "dambreak": ("dim=3", "dp=0.03", "time_max=0.006", "time_out=0.003"),
     "flume": ("dp=0.01", "load_mass=2", "time_max=0.01", "time_out=0.005"),
     "channel": ("dp=0.01", "flume_length=0.2", "time_max=0.14", "time_out=0.07"),  # past its end
+    # Friction that springs of the bed hold, on both parts of it.
+    "voellmy-chute": ("dp=0.2", "time_max=0.1", "time_out=0.05"),
 }
 NUMBERS = ("time", "step", "dt")
 SHARED = ("imbalance", "share_balance", "share_migrate", "share_halo", "share_wait")

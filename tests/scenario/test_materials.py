@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from doseki.scenario.load import load_scenario
+from doseki.scenario.materials import SOILS
 
 from ..small_scenarios import BLOCK
 
@@ -38,6 +41,12 @@ inertial_number = 0.28
 grain_diameter = 5e-4
 grain_density = 2500
 viscosity_max = 50
+"""
+ASPEN = """
+[material.aspen]
+preset = "obrien_julien"
+soil = "aspen_pit_1"
+cv = 0.4
 """
 GAS = """
 [material.oil]
@@ -86,6 +95,20 @@ def block_of(name):
         (PAINT + "casson_viscocity = 2", ["did you mean casson_viscosity"]),
         (BEADS.replace("0.64", "0.3"), ["mu_2 = 0.3 must be at least mu_s = 0.38"]),
         (BEADS.replace("grain_density = 2500", ""), ["needs grain_density, greater than 0"]),
+        (BEADS + "pore_pressure_ratio = 1", ["pore_pressure_ratio = 1", "less than 1"]),
+        (MUD + "pore_pressure_ratio = 0.5", ["pore_pressure_ratio is for rheology", '"mu_i"']),
+        (ASPEN.replace("aspen_pit_1", "aspen_pit_3"), ["soil = 'aspen_pit_3'", "'aspen_pit_1'"]),
+        (ASPEN.replace("0.4", "0.46"), ["material.aspen: cv = 0.46", "from 0.1 to 0.45"]),
+        (ASPEN.replace("0.4", "0.09"), ["material.aspen: cv = 0.09", "from 0.1 to 0.45"]),
+        (ASPEN.replace("cv = 0.4", ""), ['preset = "obrien_julien" needs cv']),
+        (ASPEN.replace("obrien_julien", "glass_beads"), ['soil is not a key of preset = "glass']),
+        (
+            ASPEN.replace('preset = "obrien_julien"', ""),
+            ['soil goes with preset = "obrien_julien"'],
+        ),
+        (ASPEN + 'based_on = "water"', ["based_on is decided by preset"]),
+        (ASPEN + 'rheology = "casson"', ["rheology is decided by preset"]),
+        ('[material.beads]\npreset = "glass_beads"', ["needs viscosity_max, greater than 0"]),
     ],
 )
 def test_errors(write, error_of, tables, parts):
@@ -131,6 +154,8 @@ def test_the_scheme_of_the_paper_has_newtonian_fluids_alone(write, error_of, nam
         ("mud", MUD, RESOLVED),
         ("paint", PAINT, RESOLVED),
         ("beads", BEADS, RESOLVED),
+        ("beads", BEADS + "pore_pressure_ratio = 0.5", RESOLVED),
+        ("aspen", ASPEN, RESOLVED),
         ("oil", GAS, STIFFENED),
         ("sand", SAND, ""),
     ],
@@ -144,3 +169,41 @@ def test_a_stored_scenario_has_the_same_material(write, tmp_path, name, table, t
     assert (
         again.materials[name].scaled(0.1).friction_angle == scenario.materials[name].friction_angle
     )
+
+
+# Table 2 of O'Brien & Julien (1988) in its own units, dyn/cm2 and poise, at cv = 0.3.
+MEASURED = {
+    "aspen_pit_1": (0.181 * math.exp(0.3 * 25.7), 3.60e-2 * math.exp(0.3 * 22.1)),
+    "aspen_pit_2": (2.72 * math.exp(0.3 * 10.4), 5.38e-2 * math.exp(0.3 * 14.5)),
+    "aspen_natural_soil": (0.152 * math.exp(0.3 * 18.7), 1.36e-3 * math.exp(0.3 * 28.4)),
+    "aspen_mine_fill": (4.73e-2 * math.exp(0.3 * 21.1), 0.128 * math.exp(0.3 * 12.0)),
+    "aspen_watershed": (3.83e-2 * math.exp(0.3 * 19.6), 4.95e-4 * math.exp(0.3 * 27.1)),
+    "aspen_mine_source_area": (0.291 * math.exp(0.3 * 14.3), 2.01e-4 * math.exp(0.3 * 33.1)),
+    "glenwood_1": (3.45e-2 * math.exp(0.3 * 20.1), 2.83e-3 * math.exp(0.3 * 23.0)),
+    "glenwood_2": (7.65e-2 * math.exp(0.3 * 16.9), 6.48e-2 * math.exp(0.3 * 6.2)),
+    "glenwood_3": (7.07e-4 * math.exp(0.3 * 29.8), 6.32e-3 * math.exp(0.3 * 19.9)),
+    "glenwood_4": (1.72e-3 * math.exp(0.3 * 29.5), 6.02e-4 * math.exp(0.3 * 33.1)),
+}
+
+
+def test_every_soil_is_one_of_the_table():
+    assert MEASURED.keys() == SOILS.keys()
+
+
+@pytest.mark.parametrize("soil", MEASURED)
+def test_mud_by_its_concentration(write, soil):
+    table = ASPEN.replace("aspen_pit_1", soil).replace("0.4", "0.3")
+    mud = load_scenario(write(top=RESOLVED, tables=block_of("aspen") + table)).materials["aspen"]
+    stress, viscosity = (0.1 * number for number in MEASURED[soil])  # Pa, Pa s
+    assert mud.rheology == "herschel_bulkley"
+    assert mud.rho0 == pytest.approx(1000 + 0.3 * 1650)
+    assert mud.of_laws["yield_stress"] == pytest.approx(stress, rel=1e-12)
+    assert mud.of_laws["consistency"] == pytest.approx(viscosity, rel=1e-12)
+    assert mud.of_laws["flow_index"] == 1
+
+
+def test_what_a_table_says_itself_stands_over_its_preset(write):
+    table = ASPEN + 'solid_density = "2.7 g/cm3"\nviscosity_max = 500\n'
+    mud = load_scenario(write(top=RESOLVED, tables=block_of("aspen") + table)).materials["aspen"]
+    assert mud.rho0 == pytest.approx(1000 + 0.4 * 1700)
+    assert mud.of_laws["viscosity_max"] == 500

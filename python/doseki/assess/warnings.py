@@ -82,6 +82,20 @@ class LargeRoughness(Finding):
 
 
 @dataclass(frozen=True)
+class WeakMass(Finding):
+    """A fluid that shears more easily than it slides on a bed of Voellmy's friction."""
+
+    mu: float
+    fluid: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place} = {self.mu:g}: {self.fluid} has less friction inside, shears over its"
+            " lowest layer and leaves that behind; give it a yield stress, or mu_s above mu"
+        )
+
+
+@dataclass(frozen=True)
 class GaugeOutside(Finding):
     """A gauge where there will be nothing to read."""
 
@@ -157,7 +171,7 @@ def findings(
     names = dict(enumerate(body_names))
     found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, state, names)]
     found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
-    found += [*_gauges(scenario, state), *_mach(scenario, state)]
+    found += [*_voellmy(scenario), *_gauges(scenario, state), *_mach(scenario, state)]
     found += open_sides(scenario, state, names)
     found += [*_films(scenario, state)]
     return list(dict.fromkeys(found))
@@ -205,6 +219,16 @@ def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Itera
     for place, ks in rough:
         if ks is not None and ks > depth:
             yield LargeRoughness(place, ks, depth)
+
+
+def _voellmy(scenario: Scenario) -> Iterator[Finding]:
+    """Voellmy's law is one of a mass that slides as a whole."""
+    for place, mu in ((f"body.{name}.mu", b.given("mu")) for name, b in scenario.body.items()):
+        for name in scenario.material_names:
+            fluid = scenario.materials[name]
+            friction = {"newtonian": 0.0, "mu_i": fluid.of_laws["mu_s"]}.get(fluid.rheology)
+            if fluid.law == "fluid" and mu and friction is not None and friction < mu:
+                yield WeakMass(place, mu, name)
 
 
 def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:

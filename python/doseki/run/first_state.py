@@ -12,6 +12,7 @@ from ..driver.ranks import OneRank
 from ..errors import UserError
 from ..scenario.earlier import Earlier
 from ..scenario.model import Scenario
+from ..scenario.tables.wall import FRICTION_OF
 from ..scene.build import body_names
 from ..solver.protocol import Simulation
 from ..util.finding import Finding
@@ -19,7 +20,7 @@ from ..util.foreign import read_bytes
 from ..util.telling import Tell, say_nothing
 
 # Keys of a body that are no part of its state: how fluid meets it, and what it does from now on.
-NOT_OF_STATE = {"wall", "ks", "motion", "file"}
+NOT_OF_STATE = {"wall", *FRICTION_OF, "motion", "file"}
 # What the state of elastic bodies holds in numbers.
 OF_STATE = ("young_modulus", "poisson_ratio")
 # With which no rate of change changes, and no list of neighbours.

@@ -22,9 +22,10 @@ from .kinematics import Kinematics
 from .materials import MATERIAL_PARAMETERS, Material
 from .particle_files.reader import ParticleTable
 from .schemes import KERNEL_SUPPORT, RESOLVED
+from .table import Table
 from .tables.root import ScenarioTable
 from .tables.sections import SECTIONS
-from .tables.terrain.terrain import Terrain
+from .tables.terrain.terrain import TERRAIN, Terrain
 from .values.toml_source import Where
 from .values.types import Acceleration, Duration, Positive
 
@@ -114,6 +115,14 @@ class Scenario(ScenarioTable):
         return self._earlier
 
     @property
+    def walls(self) -> dict[tuple[str, ...], Table]:
+        """The tables that may say how fluid meets something, by where they stand."""
+        bodies: dict[tuple[str, ...], Table] = {
+            ("body", name): body for name, body in self.body.items()
+        }
+        return bodies if self.terrain is None else bodies | {(TERRAIN,): self.terrain}
+
+    @property
     def bed(self) -> Bed | None:
         """The ground of [terrain], where there is one."""
         return self._bed
@@ -143,6 +152,15 @@ class Scenario(ScenarioTable):
     def min_sound_speed(self) -> float:
         """Smallest unscaled sound speed of the materials that limit the speed of the flow, m/s."""
         return min_sound_speed(self, self.materials, self.material_names)
+
+    @property
+    def pore_pressure_ratios(self) -> dict[float, str]:
+        """Every pore pressure ratio that fluids in use have, with the first fluid that has it."""
+        found: dict[float, str] = {}
+        for name in self.material_names:
+            if self.materials[name].law == "fluid":
+                found.setdefault(self.materials[name].of_laws["pore_pressure_ratio"], name)
+        return found
 
     @property
     def is_dry(self) -> bool:

@@ -69,7 +69,7 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """What only the resolved scheme has."""
     names = "dp kernel viscosity shifting turbulence smagorinsky".split()
     return {name: getattr(scenario, name) for name in names} | {
-        "walls": [_wall_condition(_wall_of(scenario, name)) for name in body_names]
+        "walls": [_wall_condition(scenario, _wall_of(scenario, name)) for name in body_names]
     }
 
 
@@ -86,10 +86,20 @@ def _wall_of(scenario: Scenario, name: str) -> BodyTable | Terrain | None:
     return scenario.terrain if name == TERRAIN and scenario.terrain else scenario.body.get(name)
 
 
-def _wall_condition(body: BodyTable | Terrain | None) -> dict[str, Any]:
+def _wall_condition(scenario: Scenario, body: BodyTable | Terrain | None) -> dict[str, Any]:
     wall = (body.given("wall") if body is not None else None) or "no_slip"
-    ks = body.given("ks") if body is not None and wall == "rough" else 0.0
-    return {"no_slip": wall == "no_slip", "ks": ks}
+    condition: dict[str, Any] = {"no_slip": wall == "no_slip", "ks": 0.0}
+    if body is not None and wall == "rough":
+        condition["ks"] = body.given("ks")
+    if body is not None and wall == "voellmy":
+        xi = body.given("turbulent_xi")
+        condition |= {
+            "voellmy": True,
+            "mu": body.given("mu"),
+            "turbulent_xi": math.inf if xi is None else xi,
+            "effective_share": 1 - next(iter(scenario.pore_pressure_ratios), 0.0),
+        }
+    return condition
 
 
 def core_material(material: Material, xi: float, eos: str) -> dict[str, Any]:

@@ -124,3 +124,11 @@ def test_bed_friction_inverts_the_logarithmic_law(point, ks):
 def test_bed_friction_is_bounded_below_the_roughness(point):
     (friction,) = point("bed_friction", RHO, [0.02 / 30, 1e-5, 0.0, -1.0], 0.02)
     np.testing.assert_allclose(friction, RHO * (0.4 / np.log(2)) ** 2, rtol=1e-13)
+
+
+def test_voellmy_s_stress(point):
+    """mu sigma' + rho g u^2/xi; what does not press has no friction of Coulomb's."""
+    (stress,) = point("voellmy_stress", 0.2, [3e3, -1.0], 2000.0, 9.81, 5.0, 250.0)
+    turbulent = 2000 * 9.81 * 25 / 250
+    np.testing.assert_allclose(stress, [600 + turbulent, turbulent], rtol=1e-14)
+    assert point("voellmy_stress", 0.2, 3e3, 2000.0, 9.81, 5.0, np.inf)[0] == 600

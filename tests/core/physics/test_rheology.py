@@ -94,9 +94,9 @@ def test_casson_s_viscosity_at_rest(point):
 BEADS = (0.382, 0.643, 0.279, 5e-4, 2500.0)  # mu_s, mu_2, I_0, d, rho_s
 
 
-def beads(point, rate, p, limit):
+def beads(point, rate, p, limit, pore=0.0):
     """Viscosity of glass beads, which the density of their mixture does not change."""
-    return point("mu_i", rate, p, RHO, *BEADS, limit)[0]
+    return point("mu_i", rate, p, RHO, *BEADS, limit, pore)[0]
 
 
 def mu_of(inertial):
@@ -116,6 +116,14 @@ def test_friction_is_mu_of_i(point, p):
 def test_without_pressure_there_is_no_friction(point):
     assert not beads(point, RATES, -5.0, LOTS).any()
     assert not beads(point, RATES, 0.0, LOTS).any()
+
+
+@pytest.mark.parametrize("pore", [0.0, 0.3, 0.9])
+def test_beads_feel_the_effective_pressure(point, pore):
+    """(1 - lambda) p in place of p, to the last bit where there is no pore pressure."""
+    wet, dry = beads(point, RATES, 200.0, 40.0, pore), beads(point, RATES, (1 - pore) * 200.0, 40.0)
+    np.testing.assert_array_equal(wet, dry)
+    assert beads(point, 1.0, 200.0, LOTS, 0.9)[0] < 0.2 * beads(point, 1.0, 200.0, LOTS)[0]
 
 
 def test_friction_at_rest_is_limited(point):

@@ -37,8 +37,10 @@ BODY = {
     "fixed": ["true", "false"],
     "motion": ["{ velocity = [1, {zeros}0] }"],
     "velocity": ["[-0.5, {zeros}0.1]"],
-    "wall": ["free_slip", "rough"],
+    "wall": ["free_slip", "rough", "voellmy"],
     "ks": ["0.01", "0.01 with body.subject.wall=rough; body.subject.ks=0.02"],
+    "mu": ["0.4", "0.4 with {voellmy}"],
+    "turbulent_xi": ["1", "1 with {voellmy}"],
     "normal": ["[-1, {zeros}0]"],
     "kinematics": ["elastic", "single", "rigid with body.subject.kinematics=elastic"],
     "clamped": ["= x - 0.85"],
@@ -101,11 +103,13 @@ def test_bodies(tmp_path, subject, scheme, dim, way):
         "mass": "2" if dim == 3 else "20",
         "copies": "[2, 1, 1]" if dim == 3 else "[2, 1]",
         "folder": str(tmp_path),
+        "voellmy": "body.subject.wall=voellmy; body.subject.mu=0.2",
     }
     values = {key: [replaced(v, words) for v in entries] for key, entries in BODY.items()}
     if subject == "one":
         del values["kinematics"][1]  # single, which fill says already
-        del values["ks"][1]  # friction needs a surface of several
+        for key in ("ks", "mu", "turbulent_xi"):
+            del values[key][1]  # friction needs a surface of several
     if subject in ("tank", "mesh"):
         del values["fixed"][0]  # it is
     if subject == "mesh":

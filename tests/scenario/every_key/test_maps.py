@@ -11,7 +11,7 @@ from doseki.driver.ranks import OneRank
 from doseki.errors import UserError
 from doseki.record.folder import RunFolder
 from doseki.scenario.load import load_scenario
-from doseki.scenario.tables.maps import Maps
+from doseki.scenario.tables.terrain.maps import Maps
 from doseki.solver.build import filled_simulation
 
 from .walk import BLOCK, NONE, REFUSED, ignored, text_of

@@ -40,6 +40,11 @@ MATERIAL = {
     "inertial_number": ["0.5", "0.5 with {mu}"],
     "grain_diameter": ["0.02", "0.02 with {mu}"],
     "grain_density": ["2000", "2000 with {mu}"],
+    "pore_pressure_ratio": ["0.5", "0.5 with {mu}"],
+    "preset": ["glass_beads with {mud}", "obrien_julien"],
+    "soil": ["glenwood_1", "glenwood_1 with {mud}"],
+    "cv": ["0.2", "0.2 with {mud}"],
+    "solid_density": ["2000", "2000 with {mud}"],
     "gamma": ["5", "5 with eos=stiffened_gas"],
     "restitution": ["0.2"],
     "friction": ["0.1"],
@@ -54,6 +59,7 @@ LAWS = {
     " viscosity_max=50",
     "casson": "rheology=casson; yield_stress=1; casson_viscosity=1; regularisation=0.1;"
     " viscosity_max=50",
+    "mud": "preset=obrien_julien; soil=aspen_pit_1; cv=0.3",
     "mu": "rheology=mu_i; mu_s=0.3; mu_2=0.6; inertial_number=0.3; grain_diameter=0.01;"
     " grain_density=2500; viscosity_max=50",
 }

@@ -77,7 +77,6 @@ def test_a_terrain_and_a_release(folder, dim):
     assert ignored(str(path), "terrain.", sorted(names), terrain) == NONE
 
 
-
 @pytest.mark.parametrize("dim", [2, 3])
 def test_a_release(folder, dim):
     cut = "section = [[0.2, 0.4], [3.6, 2.0]]\n" if dim == 2 else ""

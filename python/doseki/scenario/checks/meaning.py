@@ -36,6 +36,7 @@ def _objection(scenario: Scenario, table: Table, only: Only) -> str | None:
         return f"only the scheme {only.scheme} has it, and this run is {scenario.scheme}"
     if only.dim not in (None, scenario.dim):
         return f"only a {only.dim}-D run has it"
-    if only.fixed is not None and table.given("fixed") is not only.fixed:
+    fixed = table.given("fixed")  # None of what is fixed by its nature
+    if only.fixed is not None and fixed is not None and fixed is not only.fixed:
         return "only a body with fixed = true has it" if only.fixed else "a fixed body has none"
     return None

@@ -9,6 +9,7 @@ from typing import Any
 from ..earlier import Earlier
 from ..model import Scenario
 from ..tables.body import BodyTable
+from ..tables.wall import FRICTION_OF
 
 # What the state of a run was made with, or means something else without.
 SAME_OF_RUN = (
@@ -19,7 +20,7 @@ SAME_OF_RUN = (
 SAME_OF_MATERIAL = ("law", "rho0", "speedsound", "gamma")
 # Of a body that is there already: how fluid meets it, what it does from now on, how it resists.
 # A file is known by its digest.
-MAY_CHANGE = {"wall", "ks", "motion", "elastic_law", "damping", "hourglass", "file"}
+MAY_CHANGE = {"wall", *FRICTION_OF, "motion", "elastic_law", "damping", "hourglass", "file"}
 
 
 def check_start(scenario: Scenario) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..materials import EQUATIONS_OF_STATE, RHEOLOGIES, laws_of
 from ..model import Scenario
 from ..schemes import RESOLVED, UETA2022
+from ..tables.wall import WallKeys
 from .bodies import check_bodies
 from .effort import check_effort
 from .gauges import check_figures, check_gauges
@@ -82,6 +83,18 @@ def _check_ueta2022(scenario: Scenario) -> None:
             )
 
 
+def _check_effective_stress(scenario: Scenario) -> None:
+    """A Voellmy bed takes one share of the normal stress for that of the pore water."""
+    voellmy = [keys for keys, wall in scenario.walls.items() if wall.given("wall") == "voellmy"]
+    if voellmy and len(ratios := scenario.pore_pressure_ratios) > 1:
+        (ratio, one), (another, other) = list(ratios.items())[:2]
+        raise scenario.where.error(
+            (*voellmy[0], "wall"),
+            f'{".".join(voellmy[0])}.wall = "voellmy" needs one pore_pressure_ratio of all fluids, but '
+            f"{one} has {ratio:g} and {other} has {another:g}",
+        )
+
+
 def _check_resolved(scenario: Scenario) -> None:
     """What the resolved scheme needs or cannot do."""
     if scenario.precision != "double":
@@ -103,13 +116,16 @@ def _check_resolved(scenario: Scenario) -> None:
         raise scenario.where.error(
             ("smagorinsky",), 'smagorinsky goes with turbulence = "smagorinsky"'
         )
+    for keys, wall in scenario.walls.items():
+        key, objection = WallKeys.needed_by_wall.get(wall.given("wall") or "", ("", ""))
+        if key and wall.given(key) is None:
+            raise scenario.where.error((*keys, key), f"{'.'.join(keys)}: {objection}")
     for name, body in scenario.body.items():
         keys = ("body", name)
         normal = body.given("normal")
         if normal is not None and not normal.any():
             raise scenario.where.error((*keys, "normal"), f"body.{name}.normal must not be zero")
-        if body.given("wall") == "rough" and body.given("ks") is None:
-            raise scenario.where.error((*keys, "ks"), f"body.{name}: a rough wall needs ks (m)")
+    _check_effective_stress(scenario)
     for name, inflow in scenario.inflow.items():
         if scenario.materials[inflow.material].law != "fluid":
             raise scenario.where.error(

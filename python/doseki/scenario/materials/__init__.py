@@ -12,15 +12,19 @@ from .laws import (
 )
 from .material import BUILT_IN, LAWS, MATERIAL_PARAMETERS, Material
 from .parameters import MaterialParameter
+from .presets import CONCENTRATIONS, PRESETS, SOILS, mud
 
 __all__ = [
     "BUILT_IN",
+    "CONCENTRATIONS",
     "ELASTIC_DEFAULTS",
     "EQUATIONS_OF_STATE",
     "HYPERELASTIC_LAWS",
     "LAWS",
     "MATERIAL_PARAMETERS",
+    "PRESETS",
     "RHEOLOGIES",
+    "SOILS",
     "Law",
     "Material",
     "MaterialError",
@@ -28,4 +32,5 @@ __all__ = [
     "complete_materials",
     "equation_of_state",
     "laws_of",
+    "mud",
 ]

@@ -8,6 +8,7 @@ from typing import Any
 
 from .laws import EQUATIONS_OF_STATE, RHEOLOGIES, Law, owners, parameters_of
 from .material import BUILT_IN, DEFAULTS, MATERIAL_PARAMETERS, Material
+from .presets import without_preset
 
 # m/s, of solids without one: beside fluids, only the speed at which a run is given up follows.
 NOMINAL_SOUND = 3000.0
@@ -27,8 +28,9 @@ def complete_materials(
     """The built-in materials with the scenario's tables laid over them.
 
     A table holds only given values: `law`, any of MATERIAL_PARAMETERS, and `based_on`, the name of
-    the material that supplies the rest.  `eos` is the equation of state of the run, where its
-    parameters are to be checked.  Raises MaterialError when a value is missing or of no use.
+    the material that supplies the rest, or a preset with its keys.  `eos` is the equation of state
+    of the run, where its parameters are to be checked.  Raises MaterialError when a value is
+    missing or of no use.
     """
     names = [*BUILT_IN, *(name for name in tables if name not in BUILT_IN)]
     materials = {name: _complete(name, tables, ()) for name in names}
@@ -43,7 +45,10 @@ def _complete(
     name: str, tables: Mapping[str, Mapping[str, Any]], waiting: tuple[str, ...]
 ) -> Material:
     """One material; `waiting` are the materials that are based on it."""
-    table = dict(tables.get(name, {}))
+    try:
+        table = without_preset(tables.get(name, {}))
+    except ValueError as error:
+        raise MaterialError(name, str(error)) from None
     base_name = table.pop("based_on", None)
     if base_name is None:
         return _over(BUILT_IN.get(name), name, table)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from ..schemes import RESOLVED, UETA2022
-from .parameters import MaterialParameter
+from .parameters import LIMIT, MaterialParameter
 
 
 def _no_objection(numbers: Mapping[str, float]) -> str | None:
@@ -38,8 +38,10 @@ def _table(*laws: Law) -> dict[str, Law]:
     return {law.name: law for law in laws}
 
 
-def _fluid(name: str, unit: str, doc: str, default: float = 0.0) -> MaterialParameter:
-    return MaterialParameter(name, unit, doc, least=0.0, default=default, law="fluid")
+def _fluid(
+    name: str, unit: str, doc: str, default: float = 0.0, below: float = LIMIT
+) -> MaterialParameter:
+    return MaterialParameter(name, unit, doc, least=0.0, below=below, default=default, law="fluid")
 
 
 def _friction_falls(numbers: Mapping[str, float]) -> str | None:
@@ -82,7 +84,7 @@ RHEOLOGIES = _table(
     ),
     Law(
         "mu_i",
-        "friction of dense grains, eq. 65",
+        "friction of dense grains, dry or with water in their pores, eqs. 65 and 91",
         parameters=(
             _fluid("mu_s", "", "static coefficient of friction"),
             _fluid("mu_2", "", "limiting coefficient of friction"),
@@ -90,6 +92,9 @@ RHEOLOGIES = _table(
             _fluid("grain_diameter", "m", "diameter of the grains"),
             _fluid("grain_density", "kg/m3", "density of the grains"),
             _VISCOSITY_MAX,
+            _fluid(
+                "pore_pressure_ratio", "", "pressure of the pore water over all of it", below=1.0
+            ),
         ),
         needed=("mu_s", "inertial_number", "grain_diameter", "grain_density", "viscosity_max"),
         schemes=(RESOLVED,),

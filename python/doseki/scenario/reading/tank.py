@@ -10,9 +10,11 @@ import numpy as np
 from ..schemes import KERNEL_SUPPORT
 from ..tables.bodies import Tank
 from ..tables.root import ScenarioTable
+from ..tables.wall import FRICTION_OF
 
 Part = dict[str, Any]
-OF_BOX = ("material", "motion", "wall", "ks", "enabled")  # keys that each wall takes over
+# Keys that each wall takes over.
+OF_BOX = ("material", "motion", "wall", *FRICTION_OF, "enabled")
 
 
 def walls_of_tank(table: dict[str, Any], name: str, part: Part) -> dict[str, Part]:

@@ -27,6 +27,7 @@ from .body import BodyTable, LatticeBody, ShapedBody, TurnedBody
 from .mesh import Mesh
 from .motion import Motion
 from .terrain.release import Release
+from .wall import WallKeys
 
 Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 
@@ -224,7 +225,7 @@ class ParticleFile(BodyTable):
     )
 
 
-class Tank(BodyTable):
+class Tank(WallKeys, BodyTable):
     """Fixed walls outside an inner box: a body NAME.-x, NAME.+x ... for each side."""
 
     shape: Literal["tank"]
@@ -239,10 +240,6 @@ class Tank(BodyTable):
         None, description='sides without a wall, such as ["-x", "+y"]; default: the top'
     )
     motion: Motion | None = Field(None, description="prescribed motion")
-    wall: Literal["no_slip", "free_slip", "rough"] = Field(
-        "no_slip", description="resolved scheme: how fluid meets it"
-    )
-    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
 
     @model_validator(mode="after")
     def _has_room(self) -> Tank:

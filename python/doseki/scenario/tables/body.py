@@ -25,13 +25,12 @@ from ..values.types import (
 )
 from ..values.units import PRESSURE, Measured
 from .motion import Motion
+from .wall import OF_WALLS, WallKeys
 
 if TYPE_CHECKING:
     ElasticLaw = str
 else:
     ElasticLaw = Literal[tuple(HYPERELASTIC_LAWS)]
-
-OF_WALLS = Only(scheme=RESOLVED, fixed=True)
 
 
 class BodyTable(Part):
@@ -72,7 +71,7 @@ class BodyTable(Part):
         return FIXED if self.fixed else PARTICLES
 
 
-class ShapedBody(BodyTable):
+class ShapedBody(WallKeys, BodyTable):
     """What every body with a shape has."""
 
     of_particles: ClassVar[tuple[str, ...]] = ("pressure",)
@@ -90,12 +89,6 @@ class ShapedBody(BodyTable):
     )
     velocity: VelocityField | None = Field(
         None, description="initial velocity, m/s; expressions may use x, y, z"
-    )
-    wall: Annotated[Literal["no_slip", "free_slip", "rough"], OF_WALLS] = Field(
-        "no_slip", description="fixed, resolved scheme: how fluid meets it"
-    )
-    ks: Annotated[Length | None, OF_WALLS] = Field(
-        None, description="rough wall: equivalent sand roughness, m"
     )
     normal: Annotated[Vector | None, OF_WALLS] = Field(
         None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
@@ -133,12 +126,6 @@ class ShapedBody(BodyTable):
     spin: Spin | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
     )
-
-    @model_validator(mode="after")
-    def _rough_with_ks(self) -> ShapedBody:
-        if self.ks is not None and "wall" not in self.model_fields_set:
-            raise ValueError('ks goes with wall = "rough"')
-        return self
 
     @property
     def prescribed_motion(self) -> Motion | None:

@@ -6,9 +6,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
-from ..materials import LAWS, MATERIAL_PARAMETERS, RHEOLOGIES, MaterialParameter
+from ..materials import (
+    LAWS,
+    MATERIAL_PARAMETERS,
+    PRESETS,
+    RHEOLOGIES,
+    SOILS,
+    MaterialParameter,
+)
 from ..table import Only, Table
-from ..values.units import Measured, unit_named
+from ..values.units import DENSITY, Measured, unit_named
 
 
 def _material_field(parameter: MaterialParameter) -> tuple[Any, Any]:
@@ -33,6 +40,22 @@ _FIELDS: dict[str, Any] = {
     "rheology": (
         Literal[tuple(RHEOLOGIES)] | None,
         Field(None, description="how a fluid's viscosity follows"),
+    ),
+    "preset": (
+        Literal[tuple(PRESETS)] | None,
+        Field(None, description="published material that supplies what is not given"),
+    ),
+    "soil": (
+        Literal[tuple(SOILS)] | None,
+        Field(None, description="sample of mud (obrien_julien)"),
+    ),
+    "cv": (
+        float | None,
+        Field(None, gt=0, lt=1, description="volume of sediment over all of it (obrien_julien)"),
+    ),
+    "solid_density": (
+        Annotated[float | None, Measured(DENSITY)],
+        Field(None, gt=0, lt=1e15, description="of the sediment, kg/m3 (obrien_julien; 2650)"),
     ),
     "based_on": (str | None, Field(None, description="material that supplies what is not given")),
 } | {parameter.name: _material_field(parameter) for parameter in MATERIAL_PARAMETERS}

@@ -28,11 +28,11 @@ from .bodies import AnyBody
 from .contact import Contact
 from .figure import FigureTable
 from .inflow import Inflow
-from .maps import Maps
 from .material import MaterialTable
 from .parameter import Parameter
 from .region import Outflow, Window
 from .start import Start
+from .terrain.maps import Maps
 from .terrain.terrain import Terrain
 
 if TYPE_CHECKING:

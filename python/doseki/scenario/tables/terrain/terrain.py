@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from ...table import Only, Table
+from ...table import Only
 from ...values.types import Coordinate, Digest, Length, MaterialName
 from ...values.units import LENGTH, Measured
+from ..wall import WallKeys
 
 TERRAIN = "terrain"  # the name of its body
 Extent = Annotated[list[Coordinate], Field(min_length=4, max_length=4), Measured(LENGTH)]
 Line = Annotated[list[list[Coordinate]], Field(min_length=2, max_length=2), Measured(LENGTH)]
 
 
-class Terrain(Table):
+class Terrain(WallKeys):
     """A bed whose height is a function of place; walls are made where there is flow."""
 
     file: str = Field(
@@ -38,17 +39,9 @@ class Terrain(Table):
         None, description="2-D, a grid: the two ends [x, y] of the line on the map that is x, m"
     )
     material: MaterialName = Field(description="name of its material")
-    wall: Literal["no_slip", "free_slip", "rough"] = Field(
-        "no_slip", description="how fluid meets it"
-    )
-    ks: Length | None = Field(None, description="rough wall: equivalent sand roughness, m")
 
     @model_validator(mode="after")
     def _sensible(self) -> Terrain:
-        if self.ks is not None and self.wall != "rough":
-            raise ValueError('ks goes with wall = "rough"')
-        if self.wall == "rough" and self.ks is None:
-            raise ValueError("a rough wall needs ks (m)")
         if self.window is not None:
             west, south, east, north = self.window
             if not (west < east and south < north):

@@ -1,4 +1,6 @@
-"""Liquids that yield: Bingham's and Casson's between plates, and grains with the friction mu(I)."""
+"""Liquids that yield: Bingham's and Casson's between plates, mud on a slope, and grains with the
+friction mu(I), dry and with water in their pores.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +22,11 @@ CASSON_VISCOSITY, CASSON_YIELD_STRESS = 40.0, 100.0  # those of casson.toml
 DEPTH, BEAD, PACKING, DENSITY = 0.02, 1e-3, 0.6, 2500.0  # those of chute.toml
 MU_S, MU_2, I_0 = 0.382, 0.643, 0.279
 VISCOSITY_MAX = 50.0  # Pa s
+WET_ANGLE, PORE = 15.0, 0.4  # degrees, share of the pressure: of the saturated chute
+MUD_DEPTH, MUD_DENSITY = 0.1, 1000 + 0.37 * 1650  # m, kg/m3: those of mud-film.toml
+# Aspen pit 1 at 37 %, table 2 of O'Brien & Julien (1988): dyn/cm2 and poise make 0.1 Pa (s).
+MUD_YIELD_STRESS = 0.1 * 0.181 * math.exp(25.7 * 0.37)
+MUD_VISCOSITY = 0.1 * 0.036 * math.exp(22.1 * 0.37)
 
 
 def bingham_speed(y: np.ndarray) -> np.ndarray:
@@ -63,11 +70,39 @@ def between_plates(
     return plates
 
 
-def chute_speed(z: np.ndarray, angle: float = 24.0) -> np.ndarray:
-    """Bagnold's profile of mu(I) on a slope (Jop, Forterre & Pouliquen 2006), m/s."""
+def film_speed(z: np.ndarray) -> np.ndarray:
+    """u(z) of Bingham's mud on a slope of 20 degrees, eq. (95), m/s."""
+    pull = MUD_DENSITY * G * math.sin(math.radians(20))
+    sheared = MUD_DEPTH - MUD_YIELD_STRESS / pull
+    below = np.clip(z, 0, sheared)
+    return pull / MUD_VISCOSITY * (sheared * below - below**2 / 2)
+
+
+def film(particles: float, *overrides: str) -> Outcome:
+    """The steady film of mud, and the speed of the plug on its top."""
+    run = Running("mud-film", f"particles={particles:g}", *overrides)
+    state = moving(run.advance(run.scenario.time_max))
+    z, u = state["position"][:, 1], -state["velocity"][:, 0]
+    exact = film_speed(z)
+    plug = z > 0.7 * MUD_DEPTH
+    line = np.linspace(0, MUD_DEPTH, 101)
+    return Outcome(
+        {
+            PROFILE: Value(rms(u - exact) / rms(exact)),
+            PLUG: Value(float(u[plug].mean()), float(film_speed(np.array(MUD_DEPTH)))),
+        },
+        [Curve("", u, z, points=True)],
+        [Curve("Bingham", film_speed(line), line)],
+    )
+
+
+def chute_speed(z: np.ndarray, angle: float = 24.0, pore: float = 0.0) -> np.ndarray:
+    """Bagnold's profile of mu(I) on a slope (Jop, Forterre & Pouliquen 2006), m/s, eq. (91a)."""
     theta = math.radians(angle)
-    inertial = I_0 * (math.tan(theta) - MU_S) / (MU_2 - math.tan(theta))
-    scale = 2 / 3 * inertial * math.sqrt(PACKING * G * math.cos(theta)) * DEPTH**1.5 / BEAD
+    friction = math.tan(theta) / (1 - pore)
+    inertial = I_0 * (friction - MU_S) / (MU_2 - friction)
+    carried = (1 - pore) * PACKING * G * math.cos(theta)
+    scale = 2 / 3 * inertial * math.sqrt(carried) * DEPTH**1.5 / BEAD
     return scale * (1 - (1 - np.clip(z / DEPTH, 0, 1)) ** 1.5)
 
 
@@ -98,6 +133,23 @@ def chute(particles: float, *overrides: str) -> Outcome:
         },
         [Curve("", u, y, points=True)],
         [Curve("Bagnold", chute_speed(line), line)],
+    )
+
+
+def wet_chute(particles: float, *overrides: str) -> Outcome:
+    """The steady profile of saturated beads on a slope that dry ones would lie on."""
+    wet = (f"angle={WET_ANGLE}", f"pore={PORE}")
+    y, u = chute_profile(particles, *wet, *overrides)
+    exact = chute_speed(y, WET_ANGLE, PORE)
+    top = y > 0.75 * DEPTH
+    line = np.linspace(0, DEPTH, 101)
+    return Outcome(
+        {
+            PROFILE: Value(rms(u - exact) / rms(exact)),
+            SURFACE: Value(float(u[top].mean()), float(exact[top].mean())),
+        },
+        [Curve("", u, y, points=True)],
+        [Curve("Bagnold", chute_speed(line, WET_ANGLE, PORE), line)],
     )
 
 
@@ -174,4 +226,36 @@ CHUTE = Case(
         ),
     ),
 )
-CASES = (BINGHAM, CASSON, CHUTE)
+WET_CHUTE = Case(
+    name="saturated-chute",
+    title="Saturated grains down a chute",
+    across="depth/dp",
+    resolutions=(8, 16, 32),
+    run=wet_chute,
+    criteria=(
+        Criterion(PROFILE, (at_most(0.12), at_most(0.05), at_most(0.02)), "as for dry grains"),
+        Criterion(SURFACE, (within(0.12), within(0.05), within(0.02)), "as for dry grains", "m/s"),
+    ),
+    axes=("speed (m/s)", "y (m)"),
+    controls=(Control("no pore pressure", SURFACE, lambda n: wet_chute(n, "pore=0")),),
+)
+MUD_FILM = Case(
+    name="mud-film",
+    title="Film of mud on a slope",
+    across="depth/dp",
+    resolutions=(8, 12, 16),
+    run=film,
+    criteria=(
+        Criterion(
+            PROFILE,
+            (at_most(0.08), at_most(0.06), at_most(0.04)),
+            "those of Bingham's plastic between plates, where as few particles shear",
+        ),
+        Criterion(PLUG, (within(0.08), within(0.06), within(0.04)), "as for the profile", "m/s"),
+    ),
+    axes=("speed (m/s)", "y (m)"),
+    controls=(
+        Control("mud of another pit", PLUG, lambda n: film(n, "material.mud.soil=aspen_pit_2")),
+    ),
+)
+CASES = (BINGHAM, CASSON, CHUTE, WET_CHUTE, MUD_FILM)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field, model_validator
 
-from ..table import Table
-from ..values.types import Duration, Extent, Length, Speed
+from ...table import Table
+from ...values.types import Duration, Extent, Length, Speed
 
 
 class Maps(Table):

@@ -1,0 +1,157 @@
+"""Presets: materials whose numbers follow from measurements that were published.
+
+A preset gives what a table [material.NAME] does not.  Its own keys are those of `keys`; `values`
+makes the numbers of a material of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+WATER = 1000.0  # kg/m3
+QUARTZ = 2650.0  # kg/m3
+POISE, DYNE_PER_CM2 = 0.1, 0.1  # Pa s, Pa
+CONCENTRATIONS = (0.10, 0.45)  # that O'Brien and Julien measured
+REST = 10.0  # s; rates of strain below 1/REST count as rest, unless the scenario says otherwise
+
+
+class Mudflow(NamedTuple):
+    """Coefficients of a exp(b cv): yield stress in dyn/cm2, viscosity in poise."""
+
+    yield_a: float
+    yield_b: float
+    viscosity_a: float
+    viscosity_b: float
+
+
+# O'Brien & Julien, J. Hydraul. Eng. 114(8), 877-887 (1988), table 2, field samples of Colorado.
+# The names of the second pit, the watershed and the source area are those of later tables of the
+# same rows; the paper has "natural soil source" and "mine fill source" for the last two.
+SOILS = {
+    "aspen_pit_1": Mudflow(0.181, 25.7, 0.0360, 22.1),
+    "aspen_pit_2": Mudflow(2.72, 10.4, 0.0538, 14.5),
+    "aspen_natural_soil": Mudflow(0.152, 18.7, 0.00136, 28.4),
+    "aspen_mine_fill": Mudflow(0.0473, 21.1, 0.128, 12.0),
+    "aspen_watershed": Mudflow(0.0383, 19.6, 0.000495, 27.1),
+    "aspen_mine_source_area": Mudflow(0.291, 14.3, 0.000201, 33.1),
+    "glenwood_1": Mudflow(0.0345, 20.1, 0.00283, 23.0),
+    "glenwood_2": Mudflow(0.0765, 16.9, 0.0648, 6.20),
+    "glenwood_3": Mudflow(0.000707, 29.8, 0.00632, 19.9),
+    "glenwood_4": Mudflow(0.00172, 29.5, 0.000602, 33.1),
+}
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A published material.
+
+    `values(keys)` makes the numbers of a material, SI, of the preset's own keys; it raises
+    ValueError, with one sentence, for those that are outside of what was measured.
+    """
+
+    name: str
+    doc: str
+    needed: tuple[str, ...]
+    optional: tuple[str, ...]
+    values: Callable[[Mapping[str, Any]], dict[str, Any]]
+
+
+def mud(soil: str, cv: float) -> tuple[float, float]:
+    """Yield stress, Pa, and viscosity, Pa s, of a mudflow, eq. (94).
+
+    `cv` is the volume of sediment over all of it.  Raises ValueError outside of what was measured.
+    """
+    low, high = CONCENTRATIONS
+    if not low <= cv <= high:
+        raise ValueError(
+            f"cv = {cv:g}: measured from {low:g} to {high:g} (volume of sediment over all of it)"
+        )
+    row = SOILS[soil]
+    stress = DYNE_PER_CM2 * row.yield_a * math.exp(row.yield_b * cv)
+    return stress, POISE * row.viscosity_a * math.exp(row.viscosity_b * cv)
+
+
+def _obrien_julien(keys: Mapping[str, Any]) -> dict[str, Any]:
+    cv, solid = keys["cv"], keys.get("solid_density", QUARTZ)
+    stress, viscosity = mud(keys["soil"], cv)
+    return {
+        "law": "fluid",
+        "rho0": WATER + cv * (solid - WATER),
+        "speedsound": 1400.0,
+        "rheology": "herschel_bulkley",
+        "yield_stress": stress,
+        "consistency": viscosity,
+        "flow_index": 1.0,
+        "regularisation": REST,
+        "viscosity_max": viscosity + REST * stress,
+    }
+
+
+def _glass_beads(_: Mapping[str, Any]) -> dict[str, Any]:
+    """The glass beads of Jop, Forterre & Pouliquen (Nature 441, 2006), 60 % of the volume."""
+    return {
+        "law": "fluid",
+        "rho0": 1500.0,
+        "speedsound": 1400.0,
+        "rheology": "mu_i",
+        "mu_s": math.tan(math.radians(20.9)),
+        "mu_2": math.tan(math.radians(32.76)),
+        "inertial_number": 0.279,
+        "grain_diameter": 0.53e-3,
+        "grain_density": 2500.0,
+    }
+
+
+PRESETS = {
+    preset.name: preset
+    for preset in (
+        Preset(
+            "obrien_julien",
+            "mud by its concentration of sediment, O'Brien & Julien (1988), eq. 94",
+            ("soil", "cv"),
+            ("solid_density",),
+            _obrien_julien,
+        ),
+        Preset(
+            "glass_beads",
+            "mu(I) of beads of 0.53 mm, Jop et al. (2006), eq. 65",
+            (),
+            (),
+            _glass_beads,
+        ),
+    )
+}
+KEYS = tuple(dict.fromkeys(k for p in PRESETS.values() for k in (*p.needed, *p.optional)))
+DECIDED = ("law", "rheology", "based_on")  # by a preset
+
+
+def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A table of a material with what its preset says in place of the keys of the preset.
+
+    What the table gives itself stays.  Raises ValueError for keys that do not go with the preset.
+    """
+    given = {key: value for key, value in table.items() if key not in ("preset", *KEYS)}
+    own = {key: table[key] for key in KEYS if key in table}
+    if "preset" not in table:
+        for key in own:
+            owner = " or ".join(f'"{p.name}"' for p in PRESETS.values() if key in _keys(p))
+            raise ValueError(f"{key} goes with preset = {owner}")
+        return given
+    preset = PRESETS[table["preset"]]
+    for key in DECIDED:
+        if key in given:
+            raise ValueError(f'{key} is decided by preset = "{preset.name}": remove one of them')
+    for key in own:
+        if key not in _keys(preset):
+            raise ValueError(f'{key} is not a key of preset = "{preset.name}"')
+    for key in preset.needed:
+        if key not in own:
+            raise ValueError(f'preset = "{preset.name}" needs {key}')
+    return preset.values(own) | given
+
+
+def _keys(preset: Preset) -> tuple[str, ...]:
+    return (*preset.needed, *preset.optional)

@@ -1,0 +1,1 @@
+"""Masses that slide on beds with friction."""
