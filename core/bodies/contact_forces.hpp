@@ -234,6 +234,7 @@ auto Contacts<D>::push_of_pair(const ContactBodies<D>& bodies, std::size_t k, do
         if (contact.overlap > 0.0) contact.overlap = 0.0, springs_[k] = {};
         return {};
     }
+    const bool begins = contact.overlap == 0.0;
     contact.overlap = overlap->depth;
     const ContactPoints<D>& points = bodies.points;
     const MotionAt<D> b = motion_of_second(bodies, pairs_[k], *overlap);
@@ -247,8 +248,13 @@ auto Contacts<D>::push_of_pair(const ContactBodies<D>& bodies, std::size_t k, do
     auto torque = [&](const Vec<double, D>& lever) {
         return cross(in_space(lever), on_a.force) + on_a.moment;
     };
-    return {true, *overlap, in_run<D>(on_a.force), torque(overlap->lever_a),
-            -1.0 * torque(overlap->lever_b)};
+    const double approach = begins ? dot(v_a - v_b, overlap->normal) : 0.0;
+    return {true,
+            *overlap,
+            in_run<D>(on_a.force),
+            torque(overlap->lever_a),
+            -1.0 * torque(overlap->lever_b),
+            std::max(0.0, approach)};
 }
 
 }  // namespace doseki

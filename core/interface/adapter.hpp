@@ -67,6 +67,9 @@ public:
     void move_body(const NamedValues& motion) override {
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
+    void add_load_meter(const NamedValues& meter) override {
+        sim_.bodies.loads.add(BodyTables<D>::load_meter(meter));
+    }
     void set_stresses(const NamedValues& columns) override {
         if (auto* const stress = sim_.scheme().own_fields().deviatoric_stress)
             stress->assign(ParticleTables<D>::deviators(columns, sim_.particles.size()));
@@ -134,6 +137,8 @@ public:
         table["shear_energy"] = sum.shear_energy, table["av_dissipation"] = sim_.dissipation();
         table["mass_initial"] = ledger.initial, table["mass_asked"] = ledger.requested;
         table["mass_entered"] = ledger.inflow.mass, table["mass_left"] = ledger.outflow.mass;
+        table["volume_entered"] = ledger.inflow.volume;
+        table["volume_left"] = ledger.outflow.volume;
         table["momentum_entered"] = list_of(ledger.inflow.momentum);
         table["momentum_left"] = list_of(ledger.outflow.momentum);
         table["energy_entered"] = ledger.inflow.energy;
@@ -147,6 +152,9 @@ public:
     }
 
     NamedValues grains() const override { return BodyTables<D>::rigid(sim_.bodies); }
+
+    NamedValues loads() const override { return BodyTables<D>::loads(sim_.bodies); }
+    void forget_load_peak(std::size_t meter) override { sim_.bodies.loads.forget_peak(meter); }
 
     NamedValues sample(const Corner& low, const Corner& high) const override {
         const auto order = ParticleTables<D>::inside(sim_.particles, low, high);

@@ -8,6 +8,10 @@ from ..table import Kinds
 from .discharge import Discharge
 from .force import ForceGauge
 from .gauge import Gauge
+from .loads.load import Load
+from .loads.overtopping import Overtopping
+from .loads.panels import Panels
+from .loads.section import Section
 from .mass_centre import MassCentre
 from .motion import Motion
 from .pressure import PressureGauge
@@ -24,6 +28,10 @@ GAUGES = Kinds.by_word(
     ForceGauge,
     MassCentre,
     Motion,
+    Load,
+    Panels,
+    Section,
+    Overtopping,
 )
 
 if TYPE_CHECKING:
