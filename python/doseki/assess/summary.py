@@ -12,6 +12,7 @@ from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
 from ..record.units import unit_in
+from .loads import load_lines, loads_of
 from .trust.report import trust_lines
 
 WIDTH = 18  # of the column of names
@@ -19,8 +20,8 @@ WIDTH = 18  # of the column of names
 
 def summary_text(run: Run) -> str:
     """What was run, how it went and the key results: about 20 lines."""
-    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run), _warnings(run)]
-    parts.append(_trust(run))
+    parts = [_title(run), _computed(run), _state(run), _ledger(run), _results(run), _loads(run)]
+    parts += [_warnings(run), _trust(run)]
     return "\n".join(line for part in parts for line in part)
 
 
@@ -110,6 +111,12 @@ def _window(run: Run, flow: Flow, entry: WindowFlow) -> str:
     if entry.grain_count[k]:
         text += f"; {entry.grain_count[k]} grains, mean speed {entry.grain_speed[k]:.3g} m/s"
     return text
+
+
+def _loads(run: Run) -> Iterator[str]:
+    """Peaks, means and impulses on structures."""
+    for name, text in load_lines(loads_of(run)):
+        yield _line(name, text)
 
 
 def _warnings(run: Run) -> Iterator[str]:

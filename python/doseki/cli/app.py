@@ -9,7 +9,7 @@ import typer
 
 from .. import __version__
 from .project import bench, list_scenarios, new, validate
-from .results import census, export, plot
+from .results import census, export, loads, plot
 from .simulate import check, explain, resume, run
 from .studies import compare, trust
 
@@ -53,6 +53,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "plot": plot,
     "compare": compare,
     "census": census,
+    "loads": loads,
     "export": export,
     "list": list_scenarios,
     "new": new,

@@ -28,13 +28,14 @@ class Overtopping(Gauge):
             "time": "s",
             "mass_upstream": mass,
             "volume_upstream": volume,
+            "mass_supplied": mass,
             "mass_passed": mass,
             "volume_passed": volume,
         }
 
     def since_start(self, dim: int) -> list[str]:
-        """What has passed counts from the first sample."""
-        return ["mass_passed", "volume_passed"]
+        """What has come and passed counts from the first sample."""
+        return ["mass_supplied", "mass_passed", "volume_passed"]
 
     def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
         """The ledger must tell what has come or gone on which side."""
@@ -47,7 +48,8 @@ class Overtopping(Gauge):
                     f"to {high.tolist()} m, so that what leaves there may not have crossed it",
                 )
                 return
-        for name, sides in (("outflows", self._outflows(setting)), ("inflows", self._inflows(setting))):
+        sides_of = {"outflows": self._outflows(setting), "inflows": self._inflows(setting)}
+        for name, sides in sides_of.items():
             if len(set(sides)) > 1:
                 yield (
                     "position",
@@ -56,24 +58,30 @@ class Overtopping(Gauge):
                 )
 
     def read(self, run: Sampled, setting: Setting) -> Rows:
-        """The time, mass and volume upstream, and downstream with what has left there."""
+        """The time, mass and volume upstream, the mass that inflows have brought there less what
+        has left there, and mass and volume downstream with what has left there.
+        """
         state = run.state()
         counts = (state["motion"] != FIXED) & (state["motion"] != DRIVEN)
         mass, volume = state["mass"][counts], (state["mass"] / state["density"])[counts]
         below = (state["position"][counts] - self.position) @ self._normal >= 0
         totals = run.totals()
-        gone = came = gone_volume = came_volume = 0.0
+        net = np.array([0.0, 0.0])  # mass and volume that came less what left, downstream
+        supplied = totals["mass_entered"] - totals["mass_left"]
         if any(self._outflows(setting)):
-            gone, gone_volume = totals["mass_left"], totals["volume_left"]
+            net -= totals["mass_left"], totals["volume_left"]
+            supplied += totals["mass_left"]
         if any(self._inflows(setting)):
-            came, came_volume = totals["mass_entered"], totals["volume_entered"]
+            net += totals["mass_entered"], totals["volume_entered"]
+            supplied -= totals["mass_entered"]
         return [
             [
                 run.time,
                 float(mass[~below].sum()),
                 float(volume[~below].sum()),
-                float(mass[below].sum()) + gone - came,
-                float(volume[below].sum()) + gone_volume - came_volume,
+                float(supplied),
+                float(mass[below].sum() - net[0]),
+                float(volume[below].sum() - net[1]),
             ]
         ]
 
@@ -81,13 +89,19 @@ class Overtopping(Gauge):
     def _normal(self) -> np.ndarray:
         return np.asarray(self.direction / np.linalg.norm(self.direction))
 
+    def is_downstream(self, place: np.ndarray) -> bool:
+        """Whether a point (dim,) lies beyond the plane."""
+        return bool((place - self.position) @ self._normal >= 0)
+
+    def box_is_downstream(self, low: np.ndarray, high: np.ndarray) -> bool:
+        """Whether all of a box does."""
+        return self._extent(low, high)[0] >= 0
+
     def _inflows(self, setting: Setting) -> list[bool]:
-        """Whether each section is downstream."""
-        return [bool((place - self.position) @ self._normal >= 0) for place in setting.inflows]
+        return [self.is_downstream(place) for place in setting.inflows]
 
     def _outflows(self, setting: Setting) -> list[bool]:
-        """Whether each box is downstream."""
-        return [self._extent(low, high)[0] >= 0 for low, high in setting.outflows]
+        return [self.box_is_downstream(low, high) for low, high in setting.outflows]
 
     def _extent(self, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
         """Least and greatest distance beyond the plane in a box whose corners may be infinite."""
