@@ -136,15 +136,15 @@ private:
     /// Contacts that have pressed on fixed bodies for dt.
     void add_loads(double dt) {
         if (loads.empty()) return;
-        contacts_.for_each_push(contact_, [&](std::int32_t on, std::int32_t by,
-                                              const Vec<double, D>& place,
-                                              const Vec<double, D>& force, const Vec3& moment,
-                                              double approach) {
-            const auto k = static_cast<std::size_t>(on), other = static_cast<std::size_t>(by);
-            if (k >= rigid.size() || !rigid.body(k).fixed) return;
-            const double radius = other < rigid.size() ? rigid.shape(other).radius : 0.0;
-            loads.add_contact(rigid.body(k).group, {place, force, moment}, {approach, radius}, dt);
-        });
+        contacts_.for_each_push(
+            contact_, [&](std::int32_t on, std::int32_t by, const Vec<double, D>& place,
+                          const Vec<double, D>& force, const Vec3& moment, double approach) {
+                const auto k = static_cast<std::size_t>(on), other = static_cast<std::size_t>(by);
+                if (k >= rigid.size() || !rigid.body(k).fixed) return;
+                const double radius = other < rigid.size() ? rigid.shape(other).radius : 0.0;
+                loads.add_contact(rigid.body(k).group, {place, force, moment}, {approach, radius},
+                                  dt);
+            });
     }
     void drift(double dt) { moved_ += std::max(deformable.drift(dt), rigid.drift(dt)); }
     void follow_walls(const MovingWalls<D>& walls, double t, double dt) {

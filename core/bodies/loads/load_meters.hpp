@@ -36,8 +36,7 @@ public:
     void end_step(const Particles<D>& particles, const Ranks& ranks, double dt, double time) {
         if (empty()) return;
         find_members(particles);
-        for (LoadMeter<D>& meter : meters_)
-            meter.end_step(particles, sum_over(ranks), dt, time);
+        for (LoadMeter<D>& meter : meters_) meter.end_step(particles, sum_over(ranks), dt, time);
     }
     /// A contact of a wall of this [body.NAME].
     void add_contact(std::int32_t body, const WallForce<D>& force, const Hit& hit, double dt) {

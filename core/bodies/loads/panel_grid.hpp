@@ -8,18 +8,18 @@
 
 namespace doseki {
 
-/// A plane face cut into panels: a line in 2-D, a parallelogram with right angles in 3-D. Panels are
-/// numbered along the first edge, row after row along the second.
+/// A plane face cut into panels: a line in 2-D, a parallelogram with right angles in 3-D. Panels
+/// are numbered along the first edge, row after row along the second.
 template <int D>
 struct PanelGrid {
     static constexpr int edges = D - 1;
 
-    Vec<double, D> origin{}, normal{};             // a corner; the unit normal, into the flow
-    std::array<Vec<double, D>, edges> edge{};      // unit vectors
-    std::array<double, edges> size{};              // of a panel along each edge [m]
-    std::array<std::int32_t, edges> count{};       // panels along each edge; zero: there are none
-    double footprint = 0.0;  // what a wall particle covers along each edge [m]
-    double reach = 0.0;      // how deep below the face its particles lie [m]
+    Vec<double, D> origin{}, normal{};         // a corner; the unit normal, into the flow
+    std::array<Vec<double, D>, edges> edge{};  // unit vectors
+    std::array<double, edges> size{};          // of a panel along each edge [m]
+    std::array<std::int32_t, edges> count{};   // panels along each edge; zero: there are none
+    double footprint = 0.0;                    // what a wall particle covers along each edge [m]
+    double reach = 0.0;                        // how deep below the face its particles lie [m]
 
     std::size_t panels() const {
         std::size_t n = 1;
@@ -40,8 +40,7 @@ struct PanelGrid {
         const std::int32_t row = count[0];
         for (std::int32_t k = covered[1].first; k < covered[1].end; ++k)
             for (std::int32_t j = covered[0].first; j < covered[0].end; ++j)
-                f(static_cast<std::size_t>(k * row + j),
-                  covered[0].share(j) * covered[1].share(k));
+                f(static_cast<std::size_t>(k * row + j), covered[0].share(j) * covered[1].share(k));
     }
 
 private:
@@ -60,12 +59,12 @@ private:
     Covered covered_by(int e, double at, double wide) const {
         const double low = (at - 0.5 * wide) / size[e], high = (at + 0.5 * wide) / size[e];
         const auto inside = [&](double place) {
-            return static_cast<std::int32_t>(
-                std::clamp(place, 0.0, static_cast<double>(count[e])));
+            return static_cast<std::int32_t>(std::clamp(place, 0.0, static_cast<double>(count[e])));
         };
         if (wide == 0.0)  // a point: the panel that it is on
-            return low >= 0.0 && low < count[e] ? Covered{inside(low), inside(low) + 1, low, low, 0.0}
-                                                : Covered{0, 0, low, low, 0.0};
+            return low >= 0.0 && low < count[e]
+                       ? Covered{inside(low), inside(low) + 1, low, low, 0.0}
+                       : Covered{0, 0, low, low, 0.0};
         return {inside(std::floor(low)), inside(std::ceil(high)), low, high, high - low};
     }
 };

@@ -1,7 +1,7 @@
 """Loads that formulas for design expect of a flow that comes.
 
-Depth h, m, speed v, m/s, and density rho, kg/m3, are those of the flow before the structure; numbers
-or arrays.  Pressures are Pa over the depth of the flow, forces N per metre of width.
+Depth h, m, speed v, m/s, and density rho, kg/m3, are those of the flow before the structure, arrays
+(n,).  Pressures are Pa over the depth of the flow, forces N per metre of width.
 """
 
 from __future__ import annotations

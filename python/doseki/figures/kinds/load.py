@@ -102,7 +102,9 @@ def _draw_profile(axes: Axes, gauge: Panels, flow: np.ndarray, contact: np.ndarr
 
 def _draw_map(figure: Figure, axes: Axes, gauge: Panels, pressure: np.ndarray) -> None:
     first, second = gauge.panels
-    ends = [size * np.arange(count + 1) for size, count in zip(gauge.size, gauge.panels, strict=True)]
+    ends = [
+        size * np.arange(count + 1) for size, count in zip(gauge.size, gauge.panels, strict=True)
+    ]
     mesh = axes.pcolormesh(*ends, pressure.reshape(second, first), cmap="viridis")
     axes.set_aspect("equal")
     axes.set_xlabel("along the first edge (m)")

@@ -53,10 +53,10 @@ class Setting:
     material_names: Sequence[str]  # that the field `material` indexes
     body_names: Sequence[str]  # that the field `body` indexes
     named: Mapping[str, Sequence[str]]  # bodies that a table stands for
-    support: float  # how far a particle acts, m
-    moving: frozenset[str]  # fixed bodies with a motion, by table
-    inflows: Sequence[np.ndarray]  # positions (dim,) of their sections, m
-    outflows: Sequence[tuple[np.ndarray, np.ndarray]]  # lower and upper corners of boxes, m
+    support: float = 0.0  # how far a particle acts, m
+    moving: frozenset[str] = frozenset()  # fixed bodies with a motion, by table
+    inflows: Sequence[np.ndarray] = ()  # positions (dim,) of their sections, m
+    outflows: Sequence[tuple[np.ndarray, np.ndarray]] = ()  # corners of boxes, m
 
     def periods(self) -> Iterator[tuple[int, float, float]]:
         """Each periodic axis, with where the domain begins and ends along it, m."""

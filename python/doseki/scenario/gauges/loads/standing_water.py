@@ -14,6 +14,7 @@ from ..near import INSIDE, MIN_VOID, REACH, Column, particles_in
 OFF = 1.5  # spacings in front of the surface: where the water is looked at
 STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
+INSIDE_WALL = 0.88  # spacings to the nearest particle of a wall; less within one
 CAPPED = 0.75  # share of walls around a point from which on a column ends there
 EDGE_REACH, LIKE, UNLIKE, EVEN = 1.5, 0.95, 0.5, 0.3  # neighbours and their normals at an edge
 
@@ -128,10 +129,11 @@ def _depths(elements: Elements, around: State, setting: Setting, up: np.ndarray)
     n = len(elements.place)
     height, probed = elements.place @ up, elements.probe @ up
     level, density, wet = np.full(n, np.nan), np.zeros(n), np.zeros(n, bool)
+    buried = _buried(elements.probe, around, setting.dp)
     lines = _Lines.through(elements.probe, up, CELL * setting.dp)
     for k, profile in enumerate(_profiles(lines.plan, around, setting, up, probed.min())):
         mine = np.flatnonzero(lines.of == k)
-        wet[mine] = profile.is_wet(probed[mine])
+        wet[mine] = profile.is_wet(probed[mine]) & ~buried[mine]
         level[mine] = np.where(wet[mine], profile.level(probed[mine]), np.nan)
         density[mine] = profile.density
     known = np.flatnonzero(np.isfinite(level))
@@ -144,6 +146,14 @@ def _depths(elements: Elements, around: State, setting: Setting, up: np.ndarray)
         level[lost], density[lost] = level[nearest], density[nearest]
     depth = np.where(np.isfinite(level), level - height, 0.0)
     return density * np.maximum(0.0, depth)
+
+
+def _buried(probe: np.ndarray, around: State, dp: float) -> np.ndarray:
+    """Whether each point lies within walls: a structure may reach into its bed and banks."""
+    from scipy.spatial import cKDTree
+
+    walls = around["position"][around["motion"] == FIXED]
+    return np.asarray(cKDTree(walls).query(probe)[0] < INSIDE_WALL * dp)
 
 
 @dataclass(frozen=True)
