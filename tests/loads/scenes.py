@@ -6,7 +6,8 @@ from doseki.record.reader import load
 from doseki.run.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
-# Water that rests before a dam, which reaches into the bed; all turned by `angle` about the foot of the left wall.
+# Water that rests before a dam, which reaches into the bed; all turned by `angle` about the foot of
+# the left wall.
 DAM = """\
 dim = 2
 dp = "= depth/particles"
@@ -250,7 +251,7 @@ interval = 0.01
 STREAM = """\
 dim = 2
 dp = 0.02
-time_max = 1.2
+time_max = 1.8
 time_out = 0.6
 scheme = "resolved"
 speed_max = 4
@@ -271,7 +272,7 @@ material = "aluminium"
 fixed = true
 wall = "free_slip"
 min = [1.4, 0]
-max = [1.6, 0.16]
+max = [1.6, 0.18]
 
 [inflow.river]
 material = "water"
@@ -288,7 +289,7 @@ max = [9, 9]
 
 [gauge.crest]
 kind = "overtopping"
-position = [1.5, 0.16]
+position = [1.5, 0.18]
 direction = [1, 0]
 interval = 0.1
 
@@ -303,6 +304,66 @@ kind = "load"
 bodies = ["dam"]
 approach = "before"
 interval = 0.005
+"""
+
+# A jet on a plate that is longer than the space between the outflows, all turned by `angle`.
+JET = """\
+dim = 2
+dp = "= thickness/particles"
+time_max = 0.6
+time_out = 0.6
+scheme = "resolved"
+speed_max = "= 2*speed"
+gravity = [0, 0]
+
+[parameters]
+particles = { value = 10 }
+thickness = { value = 0.1 }
+speed = { value = 2 }
+edge = { value = 0.4 }
+angle = { value = 0 }
+c = { value = "= cos(angle*pi/180)" }
+s = { value = "= sin(angle*pi/180)" }
+
+[inflow.jet]
+material = "water"
+rate = "= speed*thickness"
+duration = 100
+width = 1
+depth = "= thickness"
+position = ["= -0.25*c + 0.5*thickness*s", "= -0.25*s - 0.5*thickness*c"]
+direction = ["= c", "= s"]
+
+[body.plate]
+shape = "box"
+material = "aluminium"
+fixed = true
+wall = "free_slip"
+min = [0, "= -1.5*edge"]
+max = ["= 9*dp", "= 1.5*edge"]
+rotate = "= angle"
+pivot = [0, 0]
+
+[outflow.left]
+min = [-3, -3]
+max = ["= -edge", 3]
+
+[outflow.right]
+min = ["= edge", -3]
+max = [3, 3]
+
+[outflow.below]
+min = [-3, -3]
+max = [3, "= -edge"]
+
+[outflow.above]
+min = [-3, "= edge"]
+max = [3, 3]
+
+[gauge.plate]
+kind = "load"
+bodies = ["plate"]
+interval = 0.01
 """
 
 

@@ -127,7 +127,9 @@ def test_means_do_not_depend_on_the_interval(rain):
 def test_the_peak_is_no_less_than_any_mean(rain):
     """It is the largest of steps, so that at least one step of a sample reaches the mean."""
     record = rain.gauges["sill"]
-    size = [np.hypot(*(record[f"{part}force_{axis}"][1:] for axis in "xy")) for part in ("", "peak_")]
+    size = [
+        np.hypot(*(record[f"{part}force_{axis}"][1:] for axis in "xy")) for part in ("", "peak_")
+    ]
     assert (size[1] >= size[0] * (1 - 1e-12)).all()
     assert size[1].max() > 1.5 * size[0].max()
     late = record["peak_time"][1:] <= record["time"][1:] + 1e-12

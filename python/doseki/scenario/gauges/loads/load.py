@@ -10,7 +10,7 @@ from pydantic import Field
 
 from ....record.units import unit_in
 from ...table import Only
-from ...values.types import BodyNames, GaugeName, Length, Position
+from ...values.types import BodyNames, Length, Position, RefersTo
 from ..gauge import Rows, Sampled, Setting
 from .metered import Metered, Row
 from .standing_water import Box, standing_water
@@ -24,7 +24,7 @@ class Load(Metered):
     kind: Literal["load"]
     bodies: BodyNames = Field(description="names of fixed bodies")
     about: Position | None = Field(None, description="point of the moment, m; default: the origin")
-    approach: GaugeName | None = Field(
+    approach: Annotated[str | None, RefersTo("gauge")] = Field(
         None, description="gauge of kind section in the flow that comes, for design formulas"
     )
     width: Annotated[Length | None, Only(dim=3)] = Field(

@@ -115,7 +115,9 @@ class Panels(Metered):
             ends = size * np.arange(count + 1)
             upper = np.minimum(along + 0.5 * setting.dp, ends[1:])
             part = np.maximum(0.0, upper - np.maximum(along - 0.5 * setting.dp, ends[:-1])) / size
-            covered = (part[:, :, None] * covered[:, None, :]).reshape(len(part), -1)
+            covered = (part[:, :, None] * covered[:, None, :]).reshape(
+                len(part), count * covered.shape[1]
+            )
         return covered.sum(axis=0)
 
     def meter(self, setting: Setting) -> dict[str, object]:

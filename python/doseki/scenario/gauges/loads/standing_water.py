@@ -16,7 +16,7 @@ STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
 INSIDE_WALL = 0.88  # spacings to the nearest particle of a wall; less within one
 CAPPED = 0.75  # share of walls around a point from which on a column ends there
-EDGE_REACH, LIKE, UNLIKE, EVEN = 1.5, 0.95, 0.5, 0.3  # neighbours and their normals at an edge
+EDGE_REACH, LIKE, UNLIKE, EVEN = 1.5, 0.9, 0.5, 0.3  # neighbours and their normals at an edge
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,10 @@ def surface_of(run: Sampled, setting: Setting, bodies: Sequence[str], box: Box) 
     """The surface of the fixed bodies of some tables, which lie within a box."""
     state = run.sample(list(box[0]), list(box[1]))
     mine = _first_row(state, setting, bodies)
-    normal, position = state["normal"][mine], state["position"][mine]
-    place = position + state["depth"][mine, None] * normal
+    normal, position, depth = (state[key][mine] for key in ("normal", "position", "depth"))
+    place = position + depth[:, None] * normal
     size = state["mass"][mine] / state["density"][mine] / setting.dp
-    size *= _faces(position, normal, setting.dp)
+    size *= _faces(position, normal, depth, setting.dp)
     return Elements(place, size[:, None] * normal, place + OFF * setting.dp * normal)
 
 
@@ -81,18 +81,21 @@ def _first_row(state: State, setting: Setting, bodies: Sequence[str]) -> np.ndar
     return np.flatnonzero(fixed & facing & (state["depth"] < setting.dp))
 
 
-def _faces(position: np.ndarray, normal: np.ndarray, dp: float) -> np.ndarray:
-    """Area (n,) of each particle over that of a plane face: more along edges and in corners.
+def _faces(position: np.ndarray, normal: np.ndarray, depth: np.ndarray, dp: float) -> np.ndarray:
+    """Area (n,) of the surface over each particle, over that of a plane through it.
 
-    An edge has neighbours of other normals on both sides, whose mean is its own.  Where m faces
-    meet at right angles it has sqrt(m) of the area.
+    An edge has neighbours of other normals on both sides, whose mean is its own: where m faces
+    meet at right angles it has sqrt(m) of the area.  On a curved surface normals spread.
     """
     from scipy.spatial import cKDTree
 
     i, j = cKDTree(position).query_pairs(EDGE_REACH * dp, output_type="ndarray").T
     i, j = np.concatenate([i, j]), np.concatenate([j, i])
     alike = np.einsum("ij,ij->i", normal[i], normal[j])
-    other = (alike > UNLIKE + 1e-6) & (alike < LIKE)
+    smooth = alike > LIKE
+    spread = _spread(position, normal, i[smooth], j[smooth])
+    curved = np.maximum(0.0, 1 + depth * spread) ** (position.shape[1] - 1)
+    other = (alike > UNLIKE + 1e-6) & ~smooth
     i, j, alike = i[other], j[other], alike[other]
     n = len(position)
     count, least = np.bincount(i, minlength=n), np.ones(n)
@@ -100,8 +103,17 @@ def _faces(position: np.ndarray, normal: np.ndarray, dp: float) -> np.ndarray:
     aside = np.zeros_like(position)
     np.add.at(aside, i, normal[j] - alike[:, None] * normal[i])
     even = np.linalg.norm(aside, axis=1) < EVEN * np.maximum(count, 1)
-    faces = np.round(1 / least**2)
-    return np.where((count > 1) & even, faces * least, 1.0)
+    edges = np.round(1 / least**2) * least
+    return np.where((count > 1) & even, edges, curved)
+
+
+def _spread(position: np.ndarray, normal: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Mean curvature (n,), 1/m, from neighbours; of a ball 1 over the radius of the row."""
+    apart = position[j] - position[i]
+    turned = np.einsum("ij,ij->i", normal[j] - normal[i], apart)
+    rate = turned / np.einsum("ij,ij->i", apart, apart)
+    n = len(position)
+    return np.bincount(i, rate, n) / np.maximum(np.bincount(i, minlength=n), 1)
 
 
 @dataclass(frozen=True)
