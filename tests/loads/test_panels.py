@@ -71,7 +71,7 @@ def dam(tmp_path_factory):
     return run_of(tmp_path_factory.mktemp("dam"), DAM_3D, "time_max=0.06", "particles=8")
 
 
-def test_a_map_shows_the_sample_with_the_largest_force(dam):
+def test_a_map_shows_the_sample_in_which_the_flow_presses_most(dam):
     figure = draw(dam, "face", tables(dam, "figure", Figure)["face"])
     (mesh,) = figure.axes[0].collections
     pressure = dam.gauges["face"]["flow_pressure"].reshape(-1, 4, 2)[1:]

@@ -51,10 +51,10 @@ def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
         curves = {"total": record[column][1:]}
         curves |= {part: record[f"{part}_{column}"][1:] for part in PARTS}
         draw_curves(axes, time, curves)
-        axes.plot(
-            record["peak_time"][1:], record[f"peak_{column}"][1:], ".", color="0.6", markersize=2,
-            zorder=0, label="largest step",
-        )  # fmt: skip
+        seen = axes.get_ylim()  # single steps of a collision would squash the means
+        steps = record["peak_time"][1:], record[f"peak_{column}"][1:]
+        axes.plot(*steps, ".", color="0.6", markersize=2, zorder=0, label="largest step")
+        axes.set_ylim(seen)
         axes.set_ylabel(f"{column.replace('_', ' ')} ({record.units[column]})")
     grid[-1, 0].set_xlabel("time (s)")
     figure_legend(figure, grid[:1, 0])
@@ -62,41 +62,39 @@ def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
 
 
 def _draw_panels(record: GaugeRecord, gauge: Panels, title: str) -> Figure:
-    """The pressures of the sample with the largest force, and pressures over time below."""
+    """Where the flow, and where contacts press when they do most, and both over time."""
     time = np.unique(record["time"])
     shape = len(time), int(np.prod(gauge.panels))
-    flow = record["flow_pressure"].reshape(shape)[1:]
-    contact = record["contact_pressure"].reshape(shape)[1:]
-    whole = flow + contact
-    peak = int(np.argmax(whole.mean(axis=1)))
-    span = f"{time[peak]:.4g} to {time[peak + 1]:.4g} s"
-    figure, grid = chart_grid(2, 1, (7.0, 3.0), title, sharex=False)
-    if len(gauge.panels) == 1:
-        _draw_profile(grid[0, 0], gauge, flow[peak], contact[peak])
-    else:
-        _draw_map(figure, grid[0, 0], gauge, whole[peak])
-    grid[0, 0].set_title(f"the largest force: {span}", fontsize="small", loc="left")
-    curves = {
-        "mean": whole.mean(axis=1),
-        "highest panel": whole.max(axis=1),
-        "contacts, mean": contact.mean(axis=1),
+    parts = {
+        part: record[f"{key}_pressure"].reshape(shape)[1:]
+        for part, key in (("flow", "flow"), ("contacts", "contact"))
     }
-    draw_curves(grid[1, 0], 0.5 * (time[1:] + time[:-1]), curves)
-    grid[1, 0].set_xlabel("time (s)")
-    grid[1, 0].set_ylabel("pressure (Pa)")
-    figure_legend(figure, grid[1:, 0])
+    shown = [part for part, pressure in parts.items() if part == "flow" or pressure.any()]
+    figure, grid = chart_grid(2 * len(shown), 1, (7.0, 2.6), title, sharex=False)
+    middles = 0.5 * (time[1:] + time[:-1])
+    for axes, below, part in zip(grid[::2, 0], grid[1::2, 0], shown, strict=True):
+        pressure = parts[part]
+        peak = int(np.argmax(pressure.mean(axis=1)))
+        if len(gauge.panels) == 1:
+            _draw_profile(axes, gauge, pressure[peak])
+        else:
+            _draw_map(figure, axes, gauge, pressure[peak])
+        span = f"{part}, largest force: {time[peak]:.4g} to {time[peak + 1]:.4g} s"
+        axes.set_title(span, fontsize="small", loc="left")
+        curves = {"mean": pressure.mean(axis=1), "highest panel": pressure.max(axis=1)}
+        draw_curves(below, middles, curves)
+        below.set_xlabel("time (s)")
+        below.set_ylabel(f"{part}: pressure (Pa)")
+    figure_legend(figure, grid[1:2, 0])
     return figure
 
 
-def _draw_profile(axes: Axes, gauge: Panels, flow: np.ndarray, contact: np.ndarray) -> None:
+def _draw_profile(axes: Axes, gauge: Panels, pressure: np.ndarray) -> None:
     size = float(gauge.size[0])
-    along = size * (np.arange(len(flow)) + 0.5)
-    axes.barh(along, flow, 0.9 * size, color="C0", label="flow")
-    axes.barh(along, contact, 0.9 * size, left=np.maximum(flow, 0), color="C1", label="contacts")
-    axes.set_ylim(0, size * len(flow))
+    axes.barh(size * (np.arange(len(pressure)) + 0.5), pressure, 0.9 * size, color="C0")
+    axes.set_ylim(0, size * len(pressure))
     axes.set_ylabel("along the face (m)")
     axes.set_xlabel("pressure (Pa)")
-    axes.legend(fontsize="small")
     axes.grid(alpha=0.3)
 
 
