@@ -71,13 +71,13 @@ def test_a_section_sees_the_stream_that_comes(stream):
     """Depth, speed and density of the inflow, 0.6 m behind it; and the discharge they make."""
     record = stream.gauges["before"]
     late = (record["time"] > 1.0) & (record["time"] < 1.3)
-    h, v, rho = (record[name][late].mean() for name in ("height", "velocity", "density"))
+    h, v, rho = (record[name][late].mean() for name in ("depth", "velocity", "density"))
     assert h == pytest.approx(0.12, rel=0.05)
     assert v == pytest.approx(2.0, rel=0.05)
     assert rho == pytest.approx(1000, rel=0.01)
     assert h * v == pytest.approx(0.24, rel=0.05)
     assert np.isnan(record["velocity"][0])
-    assert record["height"][0] == 0.0
+    assert record["depth"][0] == 0.0
 
 
 @pytest.mark.minutes
@@ -85,7 +85,7 @@ def test_design_formulas_are_those_of_the_section(stream):
     (load,) = body_loads(stream)
     record = stream.gauges["before"]
     flows = np.isfinite(record["velocity"])
-    h, v, rho = (record[name][flows] for name in ("height", "velocity", "density"))
+    h, v, rho = (record[name][flows] for name in ("depth", "velocity", "density"))
     expected = {each.formula: each for each in load.design}
     assert expected["rho v2 h b"].force.value == pytest.approx((rho * v**2 * h).max())
     kwan = expected["Kwan (2012), alpha 2.5"].pressure
@@ -103,7 +103,7 @@ def test_design_formulas_are_those_of_the_section(stream):
 
 
 def test_wider_structures_get_more():
-    record = {"time": [0.0], "height": [0.5], "velocity": [4.0], "density": [1800.0]}
+    record = {"time": [0.0], "depth": [0.5], "velocity": [4.0], "density": [1800.0]}
     one, two = (
         expected_loads({k: np.array(v) for k, v in record.items()}, b, 9.81) for b in (1, 2)
     )

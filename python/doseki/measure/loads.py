@@ -172,7 +172,7 @@ def running_peak(time: np.ndarray, impulse: np.ndarray, window: float) -> Peak:
 
 def expected_loads(approach: GaugeRecord, width: float, g: float) -> list[Expected]:
     """What formulas expect of the flow that a section gauge has seen, on `width`, m."""
-    time, h = approach["time"], approach["height"]
+    time, h = approach["time"], approach["depth"]
     v, rho = approach["velocity"], approach["density"]
     flows = np.isfinite(v) & (v > 0) & (h > 0)
     if not flows.any():

@@ -32,10 +32,10 @@ class Section(FlowGauge):
 
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
-        return {"time": "s", "height": "m", "velocity": "m/s", "density": "kg/m3"}
+        return {"time": "s", "depth": "m", "velocity": "m/s", "density": "kg/m3"}
 
     def read(self, run: Sampled, setting: Setting) -> Rows:
-        """The time, the mean height of columns on the bed, and of what is in them the speed
+        """The time, the mean depth of columns on the bed, and of what is in them the speed
         along the normal, a mean by mass, and the density; nan where there is none.
         """
         normal = self.direction / np.linalg.norm(self.direction)
@@ -50,7 +50,7 @@ class Section(FlowGauge):
         for foot in feet:
             near = Neighbourhood(setting, self.material, beside(state, foot, up, reach))
             heights.append(column_height(near, foot, up, STEP * setting.dp))
-        height = float(np.mean(heights))
+        depth = float(np.mean(heights))
         around = Neighbourhood(setting, self.material, state)
         away = around.position - self.position
         share = np.maximum(0.0, 1 - np.abs(away @ normal) / (0.5 * length))
@@ -60,10 +60,10 @@ class Section(FlowGauge):
             first, last = (0.0, self.width) if self.width else (-reach, reach)
             share *= (away @ across >= first) & (away @ across <= last)
         mass, volume = float(share @ around.mass), float(share @ around.volume)
-        if height == 0.0 or mass == 0.0:
-            return [[run.time, height, np.nan, np.nan]]
+        if depth == 0.0 or mass == 0.0:
+            return [[run.time, depth, np.nan, np.nan]]
         speed = float((share * around.mass) @ (around.velocity @ normal)) / mass
-        return [[run.time, height, speed, mass / volume]]
+        return [[run.time, depth, speed, mass / volume]]
 
     def _feet(self, across: np.ndarray | None, setting: Setting) -> np.ndarray:
         """Where the columns stand (k, dim), m."""
