@@ -29,9 +29,10 @@ def test_a_step_keeps_its_height():
         assert running_peak(time, integral(time, mean), window).value == pytest.approx(7)
 
 
-def test_windows_between_samples_are_found():
+@pytest.mark.parametrize("seed", range(8))
+def test_windows_between_samples_are_found(seed):
     """The highest mean of uneven samples, against a search through many windows."""
-    random = np.random.default_rng(3)
+    random = np.random.default_rng(seed)
     time = np.concatenate([[0.0], np.cumsum(random.uniform(0.001, 0.004, 200))])
     whole = integral(time, random.normal(size=200))
     peak = running_peak(time, whole, 0.01)

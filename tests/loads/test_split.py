@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.driver.gauges import build_gauges
 from doseki.record.reader import load
 from doseki.run.resume import resume_run
 from doseki.run.runner import RunOptions, run_scenario
+from doseki.solver.build import build_simulation
 
 from ..run.test_resume import stop_at
 from .scenes import RAIN, run_of, scenario_of
@@ -122,6 +124,24 @@ def test_means_do_not_depend_on_the_interval(rain):
     for name in ("force_x", "force_y", "contact_force_y", "contact_moment", "moment"):
         means = often[name][1:].reshape(2, 12).mean(axis=1)
         np.testing.assert_allclose(rare[name][1:], means, rtol=1e-9, atol=1e-9)
+
+
+def test_the_static_part_is_the_mean_of_both_ends(rain, tmp_path):
+    """Of each row: from the water at the start and rows of 0.01 s follows that of 0.12 s."""
+    scenario = scenario_of(tmp_path, RAIN)
+    simulation, names = build_simulation(scenario)
+    reader = {gauge.name: gauge for gauge in build_gauges(scenario, names)}["all"]
+    far = np.full(2, np.inf)
+    now = reader.gauge.static(simulation, reader.setting, (-far, far))
+    often, rare = (
+        np.stack([rain.gauges[gauge][f"static_{name}"] for name in NAMES], axis=1)[1:]
+        for gauge in ("all", "rare")
+    )
+    first = now
+    for mean in often[:12]:
+        now = 2 * mean - now
+    np.testing.assert_allclose(0.5 * (first + now), rare[0], atol=1e-9 * np.abs(rare[0]).max())
+    assert np.abs(now - first).max() > 0.05 * np.abs(rare[0]).max()
 
 
 def test_the_peak_is_no_less_than_any_mean(rain):
