@@ -204,3 +204,26 @@ def test_the_same_bits_on_any_number_of_threads_and_after_a_stop(tmp_path, rain)
     for name in ("all", "rare", "sill", "top", "crest"):
         file = f"gauges/{name}.csv"
         assert (tmp_path / "run" / file).read_bytes() == (rain.directory / file).read_bytes(), name
+
+
+@pytest.mark.parametrize("rolling", [0.0, 0.4])
+def test_the_turning_is_what_grains_lose(tmp_path, rolling):
+    """Of discs that hit, slide and roll without gravity: angular momentum, about a point."""
+    water = RAIN[RAIN.index("[body.water]") : RAIN.index("[body.rain]")]
+    text = RAIN.replace(water, "").replace("[0, -9.8]", "[0, 0]")
+    text = text.replace("velocity = [0, -1.5]", "velocity = [1.2, -2]\nspin = 40")
+    run = run_of(tmp_path, text, f"material.basalt.rolling_friction={rolling}")
+    about = np.array([0.3, 0.1])
+
+    def turning(grains):
+        arm = grains["position"] - about
+        v, mass, radius = grains["velocity"], grains["mass"], 0.5 * grains["diameter"]
+        orbital = mass * (arm[:, 0] * v[:, 1] - arm[:, 1] * v[:, 0])
+        return float(np.sum(orbital + 0.5 * mass * radius**2 * grains["spin"][:, 2]))
+
+    record = run.gauges["all"]
+    given = np.diff(record["time"]) @ record["contact_moment"][1:]
+    lost = turning(run[0].grains) - turning(run[-1].grains)
+    assert abs(lost) > 0.2 * abs(turning(run[0].grains))
+    assert given == pytest.approx(lost, rel=1e-9)
+    np.testing.assert_array_equal(record["contact_moment"], record["moment"])
