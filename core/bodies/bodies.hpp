@@ -8,6 +8,7 @@
 #include "base/array.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/loads/load_meters.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "bodies/rigid_particles.hpp"
 
@@ -26,6 +27,7 @@ public:
 
     RigidBodies<D> rigid;
     DeformableBodies<D> deformable;
+    LoadMeters<D> loads;  // on fixed ones
 
     bool empty() const { return rigid.size() == 0 && deformable.empty(); }
     bool any_moves() const { return rigid.any_moves() || !deformable.empty(); }
@@ -131,6 +133,19 @@ private:
                          0.25 * margin_ / std::max(fastest, 1e-300),
                          std::sqrt(0.25 * margin_ / std::max(pull, 1e-300))});
     }
+    /// Contacts that have pressed on fixed bodies for dt.
+    void add_loads(double dt) {
+        if (loads.empty()) return;
+        contacts_.for_each_push(
+            contact_, [&](std::int32_t on, std::int32_t by, const Vec<double, D>& place,
+                          const Vec<double, D>& force, const Vec3& moment, double approach) {
+                const auto k = static_cast<std::size_t>(on), other = static_cast<std::size_t>(by);
+                if (k >= rigid.size() || !rigid.body(k).fixed) return;
+                const double radius = other < rigid.size() ? rigid.shape(other).radius : 0.0;
+                loads.add_contact(rigid.body(k).group, {place, force, moment}, {approach, radius},
+                                  dt);
+            });
+    }
     void drift(double dt) { moved_ += std::max(deformable.drift(dt), rigid.drift(dt)); }
     void follow_walls(const MovingWalls<D>& walls, double t, double dt) {
         const auto step = rigid.follow_walls(walls, t, dt);
@@ -156,6 +171,7 @@ void Bodies<D>::serialise(Archive& archive) {
     archive("bodies_moved", moved_);
     deformable.serialise(archive, gravity_);
     contacts_.serialise(archive);
+    loads.serialise(archive);
     if (archive.loads()) {
         rigid_particles_.expect_points_of(rigid.size());
         prepare_contacts();
@@ -182,6 +198,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         else if (contacts_.any())
             show_bodies(contacts_.points());
         contacts_.apply(contact_, step);
+        add_loads(step);
         rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
         if (!deformable.empty()) deformable.push(step, gravity_);
         rigid.push(gravity_, step);

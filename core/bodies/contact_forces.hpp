@@ -269,6 +269,7 @@ template <int D>
 auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
                           double dt, double share) -> Push {
     Contact& contact = contacts_[k];
+    const bool begins = dot(normals_[k], normals_[k]) == 0.0;
     contact.overlap = overlap.depth, normals_[k] = overlap.normal;
     const ContactPoints<D>& points = bodies.points;
     const MotionAt<D> b = motion_of_second(bodies, pairs_[k], overlap);
@@ -282,8 +283,13 @@ auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const O
     auto torque = [&](const Vec<double, D>& lever) {
         return cross(in_space(lever), on_a.force) + on_a.moment;
     };
-    return {true, overlap, in_run<D>(on_a.force), torque(overlap.lever_a),
-            -1.0 * torque(overlap.lever_b)};
+    const double approach = begins ? dot(v_a - v_b, overlap.normal) : 0.0;
+    return {true,
+            overlap,
+            in_run<D>(on_a.force),
+            torque(overlap.lever_a),
+            -1.0 * torque(overlap.lever_b),
+            std::max(0.0, approach)};
 }
 
 }  // namespace doseki

@@ -46,6 +46,12 @@ public:
                 f(contact.body_a, contact.body_b, contact.overlap / contact.law.diameter);
     }
 
+    /// Calls f(body, other, place, force, moment, approach) for each body of each pair that touched
+    /// when they were last applied: the force on it there, the moment beside that of the force, and
+    /// the speed of approach where the contact began.
+    template <class F>
+    void for_each_push(const ContactBodies<D>& bodies, F&& f) const;
+
     void serialise(Archive& archive) {
         Array<std::int32_t> a, b;
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);
@@ -74,6 +80,7 @@ private:
         Overlap<D> overlap;
         Vec<double, D> force;
         Vec3 torque_a, torque_b;  // on each body about its own centre or point
+        double approach = 0.0;    // speed, where the contact begins
     };
 
     static std::uint64_t key(const ContactPair& pair) {
@@ -109,5 +116,24 @@ private:
 // Compiled once: bodies.cpp.
 extern template class Contacts<2>;
 extern template class Contacts<3>;
+
+template <int D>
+template <class F>
+void Contacts<D>::for_each_push(const ContactBodies<D>& bodies, F&& f) const {
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const Push& push = pushes_[k];
+        if (!push.touches || bodies.surface(pairs_[k])) continue;  // surfaces are of no fixed body
+        const ContactPair& pair = pairs_[k];
+        const Vec<double, D>& second = pair.with_shape() ? bodies.convex[pair.shape()].centre
+                                                         : bodies.points.position[pair.second()];
+        const Vec3 moment =
+            push.torque_a - cross(in_space(push.overlap.lever_a), in_space(push.force));
+        f(contacts_[k].body_a, contacts_[k].body_b,
+          bodies.points.position[pair.first()] + push.overlap.lever_a, push.force, moment,
+          push.approach);
+        f(contacts_[k].body_b, contacts_[k].body_a, second + push.overlap.lever_b,
+          -1.0 * push.force, -1.0 * moment, push.approach);
+    }
+}
 
 }  // namespace doseki

@@ -91,11 +91,13 @@ struct Passed {
     double mass = 0.0;
     Vec<double, D> momentum{};
     double energy = 0.0;
+    double volume = 0.0;  // [m^3], 2-D: [m^2]
 
     void add(const Particles<D>& particles, std::size_t p) {
         const double m = particles.mass[p];
         const Vec<double, D>& v = particles.velocity[p];
         mass += m, momentum = momentum + m * v, energy += 0.5 * m * dot(v, v);
+        volume += m / particles.density[p];
     }
 };
 

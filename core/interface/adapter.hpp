@@ -75,6 +75,9 @@ public:
         sim_.bodies.rigid.ground = std::make_shared<const GroundSurface<D>>(bed);
         sim_.terrain.set(std::move(bed), BoundaryTables<D>::terrain_wall(wall));
     }
+    void add_load_meter(const NamedValues& meter) override {
+        sim_.bodies.loads.add(BodyTables<D>::load_meter(meter));
+    }
     void set_stresses(const NamedValues& columns) override {
         if (auto* const stress = sim_.scheme().own_fields().deviatoric_stress)
             stress->assign(ParticleTables<D>::deviators(columns, sim_.particles.size()));
@@ -142,6 +145,8 @@ public:
         table["shear_energy"] = sum.shear_energy, table["av_dissipation"] = sim_.dissipation();
         table["mass_initial"] = ledger.initial, table["mass_asked"] = ledger.requested;
         table["mass_entered"] = ledger.inflow.mass, table["mass_left"] = ledger.outflow.mass;
+        table["volume_entered"] = ledger.inflow.volume;
+        table["volume_left"] = ledger.outflow.volume;
         table["momentum_entered"] = list_of(ledger.inflow.momentum);
         table["momentum_left"] = list_of(ledger.outflow.momentum);
         table["energy_entered"] = ledger.inflow.energy;
@@ -155,6 +160,9 @@ public:
     }
 
     NamedValues grains() const override { return BodyTables<D>::rigid(sim_.bodies); }
+
+    NamedValues loads() const override { return BodyTables<D>::loads(sim_.bodies); }
+    void forget_load_peak(std::size_t meter) override { sim_.bodies.loads.forget_peak(meter); }
 
     NamedValues sample(const Corner& low, const Corner& high) const override {
         const auto order = ParticleTables<D>::inside(sim_.particles, low, high);

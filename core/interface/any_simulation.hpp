@@ -47,6 +47,9 @@ public:
     virtual void move_body(const NamedValues& motion) = 0;
     /// A bed that is a surface, and what its wall particles are like.
     virtual void set_terrain(const NamedValues& field, const NamedValues& wall) = 0;
+    /// Sums what acts on the fixed bodies of these indices, about a point and, with `count`, on
+    /// panels.
+    virtual void add_load_meter(const NamedValues& meter) = 0;
     /// Deviatoric stresses of all particles in the order of adding, where the scheme evolves them.
     virtual void set_stresses(const NamedValues& columns) = 0;
     /// Sets the clock [s] of a run that goes on from another one; after the inflows.
@@ -65,6 +68,10 @@ public:
     virtual NamedValues rates() const = 0;
     virtual NamedValues totals() const = 0;
     virtual NamedValues grains() const = 0;
+    /// What load meters have summed, in the order of adding.
+    virtual NamedValues loads() const = 0;
+    /// The peak and hit of a meter are those from now on.
+    virtual void forget_load_peak(std::size_t meter) = 0;
     /// What gauges read of the particles in a box.
     virtual NamedValues sample(const std::vector<double>& low,
                                const std::vector<double>& high) const = 0;

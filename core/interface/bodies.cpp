@@ -177,6 +177,62 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
 }
 
 template <int D>
+LoadMeter<D> BodyTables<D>::load_meter(const NamedValues& table) {
+    LoadMeter<D> meter;
+    Reader read(table, "load meter");
+    read("bodies", meter.bodies), read("about", meter.about);
+    if (table.find("count")) {
+        PanelGrid<D>& grid = meter.grid;
+        read("origin", grid.origin), read("normal", grid.normal), read("edges", grid.edge);
+        read("size", grid.size), read("count", grid.count);
+        read("footprint", grid.footprint), read("reach", grid.reach);
+        for (const double size : grid.size)
+            if (!(size > 0.0)) throw std::invalid_argument("load meter.size: not above 0");
+        for (const std::int32_t count : grid.count)
+            if (count < 1) throw std::invalid_argument("load meter.count: not above 0");
+    }
+    read.finish();
+    return meter;
+}
+
+template <int D>
+NamedValues BodyTables<D>::loads(const Bodies<D>& bodies) {
+    const Array<LoadMeter<D>>& meters = bodies.loads.all();
+    const std::size_t n = meters.size();
+    std::size_t panels = 0;
+    for (const LoadMeter<D>& meter : meters) panels += meter.grid.panels();
+    NewArray<double> flow({n, D}), contact({n, D}), flow_turning({n, 3}), contact_turning({n, 3}),
+        peak_force({n, D}), peak_moment({n, 3}), peak_time({n}), hit_speed({n}), hit_radius({n}),
+        panel_flow({panels}), panel_contact({panels});
+    NewArray<std::int64_t> count({n});
+    auto put = [](NewArray<double>& array, std::size_t k, const auto& vector) {
+        std::copy(vector.component.begin(), vector.component.end(), array.row(k));
+    };
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const LoadMeter<D>& meter = meters[k];
+        put(flow, k, meter.flow_impulse()), put(contact, k, meter.contact_impulse());
+        put(flow_turning, k, meter.flow_turning());
+        put(contact_turning, k, meter.contact_turning());
+        put(peak_force, k, meter.peak().force), put(peak_moment, k, meter.peak().moment);
+        peak_time[k] = meter.peak().time;
+        hit_speed[k] = meter.hit().speed, hit_radius[k] = meter.hit().radius;
+        count[k] = static_cast<std::int64_t>(meter.grid.panels());
+        std::ranges::copy(meter.panels_of_flow(), panel_flow.data() + first);
+        std::ranges::copy(meter.panels_of_contacts(), panel_contact.data() + first);
+        first += meter.grid.panels();
+    }
+    NamedValues table;
+    table["flow_impulse"] = flow, table["contact_impulse"] = contact;
+    table["flow_turning"] = flow_turning, table["contact_turning"] = contact_turning;
+    table["peak_force"] = peak_force, table["peak_moment"] = peak_moment;
+    table["peak_time"] = peak_time, table["hit_speed"] = hit_speed;
+    table["hit_radius"] = hit_radius, table["panels"] = count;
+    table["panel_flow"] = panel_flow, table["panel_contact"] = panel_contact;
+    return table;
+}
+
+template <int D>
 Value BodyTables<D>::rigid_body_of(const Bodies<D>& bodies, const Particles<D>& particles,
                                    const Array<std::size_t>& order) {
     NewArray<std::int32_t> grain({order.size()});

@@ -33,6 +33,9 @@ struct BodyTables {
     /// of solid_points, places not wrapped, and of its surface each `vertex` at rest, the number of
     /// the particle that is its `carrier` and whether it is a `crease`.
     static void add_elastic(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& table);
+    static LoadMeter<D> load_meter(const NamedValues& table);
+    /// Impulses, peaks and hits of all load meters, and the panels of one after those of another.
+    static NamedValues loads(const Bodies<D>& bodies);
 
     /// The rigid bodies, in the order in which they were added.
     static NamedValues rigid(const Bodies<D>& bodies);

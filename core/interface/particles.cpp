@@ -108,7 +108,7 @@ NamedValues ParticleTables<D>::sample(const Particles<D>& particles,
     const std::size_t n = order.size();
     NewArray<double> position({n, D}), velocity({n, D}), mass({n}), density({n}), pressure({n}),
         h({n});
-    NewArray<std::int32_t> material({n}), motion({n});
+    NewArray<std::int32_t> material({n}), motion({n}), body({n});
     NewArray<std::int64_t> id({n});
     for (std::size_t k = 0; k < n; ++k) {
         const std::size_t p = order[k];
@@ -118,12 +118,13 @@ NamedValues ParticleTables<D>::sample(const Particles<D>& particles,
         pressure[k] = states(p).eos.pressure, h[k] = particles.smoothing_length[p];
         material[k] = particles.tag[p].material, id[k] = particles.tag[p].id;
         motion[k] = static_cast<std::int32_t>(particles.tag[p].motion);
+        body[k] = particles.tag[p].body;
     }
     NamedValues table;
     table["position"] = position, table["velocity"] = velocity;
     table["mass"] = mass, table["density"] = density, table["pressure"] = pressure;
     table["smoothing_length"] = h, table["material"] = material, table["motion"] = motion;
-    table["id"] = id;
+    table["id"] = id, table["body"] = body;
     return table;
 }
 
@@ -133,11 +134,9 @@ NamedValues ParticleTables<D>::fields(const Particles<D>& particles,
                                       const PointStates<D>& states) {
     const std::size_t n = order.size();
     NewArray<double> c({n});
-    NewArray<std::int32_t> body({n});
-    for (std::size_t k = 0; k < n; ++k)
-        c[k] = states(order[k]).eos.sound_speed, body[k] = particles.tag[order[k]].body;
+    for (std::size_t k = 0; k < n; ++k) c[k] = states(order[k]).eos.sound_speed;
     NamedValues table = sample(particles, order, states);
-    table["sound_speed"] = c, table["body"] = body;
+    table["sound_speed"] = c;
     table["deviatoric_stress"] =
         stresses(order, [&states](std::size_t p) { return states(p).elastic; });
     return table;

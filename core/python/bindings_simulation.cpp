@@ -42,6 +42,7 @@ public:
     void set_terrain(const nb::dict& field, const nb::dict& wall) {
         core_->set_terrain(to_table(field), to_table(wall));
     }
+    void add_load_meter(const nb::dict& meter) { core_->add_load_meter(to_table(meter)); }
     void set_stresses(const nb::object& deviatoric_stress) {
         NamedValues columns;
         columns["deviatoric_stress"] = to_value(deviatoric_stress);
@@ -64,6 +65,8 @@ public:
     nb::dict rates() const { return to_python(core_->rates()); }
     nb::dict totals() const { return to_python(core_->totals()); }
     nb::dict grains() const { return to_python(core_->grains()); }
+    nb::dict loads() const { return to_python(core_->loads()); }
+    void forget_load_peak(std::size_t meter) { core_->forget_load_peak(meter); }
     nb::dict sample(const Corner& low, const Corner& high) const {
         return to_python(core_->sample(low, high));
     }
@@ -139,6 +142,8 @@ void bind_setup(Class& c) {
         .def("set_terrain", &P::set_terrain, nb::arg("field"), nb::arg("wall"),
              nb::sig("def set_terrain(self, field: doseki.solver.protocol.Table, wall: "
                      "doseki.solver.protocol.Table) -> None"))
+        .def("add_load_meter", &P::add_load_meter, nb::arg("meter"),
+             nb::sig("def add_load_meter(self, meter: doseki.solver.protocol.Table) -> None"))
         .def("set_stresses", &P::set_stresses, nb::arg("deviatoric_stress"),
              nb::sig("def set_stresses(self, deviatoric_stress: numpy.ndarray) -> None"))
         .def("begin_at", &P::begin_at, nb::arg("time"))
@@ -151,6 +156,8 @@ void bind_results(Class& c) {
         .def("rates", &P::rates, nb::sig("def rates(self) -> doseki.solver.protocol.Rates"))
         .def("totals", &P::totals, nb::sig("def totals(self) -> doseki.solver.protocol.Totals"))
         .def("grains", &P::grains, nb::sig("def grains(self) -> doseki.solver.protocol.Grains"))
+        .def("loads", &P::loads, nb::sig("def loads(self) -> doseki.solver.protocol.Loads"))
+        .def("forget_load_peak", &P::forget_load_peak, nb::arg("meter"))
         .def("sample", &P::sample, nb::arg("low"), nb::arg("high"),
              nb::sig("def sample(self, low: collections.abc.Sequence[float], high: "
                      "collections.abc.Sequence[float]) -> "

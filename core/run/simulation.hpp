@@ -238,6 +238,7 @@ void Simulation<Lists>::step(double limit) {
     const double before = time_, end = min(limit, next_event()),
                  dt = min(next_timestep(), end - before), power = scheme_->dissipated_power();
 
+    bodies.loads.begin_step(particles, ranks());
     kick(0.5 * dt);
     account_.add_forces(particles, scheme_->work(), 0.5 * dt);
     const double own_moved = drift(dt), moved = ranks().largest(own_moved);
@@ -249,6 +250,7 @@ void Simulation<Lists>::step(double limit) {
     open_boundaries.impose_velocity(particles, time_);
     update_lists(before, moved);
     evaluate(0.5 * dt);
+    bodies.loads.end_step(particles, ranks(), dt, time_);
     account_.add_forces(particles, scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_->end_step();
@@ -318,6 +320,7 @@ void Simulation<Lists>::rebuild_lists() {
     const std::int64_t lost = lost_particle(particles, domain_);
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
     wrap_positions();
+    bodies.loads.lose_members();
     lists_.cut_space(particles, phases());
     look_at_terrain();
     drop_removed();

@@ -14,6 +14,7 @@ from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
 from ..record.units import unit_in
+from .loads import load_lines, loads_of
 from .trust.report import trust_lines
 
 WIDTH = 18  # of the column of names
@@ -33,7 +34,7 @@ def title_of(run: Run) -> str:
 
 def key_rows(run: Run) -> Iterator[Row]:
     """How a run went and its key results: (name, text); an empty name goes on with the last one."""
-    for part in (_status, _computed, _state, _ledger, _results, _sections, _runout):
+    for part in (_status, _computed, _state, _ledger, _results, _sections, _runout, _loads):
         yield from part(run)
 
 
@@ -151,6 +152,12 @@ def _runout(run: Run) -> Iterator[Row]:
     if said:
         for k, line in enumerate(runout_lines(Runout(**said))):
             yield _line("" if k else "maps", line)
+
+
+def _loads(run: Run) -> Iterator[Row]:
+    """Peaks, means and impulses on structures."""
+    for name, text in load_lines(loads_of(run)):
+        yield _line(name, text)
 
 
 def _warnings(run: Run) -> Iterator[Row]:

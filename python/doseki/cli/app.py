@@ -9,7 +9,7 @@ import typer
 
 from .. import __version__
 from .project import bench, list_scenarios, new, validate
-from .results import census, export, maps, plot, report
+from .results import census, export, loads, maps, plot, report
 from .simulate import check, explain, resume, run
 from .studies import compare, trust
 
@@ -55,6 +55,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "compare": compare,
     "census": census,
     "maps": maps,
+    "loads": loads,
     "export": export,
     "list": list_scenarios,
     "new": new,

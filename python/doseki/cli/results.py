@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +10,9 @@ import typer
 
 from ..errors import UserError
 from .numbers import number
-from .options import Directory
+from .options import AsJson, Directory
+
+NAME = 18  # columns of the names of loads
 
 
 def plot(
@@ -132,6 +135,28 @@ def maps(
 
     for line in write_pictures(directory, MapOptions(cell, extent, path)):
         typer.echo(line)
+
+
+def loads(
+    directory: Directory,
+    as_json: AsJson = False,
+) -> None:
+    """Loads on the structures of a run: peaks, means, impulses, design formulas, overtopping."""
+    from ..assess.loads import as_json as contents
+    from ..assess.loads import load_lines, write_loads
+    from ..record.reader import load
+
+    found = write_loads(load(directory))
+    if not found:
+        raise UserError(
+            f"{directory}: no gauge of kind load or overtopping has read anything; "
+            "docs/scenarios.md says how to name one"
+        )
+    if as_json:
+        typer.echo(json.dumps(contents(found)))
+        return
+    for name, text in load_lines(found):
+        typer.echo(f"{name:<{NAME}}{text}".rstrip())
 
 
 def export(

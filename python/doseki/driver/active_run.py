@@ -14,9 +14,11 @@ from ..solver.protocol import Simulation
 from ..solver.rigid_bodies import grain_table
 from ..util.finding import Finding
 from .checkpoint import Checkpoint, CheckpointFolder, Position
+from .counts import Counts, build_counts
 from .gauges import GaugeReader, build_gauges
 from .maps import RunningMaps
 from .means import Means, build_means
+from .meters import LoadMeans, build_meters
 from .ranks import OneRank
 from .rewind import Rewind
 from .schedule import CheckpointClock, OutputTimes, StopRequests
@@ -86,9 +88,14 @@ class ActiveRun:
             for gauge in build_gauges(scenario, body_names)
         ]
         readers = [gauge for gauge, _ in self.gauges]
-        self.sensors, self.means = build_sensors(readers), build_means(readers)
         self.maps = RunningMaps(scenario, self.folder, ranks) if scenario.maps else None
         self.warnings = [*warnings, *(self.maps.findings if self.maps else ())]
+        self.sensors = build_sensors(readers)
+        self.means: dict[str, Means | LoadMeans | Counts] = {
+            **build_means(readers),
+            **build_meters(readers, scenario.metered),
+            **build_counts(readers),
+        }
         self._started = time.perf_counter()
 
     @property
@@ -181,7 +188,7 @@ class ActiveRun:
         self.write_checkpoint()
 
     @property
-    def _with_memory(self) -> dict[str, Sensor | Means]:
+    def _with_memory(self) -> dict[str, Sensor | Means | LoadMeans | Counts]:
         """What remembers something of the time before, by name of the gauge."""
         return {**self.sensors, **self.means}
 

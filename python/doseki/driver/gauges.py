@@ -34,6 +34,11 @@ class GaugeReader:
         """How many of its last columns are means since the sample before."""
         return len(self.gauge.means(self.setting.dim))
 
+    @property
+    def counted_columns(self) -> int:
+        """How many of its last columns count from the first sample."""
+        return len(self.gauge.since_start(self.setting.dim))
+
     def read(self, simulation: Sampled) -> Rows:
         """A sample of the simulation as it is now; all ranks must take part."""
         return self.gauge.read(simulation, self.setting)

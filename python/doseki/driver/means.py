@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..scenario.gauges.gauge import Rows, Sampled
+from ..scenario.gauges.loads.metered import Metered
 from .gauges import GaugeReader
 
 
@@ -39,5 +40,9 @@ class Means:
 
 
 def build_means(gauges: list[GaugeReader]) -> dict[str, Means]:
-    """One for each of the gauges that have means, by name."""
-    return {reader.name: Means(reader) for reader in gauges if reader.mean_columns}
+    """One for each of the gauges that have means and no load meter, by name."""
+    return {
+        reader.name: Means(reader)
+        for reader in gauges
+        if reader.mean_columns and not isinstance(reader.gauge, Metered)
+    }

@@ -15,6 +15,7 @@ from ..solver.protocol import (
     CoreSimulation,
     ForceTerms,
     Grains,
+    Loads,
     Rates,
     Totals,
 )
@@ -95,6 +96,14 @@ class RankedSimulation:
     def grains(self) -> Grains:
         """See Simulation; every rank has all bodies."""
         return self.core.grains()
+
+    def loads(self) -> Loads:
+        """See Simulation; every rank has all meters."""
+        return self.core.loads()
+
+    def forget_load_peak(self, meter: int) -> None:
+        """See Simulation."""
+        self.core.forget_load_peak(meter)
 
     def checkpoint(self) -> Columns:
         """The part of this rank; see whole_checkpoint."""

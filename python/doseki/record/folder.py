@@ -63,6 +63,16 @@ class RunFolder:
         return self.path / "trust.json"
 
     @property
+    def loads(self) -> Path:
+        """Loads on structures, for programs."""
+        return self.path / "loads.json"
+
+    @property
+    def loads_table(self) -> Path:
+        """The same, for spreadsheets."""
+        return self.path / "loads.csv"
+
+    @property
     def series(self) -> Path:
         """The index of the snapshots that ParaView opens as one animation."""
         return self.path / "snapshots.vtkhdf.series"
@@ -166,7 +176,14 @@ class RunFolder:
 
     def endings(self) -> list[Path]:
         """What says how a run goes on: reports of its end, then checkpoints, the newest first."""
-        reports = (self.summary, self.summary_text, self.trust, self.failure)
+        reports = (
+            self.summary,
+            self.summary_text,
+            self.trust,
+            self.failure,
+            self.loads,
+            self.loads_table,
+        )
         checkpoints = sorted(self.checkpoints.glob("*.h5"), reverse=True)
         return [*(file for file in reports if file.exists()), *checkpoints]
 

@@ -7,6 +7,7 @@ PER_METRE = {
     "kg/s": "kg/s/m",
     "kg m/s": "kg/s",
     "m3/s": "m2/s",
+    "m3": "m2",
     "J": "J/m",
     "N": "N/m",
     "N m": "N",

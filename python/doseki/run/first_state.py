@@ -14,7 +14,9 @@ from ..scenario.earlier import Earlier
 from ..scenario.model import Scenario
 from ..scenario.tables.wall import FRICTION_OF
 from ..scene.build import body_names
+from ..solver.build import empty_simulation
 from ..solver.protocol import Simulation
+from ..solver.restoring import with_new_meters
 from ..util.finding import Finding
 from ..util.foreign import read_bytes
 from ..util.telling import Tell, say_nothing
@@ -75,6 +77,7 @@ def _gone_on(scenario: Scenario, earlier: Earlier, is_same: bool, ranks: OneRank
     if not is_same:
         # As of several ranks: without lists, which may be others with other parameters.
         state = state | {"lanes": state["lanes"] * 0}
+    state = with_new_meters(empty_simulation(scenario, checkpoint.body_names), state)
     simulation, _ = ranks.restored_simulation(scenario, checkpoint.body_names, state)
     return FirstState(simulation, checkpoint.body_names, earlier.findings, True)
 

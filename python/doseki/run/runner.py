@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..assess.failure.failure import Failure, explain_failure
+from ..assess.loads import write_loads
 from ..assess.trust.report import write_trust
 from ..driver.active_run import ActiveRun, Progress
 from ..driver.ranks import OneRank
@@ -190,9 +191,13 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
 
 
 def _judge(directory: Path) -> str:
-    """Say how far to trust a finished run; it stays one where that fails, which is told."""
-    try:
-        write_trust(load(directory))
-    except (Exception, Interrupted) as error:
-        return f"no trust report: {error or repr(error)}"
-    return ""
+    """Say how far to trust a finished run, and what loads it had; it stays one where that fails,
+    which is told.
+    """
+    remarks = []
+    for what, write in (("trust report", write_trust), ("table of loads", write_loads)):
+        try:
+            write(load(directory))
+        except (Exception, Interrupted) as error:
+            remarks.append(f"no {what}: {error or repr(error)}")
+    return "; ".join(remarks)

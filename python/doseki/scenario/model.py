@@ -18,6 +18,7 @@ from ..util.toml_writer import to_toml
 from .bed import Bed
 from .earlier import Earlier
 from .gauges.gauge import Gauge, Setting
+from .gauges.loads.metered import Metered
 from .kinematics import Kinematics
 from .materials import MATERIAL_PARAMETERS, Material
 from .particle_files.reader import ParticleTable
@@ -221,7 +222,16 @@ class Scenario(ScenarioTable):
             material_names=self.material_names,
             body_names=body_names,
             named={name: self.names_of_bodies(name) for name in self.body},
+            support=self.support,
+            moving=frozenset(name for name, body in self.body.items() if body.prescribed_motion),
+            inflows=[inflow.position for inflow in self.inflow.values()],
+            outflows=[(outflow.min, outflow.max) for outflow in self.outflow.values()],
         )
+
+    @property
+    def metered(self) -> list[str]:
+        """The gauges that have load meters of the core, in the order of these."""
+        return [name for name, gauge in self.gauge.items() if isinstance(gauge, Metered)]
 
     def ends_of(self, axis: int) -> tuple[float, float]:
         """Lower and upper end of the domain along an axis that has them, m."""

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from ..compiled import available_instruction_sets, load_core
+from ..scenario.gauges.loads.metered import Metered
 from ..scenario.materials import Material, equation_of_state
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
@@ -18,6 +19,7 @@ from ..scenario.tables.body import BodyTable
 from ..scenario.tables.terrain.terrain import TERRAIN, Terrain
 from ..scene.build import Scene, build_scene
 from ..scene.checks.grain_numbers import check_grain_numbers
+from ..scene.checks.panels import check_panels
 from ..scene.checks.sensors import sensor_findings
 from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
@@ -188,6 +190,9 @@ def empty_simulation(
         simulation.add_outflow(list(outflow.min), list(outflow.max))
     for motion in wall_motions(scenario, body_names):
         simulation.move_body(motion)
+    setting = scenario.setting(body_names)
+    for name in scenario.metered:
+        simulation.add_load_meter(cast(Metered, scenario.gauge[name]).meter(setting))
     if scenario.earlier is not None:
         simulation.begin_at(scenario.begins_at)
     return simulation
@@ -267,6 +272,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
         faces = contact_faces(scenario, particles, bodies, depth)
         simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)
     add_bodies(simulation, scenario, bodies, body_names)
+    check_panels(scenario, particles, body_names, {"normal": normal, "depth": depth})
     return list(sensor_findings(scenario, particles, body_names, normal, depth))
 
 

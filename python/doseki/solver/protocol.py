@@ -51,6 +51,8 @@ class Totals(TypedDict):
     mass_asked: float  # kg, that inflows should have brought
     mass_entered: float  # kg
     mass_left: float  # kg
+    volume_entered: float  # m3; 2-D: m2
+    volume_left: float  # the same
     count: list[int]  # free particles of each material
 
 
@@ -74,6 +76,23 @@ class Grains(TypedDict):
     fixed: NDArray[np.bool_]  # (n,)
     removed: NDArray[np.bool_]  # (n,) has left the run
     worst_overlap: float  # of any contact since the start, over the diameter
+
+
+class Loads(TypedDict):
+    """What n load meters have summed since the start; in 2-D per metre of thickness."""
+
+    flow_impulse: Floats  # (n, dim) N s, of the flow
+    contact_impulse: Floats  # (n, dim) N s, of contacts with bodies
+    flow_turning: Floats  # (n, 3) N m s, about the point of the meter
+    contact_turning: Floats  # the same of contacts
+    peak_force: Floats  # (n, dim) N, mean over the step in which it was largest
+    peak_moment: Floats  # (n, 3) N m, of that step
+    peak_time: Floats  # (n,) s, when that step ended; -1: there was none yet
+    hit_speed: Floats  # (n,) m/s, at which the body came that hit hardest; 0: none
+    hit_radius: Floats  # (n,) m, of its circumscribed ball
+    panels: NDArray[np.int64]  # (n,) how many each has
+    panel_flow: Floats  # (all panels,) N s, normal to the panel; pressing is positive
+    panel_contact: Floats  # the same of contacts
 
 
 class ForceTerms(TypedDict):
@@ -175,6 +194,14 @@ class Simulation(SimulationView, Protocol):
 
     def totals(self) -> Totals:
         """Sums over the particles."""
+        ...
+
+    def loads(self) -> Loads:
+        """What the load meters have summed, in the order of adding."""
+        ...
+
+    def forget_load_peak(self, meter: int) -> None:
+        """Peak and hit of a load meter are those from now on."""
         ...
 
     def force_terms(self, particle: int) -> ForceTerms:
@@ -279,6 +306,10 @@ class CoreSimulation(Simulation, Protocol):
 
     def set_terrain(self, field: Table, wall: Table) -> None:
         """The bed as a surface, and what its wall particles are like; before the run starts."""
+        ...
+
+    def add_load_meter(self, meter: Table) -> None:
+        """Sum what acts on fixed bodies (their indices) about a point; with `count` on panels."""
         ...
 
     def set_stresses(self, deviatoric_stress: Floats) -> None:

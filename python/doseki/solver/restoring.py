@@ -39,6 +39,7 @@ NOT_NEGATIVE = {
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
+OF_METER = re.compile(r"\d+_load_")  # arrays of a load meter
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
 # Infinite where nothing limits a step.
 MAY_BE_INFINITE = {"next_timestep"}
@@ -69,6 +70,13 @@ def check_state(simulation: CoreSimulation, state: Arrays, materials: int, bodie
     _check_bodies(state)
     if state["lanes"][0] > 0:  # else several ranks wrote it, without lists
         _check_lists(state)
+
+
+def with_new_meters(simulation: CoreSimulation, state: Arrays) -> dict[str, np.ndarray]:
+    """A state of another run, with the load meters that an empty simulation has: from zero."""
+    other = {name: values for name, values in state.items() if not OF_METER.match(name)}
+    own = {name: v for name, v in simulation.checkpoint().items() if OF_METER.match(name)}
+    return other | own
 
 
 def _check_form(name: str, values: np.ndarray, form: np.ndarray) -> None:

@@ -13,11 +13,13 @@ from ...scenario.tables.figure import (
     Figure,
     GaugeFigure,
     HistogramFigure,
+    LoadFigure,
     SeriesFigure,
     SnapshotFigure,
 )
 from .gauge import draw_gauge
 from .histogram import draw_histogram
+from .load import draw_load
 from .series import draw_series
 from .snapshot import draw_snapshots
 from .xt import draw_depth
@@ -28,6 +30,7 @@ DRAWN_BY: dict[type[Figure], Callable[[Run, str, Any], Picture]] = {
     SeriesFigure: draw_series,
     DepthFigure: draw_depth,
     GaugeFigure: draw_gauge,
+    LoadFigure: draw_load,
 }
 
 

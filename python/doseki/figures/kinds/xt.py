@@ -84,6 +84,10 @@ class _Still:
         """None: they are particles, too."""
         return {}
 
+    def totals(self) -> State:
+        """None: they are of the whole run."""
+        return {}
+
     def sample(self, low: Sequence[float], high: Sequence[float]) -> State:
         """Those in a box: of a sorted axis only what can be in it is looked at."""
         near = slice(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from ...record.history import history_columns
 from ..gauges.gauge import Gauge
+from ..gauges.loads.approach import Approach
+from ..gauges.loads.load import Load
 from ..model import Scenario
 from ..tables.figure import Drawable
 
@@ -18,6 +20,18 @@ def check_gauges(scenario: Scenario) -> None:
         _check_interval(scenario, name, gauge)
         for key, why in gauge.objections(setting):
             raise scenario.where.error(("gauge", name, key), f"gauge.{name}.{key}{why}")
+        if isinstance(gauge, Load) and gauge.approach is not None:
+            _check_approach(scenario, name, gauge.approach)
+
+
+def _check_approach(scenario: Scenario, name: str, approach: str) -> None:
+    found = scenario.gauge[approach]
+    if not isinstance(found, Approach):
+        raise scenario.where.error(
+            ("gauge", name, "approach"),
+            f'gauge.{name}.approach = "{approach}" is a gauge of kind "{found.kind}", '
+            'not "approach"',
+        )
 
 
 def check_figures(scenario: Scenario) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from pydantic import Field
@@ -33,6 +33,9 @@ class Sampled(Protocol):
     def grains(self) -> Mapping[str, object]:
         """The rigid bodies, as solver.protocol.Grains has them; on all ranks."""
 
+    def totals(self) -> Mapping[str, Any]:
+        """Sums over the particles, as solver.protocol.Totals has them; on all ranks."""
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -50,6 +53,10 @@ class Setting:
     material_names: Sequence[str]  # that the field `material` indexes
     body_names: Sequence[str]  # that the field `body` indexes
     named: Mapping[str, Sequence[str]]  # bodies that a table stands for
+    support: float = 0.0  # how far a particle acts, m
+    moving: frozenset[str] = frozenset()  # fixed bodies with a motion, by table
+    inflows: Sequence[np.ndarray] = ()  # positions (dim,) of their sections, m
+    outflows: Sequence[tuple[np.ndarray, np.ndarray]] = ()  # corners of boxes, m
 
     def periods(self) -> Iterator[tuple[int, float, float]]:
         """Each periodic axis, with where the domain begins and ends along it, m."""
@@ -67,8 +74,12 @@ class Setting:
 
     def is_of_bodies(self, tables: Sequence[str], state: State) -> np.ndarray:
         """Mask (N,) of what is of the bodies that tables [body.NAME] stand for."""
-        names = [name for table in tables for name in self.named[table]]
+        names = self.bodies_of(tables)
         return np.isin(state["body"], [self.body_names.index(name) for name in names])
+
+    def bodies_of(self, tables: Sequence[str]) -> list[str]:
+        """The names of the bodies that tables [body.NAME] stand for."""
+        return [name for table in tables for name in self.named[table]]
 
 
 class Gauge(Part):
@@ -97,6 +108,13 @@ class Gauge(Part):
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
         raise NotImplementedError
+
+    def since_start(self, dim: int) -> list[str]:
+        """Its last columns, where these count from the first sample.
+
+        `read` gives what is to be counted; what it was at the first sample is taken off.
+        """
+        return []
 
     def means(self, dim: int) -> list[str]:
         """Its last columns, where these are means since the sample before.

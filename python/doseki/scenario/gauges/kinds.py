@@ -8,6 +8,10 @@ from ..table import Kinds
 from .discharge import Discharge
 from .force import ForceGauge
 from .gauge import Gauge
+from .loads.approach import Approach
+from .loads.load import Load
+from .loads.overtopping import Overtopping
+from .loads.panels import Panels
 from .mass_centre import MassCentre
 from .motion import Motion
 from .pressure import PressureGauge
@@ -26,6 +30,10 @@ GAUGES = Kinds.by_word(
     MassCentre,
     Motion,
     Section,
+    Load,
+    Panels,
+    Approach,
+    Overtopping,
 )
 
 if TYPE_CHECKING:

@@ -13,6 +13,8 @@ from ...errors import UserError
 from ...record.quantities import check_quantity
 from ...util.spelling import suggestion
 from ..gauges.gauge import Gauge
+from ..gauges.loads.load import Load
+from ..gauges.loads.panels import Panels
 from ..table import Kinds, Part
 from ..values.types import (
     LARGEST,
@@ -157,6 +159,19 @@ class GaugeFigure(Figure):
             yield "times", f": {self.gauge} is no profile; its curves show all times"
 
 
+class LoadFigure(Figure):
+    """The load that a gauge has read, in parts, or the pressures on its panels."""
+
+    kind: Literal["load"]
+    gauge: GaugeName = Field(description="name of a [gauge.NAME] of kind load or panels")
+
+    def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:
+        """Its gauge must be one of loads."""
+        gauge = around.gauges[self.gauge]
+        if not isinstance(gauge, Load | Panels):
+            yield "gauge", f' = "{self.gauge}" is of kind "{gauge.kind}", not "load" or "panels"'
+
+
 class DepthFigure(Figure):
     """The depth of the flow along a line, over time: an x-t diagram."""
 
@@ -183,6 +198,7 @@ FIGURES = Kinds.by_word(
     HistogramFigure,
     SeriesFigure,
     GaugeFigure,
+    LoadFigure,
     DepthFigure,
 )
 

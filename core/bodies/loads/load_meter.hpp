@@ -1,0 +1,160 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "base/array.hpp"
+#include "base/error.hpp"
+#include "bodies/loads/panel_grid.hpp"
+#include "bodies/rotation.hpp"
+#include "model/archive.hpp"
+#include "model/particles.hpp"
+
+namespace doseki {
+
+/// A force on a wall, and where it acts; the moment is what acts beside that of the force.
+template <int D>
+struct WallForce {
+    Vec<double, D> place, force;
+    Vec3 moment{};
+    double width = 0.0;  // over which it is spread along the wall [m]
+};
+
+/// How hard a body hits a wall as their contact begins: the speed of approach and the radius of the
+/// body.
+struct Hit {
+    double speed = 0.0, radius = 0.0;
+
+    /// That of a Hertz contact goes with this power of both.
+    bool is_harder_than(const Hit& other) const { return severity() > other.severity(); }
+
+private:
+    double severity() const { return std::pow(speed, 1.2) * radius * radius; }
+};
+
+/// What the flow and contacts give to some fixed bodies: impulses since the start, the strongest
+/// step and the hardest hit. 2-D: per metre.
+template <int D>
+class LoadMeter {
+public:
+    Array<std::int32_t> bodies;  // the [body.NAME] that it is on
+    Vec<double, D> about{};      // point of the moments [m]
+    PanelGrid<D> grid;
+
+    bool is_on(std::int32_t body) const {
+        return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+    }
+    /// Call once its bodies and panels are known.
+    void prepare() {
+        for (Array<double>* sum : {&flow_now_, &flow_impulse_, &contact_impulse_, &contact_before_})
+            sum->assign(numbers(), 0.0);
+    }
+
+    /// Forces of the flow on the wall particles of this rank; `sum` adds those of other ranks.
+    template <class SumOverRanks>
+    void measure(const Particles<D>& particles, const SumOverRanks& sum) {
+        std::fill(flow_now_.begin(), flow_now_.end(), 0.0);
+        for (const std::uint32_t p : members_)
+            if (dot(particles.wall.normal[p], grid.normal) > backwards)
+                add(flow_now_, {particles.position[p], particles.wall.force[p], {}, grid.footprint},
+                    1.0);
+            else
+                add_whole(flow_now_, {particles.position[p], particles.wall.force[p]}, 1.0);
+        sum(std::span<double>(flow_now_));
+    }
+    /// Finds the wall particles of its bodies, anew where particles have been sorted.
+    void find_members(const Particles<D>& particles) {
+        members_.clear();
+        for (std::uint32_t p = 0; p < particles.size(); ++p)
+            if (particles.is_fixed(p) && is_on(particles.tag[p].body)) members_.push_back(p);
+    }
+
+    void begin_step() { contact_before_ = contact_impulse_; }
+    /// A contact that presses for dt.
+    void add_contact(const WallForce<D>& force, double dt) { add(contact_impulse_, force, dt); }
+    void add_hit(const Hit& hit) {
+        if (hit.is_harder_than(hit_)) hit_ = hit;
+    }
+    /// The flow goes on from its forces before the step to those after it. Takes them over.
+    template <class SumOverRanks>
+    void end_step(const Particles<D>& particles, const SumOverRanks& sum, double dt, double time) {
+        Array<double> mean = flow_now_;
+        measure(particles, sum);
+        for (std::size_t k = 0; k < mean.size(); ++k) {
+            mean[k] = 0.5 * (mean[k] + flow_now_[k]);
+            flow_impulse_[k] += dt * mean[k];
+            mean[k] += (contact_impulse_[k] - contact_before_[k]) / dt;
+        }
+        const Vec<double, D> force = force_of(mean);
+        if (peak_.time < 0.0 || dot(force, force) > dot(peak_.force, peak_.force))
+            peak_ = {force, moment_of(mean), time};
+    }
+
+    struct Peak {
+        Vec<double, D> force{};  // mean over the step that ends at `time`
+        Vec3 moment{};
+        double time = -1.0;
+    };
+    const Peak& peak() const { return peak_; }
+    const Hit& hit() const { return hit_; }
+    /// The next peak and hit are those from now on.
+    void forget_peak() { peak_ = {}, hit_ = {}; }
+
+    Vec<double, D> flow_impulse() const { return force_of(flow_impulse_); }
+    Vec<double, D> contact_impulse() const { return force_of(contact_impulse_); }
+    Vec3 flow_turning() const { return moment_of(flow_impulse_); }
+    Vec3 contact_turning() const { return moment_of(contact_impulse_); }
+    /// Impulses normal to the panels, positive where they are pressed on.
+    std::span<const double> panels_of_flow() const { return panels_of(flow_impulse_); }
+    std::span<const double> panels_of_contacts() const { return panels_of(contact_impulse_); }
+
+    void serialise(Archive& archive) {
+        archive("flow_impulse", flow_impulse_), archive("contact_impulse", contact_impulse_);
+        archive("hit_speed", hit_.speed), archive("hit_radius", hit_.radius);
+        archive("peak_force", peak_.force), archive("peak_moment", peak_.moment);
+        archive("peak_time", peak_.time);
+        expect_fit(flow_impulse_.size() == numbers() && contact_impulse_.size() == numbers(),
+                   "load_flow_impulse");
+    }
+
+private:
+    /// Wall particles that face away belong to another face.
+    static constexpr double backwards = -0.5;
+    static constexpr std::size_t first_panel = D + 3;
+
+    std::size_t numbers() const { return first_panel + grid.panels(); }
+    static Vec<double, D> force_of(const Array<double>& sum) {
+        Vec<double, D> force;
+        std::copy_n(sum.begin(), D, force.component.begin());
+        return force;
+    }
+    static Vec3 moment_of(const Array<double>& sum) {
+        Vec3 moment;
+        std::copy_n(sum.begin() + D, 3, moment.component.begin());
+        return moment;
+    }
+    static std::span<const double> panels_of(const Array<double>& sum) {
+        return std::span<const double>(sum).subspan(first_panel);
+    }
+
+    void add_whole(Array<double>& sum, const WallForce<D>& at, double factor) const {
+        const Vec3 moment = at.moment + cross(in_space(at.place - about), in_space(at.force));
+        for (int a = 0; a < D; ++a) sum[static_cast<std::size_t>(a)] += factor * at.force[a];
+        for (int a = 0; a < 3; ++a) sum[static_cast<std::size_t>(D + a)] += factor * moment[a];
+    }
+    void add(Array<double>& sum, const WallForce<D>& at, double factor) const {
+        add_whole(sum, at, factor);
+        const double pressing = -factor * dot(at.force, grid.normal);
+        grid.for_each_share(at.place, at.width, [&](std::size_t panel, double share) {
+            sum[first_panel + panel] += share * pressing;
+        });
+    }
+
+    Array<std::uint32_t> members_;
+    // Force, moment and panels in one array each, so that ranks add them up at once.
+    Array<double> flow_now_, flow_impulse_, contact_impulse_, contact_before_;
+    Peak peak_;
+    Hit hit_;
+};
+
+}  // namespace doseki

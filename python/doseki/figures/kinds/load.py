@@ -1,0 +1,110 @@
+"""Loads on structures over time, and pressures on the panels of a face."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ...errors import UserError
+from ...measure.views import tables
+from ...record.reader import GaugeRecord, Run
+from ...scenario.gauges.gauge import Gauge
+from ...scenario.gauges.loads.load import PARTS, Load
+from ...scenario.gauges.loads.panels import Panels
+from ...scenario.tables.figure import LoadFigure
+from ...util.spelling import suggestion
+from ..layout import chart_grid, figure_legend
+from ..nothing import NothingToDrawError
+from .series import draw_curves
+
+TALL, LOW = 2.4, 1.8  # inches of a panel; of one of more than three
+
+
+def draw_load(run: Run, name: str, table: LoadFigure) -> Figure:
+    """The figure [figure.NAME] of a gauge of kind load or panels.
+
+    Raises UserError if the gauge has left no record.
+    """
+    gauges = tables(run, "gauge", Gauge)
+    if table.gauge not in run.gauges or table.gauge not in gauges:
+        known = suggestion(table.gauge, run.gauges)
+        raise UserError(f"{run.directory}: no gauge {table.gauge!r}{known}")
+    record, gauge = run.gauges[table.gauge], gauges[table.gauge]
+    if len(np.unique(record["time"])) < 2:
+        raise NothingToDrawError(f"{table.gauge} has no two samples")
+    title = table.title or table.gauge
+    if isinstance(gauge, Panels):
+        return _draw_panels(record, gauge, title)
+    assert isinstance(gauge, Load)
+    return _draw_parts(record, run.scenario["dim"], title)
+
+
+def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
+    """A panel for each component of the force, and in 2-D the moment: the total and its parts."""
+    shown = [f"force_{axis}" for axis in "xyz"[:dim]]
+    shown += ["moment"] if dim == 2 else [f"moment_{axis}" for axis in "xyz"]
+    height = TALL if len(shown) <= 3 else LOW
+    figure, grid = chart_grid(len(shown), 1, (7.0, height), title)
+    time = 0.5 * (record["time"][1:] + record["time"][:-1])  # of means
+    for axes, column in zip(grid[:, 0], shown, strict=True):
+        curves = {"total": record[column][1:]}
+        curves |= {part: record[f"{part}_{column}"][1:] for part in PARTS}
+        draw_curves(axes, time, curves)
+        seen = axes.get_ylim()  # single steps of a collision would squash the means
+        steps = record["peak_time"][1:], record[f"peak_{column}"][1:]
+        axes.plot(*steps, ".", color="0.6", markersize=2, zorder=0, label="largest step")
+        axes.set_ylim(seen)
+        axes.set_ylabel(f"{column.replace('_', ' ')} ({record.units[column]})")
+    grid[-1, 0].set_xlabel("time (s)")
+    figure_legend(figure, grid[:1, 0])
+    return figure
+
+
+def _draw_panels(record: GaugeRecord, gauge: Panels, title: str) -> Figure:
+    """Where the flow, and where contacts press when they do most, and both over time."""
+    time = np.unique(record["time"])
+    shape = len(time), int(np.prod(gauge.panels))
+    parts = {
+        part: record[f"{key}_pressure"].reshape(shape)[1:]
+        for part, key in (("flow", "flow"), ("contacts", "contact"))
+    }
+    shown = [part for part, pressure in parts.items() if part == "flow" or pressure.any()]
+    figure, grid = chart_grid(2 * len(shown), 1, (7.0, 2.6), title, sharex=False)
+    middles = 0.5 * (time[1:] + time[:-1])
+    for axes, below, part in zip(grid[::2, 0], grid[1::2, 0], shown, strict=True):
+        pressure = parts[part]
+        peak = int(np.argmax(pressure.mean(axis=1)))
+        if len(gauge.panels) == 1:
+            _draw_profile(axes, gauge, pressure[peak])
+        else:
+            _draw_map(figure, axes, gauge, pressure[peak])
+        span = f"{part}, largest force: {time[peak]:.4g} to {time[peak + 1]:.4g} s"
+        axes.set_title(span, fontsize="small", loc="left")
+        curves = {"mean": pressure.mean(axis=1), "highest panel": pressure.max(axis=1)}
+        draw_curves(below, middles, curves)
+        below.set_xlabel("time (s)")
+        below.set_ylabel(f"{part}: pressure (Pa)")
+    figure_legend(figure, grid[1:2, 0])
+    return figure
+
+
+def _draw_profile(axes: Axes, gauge: Panels, pressure: np.ndarray) -> None:
+    size = float(gauge.size[0])
+    axes.barh(size * (np.arange(len(pressure)) + 0.5), pressure, 0.9 * size, color="C0")
+    axes.set_ylim(0, size * len(pressure))
+    axes.set_ylabel("along the face (m)")
+    axes.set_xlabel("pressure (Pa)")
+    axes.grid(alpha=0.3)
+
+
+def _draw_map(figure: Figure, axes: Axes, gauge: Panels, pressure: np.ndarray) -> None:
+    first, second = gauge.panels
+    ends = [
+        size * np.arange(count + 1) for size, count in zip(gauge.size, gauge.panels, strict=True)
+    ]
+    mesh = axes.pcolormesh(*ends, pressure.reshape(second, first), cmap="viridis")
+    axes.set_aspect("equal")
+    axes.set_xlabel("along the first edge (m)")
+    axes.set_ylabel("along the second edge (m)")
+    figure.colorbar(mesh, ax=axes, label="pressure (Pa)")

@@ -1,0 +1,39 @@
+"""What a dam has held and let over, and how the masses close."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..record.reader import Run
+from ..scenario.gauges.gauge import Gauge
+from ..scenario.gauges.loads.overtopping import Overtopping
+from .loads import DamBalance, Peak
+from .views import tables
+
+
+def dam_balances(run: Run) -> list[DamBalance]:
+    """One for each gauge of kind overtopping that has a sample."""
+    found = []
+    for name, gauge in tables(run, "gauge", Gauge).items():
+        record = run.gauges.get(name)
+        if not isinstance(gauge, Overtopping) or record is None or not len(record["time"]):
+            continue
+        upstream = record["mass_upstream"]
+        highest = int(np.argmax(upstream))
+        found.append(
+            DamBalance(
+                name=name,
+                mass_upstream=float(upstream[-1]),
+                volume_upstream=float(record["volume_upstream"][-1]),
+                mass_passed=float(record["mass_passed"][-1]),
+                volume_passed=float(record["volume_passed"][-1]),
+                most_upstream=Peak(float(upstream[highest]), float(record["time"][highest])),
+                residual=float(
+                    upstream[0]
+                    + record["mass_supplied"][-1]
+                    - record["mass_passed"][-1]
+                    - upstream[-1]
+                ),
+            )
+        )
+    return found

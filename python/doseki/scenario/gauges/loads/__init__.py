@@ -1,0 +1,1 @@
+"""Gauges for the design of structures: loads, pressures on panels, sections, overtopping."""

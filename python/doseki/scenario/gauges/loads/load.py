@@ -1,0 +1,94 @@
+"""The load on fixed bodies: what water and grains give to them, and what a designer expects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from ....record.units import unit_in
+from ...table import Only
+from ...values.types import BodyNames, Length, Position, RefersTo
+from ..gauge import Rows, Sampled, Setting
+from .metered import Metered, Row
+from .standing_water import Box, standing_water
+
+PARTS = ("static", "dynamic", "contact")
+
+
+class Load(Metered):
+    """Force and moment on fixed bodies, in parts: water at rest, its motion, and contacts."""
+
+    kind: Literal["load"]
+    bodies: BodyNames = Field(description="names of fixed bodies")
+    about: Position | None = Field(None, description="point of the moment, m; default: the origin")
+    approach: Annotated[str | None, RefersTo("gauge")] = Field(
+        None, description="gauge of kind section in the flow that comes, for design formulas"
+    )
+    width: Annotated[Length | None, Only(dim=3)] = Field(
+        None, description="3-D, with `approach`: of the structure that the flow meets, m"
+    )
+
+    def columns(self, dim: int) -> dict[str, str]:
+        """Name and unit of each column of its file."""
+        named = {"time": "s"}
+        for part in ("", *(f"{part}_" for part in PARTS), "peak_"):
+            named |= _vectors(part, dim)
+        return named | {"peak_time": "s", "hit_speed": "m/s", "hit_radius": "m"}
+
+    def curves(self, dim: int) -> list[str]:
+        """The columns that a figure draws where none are named."""
+        return [name for name in _vectors("", dim) if name.startswith("force")]
+
+    def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
+        """A width is that of design formulas, which in 3-D need one."""
+        yield from super().objections(setting)
+        if self.approach is None and self.width is not None:
+            yield "width", ": only a gauge with approach has one"
+        if self.approach is not None and self.width is None and setting.dim == 3:
+            yield "width", " is missing: that of the structure, for the formulas of `approach`"
+
+    def meter(self, setting: Setting) -> dict[str, object]:
+        """The table of the core's add_load_meter."""
+        return super().meter(setting) | {"about": self._about(setting.dim).tolist()}
+
+    def static(self, run: Sampled, setting: Setting, box: Box) -> np.ndarray:
+        """Force and moment (m,) of the water that stands against the bodies, Eq. (96)."""
+        about = self._about(setting.dim)
+        return np.concatenate(standing_water(run, setting, self.bodies, about, box))
+
+    def sums(self, row: Row, dim: int) -> np.ndarray:
+        """Impulses (2, m) of flow and contacts since the start, of force and moment."""
+        return np.array([_joined(row, name, dim) for name in ("flow", "contact")])
+
+    def rows(self, time: float, row: Row, static: np.ndarray, means: np.ndarray) -> Rows:
+        """A sample: `static` (m,) and the `means` (2, m) of flow and contacts since the last."""
+        dim = len(row["peak_force"])
+        flow, contact = means
+        parts = [flow + contact, static, flow - static, contact]
+        peak = np.concatenate([row["peak_force"], _turn(row["peak_moment"], dim)])
+        seen = float(row["peak_time"])
+        last = [*peak, seen] if seen >= 0 else [np.nan] * (len(peak) + 1)
+        hit = [float(row["hit_speed"]), float(row["hit_radius"])]
+        return [[time, *np.concatenate(parts).tolist(), *map(float, last), *hit]]
+
+    def _about(self, dim: int) -> np.ndarray:
+        return np.zeros(dim) if self.about is None else self.about
+
+
+def _vectors(prefix: str, dim: int) -> dict[str, str]:
+    """Columns of a force and its moment, with their units."""
+    axes = "xyz"[:dim]
+    moments = ["moment"] if dim == 2 else [f"moment_{axis}" for axis in axes]
+    forces = {f"{prefix}force_{axis}": unit_in("N", dim) for axis in axes}
+    return forces | {f"{prefix}{moment}": unit_in("N m", dim) for moment in moments}
+
+
+def _turn(moment: np.ndarray, dim: int) -> np.ndarray:
+    return moment[2:] if dim == 2 else moment
+
+
+def _joined(row: Row, name: str, dim: int) -> np.ndarray:
+    return np.concatenate([row[f"{name}_impulse"], _turn(row[f"{name}_turning"], dim)])

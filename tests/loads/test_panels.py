@@ -1,0 +1,91 @@
+"""Panels: what is refused, and what their figures show."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.errors import UserError
+from doseki.figures.kinds.registry import draw
+from doseki.measure.views import tables
+from doseki.scenario.tables.figure import Figure
+from doseki.solver.build import build_simulation
+
+from .scenes import DAM, DAM_3D, run_of, scenario_of
+
+FACE = 'kind = "panels"\nbodies = ["dam"]\n'
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("origin = [0.38, 0]\nedges = [[0, 0.5]]\npanels = [5]\ndirection = [-1, 0]", "no surface"),
+        ("origin = [0.4, 0]\nedges = [[0, 0.5]]\npanels = [5]\ndirection = [1, 0]", "no surface"),
+        (
+            "origin = [0.4, 0]\nedges = [[0, 0.9]]\npanels = [5]\ndirection = [-1, 0]",
+            "reach beyond",
+        ),
+        (
+            "origin = [0.4, 0]\nedges = [[0, 0.5]]\npanels = [500]\ndirection = [-1, 0]",
+            "smaller than a particle",
+        ),
+        (
+            "origin = [0.4, 0]\nedges = [[0, 0.5]]\npanels = [5]\ndirection = [0, 1]",
+            "lies in the face",
+        ),
+        ("origin = [0.4, 0]\nedges = [[0, 0]]\npanels = [5]\ndirection = [-1, 0]", "no length"),
+        (
+            "origin = [0.4, 0]\nedges = [[0, 1], [1, 0]]\npanels = [5]\ndirection = [-1, 0]",
+            "needs 1 here",
+        ),
+        ("origin = [0.4, 0]\nedges = [[0, 0.5]]\npanels = [0]\ndirection = [-1, 0]", "panels"),
+        ("origin = [0.4, 0]\nedges = [[0, 0.5]]\npanels = [5]", "direction is missing"),
+    ],
+)
+def test_wrong_tables_are_refused(tmp_path, table, said):
+    text = f"{DAM}\n[gauge.bad]\n{FACE}{table}\n"
+    with pytest.raises(UserError, match=said):
+        build_simulation(scenario_of(tmp_path, text))
+
+
+def test_edges_are_at_right_angles(tmp_path):
+    with pytest.raises(UserError, match="right angles"):
+        scenario_of(tmp_path, DAM_3D, "gauge.face.edges=[[0, 0.4, 0], [0, 0.1, 0.4]]")
+
+
+def test_bodies_that_move_have_no_panels(tmp_path):
+    moving = "body.dam.motion={velocity=[1, 0]}"
+    with pytest.raises(UserError, match=r'"dam" moves, the panels stand still'):
+        scenario_of(tmp_path, DAM, moving)
+
+
+def test_a_figure_of_something_else_is_refused(tmp_path):
+    text = DAM + '[gauge.p]\nkind = "pressure"\nposition = [0.1, 0.1]\n'
+    text += '[figure.f]\nkind = "load"\ngauge = "p"\n'
+    with pytest.raises(UserError, match='is of kind "pressure", not "load" or "panels"'):
+        scenario_of(tmp_path, text)
+
+
+@pytest.fixture(scope="module")
+def dam(tmp_path_factory):
+    return run_of(tmp_path_factory.mktemp("dam"), DAM_3D, "time_max=0.06", "particles=8")
+
+
+def test_a_map_shows_the_sample_in_which_the_flow_presses_most(dam):
+    figure = draw(dam, "face", tables(dam, "figure", Figure)["face"])
+    (mesh,) = figure.axes[0].collections
+    pressure = dam.gauges["face"]["flow_pressure"].reshape(-1, 4, 2)[1:]
+    peak = np.argmax(pressure.mean(axis=(1, 2)))
+    np.testing.assert_allclose(np.asarray(mesh.get_array()).reshape(4, 2), pressure[peak])
+    mean = figure.axes[1].lines[0]
+    assert mean.get_label() == "mean"
+    np.testing.assert_allclose(mean.get_ydata(), pressure.mean(axis=(1, 2)))
+
+
+def test_a_figure_of_a_load_has_its_parts(dam):
+    figure = draw(dam, "dam", tables(dam, "figure", Figure)["dam"])
+    assert len(figure.axes) == 6
+    names = [line.get_label() for line in figure.axes[0].lines]
+    assert names == ["total", "static", "dynamic", "contact", "largest step"]
+    record = dam.gauges["dam"]
+    np.testing.assert_allclose(figure.axes[0].lines[1].get_ydata(), record["static_force_x"][1:])

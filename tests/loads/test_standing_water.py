@@ -1,0 +1,137 @@
+"""Water that stands around bodies: the static part of its force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.driver.gauges import build_gauges
+from doseki.scenario.gauges.loads.standing_water import surface_of
+from doseki.solver.build import build_simulation
+
+from .scenes import scenario_of
+
+G = 9.81
+# A body within a tank of still water.
+POOL = """\
+dim = {dim}
+dp = 0.02
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 3
+gravity = {{ d2 = {gravity}, d3 = [0, 0, -9.81] }}
+
+[body.tank]
+shape = "tank"
+material = "aluminium"
+min = {{ d2 = [0, 0], d3 = [0, 0, 0] }}
+max = {{ d2 = [0.8, 0.8], d3 = [0.6, 0.6, 0.6] }}
+
+[body.stone]
+material = "basalt"
+fixed = true
+{stone}
+
+[body.water]
+shape = "box"
+material = "water"
+min = {{ d2 = [0, 0], d3 = [0, 0, 0] }}
+max = {{ d2 = [0.8, {level}], d3 = [0.6, 0.6, {level}] }}
+
+[gauge.stone]
+kind = "load"
+bodies = ["stone"]
+about = {{ d2 = [0.4, 0.3], d3 = [0.3, 0.3, 0.24] }}
+"""
+
+
+def static_of(folder, dim, stone, level, gravity="[0, -9.81]"):
+    """Static force and moment on the stone at the start."""
+    text = POOL.format(dim=dim, stone=stone, level=level, gravity=gravity)
+    scenario = scenario_of(folder, text)
+    simulation, names = build_simulation(scenario)
+    (reader,) = build_gauges(scenario, names)
+    far = np.full(dim, np.inf)
+    found = reader.gauge.static(simulation, reader.setting, (-far, far))
+    return found[:dim], found[dim:]
+
+
+@pytest.mark.parametrize("turned", [0, 20])
+def test_a_box_under_water_has_its_uplift(tmp_path, turned):
+    """In 2-D, the weight of the water whose place it takes; also where it is turned."""
+    stone = (
+        f'shape = "box"\nmin = [0.3, 0.2]\nmax = [0.5, 0.4]\nrotate = {turned}\npivot = [0.4, 0.3]'
+    )
+    force, moment = static_of(tmp_path, 2, stone, 0.7)
+    uplift = 1000 * G * 0.2**2
+    assert force[1] == pytest.approx(uplift, rel=0.03)
+    assert abs(force[0]) < 0.03 * uplift
+    assert abs(moment[0]) < 0.03 * uplift * 0.2
+
+
+def test_a_cube_under_water_has_its_uplift(tmp_path):
+    """And its edges and corners count in full: without them 7 % would be missing."""
+    stone = 'shape = "box"\nmin = [0.2, 0.2, 0.14]\nmax = [0.4, 0.4, 0.34]'
+    force, moment = static_of(tmp_path, 3, stone, 0.54)
+    uplift = 1000 * G * 0.2**3
+    assert force[2] == pytest.approx(uplift, rel=0.03)
+    assert np.abs(force[:2]).max() < 0.03 * uplift
+    assert np.abs(moment).max() < 0.03 * uplift * 0.2
+
+
+def test_a_disc_under_water_has_its_uplift(tmp_path):
+    """Its rows are shorter than its surface, by dp/2R: 8 % here."""
+    force, _ = static_of(tmp_path, 2, 'shape = "disc"\ncentre = [0.4, 0.3]\nradius = 0.12', 0.7)
+    uplift = 1000 * G * np.pi * 0.12**2
+    assert force[1] == pytest.approx(uplift, rel=0.02)
+    assert abs(force[0]) < 0.03 * uplift
+
+
+def test_half_of_it_under_water(tmp_path):
+    """Only what is below the level counts, and level water pushes no way."""
+    stone = 'shape = "box"\nmin = [0.3, 0.1]\nmax = [0.5, 0.5]'
+    force, _ = static_of(tmp_path, 2, stone, 0.3)
+    uplift = 1000 * G * 0.2 * 0.2
+    assert force[1] == pytest.approx(uplift, rel=0.06)
+    assert abs(force[0]) < 0.02 * uplift
+
+
+def test_without_water_or_gravity_there_is_none(tmp_path):
+    stone = 'shape = "box"\nmin = [0.3, 0.4]\nmax = [0.5, 0.6]'
+    force, moment = static_of(tmp_path, 2, stone, 0.2)
+    assert not force.any()
+    assert not moment.any()
+    (tmp_path / "weightless").mkdir()
+    force, _ = static_of(tmp_path / "weightless", 2, stone, 0.7, gravity="[0, 0]")
+    assert not force.any()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_surface_is_closed_and_has_its_area(tmp_path, dim):
+    """Faces, edges and corners of a box add up to nothing as vectors; their sizes to its faces."""
+    stones = {
+        2: 'shape = "box"\nmin = [0.3, 0.2]\nmax = [0.5, 0.4]',
+        3: 'shape = "box"\nmin = [0.2, 0.2, 0.14]\nmax = [0.4, 0.4, 0.34]',
+    }
+    text = POOL.format(dim=dim, stone=stones[dim], level=0.54, gravity="[0, -9.81]")
+    scenario = scenario_of(tmp_path, text)
+    simulation, names = build_simulation(scenario)
+    far = np.full(dim, np.inf)
+    surface = surface_of(simulation, scenario.setting(names), ["stone"], (-far, far))
+    np.testing.assert_allclose(surface.area.sum(axis=0), 0, atol=1e-12)
+    sides = np.maximum(surface.area, 0).sum(axis=0)
+    np.testing.assert_allclose(sides, 0.2 ** (dim - 1), rtol=1e-9)
+
+
+def test_a_sphere_has_its_surface(tmp_path):
+    text = POOL.format(
+        dim=3, level=0.54, gravity="[0, -9.81]",
+        stone='shape = "sphere"\ncentre = [0.3, 0.3, 0.24]\nradius = 0.14',
+    )  # fmt: skip
+    scenario = scenario_of(tmp_path, text)
+    simulation, names = build_simulation(scenario)
+    far = np.full(3, np.inf)
+    surface = surface_of(simulation, scenario.setting(names), ["stone"], (-far, far))
+    sizes = np.linalg.norm(surface.area, axis=1)
+    assert sizes.sum() == pytest.approx(4 * np.pi * 0.14**2, rel=0.02)
