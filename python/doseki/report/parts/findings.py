@@ -34,7 +34,7 @@ def _failure(run: Run) -> Content:
 
 def _verdicts(run: Run) -> Content:
     if not run.trust:
-        return tag("p", "The run has not been judged: it has not come to its end.")
+        return tag("p", "There is no trust report: a run is judged when it has come to its end.")
     try:
         lines = list(trust_lines(run.trust))
     except (KeyError, TypeError, ValueError, IndexError):
