@@ -11,7 +11,7 @@ from tests.run.channel import run_channel
 from doseki.assess.summary import summary_text
 from doseki.driver.maps import RunningMaps
 from doseki.driver.ranks import OneRank
-from doseki.errors import UserError
+from doseki.errors import PhysicsError, UserError
 from doseki.figures.plot import draw_run
 from doseki.geodata.raster import Raster, read_raster, write_raster
 from doseki.record.folder import RunFolder
@@ -114,6 +114,13 @@ interval = 0.01
     assert lines["section line"].startswith("flow from 0 s on, peak ")
     assert lines["maps"].startswith(f"covered {run.summary['runout']['area']:.4g} m2; ")
     assert run.gauges["line"]["discharge"][-1] > 0
+
+
+def test_a_run_that_fails_leaves_its_maps(collapse, tmp_path):
+    with pytest.raises(PhysicsError):
+        run_channel(collapse, tmp_path / "run", "body.water.velocity=[1e6, 0, 0]")
+    assert load(tmp_path / "run").summary["status"] == "failed"
+    assert read_raster(tmp_path / "run/maps/peak_depth.asc").values.max() > 0.2
 
 
 def test_figures_have_the_maps(straight):
