@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
-from ...figures.space import is_round
+from ...figures.space.box import is_round
 from ...record.quantities import CATEGORIES
 from ...record.reader import Run, Snapshot
 from ...scene.groups import matrices

@@ -90,8 +90,8 @@ def _check_effective_stress(scenario: Scenario) -> None:
         (ratio, one), (another, other) = list(ratios.items())[:2]
         raise scenario.where.error(
             (*voellmy[0], "wall"),
-            f'{".".join(voellmy[0])}.wall = "voellmy" needs one pore_pressure_ratio of all fluids, but '
-            f"{one} has {ratio:g} and {other} has {another:g}",
+            f'{".".join(voellmy[0])}.wall = "voellmy" needs one pore_pressure_ratio of all '
+            f"fluids, but {one} has {ratio:g} and {other} has {another:g}",
         )
 
 

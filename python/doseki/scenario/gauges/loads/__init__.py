@@ -1,1 +1,1 @@
-"""Gauges for the design of structures: loads, pressures on panels, sections, overtopping."""
+"""Gauges for the design of structures: loads, pressures on panels, the flow that comes, overtopping."""

@@ -25,7 +25,7 @@ class Load(Metered):
     bodies: BodyNames = Field(description="names of fixed bodies")
     about: Position | None = Field(None, description="point of the moment, m; default: the origin")
     approach: Annotated[str | None, RefersTo("gauge")] = Field(
-        None, description="gauge of kind section in the flow that comes, for design formulas"
+        None, description="gauge of kind approach in the flow that comes, for design formulas"
     )
     width: Annotated[Length | None, Only(dim=3)] = Field(
         None, description="3-D, with `approach`: of the structure that the flow meets, m"
