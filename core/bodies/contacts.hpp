@@ -124,7 +124,7 @@ void Contacts<D>::for_each_push(const ContactBodies<D>& bodies, F&& f) const {
         const Push& push = pushes_[k];
         if (!push.touches || bodies.surface(pairs_[k])) continue;  // surfaces are of no fixed body
         const ContactPair& pair = pairs_[k];
-        const Vec<double, D>& second = pair.with_shape() ? bodies.convex[pair.shape()].centre
+        const Vec<double, D>& second = pair.with_shape() ? bodies.solids[pair.shape()].centre
                                                          : bodies.points.position[pair.second()];
         const Vec3 moment =
             push.torque_a - cross(in_space(push.overlap.lever_a), in_space(push.force));

@@ -1,1 +1,1 @@
-"""Gauges for the design of structures: loads, pressures on panels, the flow that comes, overtopping."""
+"""Gauges for the design of structures: loads, panels, the flow that comes, overtopping."""
