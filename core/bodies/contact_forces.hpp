@@ -257,7 +257,7 @@ void Contacts<D>::push_pair(const ContactBodies<D>& bodies, std::size_t k, doubl
     const auto share = shares_of(overlaps);
     const auto row = rows_of(overlaps, std::span<const Vec<double, D>>(normals_.data() + k, rows));
     for (std::size_t n = k; n < k + rows; ++n) pushes_[n] = {}, contacts_[n].overlap = 0.0;
-    for (std::size_t place = 0; place < overlaps.size(); ++place) {
+    for (std::size_t place = 0; place < std::min(overlaps.size(), rows); ++place) {
         const std::size_t n = k + row[place];
         pushes_[n] = push_at(bodies, n, overlaps[place], dt, share[place]);
     }

@@ -30,17 +30,18 @@ std::array<double, SurfacePoints<D>::most> shares_of(const Overlaps<D>& overlaps
 
 /// For each overlap a row, each once, where what it did in the step before is kept: the one with
 /// the nearest normal, or else one that has not touched. `normals` are those of the rows before,
-/// zero of those that did not touch; there are enough of them.
+/// zero of those that did not touch. Overlaps beyond their number are left out.
 template <int D>
 std::array<std::size_t, SurfacePoints<D>::most> rows_of(const Overlaps<D>& overlaps,
                                                         std::span<const Vec<double, D>> normals) {
     constexpr double turned = 0.5;  // cosine of what a normal turns in one step at most
     constexpr std::size_t most = SurfacePoints<D>::most, none = most;
+    const std::size_t count = std::min(overlaps.size(), normals.size());
     std::array<std::size_t, most> row;
     row.fill(none);
     std::array<bool, most> taken{};
     auto take = [&](std::size_t k, std::size_t n) { row[k] = n, taken[n] = true; };
-    for (std::size_t k = 0; k < overlaps.size(); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
         std::size_t nearest = none;
         double greatest = turned;
         for (std::size_t n = 0; n < normals.size(); ++n)
@@ -49,7 +50,7 @@ std::array<std::size_t, SurfacePoints<D>::most> rows_of(const Overlaps<D>& overl
         if (nearest != none) take(k, nearest);
     }
     for (const bool used_before : {false, true})
-        for (std::size_t k = 0; k < overlaps.size(); ++k)
+        for (std::size_t k = 0; k < count; ++k)
             for (std::size_t n = 0; n < normals.size() && row[k] == none; ++n)
                 if (!taken[n] && (dot(normals[n], normals[n]) > 0.0) == used_before) take(k, n);
     return row;
