@@ -45,7 +45,7 @@ struct WallState {
     Field<double> rows;                   // pressure force on all its rows over that on this one
     Field<double> film_density;           // of the fluid that presses on it [kg/m^3]; 0: dry
     Field<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
-    Field<BodyKind> body_kind;  // of bound particles
+    Field<BodyKind> body_kind;            // of bound particles
     // Index among the points of bodies of that kind; of a terrain's particle, its tile.
     Field<std::int32_t> point;
 

@@ -64,7 +64,7 @@ def test_normals_are_those_of_the_heights_and_continuous():
 
 
 def test_a_grid_that_is_turned_round_gives_the_same_surface():
-    field, x, y, z = field_2d(lambda u, v: np.sin(u) * np.cos(2 * v))
+    field, _x, _y, z = field_2d(lambda u, v: np.sin(u) * np.cos(2 * v))
     table = {"cell": CELL, "unknown": np.zeros(z.T.shape, np.uint8)}
     swapped = load_core().HeightField3(
         table | {"origin": [2.0, -1.0], "heights": np.ascontiguousarray(z.T)}

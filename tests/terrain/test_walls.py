@@ -108,7 +108,7 @@ def test_tiles_of_another_terrain_are_refused(slide, name, change):
     simulation, names = simulation_of(slide)
     kept = simulation.checkpoint()
     other = empty_simulation(load_scenario(slide), names)
-    with pytest.raises(ValueError, match="terrain_tiles|point"):
+    with pytest.raises(ValueError, match=r"terrain_tiles|point"):
         other.restore(kept | {name: change(kept[name])})
 
 
@@ -138,9 +138,7 @@ def test_a_mirrored_map_gives_the_mirrored_flow(tmp_path):
         profile(tmp_path / "terrain.csv", lambda x, s=sign: slope(s * x), *sorted((0.0, sign * 6)))
         path = tmp_path / "case.toml"
         between = sorted((sign * 0.5, sign * 1.5))
-        path.write_text(
-            text(2, dp=0.05, speed=6.0, more=SLIDE.replace("[0.5, 1.5]", str(between)))
-        )
+        path.write_text(text(2, dp=0.05, speed=6.0, more=SLIDE.replace("[0.5, 1.5]", str(between))))
         simulation, _ = simulation_of(path)
         simulation.advance(limit=0.8, pause=0.8, max_steps=10**6)
         state = simulation.state()

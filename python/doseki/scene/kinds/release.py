@@ -79,12 +79,10 @@ class ReleaseBody(Shaped[Release]):
     def _strip(self, low: float, high: float) -> tuple[Columns, float]:
         """2-D: columns from one place to another."""
         assert isinstance(self.table.thickness, float)
-        place, area = self.ground.columns(np.array([low]), np.array([high]), self.scenario.dp)
-        fine = np.linspace(low, high, 16 * max(4, len(place)) + 1)
-        middle = 0.5 * (fine[1:] + fine[:-1])
-        length = float(np.sum(self.ground.field.at(middle[:, None])["area"] * np.diff(fine)))
-        thickness = self.table.thickness
-        return Columns(place, area, np.full(len(area), thickness)), length * thickness
+        made = self.ground.field.columns([low], high - low, self.scenario.dp)
+        thickness = np.full(len(made["area"]), self.table.thickness)
+        columns = Columns(made["place"], made["area"], thickness)
+        return columns, float(made["area"].sum()) * self.table.thickness
 
     def _area(self, rings: list[list[list[float]]], thickness: float) -> tuple[Columns, float]:
         """Columns inside a polygon, whose edge gives way a little for the right volume."""

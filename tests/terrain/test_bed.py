@@ -1,0 +1,167 @@
+"""The bed that [terrain] reads: windows, cells, sections, profiles, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.errors import UserError
+from doseki.geodata.ground import read_ground
+from doseki.geodata.raster import Raster, write_raster
+from doseki.record.reader import load
+from doseki.run.runner import run_scenario
+from doseki.scenario.load import load_scenario
+
+from .scenes import grid, profile, text
+
+BLOCK = """
+[body.slide]
+shape = "release"
+material = "water"
+{place}
+thickness = 0.2
+"""
+PLACE = {2: "between = [1, 2]", 3: "polygon = [[1, 1], [2, 1], [2, 2], [1, 2]]"}
+
+
+@pytest.fixture
+def path(tmp_path):
+    """A 3-D scenario on a plane slope."""
+    grid(tmp_path / "terrain.asc", lambda x, y: 10 - 0.5 * x + 0.1 * y)
+    file = tmp_path / "case.toml"
+    file.write_text(text(3, more=BLOCK.format(place=PLACE[3])))
+    return file
+
+
+def test_a_map_is_used_in_its_own_coordinates(path):
+    bed = load_scenario(path).bed
+    assert bed.origin == pytest.approx([0.05, 0.05])
+    assert bed.cell == pytest.approx(0.1)
+    assert bed.heights.shape == (40, 60)
+    assert bed.heights[0, 0] == pytest.approx(10 - 0.025 + 0.005)
+    assert bed.heights[-1, 0] > bed.heights[0, 0]  # rows go north
+
+
+def test_window_cell_and_smoothing(path):
+    bed = load_scenario(path, ["terrain.window=[0.5, 0.5, 3.5, 2.5]"]).bed
+    low, high = bed.extent
+    assert low == pytest.approx([0.5, 0.5])
+    assert high == pytest.approx([3.5, 2.5])
+    coarse = load_scenario(path, ["terrain.resample=0.2", "terrain.smoothing=0.5"]).bed
+    assert coarse.heights.shape == (20, 30)
+    x, y = (coarse.origin[k] + 0.2 * np.arange(n) for k, n in ((0, 30), (1, 20)))
+    plane = 10 - 0.5 * x[None, :] + 0.1 * y[:, None]
+    assert coarse.heights == pytest.approx(plane, abs=1e-9)  # a plane stays a plane
+
+
+def test_cells_without_data_are_filled_and_said(path, tmp_path):
+    x, y = np.meshgrid(np.arange(60), np.arange(40))
+    values = np.where((x > 45) & (y > 25), np.nan, 10 - 0.05 * x)
+    write_raster(tmp_path / "terrain.asc", Raster(values[::-1], 0.0, 0.0, 0.1))
+    bed = load_scenario(path).bed
+    assert np.isfinite(bed.heights).all()
+    assert bed.unknown.sum() == 14 * 14
+    assert bed.unknown_share == pytest.approx(196 / 2400)
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        (["terrain.window=[-5, 0, 3, 2]"], "reaches beyond the raster"),
+        (["terrain.window=[3, 0, 1, 2]"], "smaller ones first"),
+        (["terrain.window=[3, 0, 1]"], "terrain.window"),
+        (["terrain.resample=9"], "larger than the raster"),
+        (["terrain.smoothing=900"], "longer than the raster"),
+        (["terrain.material=water"], "a fluid; a bed is a solid"),
+        (["terrain.material=cheese"], "not a known material"),
+        (["terrain.section=[[0, 0], [1, 1]]"], "2-D"),
+        (["terrain.file=nothing.asc"], "nothing.asc"),
+        (["terrain.digest=" + "0" * 32], "is not the file that was meant"),
+        (["terrain.fiel=x"], "fiel is not a known key.*file"),
+        (["terrain.wall=rough"], "a rough wall needs ks"),
+        (["terrain.wall=voellmy", "terrain.mu=0.2", "terrain.ks=0.1"], "ks goes with"),
+        (["terrain.wall=voellmy"], "needs mu"),
+        (["attraction=1"], "attraction"),
+        (["periodic=['y']", "domain_min=[0,0,0]", "domain_max=[6,4,20]"], "not periodic"),
+        (["dp=1e-6"], "tiles|particles"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence(path, settings, said):
+    with pytest.raises(UserError, match=said):
+        load_scenario(path, settings)
+
+
+def test_a_body_may_not_have_the_name_of_the_bed(path):
+    path.write_text(path.read_text().replace("[body.slide]", "[body.terrain]"))
+    with pytest.raises(UserError, match='the bed has the name "terrain"'):
+        load_scenario(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("x,z\n0,0\n", "two rows or more"),
+        ("x,z\n0,0\n1,1\n0.5,2\n", "x must go up"),
+        ("x,y\n0,0\n1,1\n", "z"),
+        ("x,z\n0,zero\n1,1\n", "zero|number"),
+        ("x,z\n0,nan\n1,1\n", "finite|number"),
+        ("", "CSV|column|x"),
+    ],
+)
+def test_what_is_no_profile_is_refused(tmp_path, content, said):
+    (tmp_path / "terrain.csv").write_text(content)
+    path = tmp_path / "case.toml"
+    path.write_text(text(2, more=BLOCK.format(place=PLACE[2])))
+    with pytest.raises(UserError, match=said):
+        load_scenario(path)
+
+
+def test_a_profile_may_have_units_and_uneven_steps(tmp_path):
+    (tmp_path / "terrain.csv").write_text("x [cm],z [mm]\n0,1000\n150,400\n400,400\n")
+    path = tmp_path / "case.toml"
+    path.write_text(text(2, more=BLOCK.format(place=PLACE[2])))
+    bed = load_scenario(path).bed
+    assert bed.origin == pytest.approx([0.0])
+    assert bed.heights[:3] == pytest.approx([1.0, 0.96, 0.92])
+    assert bed.heights[-1] == pytest.approx(0.4)
+
+
+def test_a_section_cuts_a_map_along_a_line(tmp_path):
+    grid(tmp_path / "map.asc", lambda x, y: 10 - 0.5 * x + 0.1 * y, shift=(1000.0, 2000.0, 0.0))
+    path = tmp_path / "case.toml"
+    lines = 'file = "map.asc"\nsection = [[1000.5, 2000.5], [1004.5, 2003.5]]'
+    path.write_text(
+        text(2, more=BLOCK.format(place=PLACE[2])).replace('file = "terrain.csv"', lines)
+    )
+    bed = load_scenario(path).bed
+    x = bed.origin[0] + bed.cell * np.arange(len(bed.heights))
+    assert x[-1] == pytest.approx(5.0)
+    exact = 10 - 0.5 * (0.5 + 0.8 * x) + 0.1 * (0.5 + 0.6 * x)
+    assert bed.heights == pytest.approx(exact, abs=1e-9)
+    with pytest.raises(UserError, match="no data"):
+        load_scenario(path, ["terrain.section=[[900, 2000], [1004, 2003]]"])
+    kept = path.read_text()
+    path.write_text(kept.replace(lines, 'file = "map.asc"'))
+    with pytest.raises(UserError, match="section is missing"):
+        load_scenario(path)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_run_keeps_its_ground_and_goes_on_without_the_file(tmp_path, dim):
+    name = "terrain.csv" if dim == 2 else "terrain.asc"
+    if dim == 2:
+        profile(tmp_path / name, lambda x: 3 - 0.5 * x)
+    else:
+        grid(tmp_path / name, lambda x, y: 3 - 0.5 * x)
+    path = tmp_path / "case.toml"
+    path.write_text(text(dim, dp=0.1, time=0.02, more=BLOCK.format(place=PLACE[dim])))
+    scenario = load_scenario(path)
+    folder = tmp_path / "run"
+    run_scenario(scenario, folder)
+    (tmp_path / name).unlink()
+    again = load_scenario(folder / "scenario.toml")
+    assert np.array_equal(again.bed.heights, scenario.bed.heights)
+    ground = read_ground(folder)
+    heights = ground.z if dim == 2 else ground.values[::-1]
+    assert np.array_equal(heights, scenario.bed.heights)
+    assert load(folder).ground is not None

@@ -1,0 +1,180 @@
+"""What lies on a terrain: volume, place, and what is refused."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from doseki.errors import UserError
+from doseki.geodata.raster import Raster, write_raster
+from doseki.scenario.load import load_scenario
+from doseki.scene.build import build_scene
+from doseki.scene.kinds.registry import body_of
+
+from .scenes import grid, profile, text
+
+RELEASE = """
+[body.slide]
+shape = "release"
+material = "water"
+{keys}
+"""
+SQUARE = "polygon = [[1, 1], [4, 1], [4, 3], [1, 3]]\nthickness = 0.5"
+
+
+def hill(x, y):
+    return 0.6 * x + 0.4 * np.sin(0.8 * y) + 0.1 * np.cos(x)
+
+
+@pytest.fixture
+def case(tmp_path):
+    """Writes a scenario on a hill and gives its path."""
+
+    def write(keys=SQUARE, dp=0.1, shift=(0.0, 0.0, 0.0), dim=3):
+        if dim == 3:
+            grid(tmp_path / "terrain.asc", hill, shift=shift)
+        else:
+            profile(tmp_path / "terrain.csv", lambda x: 0.5 * x**1.5)
+        path = tmp_path / "case.toml"
+        path.write_text(text(dim, dp=dp, more=RELEASE.format(keys=keys)))
+        return path
+
+    return write
+
+
+def volume_of(scenario):
+    """Of the particles of the release, m3 (2-D: m2)."""
+    scene = build_scene(scenario)
+    own = scene.particles.body == scene.names.index("slide")
+    return float((scene.particles.mass[own] / scene.particles.density[own]).sum())
+
+
+def area_of(inside, low, high, n=800):
+    """Surface of the hill over places that are inside, m2, by the trapezium rule."""
+    axes = [a + (np.arange(n) + 0.5) / n * (b - a) for a, b in zip(low, high, strict=True)]
+    x, y = np.meshgrid(*axes)
+    slope = np.hypot(0.6 - 0.1 * np.sin(x), 0.32 * np.cos(0.8 * y))
+    cell = np.prod(np.subtract(high, low)) / n**2
+    return float((np.sqrt(1 + slope**2) * inside(x, y)).sum() * cell)
+
+
+@pytest.mark.parametrize("dp", [0.2, 0.1, 0.07])
+def test_the_volume_is_area_of_the_ground_times_thickness(case, dp):
+    exact = 0.5 * area_of(lambda x, y: x == x, (1, 1), (4, 3))
+    assert volume_of(load_scenario(case(dp=dp))) == pytest.approx(exact, rel=0.01)
+
+
+def test_holes_and_several_polygons_count(case):
+    polygons = (
+        "polygons = [[[[1, 1], [3, 1], [3, 3], [1, 3]], [[1.5, 1.5], [2.5, 1.5], [2.5, 2.5], "
+        "[1.5, 2.5]]], [[[4, 1], [5, 1], [5, 3]]]]\nthickness = [0.3, 0.4]"
+    )
+
+    def ring(x, y):
+        return (np.abs(x - 2) > 0.5) | (np.abs(y - 2) > 0.5)
+
+    exact = 0.3 * area_of(ring, (1, 1), (3, 3))
+    exact += 0.4 * area_of(lambda x, y: y - 1 < 2 * (x - 4), (4, 1), (5, 3))
+    assert volume_of(load_scenario(case(polygons))) == pytest.approx(exact, rel=0.015)
+
+
+def test_files_of_polygons_and_rasters_say_the_same(case, tmp_path):
+    exact = volume_of(load_scenario(case()))
+    ring = [[1, 1], [4, 1], [4, 3], [1, 3], [1, 1]]
+    feature = {
+        "type": "Feature",
+        "properties": {"thickness": 0.5},
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+    }
+    (tmp_path / "area.geojson").write_text(
+        json.dumps({"type": "FeatureCollection", "features": [feature]})
+    )
+    from_file = load_scenario(case('file = "area.geojson"'))
+    assert volume_of(from_file) == exact
+    assert from_file.body["slide"].file is None  # a run keeps the polygons, not the file
+    depth = np.zeros((40, 60))
+    depth[10:30, 10:40] = 0.5
+    write_raster(tmp_path / "depth.asc", Raster(depth, 0.0, 0.0, 0.1))
+    from_raster = volume_of(load_scenario(case('file = "depth.asc"')))
+    assert from_raster == pytest.approx(exact, rel=0.03)
+
+
+def test_it_lies_on_the_ground_in_layers(case):
+    scenario = load_scenario(case())
+    scene = build_scene(scenario)
+    position = scene.particles.position
+    x, y = position[:, 0], position[:, 1]
+    steep = np.sqrt(1 + (0.6 - 0.1 * np.sin(x)) ** 2 + (0.32 * np.cos(0.8 * y)) ** 2)
+    height = (position[:, 2] - hill(x, y)) / steep
+    layers = np.rint(height / 0.1 - 0.5)
+    assert set(layers.tolist()) == {0.0, 1.0, 2.0, 3.0, 4.0}
+    assert height / 0.1 - 0.5 == pytest.approx(layers, abs=0.15)
+
+
+def test_it_does_not_depend_on_where_the_map_lies(case):
+    """The columns are laid in the coordinates of the map: a shift by whole tiles changes none."""
+    shift = (4096 * 0.8, 1024 * 0.8, 512.0)
+    corners = [[x + shift[0], y + shift[1]] for x, y in ((1, 1), (4, 1), (4, 3), (1, 3))]
+    moved = f"polygon = {corners}\nthickness = 0.5"
+    near = build_scene(load_scenario(case())).particles
+    far = build_scene(load_scenario(case(moved, shift=shift))).particles
+    assert len(near) == len(far)
+    assert far.position - shift == pytest.approx(near.position, abs=1e-6)
+
+
+def test_in_two_dimensions_it_lies_between_two_places(case):
+    scenario = load_scenario(case("between = [1, 3]\nthickness = 0.4", dim=2))
+    x = np.linspace(1, 3, 4001)
+    length = float(np.sum(np.hypot(np.diff(x), np.diff(0.5 * x**1.5))))
+    assert volume_of(scenario) == pytest.approx(0.4 * length, rel=0.01)
+    body = body_of(scenario, "slide")
+    assert body.volume == pytest.approx(body.asked, rel=0.01)
+
+
+def test_water_in_a_box_fills_what_is_above_the_ground(tmp_path):
+    profile(tmp_path / "terrain.csv", lambda x: 0.2 * (x - 3) ** 2)
+    lake = """
+[body.lake]
+shape = "box"
+material = "water"
+min = [0, -0.5]
+max = [6, 0.8]
+"""
+    path = tmp_path / "case.toml"
+    path.write_text(text(2, dp=0.05, more=lake))
+    scene = build_scene(load_scenario(path))
+    x, z = scene.particles.position.T
+    assert (z > 0.2 * (x - 3) ** 2).all()
+    assert scene.particles.mass.sum() == pytest.approx(1000 * 4 / 3 * 0.8 * 2, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("polygon = [[1, 1], [9, 1], [9, 3]]\nthickness = 0.5", "reaches beyond the terrain"),
+        ("polygon = [[1, 1], [1.01, 1], [1, 1.01]]\nthickness = 0.5", "smaller than one particle"),
+        ("polygon = [[1, 1], [4, 1], [4, 3]]", "thickness is missing"),
+        ("polygon = [[1, 1], [4, 1]]\nthickness = 1", "polygon"),
+        ("thickness = 1", "give file or polygon"),
+        ("polygon = [[1, 1], [4, 1], [4, 3]]\nfile = 'a.shp'\nthickness = 1", "exclude each other"),
+        ("file = 'nothing.geojson'", "nothing.geojson"),
+        ("between = [1, 2]\nthickness = 1", "2-D"),
+        (SQUARE + "\nfixed = true", "cannot be fixed"),
+        (SQUARE + "\narray = {count = [2, 1, 1], step = [1, 0, 0]}", "no copies"),
+        (SQUARE.replace("0.5", "[0.5, 0.4]"), "2 numbers for 1 polygons"),
+        (SQUARE + "\nfile_name = 'x'", "file_name is not a known key"),
+    ],
+)
+def test_what_is_no_release_is_refused(case, keys, said):
+    with pytest.raises(UserError, match=said):
+        build_scene(load_scenario(case(keys)))
+
+
+def test_a_release_needs_a_terrain(case):
+    path = case()
+    kept = path.read_text()
+    path.write_text(kept[: kept.index("[terrain]")] + kept[kept.index("[body.slide]") :])
+    with pytest.raises(UserError, match=r"needs a \[terrain\]"):
+        load_scenario(path)
