@@ -93,7 +93,7 @@ class ActiveRun:
         self.sensors = build_sensors(readers)
         self.means: dict[str, Means | LoadMeans | Counts] = {
             **build_means(readers),
-            **build_meters(readers, scenario.metered),
+            **build_meters(readers),
             **build_counts(readers),
         }
         self._started = time.perf_counter()

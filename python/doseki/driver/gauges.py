@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol, cast
 
 import numpy as np
 
 from ..scenario.gauges.gauge import Gauge, Rows, Sampled, Setting, State
+from ..scenario.gauges.loads.load import Load
+from ..scenario.gauges.loads.panels import Panels
 from ..scenario.model import Scenario
 
 
@@ -44,13 +48,56 @@ class GaugeReader:
         return self.gauge.read(simulation, self.setting)
 
 
+class WithMeters(Sampled, Protocol):
+    """A simulation that has load meters; see solver.protocol.Simulation."""
+
+    def loads(self) -> Mapping[str, np.ndarray]:
+        """What they have summed."""
+
+    def forget_load_peak(self, meter: int) -> None:
+        """The peak of one is that from now on."""
+
+
+@dataclass(frozen=True)
+class MeterReader(GaugeReader):
+    """One that reads a load meter of the core."""
+
+    meter: int  # its number
+
+    def row(self, simulation: Sampled) -> dict[str, np.ndarray]:
+        """What the meter has summed, by the keys of solver.protocol.Loads."""
+        table = cast(WithMeters, simulation).loads()
+        ends = np.cumsum(table["panels"])
+        own = slice(int(ends[self.meter] - table["panels"][self.meter]), int(ends[self.meter]))
+        return {
+            key: values[own] if key.startswith("panel_") else values[self.meter]
+            for key, values in table.items()
+        }
+
+    def forget_peak(self, simulation: Sampled) -> None:
+        """The peak of the meter is that from now on."""
+        cast(WithMeters, simulation).forget_load_peak(self.meter)
+
+    def read(self, simulation: Sampled) -> Rows:
+        """A sample; in place of means the integrals since the start."""
+        row, setting = self.row(simulation), self.setting
+        if isinstance(self.gauge, Load):
+            far = np.full(setting.dim, np.inf)
+            static = self.gauge.static(simulation, setting, (-far, far))
+            return self.gauge.rows(simulation.time, row, static, self.gauge.sums(row, setting.dim))
+        return cast(Panels, self.gauge).rows(simulation.time, row)
+
+
 def build_gauges(scenario: Scenario, body_names: list[str]) -> list[GaugeReader]:
     """A reader for every gauge of the scenario."""
-    setting = scenario.setting(body_names)
-    return [
-        GaugeReader(name, gauge, setting, scenario.interval_of(gauge))
-        for name, gauge in scenario.gauge.items()
-    ]
+    setting, readers = scenario.setting(body_names), list[GaugeReader]()
+    for name, gauge in scenario.gauge.items():
+        known = name, gauge, setting, scenario.interval_of(gauge)
+        metered = name in scenario.metered
+        readers.append(
+            MeterReader(*known, scenario.metered.index(name)) if metered else GaugeReader(*known)
+        )
+    return readers
 
 
 def outside_everything(scenario: Scenario, state: State) -> dict[str, np.ndarray]:

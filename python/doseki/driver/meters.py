@@ -3,60 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Protocol, cast
+from typing import cast
 
 import numpy as np
 
 from ..scenario.gauges.gauge import Rows, Sampled
 from ..scenario.gauges.loads.load import Load
-from ..scenario.gauges.loads.panels import Panels
 from ..scenario.gauges.loads.standing_water import Box, surface_of
-from .gauges import GaugeReader
+from .gauges import GaugeReader, MeterReader
 from .means import Means
 
 MARGIN = 1e-3  # spacings around the bodies, within which they are looked for
 
 
-class WithMeters(Sampled, Protocol):
-    """A simulation that has load meters; see solver.protocol.Simulation."""
-
-    def loads(self) -> Mapping[str, np.ndarray]:
-        """What they have summed."""
-
-    def forget_load_peak(self, meter: int) -> None:
-        """The peak of one is that from now on."""
-
-
-def meter_row(simulation: Sampled, meter: int) -> dict[str, np.ndarray]:
-    """What one meter has summed, by the keys of solver.protocol.Loads."""
-    table = cast(WithMeters, simulation).loads()
-    ends = np.cumsum(table["panels"])
-    own = slice(int(ends[meter] - table["panels"][meter]), int(ends[meter]))
-    return {
-        key: values[own] if key.startswith("panel_") else values[meter]
-        for key, values in table.items()
-    }
-
-
-@dataclass(frozen=True)
-class PanelReader(GaugeReader):
-    """Reads the panels of a meter."""
-
-    meter: int
-
-    def read(self, simulation: Sampled) -> Rows:
-        """A row for each panel; in place of means the integrals since the start."""
-        row = meter_row(simulation, self.meter)
-        return cast(Panels, self.gauge).rows(simulation.time, row)
-
-
 class LoadMeans:
     """Makes means of what a meter sums, and of the water that stands there at each sample."""
 
-    def __init__(self, reader: GaugeReader, meter: int) -> None:
-        self.gauge, self.meter = reader, meter
+    def __init__(self, reader: MeterReader) -> None:
+        self.gauge = reader
         self._load = cast(Load, reader.gauge)
         self._time = math.nan
         self._before: np.ndarray = np.zeros((0, 3))  # flow, contacts, standing water, as rows
@@ -78,7 +42,7 @@ class LoadMeans:
     def sample(self, simulation: Sampled) -> Rows:
         """A sample; the means of the first one are nan. All ranks must take part."""
         setting = self.gauge.setting
-        row = meter_row(simulation, self.meter)
+        row = self.gauge.row(simulation)
         static = self._load.static(simulation, setting, self._box_around(simulation))
         now = np.vstack([self._load.sums(row, setting.dim), static])
         if not len(self._before):
@@ -87,7 +51,7 @@ class LoadMeans:
         means = (now[:2] - self._before[:2]) / passed
         mean_static = 0.5 * (static + self._before[2])
         self._time, self._before = simulation.time, now
-        cast(WithMeters, simulation).forget_load_peak(self.meter)
+        self.gauge.forget_peak(simulation)
         return self._load.rows(simulation.time, row, mean_static, means)
 
     def _box_around(self, simulation: Sampled) -> Box:
@@ -106,16 +70,10 @@ class LoadMeans:
         return self._box
 
 
-def build_meters(gauges: list[GaugeReader], metered: list[str]) -> dict[str, Means | LoadMeans]:
-    """A reader of its meter for each of the gauges that have one, by name."""
-    made: dict[str, Means | LoadMeans] = {}
-    for reader in gauges:
-        if reader.name not in metered:
-            continue
-        meter = metered.index(reader.name)
-        if isinstance(reader.gauge, Panels):
-            fields = reader.name, reader.gauge, reader.setting, reader.interval
-            made[reader.name] = Means(PanelReader(*fields, meter))
-        else:
-            made[reader.name] = LoadMeans(reader, meter)
-    return made
+def build_meters(gauges: list[GaugeReader]) -> dict[str, Means | LoadMeans]:
+    """What makes means of a load meter, for each of the gauges that have one, by name."""
+    return {
+        reader.name: LoadMeans(reader) if isinstance(reader.gauge, Load) else Means(reader)
+        for reader in gauges
+        if isinstance(reader, MeterReader)
+    }

@@ -40,6 +40,20 @@ max = [1.4, @11]
 min = [0.1, @-0.05]
 max = [0.5, @11]
 """
+RESOLVED = """
+[gauge.floor]
+kind = "load"
+bodies = ["floor"]
+interval = 0.01
+[gauge.bent]
+kind = "load"
+bodies = ["floor"]
+about = [1, @01]
+interval = 0.01
+[figure.load]
+kind = "load"
+gauge = "floor"
+"""  # what only that scheme has
 FIGURE = {
     "snapshot": 'window = "all"\n',
     "histogram": 'window = "all"\nmaterial = "water"\n',
@@ -57,7 +71,7 @@ KEYS = {
     "bin_width": ["0.05"],
     "sample": ["7"],
     "columns": ["['bulk_energy']", "['pressure_energy']", "['velocity_x']", "['height']"],
-    "gauge": ["level"],
+    "gauge": ["level", "bent"],
     "start": ["[0.2, {zeros}0]"],
     "end": ["[0.5, {zeros}0]"],
     "direction": ["[0.3, {zeros}1]"],
@@ -83,7 +97,8 @@ def record(tmp_path_factory):
             figures = "".join(
                 f'[figure.{kind}]\nkind = "{kind}"\n{keys}' for kind, keys in FIGURE.items()
             )
-            text = text_of(scheme, dim, BLOCK + SCENE + figures)
+            more = RESOLVED if scheme == "resolved" else ""
+            text = text_of(scheme, dim, BLOCK + SCENE + figures + more)
             text = text.replace("time_max = 1", "time_max = 0.03").replace(
                 "= 0.1\ngr", "= 0.01\ngr"
             )
@@ -132,6 +147,8 @@ def small(monkeypatch):
 @cases
 @pytest.mark.parametrize("kind", FIGURES.tables)
 def test_figures(record, kind, scheme, dim):
+    if kind == "load" and scheme != "resolved":
+        pytest.skip("no such gauge in this scheme")
     path, folder = record(scheme, dim)
     picture = pictures_of(folder)
 

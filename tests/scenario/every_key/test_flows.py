@@ -74,6 +74,26 @@ GAUGE = {
     "about": ["[1, {zeros}1]"],
     "left": ["[0.3, 0.55]"],
     "right": ["[0.3, 0.05]"],
+    "approach": [],  # of numbers that are worked out after the run
+    "origin": ["[0.1, {zeros}0]"],
+    "edges": ["{shorter}"],
+    "panels": ["{finer}"],
+}
+FACE = """\
+bodies = ["floor"]
+origin = [0, @00]
+edges = [[0.6, @00]{second}]
+panels = [2{more}]
+direction = [0, @01]
+"""
+SECOND = {
+    2: {"second": "", "more": "", "shorter": "[[0.4, 0]]", "finer": "[3]"},
+    3: {
+        "second": ", [0, 0.4, 0]",
+        "more": ", 2",
+        "shorter": "[[0.4, 0, 0], [0, 0.4, 0]]",
+        "finer": "[3, 2]",
+    },
 }
 FAR = BLOCK.replace("block", "far").replace("velocity", "# ") + "fixed = true\n"
 
@@ -97,11 +117,16 @@ def test_gauges(tmp_path, kind, scheme, dim):
         needed += ["length = 0.3\n"]
     if kind == "section":
         needed += ["left = [0.3, 0.5]\nright = [0.3, 0.1]\n"]
+    if kind == "panels":
+        needed = [replaced(FACE, SECOND[dim])]
     path = tmp_path / "case.toml"
     path.write_text(text_of(scheme, dim, f'{FAR}[gauge.g]\nkind = "{kind}"\n{"".join(needed)}'))
     if outcome(str(path), ()) == REFUSED:
         pytest.skip("no such gauge in this scheme")
     words = {"zeros": "0, " if dim == 3 else "", "copies": "[2, 1, 1]" if dim == 3 else "[2, 1]"}
+    words |= SECOND[dim]
     values = {key: [replaced(v, words) for v in entries] for key, entries in GAUGE.items()}
+    if kind == "panels":  # where it says only which side of the face the flow is on
+        values["direction"] = [replaced("[0, {zeros}-1]", words)]
     keys = sorted(set(table.model_fields) - WORDS)
     assert ignored(str(path), "gauge.g.", keys, values) == NONE
