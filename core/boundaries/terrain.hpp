@@ -155,10 +155,9 @@ public:
     /// `adds` is false another rank adds them.
     void fill(Particles<D>& particles, std::int64_t& next_id, bool adds);
 
-    /// Whether a particle is free and beyond the map, or where the map says nothing.
-    bool leaves(const Particles<D>& particles, std::size_t p) const {
-        return is_there() && particles.is_free(p) &&
-               field_->is_unknown(horizontal(particles.position[p]));
+    /// Whether a place is beyond the map, or where the map says nothing: what comes there leaves.
+    bool contains(const Vec<double, D>& x) const {
+        return is_there() && field_->is_unknown(horizontal(x));
     }
 
     void serialise(Archive& archive) {

@@ -358,8 +358,13 @@ void Simulation<Lists>::look_at_terrain() {
 template <class Lists>
 bool Simulation<Lists>::remove_outflow() {
     if (open_boundaries.outflows.empty() && !terrain.is_there()) return false;
+    open_boundaries.removed.resize(particles.size(), 0);
+    if (terrain.is_there()) bodies.drain(particles, terrain, open_boundaries.removed);
     const bool any = open_boundaries.remove_outflow(
-        particles, [this](std::size_t p) { return terrain.leaves(particles, p); },
+        particles,
+        [this](std::size_t p) {
+            return particles.is_free(p) && terrain.contains(particles.position[p]);
+        },
         [this](const Outflow<D>& outflow, auto& removed) {
             bodies.drain(particles, outflow, removed);
         });

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..record.particles import BOUND, FIXED, FREE
 from ..scenario.model import Scenario
+from ..scene.ground import ground_of
 
 State = Mapping[str, np.ndarray]
 
@@ -30,7 +31,11 @@ def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict
             (state["body"] == body) & (state["motion"] == FREE) & np.isin(state["material"], fluids)
         )
         if of_it.any() and name not in depths:
-            depths[name] = float(_extent(state["position"][of_it], scenario).min()) + 1.0
+            position = state["position"][of_it]
+            depths[name] = float(_extent(position, scenario).min()) + 1.0
+            if scenario.bed is not None:
+                height = ground_of(scenario.bed).height_above(position).max() / scenario.dp
+                depths[name] = min(depths[name], float(height) + 0.5)
     return depths
 
 

@@ -11,6 +11,7 @@ from ..errors import PhysicsError, ResourceError
 from ..record.particles import FIXED
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
+from ..scene.kinds.release import released_volumes, volume_text
 from ..solver.build import filled_simulation, load_core
 from ..solver.protocol import SimulationView
 from ..util.finding import Finding, sentences
@@ -84,10 +85,13 @@ def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str
         if count:
             material = scenario.material_names[state["material"][state["body"] == body][0]]
             counts.setdefault((_copied(name), material), []).append(count)
+    released = released_volumes(scenario)
     for (name, material), each in counts.items():
         copies = f" in {len(each)} copies" if len(each) > 1 else ""
         yield _line(f"  {name}", f"{sum(each):,} {material}{copies}")
         yield from (_line("", size) for size in _resized(scenario, name))
+        if name in released:
+            yield _line("", volume_text(*released[name], scenario.dim))
 
 
 def _copied(name: str) -> str:

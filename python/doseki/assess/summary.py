@@ -14,6 +14,7 @@ from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
 from ..record.units import unit_in
+from ..scene.kinds.release import volume_text
 from .loads import load_lines, loads_of
 from .trust.report import trust_lines
 
@@ -34,7 +35,17 @@ def title_of(run: Run) -> str:
 
 def key_rows(run: Run) -> Iterator[Row]:
     """How a run went and its key results: (name, text); an empty name goes on with the last one."""
-    for part in (_status, _computed, _state, _ledger, _results, _sections, _runout, _loads):
+    for part in (
+        _status,
+        _computed,
+        _state,
+        _released,
+        _ledger,
+        _results,
+        _sections,
+        _runout,
+        _loads,
+    ):
         yield from part(run)
 
 
@@ -99,6 +110,13 @@ def _ledger(run: Run) -> Iterator[Row]:
     residual = initial + entered - left - inside
     yield _line("mass", f"{initial:.6g} {unit} initial + {entered:.6g} entered")
     yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")
+
+
+def _released(run: Run) -> Iterator[Row]:
+    """What lay on a terrain at the start."""
+    for name, volumes in run.summary.get("released", {}).items():
+        asked, volume = (float(number) for number in volumes)
+        yield _line(name, volume_text(asked, volume, run.scenario["dim"]))
 
 
 def _results(run: Run) -> Iterator[Row]:

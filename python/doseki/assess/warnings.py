@@ -12,6 +12,7 @@ from ..driver.gauges import outside_everything
 from ..record.particles import BOUND, DRIVEN, FIXED, FREE
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED, UETA2022
+from ..scene.ground import ground_of
 from ..util.finding import Finding
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
 from .open_sides import open_sides
@@ -280,5 +281,8 @@ def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterat
         others = ~of_it & (state["motion"] != DRIVEN)
         position, reach = state["position"], REACH * scenario.dp
         apart = gap(position[of_it], position[others], reach) / scenario.dp
+        if scenario.bed is not None:  # which has particles near fluid alone
+            height = ground_of(scenario.bed).height_above(position[of_it]).min()
+            apart = min(apart, float(height) / scenario.dp + 0.5)
         if apart > TOUCHING:
             yield Detached(name, apart)

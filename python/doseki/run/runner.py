@@ -21,6 +21,7 @@ from ..record.beginning import check_free
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
+from ..scene.kinds.release import released_volumes
 from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.cores import chosen_threads
@@ -84,6 +85,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "ledger_residual": balance,
         "largest_overlap": simulation.grains()["worst_overlap"],
         "warnings": sentences(run.warnings) + (run.maps.remarks if run.maps else []),
+        **({"released": released} if (released := released_volumes(scenario)) else {}),
         **({"runout": run.maps.runout} if run.maps else {}),
         **last,
     }

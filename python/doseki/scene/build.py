@@ -26,6 +26,7 @@ from .checks.groups import check_overlaps
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
 from .checks.resolution import resolution_warnings
+from .checks.terrain import terrain_findings
 from .contacts import contact_groups
 from .ground import ground_of
 from .groups import Group, inside_bodies, particles_of
@@ -103,6 +104,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         parts = {n: _above_ground(scenario, n, part) for n, part in parts.items()}
     particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
     check_particles(scenario, particles, names)
+    warnings += list(terrain_findings(scenario, bodies))
     warnings += find_overlaps(particles, names, scenario.carried)
     if carried is None:
         return Scene(particles, names, rigid, warnings)

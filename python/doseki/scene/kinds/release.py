@@ -11,7 +11,7 @@ from ...geodata.errors import GeodataError
 from ...geodata.features import Polygon
 from ...geodata.raster import read_raster
 from ...record.particles import FREE, ParticleSet
-from ...scenario.model import file_of
+from ...scenario.model import Scenario, file_of
 from ...scenario.releases import is_raster
 from ...scenario.tables.terrain.release import Release
 from ..ground import Ground, ground_of
@@ -170,3 +170,19 @@ def _distance(place: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
         foot = a + t[:, None] * along
         nearest = np.minimum(nearest, np.linalg.norm(place - foot, axis=1))
     return nearest
+
+
+def released_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
+    """Of each release that a run begins with: volume asked for, and in particles, m3."""
+    found = {}
+    for name, table in scenario.body.items():
+        if isinstance(table, Release) and name not in scenario.carried:
+            body = ReleaseBody(scenario, name, table)
+            found[name] = body.asked, body.volume
+    return found
+
+
+def volume_text(asked: float, volume: float, dim: int) -> str:
+    """One line about a release."""
+    unit = "m3" if dim == 3 else "m2"
+    return f"{volume:.5g} {unit} released; area times thickness is {asked:.5g} {unit}"

@@ -1,0 +1,92 @@
+"""What is doubtful about a terrain and what lies on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ...scenario.model import Scenario
+from ...scenario.tables.terrain.terrain import TERRAIN
+from ...util.finding import Finding
+from ..kinds.body import Body
+from ..kinds.release import ReleaseBody
+
+VOLUME = 0.01  # by which the particles of a release may miss what is asked for
+FEW_LAYERS = 2.0
+
+
+@dataclass(frozen=True)
+class Unknown(Finding):
+    """Parts of the map that say nothing."""
+
+    share: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: {self.share:.2g} of the cells have no data; the ground there has the "
+            "height of the nearest known cell, and what flows there leaves the run"
+        )
+
+
+@dataclass(frozen=True)
+class Coarse(Finding):
+    """A map that is finer than the particles."""
+
+    cell: float
+    dp: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: cells of {self.cell:g} m are smaller than particles (dp = {self.dp:g} "
+            f"m), which cannot follow them; terrain.resample = {self.dp:g} averages them"
+        )
+
+
+@dataclass(frozen=True)
+class WrongVolume(Finding):
+    """A release that particles do not fill well."""
+
+    asked: float
+    volume: float
+    unit: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: its particles have {self.volume:.5g} {self.unit}, and area times "
+            f"thickness is {self.asked:.5g} {self.unit}: decrease dp"
+        )
+
+
+@dataclass(frozen=True)
+class ThinRelease(Finding):
+    """A release of one or two layers of particles."""
+
+    layers: float
+    dp: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: {self.layers:.2g} particles thick, which is a few for a flow: dp = "
+            f"{self.dp:.2g} would make four"
+        )
+
+
+def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Iterator[Finding]:
+    """Doubts about the map, and about each release."""
+    bed = scenario.bed
+    if bed is None:
+        return
+    if bed.unknown.any():
+        yield Unknown(TERRAIN, bed.unknown_share)
+    if bed.cell < 0.5 * scenario.dp:
+        yield Coarse(TERRAIN, bed.cell, scenario.dp)
+    for name, body in bodies.items():
+        if not isinstance(body, ReleaseBody):
+            continue
+        if abs(body.volume - body.asked) > VOLUME * body.asked:
+            unit = "m3" if scenario.dim == 3 else "m2"
+            yield WrongVolume(name, body.asked, body.volume, unit)
+        thickness = float(body.columns.thickness.mean())
+        if thickness < FEW_LAYERS * scenario.dp:
+            yield ThinRelease(name, thickness / scenario.dp, thickness / 4)
