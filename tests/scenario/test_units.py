@@ -22,7 +22,7 @@ PLAIN = {
     "alpha", "cfl_force", "cflnumber", "consistency", "count", "damping",
     "dim", "direction", "eta", "flow_index", "friction", "gamma", "grains", "hourglass",
     "inertial_number", "panels",
-    "jitter", "mu_2", "mu_s", "normal", "overlap", "packing", "poisson_ratio", "random_seed",
+    "jitter", "mu", "mu_2", "mu_s", "normal", "overlap", "packing", "poisson_ratio", "random_seed",
     "restitution", "rolling_friction", "rotate_axis", "sample", "scale", "schema_version",
     "skin", "smagorinsky", "steps", "wetted", "where", "clamped", "xi",
 }  # fmt: skip
