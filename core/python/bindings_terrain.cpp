@@ -48,10 +48,10 @@ public:
         return to_python(table);
     }
 
-    nb::dict columns(const std::vector<double>& low, double side, double dp) const {
+    nb::dict layer(const std::vector<double>& low, double side, double dp, double depth) const {
         if (low.size() != D - 1 || !(side > 0.0) || !(dp > 0.0))
-            throw nb::value_error("columns: a corner of the wrong dimension, or no size");
-        const TileLayer<D> made(field_, vectors_of<D - 1>(low)[0], side, dp, 0.0);
+            throw nb::value_error("layer: a corner of the wrong dimension, or no size");
+        const TileLayer<D> made(field_, vectors_of<D - 1>(low)[0], side, dp, depth);
         const std::size_t n = made.feet().size();
         NewArray<double> place({n, D - 1}), area({n});
         for (std::size_t k = 0; k < n; ++k) {
@@ -84,9 +84,10 @@ void bind_height_field(nb::module_& m, const char* name) {
              nb::sig("def at(self, places: numpy.ndarray) -> doseki.solver.protocol.Columns"))
         .def("nearest", &Field::nearest, nb::arg("points"),
              nb::sig("def nearest(self, points: numpy.ndarray) -> doseki.solver.protocol.Columns"))
-        .def("columns", &Field::columns, nb::arg("low"), nb::arg("side"), nb::arg("dp"),
-             nb::sig("def columns(self, low: collections.abc.Sequence[float], side: float, dp: "
-                     "float) -> doseki.solver.protocol.Columns"));
+        .def("layer", &Field::layer, nb::arg("low"), nb::arg("side"), nb::arg("dp"),
+             nb::arg("depth"),
+             nb::sig("def layer(self, low: collections.abc.Sequence[float], side: float, dp: "
+                     "float, depth: float) -> doseki.solver.protocol.Columns"));
 }
 
 }  // namespace

@@ -68,9 +68,11 @@ class HeightField(Protocol):
         """Signed `distance`, m, of points (N, dim) above the surface, and the `normal` there."""
         ...
 
-    def columns(self, low: Sequence[float], side: float, dp: float) -> dict[str, np.ndarray]:
-        """`place` (N, dim - 1), m, of columns that stand on a square, and the `area` (N,) of the
-        surface below each, near dp^2, m2; in 2-D near dp, m.
+    def layer(
+        self, low: Sequence[float], side: float, dp: float, depth: float
+    ) -> dict[str, np.ndarray]:
+        """Of a layer so deep below a square of the surface (above it: below 0), in parts of equal
+        `area` (N,), near dp^2, m2 (2-D: near dp, m): the `place` (N, dim - 1), m, above each.
         """
         ...
 

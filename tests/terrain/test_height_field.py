@@ -96,7 +96,7 @@ def test_unknown_places_are_those_of_the_map_and_beyond():
 def test_columns_stand_on_equal_areas_whatever_the_slope(steep):
     field, *_ = field_2d(lambda x, y: steep * x - 0.3 * steep * y)
     dp, side = 0.05, 0.4
-    columns = field.columns([0.0, 3.0], side, dp)
+    columns = field.layer([0.0, 3.0], side, dp, 0.0)
     area = np.sqrt(1 + steep**2 * 1.09)
     assert columns["area"].sum() == pytest.approx(side**2 * area, rel=1e-9)
     assert columns["area"] == pytest.approx(np.full(len(columns["area"]), dp**2), rel=0.08)

@@ -13,7 +13,7 @@ TILE = {2: 16, 3: 8}  # columns along one side of a tile
 
 
 class Ground:
-    """The surface of a bed: what stands on it stands on columns of equal area."""
+    """The surface of a bed, and layers that follow it."""
 
     def __init__(self, bed: Bed) -> None:
         self.bed = bed
@@ -26,22 +26,44 @@ class Ground:
         make = core.HeightField2 if self.dim == 2 else core.HeightField3
         return make(self.bed.table)
 
-    def columns(
-        self, low: np.ndarray, high: np.ndarray, dp: float
+    def layer(
+        self, low: np.ndarray, high: np.ndarray, dp: float, height: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Places (N, dim - 1) of columns over a box in plan, m, and the area of surface of each.
+        """Places (N, dim - 1) below the parts of a layer over a box in plan, m, and their areas.
 
-        An area is near dp^2, m2; in 2-D near dp, m.
+        The layer is so high above the surface, m; an area (N,) is near dp^2, m2 (2-D: dp, m).
         """
         side = TILE[self.dim] * dp
         first, last = np.floor(low / side), np.floor(high / side)
         ranges = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
         corners = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, self.dim - 1)
-        found = [self.field.columns((side * corner).tolist(), side, dp) for corner in corners]
-        place = np.concatenate([each["place"] for each in found])
-        area = np.concatenate([each["area"] for each in found])
+        found = [self.tile((side * corner).tolist(), side, dp, height) for corner in corners]
+        place = np.concatenate([each[0] for each in found])
+        area = np.concatenate([each[1] for each in found])
         inside = ((place >= low) & (place <= high)).all(axis=1)
         return place[inside], area[inside]
+
+    def tile(
+        self, low: list[float], side: float, dp: float, height: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same over one square, whose parts fill it."""
+        found = self.field.layer(low, side, dp, -height)
+        return found["place"], found["area"]
+
+    def hollowness(self, place: np.ndarray, step: float) -> np.ndarray:
+        """Curvature (N,) of the surface at places, 1/m: above 0 in hollows, from normals `step` m
+        apart.
+        """
+        sum_of = np.zeros(len(place))
+        for axis in range(self.dim - 1):
+            shift = np.zeros(self.dim - 1)
+            shift[axis] = 0.5 * step
+            ahead, behind = (
+                self.field.at(np.ascontiguousarray(place + s))["normal"][:, axis]
+                for s in (shift, -shift)
+            )
+            sum_of -= (ahead - behind) / step
+        return sum_of
 
     def height_above(self, points: np.ndarray) -> np.ndarray:
         """Distance (N,) of points (N, dim) from the surface, m; below 0 in the ground."""

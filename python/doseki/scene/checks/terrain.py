@@ -87,6 +87,5 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         if abs(body.volume - body.asked) > VOLUME * body.asked:
             unit = "m3" if scenario.dim == 3 else "m2"
             yield WrongVolume(name, body.asked, body.volume, unit)
-        thickness = float(body.columns.thickness.mean())
-        if thickness < FEW_LAYERS * scenario.dp:
-            yield ThinRelease(name, thickness / scenario.dp, thickness / 4)
+        if body.layers < FEW_LAYERS:
+            yield ThinRelease(name, body.layers, scenario.dp * body.layers / 4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,13 +18,20 @@ from ...scenario.tables.terrain.release import Release
 from ..ground import Ground, ground_of
 from .shaped import Shaped
 
+Layer = Callable[[float], tuple[np.ndarray, np.ndarray]]  # height -> places, areas
+Thickness = Callable[[np.ndarray], np.ndarray]  # places -> m
 
-class Columns(NamedTuple):
-    """Columns that stand on the ground."""
 
-    place: np.ndarray  # (N, dim - 1) m
-    area: np.ndarray  # (N,) of surface, m2; 2-D: m
-    thickness: np.ndarray  # (N,) m
+class Parcels(NamedTuple):
+    """What particles of a release stand for."""
+
+    place: np.ndarray  # (N, dim - 1) of the ground below, m
+    height: np.ndarray  # (N,) along the normal, m
+    volume: np.ndarray  # (N,) m3; 2-D: m2
+
+    def chosen(self, keep: np.ndarray) -> Parcels:
+        """Those of a mask, or of indices."""
+        return Parcels(*(column[keep] for column in self))
 
 
 class ReleaseBody(Shaped[Release]):
@@ -43,27 +51,33 @@ class ReleaseBody(Shaped[Release]):
     @cached_property
     def volume(self) -> float:
         """Its volume in particles, m3 (2-D: m2)."""
-        return float(np.sum(self.columns.area * self.columns.thickness))
+        return float(np.sum(self.parcels.volume))
+
+    @property
+    def layers(self) -> float:
+        """Particles over its thickness, a mean over its area."""
+        lowest = self.parcels.height < self.parcels.height.min() * 1.5
+        return len(self.parcels.height) / max(1, int(lowest.sum()))
 
     @cached_property
-    def columns(self) -> Columns:
-        """All that it stands on."""
-        parts = [columns for columns, _ in self._parts]
-        found = Columns(*(np.concatenate(each) for each in zip(*parts, strict=True)))
-        if not len(found.area):
+    def parcels(self) -> Parcels:
+        """All that it consists of."""
+        parts = [parcels for parcels, _ in self._parts]
+        found = Parcels(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+        if not len(found.volume):
             raise self.error(
                 f": is smaller than one particle (dp = {self.scenario.dp:g} m): increase it, or "
                 "decrease dp"
             )
-        unknown = self.ground.field.at(found.place)["unknown"]
+        unknown = self.ground.field.at(np.ascontiguousarray(found.place))["unknown"]
         if unknown.any():
             at = np.round(found.place[np.argmax(unknown)], 3).tolist()
             raise self.error(f": reaches beyond the terrain, or where it has no data, as at {at} m")
         return found
 
     @cached_property
-    def _parts(self) -> list[tuple[Columns, float]]:
-        """The columns of each of its areas, and the volume asked for."""
+    def _parts(self) -> list[tuple[Parcels, float]]:
+        """The parcels of each of its areas, and the volume asked for."""
         table = self.table
         if table.between is not None:
             return [self._strip(*table.between)]
@@ -76,38 +90,82 @@ class ReleaseBody(Shaped[Release]):
             for rings, thickness in zip(polygons, table.thickness, strict=True)
         ]
 
-    def _strip(self, low: float, high: float) -> tuple[Columns, float]:
-        """2-D: columns from one place to another."""
-        assert isinstance(self.table.thickness, float)
-        made = self.ground.field.columns([low], high - low, self.scenario.dp)
-        thickness = np.full(len(made["area"]), self.table.thickness)
-        columns = Columns(made["place"], made["area"], thickness)
-        return columns, float(made["area"].sum()) * self.table.thickness
+    def _stacked(
+        self, layer: Layer, thickness: Thickness, spacing: float, asked: float | None = None
+    ) -> Parcels:
+        """Layers `spacing` m apart, one above the other, as high as the thickness asks for.
 
-    def _area(self, rings: list[list[list[float]]], thickness: float) -> tuple[Columns, float]:
-        """Columns inside a polygon, whose edge gives way a little for the right volume."""
+        In a hollow they become narrower upwards, so it is filled higher: to t' with
+        t' - k t'^2/2 = t, where k is the curvature.  With the volume `asked` the top gives way by
+        part of a layer so that it is right.
+        """
+        found, excess, level = [], [], 0
+        while True:
+            height = (level + 0.5) * spacing
+            place, area = layer(height)
+            t = thickness(place)
+            k = self.ground.hollowness(place, self.scenario.dp) if len(place) else t
+            root = np.sqrt(np.maximum(1 - 2 * k * t, 0.0))
+            above = height - 2 * t / (1 + root)
+            keep = (above < (0.0 if asked is None else 0.5 * spacing)) & (t > 0)
+            if not keep.any():
+                break
+            heights = np.full(int(keep.sum()), height)
+            found.append(Parcels(place[keep], heights, area[keep] * spacing))
+            excess.append(above[keep])
+            level += 1
+        none = Parcels(place[:0], t[:0], t[:0])
+        parcels = Parcels(*(np.concatenate(each) for each in zip(none, *found, strict=True)))
+        return (
+            parcels if asked is None else _lowest(parcels, np.concatenate([t[:0], *excess]), asked)
+        )
+
+    def _spacing(self, thickness: float) -> float:
+        """Between layers, m, of which a whole number makes the thickness."""
+        return thickness / max(1, round(thickness / self.scenario.dp))
+
+    def _strip(self, low: float, high: float) -> tuple[Parcels, float]:
+        """2-D: from one place to another."""
+        t, dp = self.table.thickness, self.scenario.dp
+        assert isinstance(t, float)
+
+        def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
+            return self.ground.tile([low], high - low, dp, height)
+
+        _, area = layer(0.0)
+        asked = float(area.sum()) * t
+        everywhere: Thickness = lambda place: np.full(len(place), t)  # noqa: E731
+        return self._stacked(layer, everywhere, self._spacing(t), asked), asked
+
+    def _area(self, rings: list[list[list[float]]], thickness: float) -> tuple[Parcels, float]:
+        """Inside a polygon, whose edge gives way a little for the right volume."""
         outer, *holes = (np.array(ring) for ring in rings)
         polygon = Polygon(outer, tuple(holes))
-        low, high = outer.min(axis=0), outer.max(axis=0)
-        margin = self.scenario.dp
-        place, area = self.ground.columns(low - margin, high + margin, self.scenario.dp)
+        dp = self.scenario.dp
+        low, high = outer.min(axis=0) - dp, outer.max(axis=0) + dp
+
+        def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
+            return self.ground.layer(low, high, dp, height)
+
+        place, _ = layer(0.0)
         inside = polygon.contains(place[:, 0], place[:, 1])
         if not inside.any():
-            empty = Columns(place[:0], area[:0], area[:0])
-            return empty, polygon.area * thickness
-        steepness = self.ground.field.at(place[inside])["area"].mean()
-        wanted = float(polygon.area * steepness)
-        depth = _distance(place, [outer, *holes]) * np.where(inside, 1.0, -1.0)
-        order = np.argsort(-depth, kind="stable")
-        covered = np.cumsum(area[order])
-        count = int(np.searchsorted(covered, wanted - 0.5 * area.mean())) + 1
-        chosen = np.sort(order[:count])
-        chosen = chosen[depth[chosen] > -margin]
-        columns = Columns(place[chosen], area[chosen], np.full(len(chosen), thickness))
-        return columns, wanted * thickness
+            none = np.zeros(0)
+            return Parcels(place[:0], none, none), polygon.area * thickness
+        steepness = self.ground.field.at(np.ascontiguousarray(place[inside]))["area"].mean()
+        asked = float(polygon.area * steepness) * thickness
 
-    def _raster(self) -> tuple[Columns, float]:
-        """Columns where a raster of thickness has half a particle or more."""
+        def everywhere(place: np.ndarray) -> np.ndarray:
+            return np.full(len(place), thickness)
+
+        parcels = self._stacked(layer, everywhere, self._spacing(thickness))
+        within = polygon.contains(parcels.place[:, 0], parcels.place[:, 1])
+        outside = _distance(parcels.place, [outer, *holes]) * np.where(within, -1.0, 1.0)
+        near = outside < dp
+        return _lowest(parcels.chosen(near), outside[near], asked), asked
+
+    def _raster(self) -> tuple[Parcels, float]:
+        """Where a raster of thickness has half a particle or more."""
         path = file_of(self.scenario.where, self.name, self.table.file or "")
         try:
             raster = read_raster(path)
@@ -122,40 +180,50 @@ class ReleaseBody(Shaped[Release]):
         (top, left), (bottom, right) = filled.min(axis=0), filled.max(axis=0) + 1
         low = np.array([west + left * raster.cell, north - bottom * raster.cell])
         high = np.array([west + right * raster.cell, north - top * raster.cell])
-        place, area = self.ground.columns(low, high, self.scenario.dp)
-        thickness = np.nan_to_num(raster.sampled(place[:, 0], place[:, 1]))
-        keep = thickness >= 0.5 * self.scenario.dp
+        dp = self.scenario.dp
+
+        def thickness(place: np.ndarray) -> np.ndarray:
+            return np.maximum(np.nan_to_num(raster.sampled(place[:, 0], place[:, 1])), 0.0)
+
         centres = np.column_stack([raster.x[filled[:, 1]], raster.y[filled[:, 0]]])
         steepness = self.ground.field.at(np.ascontiguousarray(centres))["area"]
         depth = raster.values[filled[:, 0], filled[:, 1]]
         asked = float(np.sum(depth * steepness)) * raster.cell**2
-        return Columns(place[keep], area[keep], thickness[keep]), asked
+
+        def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
+            return self.ground.layer(low, high, dp, height)
+
+        return self._stacked(layer, thickness, dp, asked), asked
 
     def count(self) -> float:
         """See Body."""
-        return self.volume / self.scenario.dp**self.dim
+        return float(len(self.parcels.volume))
 
     def particles(self, names: list[str]) -> ParticleSet:
-        """See Body: whole layers that share the thickness of each column."""
-        columns, dp = self.columns, self.scenario.dp
-        layers = np.maximum(1, np.rint(columns.thickness / dp)).astype(int)
-        which = np.repeat(np.arange(len(layers)), layers)
-        first = np.cumsum(layers) - layers
-        level = np.arange(len(which)) - first[which] + 0.5
-        height = columns.thickness[which] * level / layers[which]
-        position = self.ground.above(columns.place[which], height)
-        volume = (columns.area * columns.thickness / layers)[which]
+        """See Body."""
+        parcels = self.parcels
+        position = self.ground.above(parcels.place, parcels.height)
         n = len(position)
         compressed = 1 + self._compression(position)
         return ParticleSet(
             position=position,
             velocity=self.velocity_at(position),
-            mass=self.rho0 * volume * compressed,
+            mass=self.rho0 * parcels.volume * compressed,
             density=self.rho0 * compressed,
-            smoothing_length=np.full(n, self.scenario.eta * dp),
+            smoothing_length=np.full(n, self.scenario.eta * self.scenario.dp),
             motion=np.full(n, FREE, np.int32),
             **self._indices(names, n),
         )
+
+
+def _lowest(parcels: Parcels, order: np.ndarray, volume: float) -> Parcels:
+    """Those of the lowest `order` (N,) that make a volume, to half of one, in their own order."""
+    if not len(order):
+        return parcels
+    first = np.argsort(order, kind="stable")
+    covered = np.cumsum(parcels.volume[first])
+    count = int(np.searchsorted(covered, volume - 0.5 * parcels.volume.mean())) + 1
+    return parcels.chosen(np.sort(first[:count]))
 
 
 def _distance(place: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
