@@ -70,6 +70,17 @@ def test_field_of_position():
     values = evaluate_at("= a*sin(2*pi*y)", NAMES, position)
     np.testing.assert_allclose(values, [0.0, 2.0])
     np.testing.assert_array_equal(evaluate_at("= max(x, 0.5)", {}, position), [0.5, 1.0])
+    kept = position.copy()
+    np.testing.assert_array_equal(
+        evaluate_at("= min(x + 1, 5, y - 9)", {}, position), kept[:, 1] - 9
+    )
+    np.testing.assert_array_equal(
+        evaluate_at("= max(x, y, x*0 - 2)", {}, position), kept.max(axis=1)
+    )
+    for text in ("= sin(x, y)", "= min(x)", "= sqrt(x, y)"):
+        with pytest.raises(ExpressionError):
+            evaluate_at(text, {}, position)
+    np.testing.assert_array_equal(position, kept)
 
 
 @pytest.mark.parametrize("text", ["= 1/x", "= z", "= 'word'", "= x.tofile('leak')"])

@@ -10,6 +10,7 @@ import ast
 import math
 import operator
 from collections.abc import Callable, Mapping
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -49,19 +50,31 @@ SCALAR_FUNCTIONS: dict[str, Function] = {
     "min": min,
     "max": max,
 }
+
+
+def _elementwise(function: Function) -> Function:
+    """A function of numpy without its further arguments, which would be overwritten."""
+    return lambda value: function(value)
+
+
+def _of_several(function: Function) -> Function:
+    """The least or greatest of two values or more, element by element."""
+    return lambda first, second, *others: reduce(function, others, function(first, second))
+
+
 ARRAY_FUNCTIONS: dict[str, Function] = SCALAR_FUNCTIONS | {
-    "sqrt": np.sqrt,
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "exp": np.exp,
-    "radians": np.radians,
+    "sqrt": _elementwise(np.sqrt),
+    "sin": _elementwise(np.sin),
+    "cos": _elementwise(np.cos),
+    "tan": _elementwise(np.tan),
+    "exp": _elementwise(np.exp),
+    "radians": _elementwise(np.radians),
     "round": np.round,
-    "floor": np.floor,
-    "ceil": np.ceil,
-    "abs": np.abs,
-    "min": np.minimum,
-    "max": np.maximum,
+    "floor": _elementwise(np.floor),
+    "ceil": _elementwise(np.ceil),
+    "abs": _elementwise(np.abs),
+    "min": _of_several(np.minimum),
+    "max": _of_several(np.maximum),
 }
 RESERVED_NAMES = {*POSITION_NAMES, *CONSTANTS, *SCALAR_FUNCTIONS}
 
