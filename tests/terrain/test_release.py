@@ -164,6 +164,7 @@ max = [6, 0.8]
         (SQUARE + "\nfixed = true", "cannot be fixed"),
         (SQUARE + "\narray = {count = [2, 1, 1], step = [1, 0, 0]}", "no copies"),
         (SQUARE.replace("0.5", "[0.5, 0.4]"), "2 numbers for 1 polygons"),
+        (SQUARE.replace("0.5", "0.05"), "less than 0.6 particle"),
         (SQUARE + "\nfile_name = 'x'", "file_name is not a known key"),
     ],
 )

@@ -18,6 +18,7 @@ from ...scenario.tables.terrain.release import Release
 from ..ground import Ground, ground_of
 from .shaped import Shaped
 
+THINNEST = 0.6  # particles; thinner ones would be far from round
 Layer = Callable[[float], tuple[np.ndarray, np.ndarray]]  # height -> places, areas
 Thickness = Callable[[np.ndarray], np.ndarray]  # places -> m
 
@@ -122,7 +123,14 @@ class ReleaseBody(Shaped[Release]):
 
     def _spacing(self, thickness: float) -> float:
         """Between layers, m, of which a whole number makes the thickness."""
-        return thickness / max(1, round(thickness / self.scenario.dp))
+        dp = self.scenario.dp
+        if thickness < THINNEST * dp:
+            raise self.error(
+                f".thickness = {thickness:g} m is less than {THINNEST:g} particle (dp = {dp:g} m): "
+                f"dp = {thickness / 4:.2g} would make four",
+                "thickness",
+            )
+        return thickness / max(1, round(thickness / dp))
 
     def _strip(self, low: float, high: float) -> tuple[Parcels, float]:
         """2-D: from one place to another."""
@@ -147,13 +155,15 @@ class ReleaseBody(Shaped[Release]):
         def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
             return self.ground.layer(low, high, dp, height)
 
-        place, _ = layer(0.0)
+        place, area = layer(0.0)
         inside = polygon.contains(place[:, 0], place[:, 1])
         if not inside.any():
             none = np.zeros(0)
             return Parcels(place[:0], none, none), polygon.area * thickness
-        steepness = self.ground.field.at(np.ascontiguousarray(place[inside]))["area"].mean()
-        asked = float(polygon.area * steepness) * thickness
+        # Parts are of equal area on the slope, and so of less in plan where it is steep.
+        steepness = self.ground.field.at(np.ascontiguousarray(place[inside]))["area"]
+        in_plan = area[inside] / steepness
+        asked = float(polygon.area * area[inside].sum() / in_plan.sum()) * thickness
 
         def everywhere(place: np.ndarray) -> np.ndarray:
             return np.full(len(place), thickness)
