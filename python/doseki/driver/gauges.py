@@ -101,8 +101,10 @@ def build_gauges(scenario: Scenario, body_names: list[str]) -> list[GaugeReader]
 
 
 def outside_everything(scenario: Scenario, state: State) -> dict[str, np.ndarray]:
-    """Places, m, of gauges that lie outside the box around all particles and inflow sections."""
+    """Places, m, of gauges outside the box around all particles, inflow sections and ground."""
     points = [state["position"], *(inflow.position[None, :] for inflow in scenario.inflow.values())]
+    if scenario.bed is not None:
+        points.append(np.array(scenario.bed.corners))
     everything = np.concatenate(points)
     low, high = everything.min(axis=0) - scenario.dp, everything.max(axis=0) + scenario.dp
     places = {name: gauge.place for name, gauge in scenario.gauge.items()}

@@ -67,6 +67,12 @@ class Bed:
         return self.origin - 0.5 * self.cell, self.origin + (nodes - 0.5) * self.cell
 
     @property
+    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (dim,) of the box around the ground, m."""
+        low, high = self.extent
+        return np.append(low, self.heights.min()), np.append(high, self.heights.max())
+
+    @property
     def unknown_share(self) -> float:
         """The share of the grid of which the map knows nothing."""
         return float(np.mean(self.unknown))

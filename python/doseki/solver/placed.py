@@ -17,10 +17,8 @@ def origin_of(scenario: Scenario) -> np.ndarray:
     """The place (dim,), m, in the scenario's coordinates that is zero in the core."""
     if scenario.bed is None:
         return np.zeros(scenario.dim)
-    low, high = scenario.bed.extent
-    heights = scenario.bed.heights
-    middle = np.append(0.5 * (low + high), 0.5 * (heights.min() + heights.max()))
-    return np.asarray(STEP * np.rint(middle / STEP))
+    low, high = scenario.bed.corners
+    return np.asarray(STEP * np.rint(0.5 * (low + high) / STEP))
 
 
 class Placed:
