@@ -165,3 +165,20 @@ def test_a_run_keeps_its_ground_and_goes_on_without_the_file(tmp_path, dim):
     heights = ground.z if dim == 2 else ground.values[::-1]
     assert np.array_equal(heights, scenario.bed.heights)
     assert load(folder).ground is not None
+
+
+def test_a_run_that_goes_on_cannot_be_buried(tmp_path):
+    """Another terrain may lie lower than that of the earlier run, but not above its flow."""
+    profile(tmp_path / "terrain.csv", lambda x: 3 - 0.5 * x)
+    path = tmp_path / "case.toml"
+    words = text(2, dp=0.1, time=0.02, more=BLOCK.format(place=PLACE[2]))
+    path.write_text(words)
+    run_scenario(load_scenario(path), tmp_path / "run")
+    path.write_text(words.replace("= 0.02", "= 0.04") + '[start]\nfrom = "run"\n')
+    for rise, name in ((-0.05, "lower"), (0.3, "higher")):
+        profile(tmp_path / "terrain.csv", lambda x, up=rise: 3 + up - 0.5 * x)
+        if name == "lower":
+            assert run_scenario(load_scenario(path), tmp_path / name)["status"] == "done"
+        else:
+            with pytest.raises(UserError, match=r"lie in the ground, up to 0\.2"):
+                run_scenario(load_scenario(path), tmp_path / name)

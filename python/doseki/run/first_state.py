@@ -92,7 +92,10 @@ def _check(scenario: Scenario, earlier: Earlier, checkpoint: Checkpoint) -> None
 
 
 def _has_same_bodies(own: Mapping[str, Any], earlier: Earlier) -> bool:
-    """Whether bodies and inflows are those of the earlier run, in the same order."""
+    """Whether bodies, inflows and terrain are those of the earlier run, in the same order."""
+    beds = own.get("terrain"), earlier.scenario.get("terrain")
+    if _without(beds[0], {"file"}) != _without(beds[1], {"file"}):  # the digest tells
+        return False
     for section, free in (("body", NOT_OF_STATE), ("inflow", set[str]())):
         now, then = own.get(section, {}), earlier.section(section)
         if list(now) != list(then):

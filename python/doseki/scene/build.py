@@ -36,6 +36,7 @@ from .meshes.meeting import without_common
 
 MAX_PARTICLES = 2_000_000_000
 BYTES_PER_PARTICLE = 500  # what a run holds, lists included
+BURIED = 0.5  # spacings in the ground that no flow gets to
 IN_THE_GROUND = 0.25  # spacings that particles may be nearer to a bed than those that rest on it
 
 
@@ -261,9 +262,18 @@ def _outside(
 def _above_ground(scenario: Scenario, name: str, particles: ParticleSet) -> ParticleSet:
     """The particles of a body without the free ones that lie in the ground of the terrain."""
     assert scenario.bed is not None
-    if name in scenario.carried or name in scenario.inflow:
+    if not len(particles):
         return particles
     distance = ground_of(scenario.bed).height_above(particles.position)
+    if name in scenario.carried or name in scenario.inflow:
+        buried = (particles.motion == FREE) & (distance < -BURIED * scenario.dp)
+        if buried.any():
+            raise scenario.where.error(
+                ("terrain",),
+                f"terrain: {buried.sum()} particles of {name}, which come from the earlier run, "
+                f"lie in the ground, up to {-distance.min():.3g} m deep: keep its terrain",
+            )
+        return particles
     keep = (distance > (0.5 - IN_THE_GROUND) * scenario.dp) | (particles.motion != FREE)
     return particles if keep.all() else particles.chosen(keep)
 
