@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from .scenes import fluid, profile, simulation_of, text
+from .scenes import fluid, grid, profile, simulation_of, text
 
 MASS = """
 [material.debris]
@@ -208,3 +208,36 @@ pressure = "= 9810*({level} - y)"
     assert np.sqrt(np.mean(misfit**2)) < 0.01 * 9810
     energy = simulation.totals()["kinetic_energy"]
     assert energy < 1.5e-5 * 9810 * 1.05**2
+
+
+def test_a_slope_that_is_turned_gives_the_turned_flow(tmp_path):
+    """In 3-D down x, down -y, and between the two: rows of walls lie differently in each."""
+    ways = []
+    for angle in (0.0, -90.0, -37.0):
+        turn = math.radians(angle)
+        down = np.array([math.cos(turn), math.sin(turn)])
+        grid(tmp_path / "terrain.asc", lambda x, y, d=down: 5 - 0.4 * (d[0] * x + d[1] * y),
+             (8.0, 8.0))  # fmt: skip
+        side = np.array([-down[1], down[0]])
+        corners = [
+            (np.array([4.0, 4.0]) + a * down + b * side).tolist()
+            for a, b in ((-0.8, -0.8), (0.8, -0.8), (0.8, 0.8), (-0.8, 0.8))
+        ]
+        path = tmp_path / "case.toml"
+        path.write_text(
+            text(3, dp=0.1, speed=6.0, more=f"""
+[body.slide]
+shape = "release"
+material = "water"
+polygon = {corners}
+thickness = 0.4
+""")
+        )  # fmt: skip
+        simulation, _ = simulation_of(path)
+        simulation.advance(limit=0.5, pause=0.5, max_steps=10**6)
+        state = simulation.state()
+        centre = state["position"][fluid(state)].mean(axis=0)
+        ways.append([(centre[:2] - 4.0) @ down, (centre[:2] - 4.0) @ side])
+    assert ways[1][0] == pytest.approx(ways[0][0], rel=0.01)
+    assert ways[2][0] == pytest.approx(ways[0][0], rel=0.02)
+    assert np.abs(np.array(ways)[:, 1]).max() < 0.02 * ways[0][0]
