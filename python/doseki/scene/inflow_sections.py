@@ -8,9 +8,11 @@ import numpy as np
 
 from ..record.particles import FIXED, ParticleSet
 from ..scenario.model import Scenario
-from ..scenario.tables.inflow import Inflow
 from ..scenario.values.directions import section_axes
+from .ground import ground_of
 from .lattices import ROUNDING
+
+NEAREST = 0.4  # spacings between an inflow and a terrain
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,12 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     inflow, dp, dim = scenario.inflow[name], scenario.dp, scenario.dim
     material = scenario.materials[inflow.material]
     direction = inflow.direction / np.linalg.norm(inflow.direction)
-    rows = _rows(scenario, name, inflow, direction)
+    rows = rows_of(scenario, name)
+    rows = rows[above_ground(scenario, rows, direction)]
+    if not len(rows):
+        raise scenario.where.error(
+            ("inflow", name, "position"), f"inflow.{name}: all of its section lies in the ground"
+        )
     times, rate = inflow.rows.T
     area = len(rows) * dp ** (dim - 1) * (inflow.width if dim == 2 else 1.0)
     speeds = rate / area
@@ -132,8 +139,20 @@ def _check_outside_walls(
             )
 
 
-def _rows(scenario: Scenario, name: str, inflow: Inflow, direction: np.ndarray) -> np.ndarray:
+def above_ground(scenario: Scenario, rows: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """Mask (N,) of the rows that lie above a terrain, in the section and in the buffer behind."""
+    if scenario.bed is None:
+        return np.ones(len(rows), bool)
+    ground, lowest = ground_of(scenario.bed), NEAREST * scenario.dp
+    behind = _buffer_layers(scenario) * scenario.dp * direction
+    places = (rows, rows - 0.5 * behind, rows - behind)
+    return np.all([ground.height_above(place) > lowest for place in places], axis=0)
+
+
+def rows_of(scenario: Scenario, name: str) -> np.ndarray:
     """Centres of the particles of one layer: whole particles along depth and (3-D) width."""
+    inflow = scenario.inflow[name]
+    direction = inflow.direction / np.linalg.norm(inflow.direction)
     up, across = section_axes(direction, scenario.gravity)
     dp = scenario.dp
     high = _whole(scenario, name, "depth", inflow.height)

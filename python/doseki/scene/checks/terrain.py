@@ -9,6 +9,7 @@ from typing import Any
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding
+from ..inflow_sections import build_inflows, rows_of
 from ..kinds.body import Body
 from ..kinds.release import ReleaseBody
 
@@ -59,6 +60,21 @@ class WrongVolume(Finding):
 
 
 @dataclass(frozen=True)
+class CutInflow(Finding):
+    """An inflow of which a part lies in the ground, as in a channel."""
+
+    rows: int
+    all_rows: int
+    speed: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: {self.rows} of {self.all_rows} particles of a layer lie above the "
+            f"ground; these carry all of the discharge, at up to {self.speed:.3g} m/s"
+        )
+
+
+@dataclass(frozen=True)
 class ThinRelease(Finding):
     """A release of one or two layers of particles."""
 
@@ -81,6 +97,10 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         yield Unknown(TERRAIN, bed.unknown_share)
     if bed.cell < 0.5 * scenario.dp:
         yield Coarse(TERRAIN, bed.cell, scenario.dp)
+    for section in build_inflows(scenario, list(scenario.inflow)):
+        rows, all_rows = len(section.rows), len(rows_of(scenario, section.name))
+        if rows < all_rows:
+            yield CutInflow(f"inflow.{section.name}", rows, all_rows, float(section.speeds.max()))
     for name, body in bodies.items():
         if not isinstance(body, ReleaseBody):
             continue
