@@ -36,15 +36,38 @@ struct Inflow {
     double mass = 0.0, density = 0.0, smoothing_length = 0.0;  // of one particle
     std::int16_t material = 0;
     std::int32_t body = 0;
+    // Of a flow that rises and falls: heights of the points of a layer above the bed, and that of
+    // the flow at the times of `speed` [m]. Empty: every layer is whole.
+    Array<double> row_height, thickness;
 
     // State: layers set free so far, and whether the buffer exists.
     std::int64_t released = 0;
     bool open = false, closed = false;
 
     double mass_per_layer() const { return mass * static_cast<double>(layer.size()); }
-    /// Mass that was to enter until time t.
-    double requested_mass(double t) const {
-        return mass_per_layer() * speed.distance_at(t) / spacing;
+    /// The height of the flow as layer k crosses the section.
+    double height_of_layer(std::int64_t k) const {
+        if (thickness.empty()) return std::numeric_limits<double>::infinity();
+        return speed.value_at(thickness, speed.time_at((static_cast<double>(k) + 0.5) * spacing));
+    }
+    bool has_row(std::size_t row, double height) const {
+        return thickness.empty() || row_height[row] < height;
+    }
+    double mass_of_layer(std::int64_t k) const {
+        const double height = height_of_layer(k);
+        double sum = 0.0;
+        for (std::size_t row = 0; row < layer.size(); ++row)
+            if (has_row(row, height)) sum += mass;
+        return sum;
+    }
+    /// Mass that was to enter until time t, which does not go back.
+    double requested_mass(double t) {
+        const double gone = speed.distance_at(t);
+        if (thickness.empty()) return mass_per_layer() * gone / spacing;
+        const double layers = gone / spacing;
+        while (static_cast<double>(counted_ + 1) <= layers)
+            counted_mass_ += mass_of_layer(counted_), ++counted_;
+        return counted_mass_ + (layers - static_cast<double>(counted_)) * mass_of_layer(counted_);
     }
 
     /// The next time at which particles appear, are set free or vanish.
@@ -71,6 +94,10 @@ struct Inflow {
     double advance(std::int64_t k, double t) const {
         return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
     }
+
+private:
+    std::int64_t counted_ = 0;  // whole layers, of requested_mass()
+    double counted_mass_ = 0.0;
 };
 
 /// Particles inside the box are removed and counted.
@@ -129,7 +156,12 @@ public:
     void begin_at(double t) {
         for (Inflow<D>& inflow : inflows) {
             inflow.begin_at(t);
-            ledger.inflow.mass += inflow.mass_per_layer() * static_cast<double>(inflow.released);
+            if (inflow.thickness.empty())
+                ledger.inflow.mass +=
+                    inflow.mass_per_layer() * static_cast<double>(inflow.released);
+            else
+                for (std::int64_t k = 0; k < inflow.released; ++k)
+                    ledger.inflow.mass += inflow.mass_of_layer(k);
         }
         ledger.initial = -ledger.inflow.mass;
     }
@@ -196,14 +228,15 @@ void OpenBoundaries<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) co
 template <int D>
 void OpenBoundaries<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k,
                                   double t) {
-    if (!adds) {
-        next_id += static_cast<std::int64_t>(inflow.layer.size());
-        return;
-    }
-    const std::size_t first = particles.size();
-    resize(particles, first + inflow.layer.size());
+    const double height = inflow.height_of_layer(k);
     for (std::size_t row = 0; row < inflow.layer.size(); ++row) {
-        const std::size_t p = first + row;
+        if (!inflow.has_row(row, height)) continue;
+        if (!adds) {
+            ++next_id;
+            continue;
+        }
+        const std::size_t p = particles.size();
+        resize(particles, p + 1);
         particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
         for (int a = 0; a < D; ++a)
             particles.position[p][a] +=
@@ -257,7 +290,7 @@ bool OpenBoundaries<D>::inject(Particles<D>& particles, double t) {
         }
     }
     ledger.requested = 0.0;
-    for (const Inflow<D>& inflow : inflows) ledger.requested += inflow.requested_mass(t);
+    for (Inflow<D>& inflow : inflows) ledger.requested += inflow.requested_mass(t);
     return changed;
 }
 

@@ -35,6 +35,15 @@ struct SpeedTable {
         return speed[k] + slope(k) * (t - time[k]);
     }
 
+    /// Of values that hold at the times of the rows, linear in between; before and after the ends.
+    double value_at(const Array<double>& values, double t) const {
+        if (t >= stop()) return values.back();
+        const std::size_t k = row_at(std::max(t, start()));
+        const double length = time[k + 1] - time[k];
+        const double share = length > 0.0 ? std::clamp((t - time[k]) / length, 0.0, 1.0) : 1.0;
+        return values[k] + share * (values[k + 1] - values[k]);
+    }
+
     /// When the distance is first reached; never: infinity.
     double time_at(double s) const {
         const auto reached = std::lower_bound(distance.begin() + 1, distance.end(), s);

@@ -34,7 +34,12 @@ Inflow<D> BoundaryTables<D>::inflow(const NamedValues& table) {
     read("jitter", inflow.jitter), read("mass", inflow.mass), read("density", inflow.density);
     read("smoothing_length", inflow.smoothing_length);
     read("material", inflow.material), read("body", inflow.body);
+    read("row_height", inflow.row_height, optional), read("thickness", inflow.thickness, optional);
     read.finish();
+    const bool rises = !inflow.thickness.empty();
+    if (rises && (inflow.thickness.size() != inflow.speed.time.size() ||
+                  inflow.row_height.size() != inflow.layer.size()))
+        throw std::invalid_argument("inflow: thickness or row_height of the wrong length");
     return inflow;
 }
 

@@ -66,3 +66,81 @@ def test_one_that_lies_in_the_ground_is_refused(path):
     deep = load_scenario(path, ["inflow.flood.position=[1.0, 0.5, -2]"])
     with pytest.raises(UserError, match="all of its section lies in the ground"):
         filled_simulation(deep)
+
+
+SURGE = """
+[inflow.flood]
+material = "water"
+surge = [[0, 0.2, 1.0], [0.4, 0.8, 2.0], [0.8, 0.4, 1.0]]
+position = [1.0, 0.5, 1.2]
+direction = [1, 0, -0.2]
+width = 3.0
+"""
+
+
+def test_a_surge_rises_and_falls_in_thickness_and_speed(path, tmp_path):
+    path.write_text(text(3, dp=0.1, time=1.0, speed=5.0, more=SURGE))
+    scenario = load_scenario(path)
+    assert scenario.inflow["flood"].height == 0.8
+    (section,) = build_inflows(scenario, ["terrain", "flood"])
+    simulation, _, _ = filled_simulation(scenario)
+    simulation.start()
+    highest, asked = [], []
+    for end in (0.15, 0.4, 0.75):
+        simulation.advance(limit=end, pause=end, max_steps=10**6)
+        state, totals = simulation.state(), simulation.totals()
+        driven = state["motion"] == 2
+        behind = (state["position"] - section.rows[0]) @ section.direction
+        next_one = driven & (behind > behind[driven].max() - 0.05)
+        foot = section.rows[np.argmin(section.row_height)]
+        above = (state["position"][next_one] - foot) @ np.array([0.2, 0.0, 1.0]) / np.sqrt(1.04)
+        highest.append(float(above.max() + section.row_height.min()))
+        asked.append(totals["mass_asked"])
+        speed = state["velocity"][driven] @ section.direction
+        assert speed == pytest.approx(np.full(len(speed), np.interp(end, [0, 0.4, 0.8], [1, 2, 1])))
+    assert highest == pytest.approx([0.2 + 0.6 * 0.15 / 0.4, 0.8, 0.45], abs=0.1)
+    # Layer by layer: rows below the thickness of the moment, at the speed of the moment.
+    t = np.linspace(0, 0.75, 20001)
+    thick = np.interp(t, [0, 0.4, 0.8], [0.2, 0.8, 0.4])
+    fast = np.interp(t, [0, 0.4, 0.8], [1, 2, 1])
+    area = (section.row_height[:, None] < thick[None, ::50]).sum(axis=0) * 0.01
+    exact = 1000 * np.trapezoid(area * fast[::50], t[::50])
+    assert asked[-1] == pytest.approx(exact, rel=0.02)
+    assert totals["mass_entered"] == pytest.approx(asked[-1], rel=0.1)
+
+
+def test_a_surge_from_a_file_of_time_thickness_and_velocity(path, tmp_path):
+    (tmp_path / "surge.csv").write_text(
+        "timestep,thickness,velocity\n0,0.2,1\n0.4,0.8,2\n0.8,0.4,1\n"
+    )
+    path.write_text(text(3, dp=0.1, more=SURGE.replace(
+        "[[0, 0.2, 1.0], [0.4, 0.8, 2.0], [0.8, 0.4, 1.0]]", '"surge.csv"')))  # fmt: skip
+    scenario = load_scenario(path)
+    assert scenario.inflow["flood"].surge == [[0, 0.2, 1], [0.4, 0.8, 2], [0.8, 0.4, 1]]
+    again = path.with_name("again.toml")
+    again.write_text(scenario.effective_toml())
+    assert load_scenario(again).inflow["flood"].surge == scenario.inflow["flood"].surge
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("rate = 0.2", "exclude each other"),
+        ("depth = 0.2", "exclude each other"),
+        ("duration = 3", "exclude each other"),
+        ("surge = [[0, 1]]", "thickness, velocity"),
+        ("surge = [[0, 0.2, 1], [1, -0.2, 1]]", "thickness = -0.2"),
+        ("surge = [[0, 0.2, 1], [0, 0.2, 1]]", "times must go on"),
+    ],
+)
+def test_what_is_no_surge_is_refused(path, change, said):
+    words = text(3, dp=0.1, more=SURGE)
+    if change.startswith("surge"):
+        words = "\n".join(
+            change if line.startswith("surge") else line for line in words.splitlines()
+        )
+    else:
+        words += change + "\n"
+    path.write_text(words)
+    with pytest.raises(UserError, match=said):
+        load_scenario(path)

@@ -14,11 +14,13 @@ from ..util.foreign import check_regular_file
 from .particle_files.columns_csv import numbers_in, read_csv_columns
 from .tables.inflow import Inflow
 from .values.toml_source import Where
-from .values.types import LARGEST, checked_hydrograph
-from .values.units import RATE, TIME
+from .values.types import LARGEST, checked_hydrograph, checked_surge
+from .values.units import LENGTH, RATE, SPEED, TIME
 
 HEADERS = {"t": TIME, "Q": RATE}
 EXAMPLE = "t [s],Q [L/s]"
+SURGE_HEADERS = {"t": TIME, "thickness": LENGTH, "velocity": SPEED}
+SURGE = "t [s],thickness [m],velocity [m/s]"
 MAX_BYTES = 20_000_000
 MAX_ROWS = 100_000
 
@@ -33,8 +35,12 @@ def completed_inflows(
 def _completed(name: str, inflow: Inflow, gravity: np.ndarray, where: Where) -> Inflow:
     _check_rate(where, name, inflow)
     found: dict[str, Any] = {}
+    if isinstance(inflow.surge, str):
+        found["surge"] = _from_file(where, name, "surge", inflow.surge)
+    if inflow.surge is not None:
+        found["depth"] = _highest(found.get("surge", inflow.surge))
     if isinstance(inflow.hydrograph, str):
-        found["hydrograph"] = _from_file(where, name, inflow.hydrograph)
+        found["hydrograph"] = _from_file(where, name, "hydrograph", inflow.hydrograph)
     if inflow.depth == "normal":
         found["depth"] = _normal_depth(where, name, inflow, gravity)
     return inflow.model_copy(update=found)
@@ -43,6 +49,15 @@ def _completed(name: str, inflow: Inflow, gravity: np.ndarray, where: Where) -> 
 def _check_rate(where: Where, name: str, inflow: Inflow) -> None:
     """Either a rate and a duration, or a hydrograph."""
     table = f"inflow.{name}"
+    if inflow.surge is not None:
+        for key in ("rate", "hydrograph", "duration", "depth"):
+            if getattr(inflow, key) is not None and not _is_completed(inflow, key):
+                raise where.error(
+                    ("inflow", name, key), f"{table}.{key} and {table}.surge exclude each other"
+                )
+        return
+    if inflow.depth is None:
+        raise where.error(("inflow", name), f"{table}.depth is missing")
     if inflow.hydrograph is None:
         for key in ("rate", "duration"):
             if getattr(inflow, key) is None:
@@ -56,14 +71,26 @@ def _check_rate(where: Where, name: str, inflow: Inflow) -> None:
             )
 
 
-def _from_file(where: Where, name: str, file: str) -> list[list[float]]:
-    keys = ("inflow", name, "hydrograph")
+def _is_completed(inflow: Inflow, key: str) -> bool:
+    """Whether a run has written the depth of its surge itself."""
+    return (
+        key == "depth" and isinstance(inflow.surge, list) and inflow.depth == _highest(inflow.surge)
+    )
+
+
+def _highest(surge: Any) -> float:
+    """The largest thickness of a surge, m."""
+    return max(float(row[1]) for row in surge)
+
+
+def _from_file(where: Where, name: str, key: str, file: str) -> list[list[float]]:
+    keys = ("inflow", name, key)
     path = where.folder(keys) / file
     try:
-        return read_hydrograph(path)
+        return read_surge(path) if key == "surge" else read_hydrograph(path)
     except (ValueError, UserError) as error:
         place = "" if isinstance(error, UserError) else f"{path}: "
-        raise where.error(keys, f"inflow.{name}.hydrograph: {place}{error}") from None
+        raise where.error(keys, f"inflow.{name}.{key}: {place}{error}") from None
 
 
 def read_hydrograph(path: Path) -> list[list[float]]:
@@ -71,14 +98,34 @@ def read_hydrograph(path: Path) -> list[list[float]]:
 
     Raises UserError for a file that cannot be read, ValueError for one that is no hydrograph.
     """
+    columns = _columns(path)
+    t, rate = (numbers_in(columns, name, unit, EXAMPLE) for name, unit in HEADERS.items())
+    return checked_hydrograph(list(zip(t, rate, strict=True)))
+
+
+def read_surge(path: Path) -> list[list[float]]:
+    """Rows [t, thickness, velocity] in s, m and m/s of a CSV file with such columns.
+
+    The first may be called timestep.  Raises as read_hydrograph does.
+    """
+    columns = _columns(path)
+    columns = {name.replace("timestep", "t", 1): values for name, values in columns.items()}
+    rows = zip(
+        *(numbers_in(columns, name, unit, SURGE) for name, unit in SURGE_HEADERS.items()),
+        strict=True,
+    )
+    return checked_surge(list(rows))
+
+
+def _columns(path: Path) -> dict[str, np.ndarray]:
     check_regular_file(path)
     if path.stat().st_size > MAX_BYTES:
         raise UserError(f"{path}: a hydrograph may have at most {MAX_BYTES // 10**6} MB")
     columns = read_csv_columns(path)
-    t, rate = (numbers_in(columns, name, unit, EXAMPLE) for name, unit in HEADERS.items())
-    if len(t) > MAX_ROWS:
-        raise ValueError(f"{len(t)} rows; at most {MAX_ROWS}, which the run's scenario.toml holds")
-    return checked_hydrograph(list(zip(t, rate, strict=True)))
+    rows = len(next(iter(columns.values()), ()))
+    if rows > MAX_ROWS:
+        raise ValueError(f"{rows} rows; at most {MAX_ROWS}, which the run's scenario.toml holds")
+    return columns
 
 
 def _normal_depth(where: Where, name: str, inflow: Inflow, gravity: np.ndarray) -> float:

@@ -39,6 +39,8 @@ class InflowSection:
     smoothing_length: float
     buffer_layers: int
     jitter: float  # random displacement of a particle, in spacings
+    thickness: np.ndarray  # (k,) at `times`, m; none: every layer is whole
+    row_height: np.ndarray  # (n,) above the bed, m, where there is a thickness
 
     @property
     def start(self) -> float:
@@ -95,7 +97,10 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
         )
     times, rate = inflow.rows.T
     area = len(rows) * dp ** (dim - 1) * (inflow.width if dim == 2 else 1.0)
-    speeds = rate / area
+    speeds, thickness, heights = rate / area, np.zeros(0), np.zeros(0)
+    if inflow.surge is not None:
+        _, thickness, speeds = np.array(inflow.surge, dtype=float).T
+        heights = _heights(scenario, name, rows)
     steps = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)
     return InflowSection(
         name=name,
@@ -112,7 +117,31 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
         smoothing_length=scenario.eta * dp,
         buffer_layers=_buffer_layers(scenario),
         jitter=inflow.jitter,
+        thickness=thickness,
+        row_height=heights,
     )
+
+
+def _heights(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
+    """Heights (N,) of the points of a layer above the lowest point of the bed in the section, m."""
+    inflow = scenario.inflow[name]
+    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    up, _ = section_axes(direction, scenario.gravity)
+    return np.asarray((rows - inflow.position) @ up) - _lowest_bed(scenario, name)
+
+
+def _lowest_bed(scenario: Scenario, name: str) -> float:
+    """How far the bed of a terrain lies above the foot of the section of a surge at least, m."""
+    inflow, dp = scenario.inflow[name], scenario.dp
+    if scenario.bed is None or inflow.surge is None:
+        return 0.0
+    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    up, across = section_axes(direction, scenario.gravity)
+    places = inflow.position[None, :]
+    if across is not None:
+        places = inflow.position + np.arange(0.0, inflow.width, 0.25 * dp)[:, None] * across
+    ground = ground_of(scenario.bed).field.at(np.ascontiguousarray(places[:, :-1]))["height"]
+    return max(0.0, float((ground - places[:, -1]).min() * up[-1]))
 
 
 def _check_outside_walls(
@@ -155,7 +184,7 @@ def rows_of(scenario: Scenario, name: str) -> np.ndarray:
     direction = inflow.direction / np.linalg.norm(inflow.direction)
     up, across = section_axes(direction, scenario.gravity)
     dp = scenario.dp
-    high = _whole(scenario, name, "depth", inflow.height)
+    high = _whole(scenario, name, "depth", inflow.height + _lowest_bed(scenario, name))
     steps_up = ((np.arange(high) + 0.5) * dp)[:, None] * up
     if across is None:
         return inflow.position + steps_up

@@ -146,6 +146,8 @@ def _inflow_table(section: InflowSection) -> dict[str, Any]:
         },
         **{name: getattr(section, name).tolist() for name in "times speeds distances".split()},
         "buffer_layers": int(section.buffer_layers),
+        "thickness": section.thickness.tolist(),
+        "row_height": section.row_height.tolist(),
         "material": int(section.material),
         "body": int(section.body),
     }

@@ -15,6 +15,7 @@ FLOWS = {
     "material": ["mud"],
     "rate": ["0.09"],
     "hydrograph": ["[[0, 0.1], [1, 0]]"],
+    "surge": ["[[0, 0.1, 2], [1, 0.2, 1]]"],
     "width": ["0.4"],
     "position": ["[-0.15, {zeros}0.2]"],
     "direction": ["[1, {zeros}0.1]"],

@@ -17,6 +17,7 @@ from ..values.types import (
     MaterialName,
     Position,
     Rate,
+    Surge,
 )
 
 
@@ -30,11 +31,17 @@ class Inflow(Part):
         description="[[t, Q], ...] in s after `start` and m3/s, or a CSV file with columns t and"
         " Q; excludes rate",
     )
+    surge: Surge | None = Field(
+        None,
+        description="[[t, thickness, velocity], ...] in s after `start`, m and m/s, or a CSV file "
+        "with these columns; excludes rate, hydrograph and depth",
+    )
     width: Length = Field(description="m; a 2-D run enters rate/width")
     position: Position = Field(description="bottom point of the section, m")
     direction: Direction = Field(description="direction of the flow")
-    depth: Depth = Field(
-        description='m, extent along the section\'s upward normal, or "normal": of uniform flow'
+    depth: Depth | None = Field(
+        None,
+        description='m, extent along the section\'s upward normal, or "normal": of uniform flow',
     )
     ks: Length | None = Field(None, description="roughness of the bed in the normal depth, m")
     start: Instant = Field(0.0, description="s")
@@ -52,7 +59,10 @@ class Inflow(Part):
 
     @property
     def rows(self) -> np.ndarray:
-        """Rows (n, 2) of time, s, and discharge, m3/s; linear in between."""
+        """Rows (n, 2) of time, s, and discharge, m3/s; linear in between but of a surge."""
+        if self.surge is not None:
+            t, thickness, velocity = np.array(self.surge, dtype=float).T
+            return np.column_stack([t + self.start, thickness * velocity * self.width])
         given = self.hydrograph or [[0.0, self.rate], [self.duration, self.rate]]
         return np.array(given, dtype=float) + np.array([self.start, 0.0])
 

@@ -18,7 +18,11 @@ EXCLUSIVE = (
 RIVALS = {  # keys of a table of which only one is given: --set puts one in the other's place
     "body": (("d", "grading"), ("count", "mass_total")),
     "figure": (("times", "when"),),
-    "inflow": (("rate", "hydrograph"), ("duration", "hydrograph")),
+    "inflow": (
+        ("rate", "hydrograph"),
+        ("duration", "hydrograph"),
+        *((key, "surge") for key in ("rate", "hydrograph", "duration", "depth")),
+    ),
 }
 
 

@@ -117,6 +117,29 @@ def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
     return [[float(t), float(rate)] for t, rate in rows]
 
 
+def _surge(value: Any) -> str | list[list[float]]:
+    """The path of a CSV file, or checked rows [t, thickness, velocity] in s, m and m/s."""
+    if isinstance(value, str) and value:
+        return value
+    if not isinstance(value, list) or not all(
+        isinstance(row, list) and len(row) == 3 for row in value
+    ):
+        raise ValueError("must be a list of [t, thickness, velocity], or the path of a CSV file")
+    return checked_surge(value)
+
+
+def checked_surge(rows: Sequence[Sequence[Any]]) -> list[list[float]]:
+    """Rows [t, thickness, velocity]; raises ValueError where they are no surge."""
+    for number, row in enumerate(rows, start=1):
+        for name, value in zip(("t", "thickness", "velocity"), row, strict=True):
+            is_number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not is_number or not 0 <= value <= LARGEST:
+                shown = repr(value)[:60]
+                raise ValueError(f"row {number}: {name} = {shown}; allowed: numbers from 0 on")
+    checked_hydrograph([(t, thickness * velocity) for t, thickness, velocity in rows])
+    return [[float(value) for value in row] for row in rows]
+
+
 def _skin(value: float | str) -> float | str:
     if value != "auto" and not (isinstance(value, float) and 0 <= value <= 1):
         raise ValueError('must be a number from 0 to 1, or "auto"')
@@ -214,5 +237,6 @@ Depth = Annotated[float | str, AfterValidator(_depth), Measured(LENGTH, words=("
 Hydrograph = Annotated[Any, AfterValidator(_hydrograph), MeasuredColumns((TIME, RATE))]
 MapPoint = Annotated[list[Coordinate], _entries(2), Measured(LENGTH)]  # x, y on a map
 Extent = Annotated[list[Coordinate], _entries(4), Measured(LENGTH)]  # west, south, east, north
+Surge = Annotated[Any, AfterValidator(_surge), MeasuredColumns((TIME, LENGTH, SPEED))]
 Axis = Literal["x", "y", "z"]
 Skin = Annotated[float | str, AfterValidator(_skin)]
