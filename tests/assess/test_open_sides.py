@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from tests.shipped import CASES
 
 from doseki.assess.open_sides import open_sides
-from doseki.scenario.load import list_scenarios, load_scenario
+from doseki.scenario.load import load_scenario
 from doseki.scenario.start import start_text
 from doseki.scene.build import build_bodies
 
-NAMES = [name for name, _, _ in list_scenarios()]
 HEAD = """\
 dim = 2
 dp = 0.02
@@ -166,8 +166,7 @@ def test_nothing_falls_without_gravity_or_along_a_periodic_axis(opened):
     assert opened(tank(), settings=[*no_floor, *ends, 'periodic=["y"]']) == []
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize(("name", "dim"), CASES)
 def test_no_shipped_scenario_raises_an_alarm(name, dim):
     assert told(name, [f"dim={dim}", *(["dp=0.02"] if dim == 3 and "flume" in name else [])]) == []
 

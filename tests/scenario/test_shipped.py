@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.shipped import CASES, NAMES
 
 from doseki.record.particles import FIXED
 from doseki.scenario.load import list_scenarios, load_scenario
 from doseki.scene.build import build_bodies, build_scene
 from doseki.scene.inflow_sections import build_inflows
-
-NAMES = [name for name, _, _ in list_scenarios()]
 
 
 def test_the_list():
@@ -17,8 +16,7 @@ def test_the_list():
     assert all(title for _, title, _ in list_scenarios())
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize(("name", "dim"), CASES)
 def test_loads_and_builds(name, dim):
     scenario = load_scenario(name, [f"dim={dim}"])
     scene = build_scene(scenario)

@@ -1,0 +1,11 @@
+"""The scenarios that come with doseki, and the dimensions in which each can be run."""
+
+from __future__ import annotations
+
+from doseki.scenario.load import list_scenarios
+
+NAMES = [name for name, _, _ in list_scenarios()]
+# A map is of three dimensions, a profile of two.
+ONLY = {"valley": 3, "gate-release": 2}
+CASES = [(name, dim) for name in NAMES for dim in (2, 3) if ONLY.get(name, dim) == dim]
+FIRST = [(name, ONLY.get(name, 2)) for name in NAMES]
