@@ -71,6 +71,11 @@ class Placed:
         """See CoreSimulation."""
         self._core.move_body({**motion, "pivot": self._near(motion["pivot"]).tolist()})
 
+    def add_load_meter(self, meter: Table) -> None:
+        """See CoreSimulation."""
+        places = {k: self._near(meter[k]).tolist() for k in ("about", "origin") if k in meter}
+        self._core.add_load_meter({**meter, **places})
+
     def set_terrain(self, field: Table, wall: Table) -> None:
         """See CoreSimulation."""
         corner = np.asarray(field["origin"], float) - self._origin[:-1]

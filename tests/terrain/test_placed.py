@@ -1,0 +1,28 @@
+"""A simulation far from zero: what has places is moved, and no call that has is forgotten."""
+
+from __future__ import annotations
+
+from doseki.solver.placed import Placed
+from doseki.solver.protocol import CoreSimulation, Simulation, SimulationView
+
+# Calls and properties whose arguments and results hold no place, or those of the core on purpose.
+WITHOUT_PLACES = {
+    "advance", "add_shapes", "bare_pair_rate", "begin_at", "bind_points", "bytes_per_particle",
+    "checkpoint", "entries_per_particle", "failure", "force_terms", "forget_load_peak",
+    "has_bodies", "interacting_pairs", "join", "loads", "neighbour_counts", "particle_arrays",
+    "phase_seconds", "rates", "rebuilds", "restore", "restore_shared", "set_faces", "set_stresses",
+    "set_walls", "shares", "skin", "start", "steps", "time", "time_phases", "timestep", "totals",
+    "updates",
+}  # fmt: skip
+
+
+def test_every_call_of_a_simulation_is_known_to_have_places_or_none():
+    calls = {
+        name
+        for kind in (SimulationView, Simulation, CoreSimulation)
+        for name in vars(kind)
+        if not name.startswith("_")
+    }
+    moved = {name for name in vars(Placed) if not name.startswith("_")}
+    assert moved <= calls
+    assert calls - moved == WITHOUT_PLACES
