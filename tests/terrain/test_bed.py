@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
 from doseki.geodata.ground import read_ground
 from doseki.geodata.raster import Raster, write_raster
@@ -182,3 +183,14 @@ def test_a_run_that_goes_on_cannot_be_buried(tmp_path):
         else:
             with pytest.raises(UserError, match=r"lie in the ground, up to 0\.2"):
                 run_scenario(load_scenario(path), tmp_path / name)
+
+
+def test_friction_of_the_bed_is_warned_about_as_that_of_a_body(path):
+    """A liquid shears over the layer that Voellmy's bed holds; sand rougher than a flow is deep."""
+    for settings, said in (
+        (["terrain.wall=voellmy", "terrain.mu=0.3"], "terrain.mu = 0.3"),
+        (["terrain.wall=rough", "terrain.ks=9"], "terrain.ks"),
+    ):
+        report = check_scenario(load_scenario(path, settings))
+        assert f"warning: {said}" in report
+        assert f"warning: {said}" not in check_scenario(load_scenario(path))

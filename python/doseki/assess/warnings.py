@@ -215,7 +215,7 @@ def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[
 def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     depths = flow_depths(scenario, state, names)
     depth = min((across * scenario.dp for across in depths.values()), default=math.inf)
-    rough = [(f"body.{name}.ks", b.given("ks")) for name, b in scenario.body.items()]
+    rough = [(f"{'.'.join(keys)}.ks", wall.given("ks")) for keys, wall in scenario.walls.items()]
     rough += [(f"inflow.{name}.ks", inflow.ks) for name, inflow in scenario.inflow.items()]
     for place, ks in rough:
         if ks is not None and ks > depth:
@@ -224,7 +224,8 @@ def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Itera
 
 def _voellmy(scenario: Scenario) -> Iterator[Finding]:
     """Voellmy's law is one of a mass that slides as a whole."""
-    for place, mu in ((f"body.{name}.mu", b.given("mu")) for name, b in scenario.body.items()):
+    walls = scenario.walls.items()
+    for place, mu in ((f"{'.'.join(keys)}.mu", wall.given("mu")) for keys, wall in walls):
         for name in scenario.material_names:
             fluid = scenario.materials[name]
             friction = {"newtonian": 0.0, "mu_i": fluid.of_laws["mu_s"]}.get(fluid.rheology)

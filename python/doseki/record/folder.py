@@ -119,8 +119,7 @@ class RunFolder:
     @property
     def terrain(self) -> Path | None:
         """The bed as the run has it, a raster; None where it has none."""
-        found = (self.path / f"terrain{suffix}" for suffix in RASTERS)
-        return next((path for path in found if path.is_file()), None)
+        return next((path for path in ground_files(self.path) if path.suffix in RASTERS), None)
 
     @property
     def maps(self) -> Path:
@@ -197,7 +196,6 @@ class RunFolder:
             *self.gauges.glob("*.csv"),
             *self.figures.glob("*.png"),
             *(file for file in self.maps.glob("*") if file.suffix in MAP_FILES),
-            *(file for file in self.path.glob("terrain.*") if file.suffix in MAP_FILES),
         ]
 
 

@@ -19,6 +19,7 @@ from .values.toml_source import Where
 from .values.units import LENGTH
 
 PROFILE_EXAMPLE = "x [m],z [m]"
+TILE_COLUMNS = {2: 16, 3: 8}  # spacings along a side of a tile (core/boundaries/terrain.hpp)
 MAX_NODES = 50_000_000  # of a profile or a section; 0.4 GB
 
 

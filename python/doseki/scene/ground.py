@@ -7,9 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ..compiled import HeightField, load_core
-from ..scenario.bed import Bed
-
-TILE = {2: 16, 3: 8}  # columns along one side of a tile
+from ..scenario.bed import TILE_COLUMNS, Bed
 
 
 class Ground:
@@ -33,7 +31,7 @@ class Ground:
 
         The layer is so high above the surface, m; an area (N,) is near dp^2, m2 (2-D: dp, m).
         """
-        side = TILE[self.dim] * dp
+        side = TILE_COLUMNS[self.dim] * dp
         first, last = np.floor(low / side), np.floor(high / side)
         ranges = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
         corners = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, self.dim - 1)

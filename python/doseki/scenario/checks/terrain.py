@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from ..bed import TILE_COLUMNS
 from ..model import Scenario
 from ..tables.terrain.release import Release
 from ..tables.terrain.terrain import TERRAIN
 
 MAX_TILES = 2**31  # that particles can number
-COLUMNS = {2: 16, 3: 8}  # along one side of a tile
 
 
 def check_terrain(scenario: Scenario) -> None:
@@ -40,10 +40,11 @@ def check_terrain(scenario: Scenario) -> None:
                 "fluid, such as one with a yield stress or friction",
             )
     low, high = scenario.bed.extent
-    tiles = float(((high - low) / (COLUMNS[scenario.dim] * scenario.dp) + 2).prod())
+    side = TILE_COLUMNS[scenario.dim]
+    tiles = float(((high - low) / (side * scenario.dp) + 2).prod())
     if tiles > MAX_TILES:
         raise error(
             ("terrain",),
-            f"terrain: {tiles:.3g} tiles of {COLUMNS[scenario.dim]:g} dp cover the map; at most "
+            f"terrain: {tiles:.3g} tiles of {side} dp cover the map; at most "
             f"{MAX_TILES:.3g}: give terrain.window, or increase dp",
         )

@@ -142,8 +142,7 @@ class ReleaseBody(Shaped[Release]):
 
         _, area = layer(0.0)
         asked = float(area.sum()) * t
-        everywhere: Thickness = lambda place: np.full(len(place), t)  # noqa: E731
-        return self._stacked(layer, everywhere, self._spacing(t), asked), asked
+        return self._stacked(layer, _everywhere(t), self._spacing(t), asked), asked
 
     def _area(self, rings: list[list[list[float]]], thickness: float) -> tuple[Parcels, float]:
         """Inside a polygon, whose edge gives way a little for the right volume."""
@@ -165,10 +164,7 @@ class ReleaseBody(Shaped[Release]):
         in_plan = area[inside] / steepness
         asked = float(polygon.area * area[inside].sum() / in_plan.sum()) * thickness
 
-        def everywhere(place: np.ndarray) -> np.ndarray:
-            return np.full(len(place), thickness)
-
-        parcels = self._stacked(layer, everywhere, self._spacing(thickness))
+        parcels = self._stacked(layer, _everywhere(thickness), self._spacing(thickness))
         within = polygon.contains(parcels.place[:, 0], parcels.place[:, 1])
         outside = _distance(parcels.place, [outer, *holes]) * np.where(within, -1.0, 1.0)
         near = outside < dp
@@ -224,6 +220,11 @@ class ReleaseBody(Shaped[Release]):
             motion=np.full(n, FREE, np.int32),
             **self._indices(names, n),
         )
+
+
+def _everywhere(thickness: float) -> Thickness:
+    """The same thickness at all places."""
+    return lambda place: np.full(len(place), thickness)
 
 
 def _lowest(parcels: Parcels, order: np.ndarray, volume: float) -> Parcels:
