@@ -53,12 +53,13 @@ struct Inflow {
     bool has_row(std::size_t row, double height) const {
         return thickness.empty() || row_height[row] < height;
     }
+    std::size_t rows_below(double height) const {
+        std::size_t count = 0;
+        for (std::size_t row = 0; row < layer.size(); ++row) count += has_row(row, height);
+        return count;
+    }
     double mass_of_layer(std::int64_t k) const {
-        const double height = height_of_layer(k);
-        double sum = 0.0;
-        for (std::size_t row = 0; row < layer.size(); ++row)
-            if (has_row(row, height)) sum += mass;
-        return sum;
+        return mass * static_cast<double>(rows_below(height_of_layer(k)));
     }
     /// Mass that was to enter until time t, which does not go back.
     double requested_mass(double t) {
@@ -229,14 +230,16 @@ template <int D>
 void OpenBoundaries<D>::add_layer(Particles<D>& particles, const Inflow<D>& inflow, std::int64_t k,
                                   double t) {
     const double height = inflow.height_of_layer(k);
+    const std::size_t count = inflow.rows_below(height);
+    if (!adds) {
+        next_id += static_cast<std::int64_t>(count);
+        return;
+    }
+    std::size_t p = particles.size() - 1;
+    resize(particles, particles.size() + count);
     for (std::size_t row = 0; row < inflow.layer.size(); ++row) {
         if (!inflow.has_row(row, height)) continue;
-        if (!adds) {
-            ++next_id;
-            continue;
-        }
-        const std::size_t p = particles.size();
-        resize(particles, p + 1);
+        ++p;
         particles.position[p] = inflow.layer[row] + inflow.advance(k, t) * inflow.direction;
         for (int a = 0; a < D; ++a)
             particles.position[p][a] +=

@@ -334,12 +334,8 @@ void Simulation<Lists>::rebuild_lists() {
 
 template <class Lists>
 void Simulation<Lists>::wrap_positions() {
-    for (int a = 0; a < D; ++a) {
-        if (!domain_.periodic[a]) continue;
-        const double length = domain_.length(a);
-        for (auto& x : particles.position)
-            x[a] -= length * std::floor((x[a] - domain_.low[a]) / length);
-    }
+    if (!domain_.any_periodic()) return;
+    for (auto& x : particles.position) x = wrapped(domain_, x);
 }
 
 /// Fluid must find a bed wherever it may be before the lists are built anew.
