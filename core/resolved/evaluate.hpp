@@ -151,21 +151,28 @@ void Resolved<D, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& ha
     halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
                 halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
     const FlowRecords<D> records = this->records(state);
-    const bool has_fluid = fluid_count_ + halo.moving_ghosts() > 0,
-               has_walls = records.count > records.fluid_count && has_fluid;
-    if (!has_fluid) std::fill(state.wall.force.begin(), state.wall.force.end(), Vec<double, D>{});
     const bool friction = model_->has_bed_friction();
     if (friction || halo.alone()) {
         halo.finish();
-        if (has_walls) sum_walls<Kernel>(state, lists, records, dt);
+        sum_walls<Kernel>(state, lists, records, dt);
         if (friction)
             halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed,
                                     first_ghost_wall)});
         sum_fluid<Kernel>(state, lists, halo, records);
     } else {
         sum_fluid<Kernel>(state, lists, halo, records);
-        if (has_walls) sum_walls<Kernel>(state, lists, records, dt);
+        sum_walls<Kernel>(state, lists, records, dt);
     }
+}
+
+/// Whether fluid, or a film between faces, presses on walls here, or did a step before. Films reach
+/// farther than fluid does, so a rank may have films and no fluid.
+template <int D, class Backend>
+bool Resolved<D, Backend>::has_wet_walls(const FlowRecords<D>& records) const {
+    if (records.count == records.fluid_count) return false;
+    return !fluid_.empty() || std::any_of(wall_.begin(), wall_.end(), [](const auto& wall) {
+        return wall.pressure != 0.0 || wall.film_density != 0.0;
+    });
 }
 
 template <int D, class Backend>
@@ -173,6 +180,10 @@ template <class Kernel>
 void Resolved<D, Backend>::sum_walls(State& state, const Lists& lists,
                                      const FlowRecords<D>& records, double dt) {
     const auto timing = phases_.measure(Phase::pass_1);
+    if (!has_wet_walls(records)) {
+        std::fill(state.wall.force.begin(), state.wall.force.end(), Vec<double, D>{});
+        return;
+    }
     const std::size_t first = fluid_count_ / Backend::width;
     Backend::sum_pairs(lists,
                        {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},

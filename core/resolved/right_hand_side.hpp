@@ -104,6 +104,7 @@ private:
     void sum_walls(State& state, const Lists& lists, const FlowRecords<D>& records, double dt);
     template <class Kernel>
     void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<D>& records);
+    bool has_wet_walls(const FlowRecords<D>& records) const;
     void reduce_summaries();
 
     std::shared_ptr<const ResolvedModel<D>> model_;

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from doseki.errors import ResourceError
 from doseki.scenario.load import load_scenario
 from doseki.scenario.values.directions import section_axes
 from doseki.scene.build import build_bodies
@@ -57,3 +58,8 @@ def test_discharge_is_a_parameter_with_its_unit():
     _, _, (half,) = sections("discharge=1.5 L/s")
     _, _, (plain,) = sections("discharge=0.0015")
     assert half.rate_mass == plain.rate_mass == pytest.approx(15)
+
+
+def test_what_cannot_be_held_is_refused_before_it_is_made():
+    with pytest.raises(ResourceError, match=r"of them in inflow\.\w+\).*increase dp"):
+        sections("inflow.water.depth=1e9")

@@ -8,12 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import ResourceError
 from ..record.particles import BOUND, FREE, ParticleSet, concatenate
 from ..scenario.model import Scenario
 from ..scenario.tables.terrain.terrain import TERRAIN
 from ..util.finding import Finding
-from ..util.memory import available_bytes
 from .bodies import Bodies, ElasticBody
 from .carried import (
     CarriedOver,
@@ -33,9 +31,8 @@ from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
 from .meshes.meeting import without_common
+from .size import check_size
 
-MAX_PARTICLES = 2_000_000_000
-BYTES_PER_PARTICLE = 500  # what a run holds, lists included
 BURIED = 0.5  # spacings in the ground that no flow gets to
 IN_THE_GROUND = 0.25  # spacings that particles may be nearer to a bed than those that rest on it
 
@@ -78,7 +75,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     the names of bodies to all of them.
     """
     bodies, warnings = present(scenario, bodies_of(scenario)), list[Finding]()
-    _check_size(bodies)
+    check_size({f"body.{name}": body.count() for name, body in bodies.items()})
     warnings += [finding for body in bodies.values() for finding in body.findings()]
     names = body_names(scenario)
     carried = carried_over(scenario, names)
@@ -283,16 +280,3 @@ def body_names(scenario: Scenario) -> list[str]:
     names = [each for name in scenario.body for each in scenario.names_of_bodies(name)]
     bed = [] if scenario.terrain is None else [TERRAIN]
     return list(dict.fromkeys([*names, *bed, *scenario.inflow]))
-
-
-def _check_size(bodies: Mapping[str, Body[Any]]) -> None:
-    """Refuse what cannot be held, before anything is allocated."""
-    counts = {name: body.count() for name, body in bodies.items()}
-    total, free = sum(counts.values()), available_bytes()
-    if total > MAX_PARTICLES or total * BYTES_PER_PARTICLE > free:
-        largest = max(counts, key=lambda name: counts[name])
-        raise ResourceError(
-            f"the scenario asks for {total:.3g} particles ({counts[largest]:.3g} of them in "
-            f"body.{largest}), about {total * BYTES_PER_PARTICLE / 2**30:.3g} GiB; at most "
-            f"{min(MAX_PARTICLES, free / BYTES_PER_PARTICLE):.3g} fit: increase dp"
-        )

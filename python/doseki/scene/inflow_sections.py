@@ -11,6 +11,7 @@ from ..scenario.model import Scenario
 from ..scenario.values.directions import section_axes
 from .ground import ground_of
 from .lattices import ROUNDING
+from .size import check_size
 
 NEAREST = 0.4  # spacings between an inflow and a terrain
 
@@ -185,10 +186,11 @@ def rows_of(scenario: Scenario, name: str) -> np.ndarray:
     up, across = section_axes(direction, scenario.gravity)
     dp = scenario.dp
     high = _whole(scenario, name, "depth", inflow.height + _lowest_bed(scenario, name))
+    wide = 1 if across is None else _whole(scenario, name, "width", inflow.width)
+    check_size({f"inflow.{name}": high * wide * (_buffer_layers(scenario) + 1)})
     steps_up = ((np.arange(high) + 0.5) * dp)[:, None] * up
     if across is None:
         return inflow.position + steps_up
-    wide = _whole(scenario, name, "width", inflow.width)
     steps_across = ((np.arange(wide) + 0.5) * dp)[:, None] * across
     layer = steps_up[:, None, :] + steps_across[None, :, :]
     return inflow.position + layer.reshape(-1, 3)
