@@ -9,7 +9,7 @@ __version__ = "0.1.0"
 _LAZY = {
     "load": "record.reader",
     "load_scenario": "scenario.load",
-    "run_scenario": "run.runner",
+    "run_scenario": "running.runner",
     "UserError": "errors",
     "PhysicsError": "errors",
     "ResourceError": "errors",
