@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import UserError
+from ..record.quantities import check_quantity
 from ..record.reader import Run as RecordedRun
 from ..record.reader import load as recorded
 from ..record.units import unit_in
@@ -144,6 +145,7 @@ def _draw(
         raise UserError(f"{run.directory}: the run has no snapshot to draw")
     colour, window, material = what
     snapshot = run[-1] if time is None else run.at(time)
+    check_quantity(colour, snapshot.dim)
     if material is not None and material not in snapshot.material_names:
         near = suggestion(material, snapshot.material_names)
         raise UserError(f"{run.directory}: no material is called {material!r}{near}")

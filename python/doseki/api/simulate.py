@@ -197,4 +197,4 @@ def _warn(text: str) -> None:
     frame, level = sys._getframe(1), 2
     while frame.f_back and str(frame.f_globals.get("__name__")).partition(".")[0] == "doseki":
         frame, level = frame.f_back, level + 1
-    warnings.warn(text, DosekiWarning, stacklevel=level - 1)
+    warnings.warn(text, DosekiWarning, stacklevel=level)

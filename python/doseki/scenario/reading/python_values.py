@@ -84,7 +84,9 @@ def _table(table: Mapping[Any, Any], keys: KeyPath, said: str) -> dict[str, Any]
 def _list(
     values: list[Any] | tuple[Any, ...] | np.ndarray, keys: KeyPath, said: str
 ) -> list[Any] | Any:
-    if np.ndim(values) == 0 and isinstance(values, np.ndarray):
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise _error(keys, said, "entries of the array are masked; give all of them")
+    if isinstance(values, np.ndarray) and values.ndim == 0:
         return _plain(values.item(), keys, said)
     if len(values) > MAX_ENTRIES:
         raise _error(keys, said, f"{len(values)} entries; allowed: at most {MAX_ENTRIES}")
