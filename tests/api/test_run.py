@@ -14,6 +14,9 @@ import pytest
 
 import doseki
 from doseki.compiled import load_core
+from doseki.driver.live import Watch
+from doseki.driver.ranks import OneRank
+from doseki.running.runner import RunOptions
 
 from ..run.channel import assert_same_record
 from ..small_scenarios import BLOCK, MINIMAL
@@ -236,6 +239,20 @@ def test_options_that_mean_nothing_are_refused(channel, tmp_path, name, value):
     with pytest.raises(doseki.UserError, match=rf"{name} = .*; allowed: "):
         doseki.run(channel, tmp_path / "run", **options)
     assert not (tmp_path / "run").exists()
+
+
+def test_a_callback_is_for_one_rank():
+    class TwoRanks(OneRank):
+        count = 2
+
+    with pytest.raises(doseki.UserError, match="on several ranks"):
+        RunOptions(ranks=TwoRanks(), watch=Watch(Looks(), 1.0))
+
+
+def test_numbers_of_numpy_are_options(channel, tmp_path):
+    looks, options = Looks(), {"threads": np.int64(1), "every": np.float32(0.01), "progress": False}
+    doseki.run(channel.changed(time_max=0.02), tmp_path / "run", callback=looks, **options)
+    assert len(looks.times) == 3
 
 
 def test_every_needs_a_callback(channel, tmp_path):

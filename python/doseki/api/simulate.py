@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
@@ -118,12 +119,10 @@ class _Wishes:
     stops: list[StopRequests] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        if self.threads is not None:
-            _check_count("threads", self.threads, MOST_THREADS)
-        if self.checkpoint_every is not None:
-            _check_positive("checkpoint_every", self.checkpoint_every)
-        minutes = self.checkpoint_minutes
-        if not (isinstance(minutes, int | float) and 0 <= minutes < math.inf):
+        self.threads = _count("threads", self.threads, MOST_THREADS)
+        self.checkpoint_every = _positive("checkpoint_every", self.checkpoint_every)
+        minutes: Any = self.checkpoint_minutes
+        if not (isinstance(minutes, Real) and 0 <= float(minutes) < math.inf):
             raise UserError(f"checkpoint_minutes = {minutes!r}; allowed: minutes from 0 on")
 
     @contextmanager
@@ -162,10 +161,7 @@ def _watch(
     callback: Callback | None, every: float | None, steps: int | None, time_out: float
 ) -> Watch | None:
     """Who looks on, if anyone."""
-    if every is not None:
-        _check_positive("every", every)
-    if steps is not None:
-        _check_count("every_steps", steps)
+    every, steps = _positive("every", every), _count("every_steps", steps)
     if callback is None:
         if every is not None or steps is not None:
             raise UserError("every and every_steps say when the callback looks: give a callback")
@@ -175,15 +171,24 @@ def _watch(
     return Watch(callback, time_out if every is None and steps is None else every, steps)
 
 
-def _check_positive(name: str, value: object) -> None:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and 0 < float(str(value)) < math.inf):
+def _positive(name: str, value: Any) -> float | None:
+    """A time, s, which may be a number of numpy; None stays None."""
+    if value is None:
+        return None
+    number = None if isinstance(value, bool) or not isinstance(value, Real) else float(value)
+    if number is None or not 0 < number < math.inf:
         raise UserError(f"{name} = {value!r}; allowed: a number above 0, in s")
+    return number
 
 
-def _check_count(name: str, value: object, most: int = 2**62) -> None:
-    if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= most:
+def _count(name: str, value: Any, most: int = 2**62) -> int | None:
+    """A number of things, which may be one of numpy; None stays None."""
+    if value is None:
+        return None
+    count = 0 if isinstance(value, bool) or not isinstance(value, Integral) else int(value)
+    if not 1 <= count <= most:
         raise UserError(f"{name} = {value!r}; allowed: a whole number from 1 on")
+    return count
 
 
 def _warn_of(scenario: CheckedScenario, *started: Any) -> None:

@@ -65,6 +65,10 @@ class RunOptions:
     watch: Watch | None = None  # a callback that looks on; on one rank alone
     stops: Callable[[Path], StopRequests] = StopRequests  # what asks the run in a folder to stop
 
+    def __post_init__(self) -> None:
+        if self.watch is not None and self.ranks.count > 1:
+            raise UserError("a callback cannot look at a run on several ranks: run it on one")
+
 
 def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
@@ -150,8 +154,6 @@ def _explained(run: ActiveRun, message: str) -> Failure:
 def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any]:
     """Takes a run, `fresh` or restored, to its end; see run_scenario."""
     core, directory = load_core(), run.folder.path
-    if options.watch is not None and run.ranks.count > 1:
-        raise UserError("a callback cannot look at a run on several ranks: run it on one")
     run.watch = options.watch
     threads, before = run.ranks.threads(options.threads), core.threads()
     core.set_threads(threads)
