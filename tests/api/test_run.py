@@ -109,6 +109,13 @@ def test_it_stops_before_its_first_step(channel, plain, tmp_path):
     assert_same_record(doseki.resume(run.directory, **QUIET).directory, plain)
 
 
+def test_a_run_that_is_stopped_at_its_end_is_done(channel, tmp_path):
+    short = channel.changed(time_max=0.01)
+    run = doseki.run(short, tmp_path / "run", callback=Looks(stop_at=0.01), every=0.005, **QUIET)
+    assert run.summary["status"] == "done"
+    assert len(np.unique(run.times)) == len(run.times)
+
+
 def test_an_error_in_the_callback_closes_the_record(channel, plain, tmp_path):
     def look(view):
         if view.time > 0.02:

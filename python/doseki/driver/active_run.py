@@ -232,7 +232,7 @@ class ActiveRun:
         if watch is not None and watch.is_due(simulation.time, simulation.steps):
             names = {"material": self.scenario.material_names, "body": self.body_names}
             watch.look(LiveView(simulation, self.scenario.time_max, names, self.history_row))
-        return watch is not None and watch.stopped
+        return watch is not None and watch.stopped and simulation.time < self.scenario.time_max
 
     def write_maps(self) -> None:
         """Write the maps of the run so far, if it has any."""
