@@ -51,6 +51,10 @@ class ResourceError(DosekiError):
     exit_code = 4
 
 
+class DosekiWarning(UserWarning):
+    """Something doubtful about a scenario or a run, in one sentence with its remedy."""
+
+
 class Interrupted(BaseException):
     """Ctrl-C outside the steps of a run, which end in good order; not for `except Exception`."""
 

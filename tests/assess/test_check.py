@@ -202,7 +202,7 @@ print(json.dumps(vars(estimate(scenario, *build_simulation(scenario)))))
 """
 RUN = """
 import json, sys
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 summary = run_scenario(load_scenario(sys.argv[1], sys.argv[3:]), sys.argv[2], RunOptions(threads=1))
 from pathlib import Path

@@ -10,8 +10,8 @@ import pytest
 from doseki.assess.trust.ledger import ledger_of
 from doseki.assess.trust.report import trust_checks
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 TOP = """\

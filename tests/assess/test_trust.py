@@ -16,7 +16,7 @@ from doseki.cli.app import app
 from doseki.cli.main import main
 from doseki.record.reader import load
 from doseki.record.writer import Recorder
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.studies.vary import vary
 

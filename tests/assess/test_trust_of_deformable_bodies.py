@@ -10,7 +10,7 @@ from doseki.assess.trust.report import trust_checks
 from doseki.assess.trust.snapshots import look
 from doseki.assess.trust.verdicts import BAD, GOOD, NOT_AVAILABLE
 from doseki.record.reader import load
-from doseki.run.runner import run_scenario
+from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 
 DISCS = """

@@ -16,8 +16,8 @@ from doseki.figures.plot import draw_run
 from doseki.geodata.raster import Raster, read_raster, write_raster
 from doseki.record.folder import RunFolder
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import filled_simulation
 

@@ -11,7 +11,7 @@ from doseki.driver.gauges import build_gauges
 from doseki.errors import UserError
 from doseki.record.particles import BOUND, DRIVEN, FIXED, FREE
 from doseki.record.reader import load
-from doseki.run.runner import run_scenario
+from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation
 

@@ -10,8 +10,8 @@ from doseki.errors import UserError
 from doseki.figures.kinds.registry import draw
 from doseki.measure.views import tables
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scenario.tables.figure import Figure
 from doseki.solver.build import build_simulation

@@ -12,7 +12,7 @@ from doseki.driver.gauges import build_gauges
 from doseki.driver.sensors import Sensor
 from doseki.errors import UserError
 from doseki.record.reader import load
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.gauges.face import Face
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, filled_simulation

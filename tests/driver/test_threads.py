@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from doseki.driver.threads import FIRST_PATIENCE, WINDOW, ThreadChoice
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from ..run.channel import assert_same_record, channel_text

@@ -20,8 +20,8 @@ from doseki.figures.stage import WIDTH
 from doseki.measure.views import whole_space
 from doseki.record.history import history_columns
 from doseki.record.reader import load
-from doseki.run.progress import progress_bar
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.progress import progress_bar
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.studies import compare
 
@@ -158,7 +158,10 @@ def test_a_figure_that_fails_loses_neither_the_others_nor_the_summary(
     assert "1 of the figures could not be drawn" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("broken", ["doseki.assess.summary.summary_text", "doseki.run.runner.load"])
+BREAKABLE = ["doseki.assess.summary.summary_text", "doseki.running.runner.load"]
+
+
+@pytest.mark.parametrize("broken", BREAKABLE)
 def test_a_summary_that_fails_loses_no_run(scenario, tmp_path, capsys, monkeypatch, broken):
     def fail(_run):
         raise RuntimeError("no words")

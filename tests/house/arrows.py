@@ -30,13 +30,28 @@ def read_order(text: str, tree: str) -> Order:
 
 
 def python_arrows(package: Path) -> Iterator[Arrow]:
-    """Imports among the modules of a package, those inside functions and TYPE_CHECKING included."""
+    """Imports among the modules of a package, those inside functions and TYPE_CHECKING included.
+
+    Those under TYPE_CHECKING of the package's own __init__ are left out: they say which names it
+    gives, and import nothing.
+    """
     for file in sources(package, {".py", ".pyi"}):
         here = PurePosixPath(file.relative_to(package))
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        given = _given_names(tree) if here == PurePosixPath("__init__.py") else set()
+        for node in ast.walk(tree):
+            if node in given:
+                continue
             for target in _imported(package, here, node):
                 if target != here:
                     yield here, target
+
+
+def _given_names(tree: ast.Module) -> set[ast.AST]:
+    """What stands under TYPE_CHECKING at the top of a module."""
+    guards = (node for node in tree.body if isinstance(node, ast.If))
+    checked = (node for node in guards if ast.unparse(node.test) == "TYPE_CHECKING")
+    return {inner for node in checked for part in node.body for inner in ast.walk(part)}
 
 
 def _imported(package: Path, here: PurePosixPath, node: ast.AST) -> Iterator[PurePosixPath]:

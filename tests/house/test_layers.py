@@ -100,6 +100,14 @@ def test_a_sound_package_passes(tmp_path):
     assert circles(arrows) == []
 
 
+def test_the_names_that_the_package_gives_are_no_imports(tmp_path):
+    names = "if TYPE_CHECKING:\n    from .high.d import thing\n"
+    write(tmp_path / "doseki", SOUND | {"__init__.py": names})
+    assert back_arrows(python_arrows(tmp_path / "doseki"), ORDER) == []
+    write(tmp_path / "doseki", {"__init__.py": "from .high.d import thing\n"})
+    assert back_arrows(python_arrows(tmp_path / "doseki"), ORDER) != []
+
+
 @pytest.mark.parametrize("files", BACK.values(), ids=BACK)
 def test_an_arrow_that_runs_back_is_named(tmp_path, files):
     write(tmp_path / "doseki", SOUND | files)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from doseki.record.reader import load
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 # Water that rests before a dam, which reaches into the bed; all turned by `angle` about the foot of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.record.reader import load
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from .scenes import RAIN, run_of

@@ -7,8 +7,8 @@ import pytest
 
 from doseki.driver.gauges import build_gauges
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.solver.build import build_simulation
 
 from ..run.test_resume import stop_at

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import doseki
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 # Water enters, meets loose rocks with strength on a fixed bed, and leaves.

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import doseki.run.runner  # noqa: F401 (imported once for all children)
+import doseki.running.runner  # noqa: F401 (imported once for all children)
 from doseki.cli.main import main
 from doseki.record.folder import RunFolder
 

@@ -17,8 +17,8 @@ from doseki.driver.checkpoint import (
     to_bytes,
 )
 from doseki.errors import UserError
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import assert_same_record, doseki_command, run_channel
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import assert_same_record, doseki_command
 

@@ -13,8 +13,8 @@ import pytest
 
 from doseki.record.folder import RunFolder
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import assert_same_record, command, doseki_command, environment, run_channel
 

@@ -13,8 +13,8 @@ import pytest
 
 from doseki.errors import UserError
 from doseki.record.lock import FolderLock, holder_of
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from .channel import assert_same_record, command, doseki_command, environment, run_channel

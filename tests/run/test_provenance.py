@@ -11,7 +11,7 @@ import pytest
 import doseki
 from doseki.errors import UserError
 from doseki.record.folder import RunFolder
-from doseki.run.provenance import (
+from doseki.running.provenance import (
     _command,
     commit,
     note_provenance,

@@ -7,8 +7,8 @@ import pytest
 from doseki.driver.checkpoint import CheckpointFolder
 from doseki.errors import UserError
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import (
     assert_same_record,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import assert_same_record, doseki_command, run_channel
 from .test_resume import stop_at

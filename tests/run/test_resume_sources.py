@@ -7,8 +7,8 @@ import pytest
 
 from doseki.figures.plot import plot_run
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import assert_same_record, channel_text, run_channel
 from .test_resume import stop_at

@@ -7,7 +7,7 @@ import pytest
 from tests.shipped import CASES, FIRST, NAMES
 
 import doseki
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_bodies
 from doseki.solver.build import build_simulation

@@ -13,8 +13,8 @@ import pytest
 
 from doseki.driver.checkpoint import DIGEST_BYTES, CheckpointFolder
 from doseki.errors import UserError
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 from .channel import assert_same_record, run_channel
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from doseki.errors import UserError
-from doseki.run.runner import run_scenario
+from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scenario.start import start_text, write_start
 

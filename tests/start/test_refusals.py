@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import filled_simulation
 

@@ -11,8 +11,8 @@ from doseki.driver.checkpoint import CheckpointFolder
 from doseki.errors import UserError
 from doseki.record.particles import DRIVEN, FREE
 from doseki.record.reader import load
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, filled_simulation
 

@@ -11,7 +11,7 @@ from doseki.geodata.crs import same_crs
 from doseki.geodata.features import read_features
 from doseki.geodata.raster import read_raster
 from doseki.record.reader import load
-from doseki.run.runner import run_scenario
+from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scene.kinds.release import released_volumes
 

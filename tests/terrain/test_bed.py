@@ -10,7 +10,7 @@ from doseki.errors import UserError
 from doseki.geodata.ground import read_ground
 from doseki.geodata.raster import Raster, write_raster
 from doseki.record.reader import load
-from doseki.run.runner import run_scenario
+from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 
 from .scenes import grid, profile, text

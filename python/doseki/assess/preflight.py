@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,11 +26,35 @@ from .warnings import findings, thorough_findings
 WIDTH = 18
 
 
+@dataclass(frozen=True)
+class Preflight:
+    """What a scenario will take, and what is doubtful about it; str() is the report on it."""
+
+    text: str
+    warnings: list[str]  # one sentence each, with the remedy
+    particles: int  # at the start
+    memory: float  # bytes
+    disk: float  # bytes
+    timestep: float  # s
+    steps: float
+    seconds: float  # of wall time
+
+    def __str__(self) -> str:
+        return self.text
+
+
 def check_scenario(scenario: Scenario, threads: int | None = None, tell: Tell = say_nothing) -> str:
     """The report of `doseki check`; raises UserError or PhysicsError for what cannot start."""
+    return str(preflight(scenario, threads, tell))
+
+
+def preflight(
+    scenario: Scenario, threads: int | None = None, tell: Tell = say_nothing
+) -> Preflight:
+    """Build the scene and take a burst of steps of a second; raises as check_scenario does."""
     core = load_core()
-    if threads:
-        core.set_threads(threads)
+    before = core.threads()
+    core.set_threads(threads or before)
     try:
         simulation, body_names, warnings = filled_simulation(scenario, tell=tell)
         simulation.start()
@@ -39,12 +64,17 @@ def check_scenario(scenario: Scenario, threads: int | None = None, tell: Tell = 
         raise ResourceError(str(failure)) from failure
     except core.PhysicsFailure as failure:
         raise PhysicsError(f"the first steps already fail: {failure}") from failure
+    finally:
+        core.set_threads(before)
     lines = [scenario.title or "scenario", ""]
     lines += [*_particles(scenario, state, body_names), *_costs(expected)]
     lines += [*_resolution(scenario, state, body_names)]
     doubts = sentences(thorough_findings(scenario, state, body_names, warnings))
     lines += ["", *(f"warning: {doubt}" for doubt in doubts)] if doubts else ["", "no warnings"]
-    return "\n".join(lines)
+    return Preflight(
+        "\n".join(lines), doubts, len(state["id"]), expected.memory, expected.disk,
+        expected.timestep, expected.steps, expected.seconds,
+    )  # fmt: skip
 
 
 def brief_check(
@@ -57,7 +87,7 @@ def brief_check(
 
     `warnings` are those that came up when the scene was built.
     """
-    state, dt = simulation.state(), simulation.rates()["timestep"]
+    dt = simulation.rates()["timestep"]
     memory = len(simulation) * simulation.bytes_per_particle
     steps = steps_between(scenario.begins_at, scenario.time_max, dt, scenario.sampled_intervals)
     # Where nothing limits a step, the next output or the end does.
@@ -68,8 +98,18 @@ def brief_check(
     )
     names = dict.fromkeys(_copied(name) for name in body_names)
     sizes = [f"{name}: {size}" for name in names for size in _resized(scenario, name)]
-    doubts = sentences(findings(scenario, state, body_names, warnings))
+    doubts = brief_doubts(scenario, simulation, body_names, warnings)
     return [head, *sizes, *(f"warning: {doubt}" for doubt in doubts)]
+
+
+def brief_doubts(
+    scenario: Scenario,
+    simulation: SimulationView,
+    body_names: list[str],
+    warnings: Sequence[Finding] = (),
+) -> list[str]:
+    """What is doubtful about a simulation that has just been started, a sentence each."""
+    return sentences(findings(scenario, simulation.state(), body_names, warnings))
 
 
 def _line(name: str, text: str) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..util.files import free_directory as free_directory
 from .numbers import number
 
 ScenarioName = Annotated[
@@ -35,10 +36,3 @@ Ranks = Annotated[
 Figures = Annotated[bool, typer.Option(help="Draw the figures at the end.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Output folder of a run.")]
-
-
-def free_directory(name: str) -> Path:
-    """runs/NAME, or runs/NAME-2, -3 ... where that is taken."""
-    base = Path("runs") / Path(name).stem
-    candidates = [base, *(base.with_name(f"{base.name}-{k}") for k in range(2, 10000))]
-    return next(path for path in candidates if not path.exists())

@@ -47,8 +47,8 @@ def run(
 ) -> None:
     """Run a scenario; the record, figures and a one-screen summary go to DIR."""
     from ..assess.preflight import brief_check
-    from ..run.progress import progress_bar
-    from ..run.runner import RunOptions, run_folder, run_scenario
+    from ..running.progress import progress_bar
+    from ..running.runner import RunOptions, run_folder, run_scenario
     from ..scenario.load import load_scenario
 
     team = join(ranks)
@@ -141,7 +141,7 @@ def check(
     See also: doseki list names the shipped ones, doseki explain says why a run failed.
     """
     from ..assess.preflight import check_scenario
-    from ..run.progress import work_shown
+    from ..running.progress import work_shown
     from ..scenario.load import load_scenario
 
     with work_shown() as tell:
@@ -170,9 +170,9 @@ def resume(
 ) -> None:
     """Go on with a run that was stopped, killed or failed, from its last checkpoint."""
     from ..record.reader import load
-    from ..run.progress import progress_bar
-    from ..run.resume import resume_run
-    from ..run.runner import RunOptions
+    from ..running.progress import progress_bar
+    from ..running.resume import resume_run
+    from ..running.runner import RunOptions
 
     team = join(ranks)
     scenario = load(directory).scenario

@@ -60,7 +60,7 @@ def compare(
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
 ) -> None:
     """Compare the paper's scheme, the resolved one and the experiment, on one page."""
-    from ..run.runner import RunOptions
+    from ..running.runner import RunOptions
     from ..studies.compare import check_name, compare_runs, run_both
 
     check_name(name)

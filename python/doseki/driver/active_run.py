@@ -16,6 +16,7 @@ from ..util.finding import Finding
 from .checkpoint import Checkpoint, CheckpointFolder, Position
 from .counts import Counts, build_counts
 from .gauges import GaugeReader, build_gauges
+from .live import LiveView, Watch
 from .maps import RunningMaps
 from .means import Means, build_means
 from .meters import LoadMeans, build_meters
@@ -82,6 +83,7 @@ class ActiveRun:
         self.goes_on = False  # the simulation has its first rates already
         self.threads: ThreadChoice | None = None  # None: their number does not change
         self.rewind = Rewind()
+        self.watch: Watch | None = None  # who else looks on
         self.outputs = OutputTimes(scenario.time_out, scenario.time_max)
         self.gauges = [
             (gauge, OutputTimes(gauge.interval, scenario.time_max))
@@ -208,7 +210,7 @@ class ActiveRun:
         `clock` says when to write checkpoints; `progress` is called after each burst of steps.
         """
         simulation, burst = self.simulation, FIRST_BURST
-        stopped = False
+        stopped = self._is_watched_enough()
         while simulation.time < self.scenario.time_max and not stopped:
             if self.ranks.agree(self.rewind.is_due()):
                 self.rewind.keep(self.checkpoint)
@@ -216,13 +218,21 @@ class ActiveRun:
             if self.ranks.agree(clock.is_due(simulation.time)):
                 self.write_checkpoint(clock)
             progress(simulation.time, simulation.timestep, simulation.steps)
-            stopped = self.ranks.agree(bool(stop))
+            stopped = self._is_watched_enough() or self.ranks.agree(bool(stop))
         self.write_checkpoint(clock)
         if stopped:
             self.record_snapshot()
             self.record_history()
         self.write_maps()
         return not stopped
+
+    def _is_watched_enough(self) -> bool:
+        """Let who watches look, if it is time; whether that ends the run."""
+        watch, simulation = self.watch, self.simulation
+        if watch is not None and watch.is_due(simulation.time, simulation.steps):
+            names = {"material": self.scenario.material_names, "body": self.body_names}
+            watch.look(LiveView(simulation, self.scenario.time_max, names, self.history_row))
+        return watch is not None and watch.stopped and simulation.time < self.scenario.time_max
 
     def write_maps(self) -> None:
         """Write the maps of the run so far, if it has any."""
@@ -236,6 +246,9 @@ class ActiveRun:
         look = self.maps.times.after(simulation.time) if self.maps else math.inf
         started, processor, first = time.perf_counter(), time.process_time(), simulation.steps
         pause = min(limit, pause, self.position.next_history)
+        if self.watch is not None:
+            pause = min(pause, self.watch.next_time)
+            steps = min(steps, self.watch.steps_left(simulation.steps) or steps)
         self._step(limit, pause, steps)
         wall, done = time.perf_counter() - started, simulation.steps - first
         rate = done / wall

@@ -98,10 +98,18 @@ class StopRequests:
 
     def __init__(self, directory: Path) -> None:
         self._file = directory / STOP_FILE
-        self._signals: list[int] = []
+        self.signals: list[int] = []
+        """The signals that came."""
 
     def __bool__(self) -> bool:
-        return bool(self._signals) or self._file.exists()
+        return bool(self.signals) or self._file.exists()
+
+    @property
+    def reason(self) -> str:
+        """What asked for it: a signal by its name, or the file STOP; "" where nothing did."""
+        if self.signals:
+            return signal.Signals(self.signals[0]).name
+        return f"the file {STOP_FILE}" if self._file.exists() else ""
 
     @contextmanager
     def listening(self) -> Iterator[None]:
@@ -122,7 +130,7 @@ class StopRequests:
             self._file.unlink(missing_ok=True)
 
     def _collect(self, number: int, _frame: FrameType | None) -> None:
-        self._signals.append(number)
+        self.signals.append(number)
 
     def _hang_up(self, terminals: list[int], number: int, frame: FrameType | None) -> None:
         """The terminal may be gone, where writing to it would fail: nobody reads that any more."""

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib import colormaps, colors
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Patch
 
 from ..measure.quantities import quantity
@@ -31,7 +31,10 @@ FEW = 1000  # with more particles than this the colour scale leaves out the oute
 class KeyRoom(Protocol):
     """A figure with room for keys to the right of panels."""
 
-    figure: Figure
+    @property
+    def figure(self) -> Figure | SubFigure:
+        """The figure that the panels are on."""
+        ...
 
     def beside(self, axes: Axes) -> Axes:
         """Narrow axes for a colour bar to the right of a panel."""

@@ -18,6 +18,7 @@ from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..scenario.tables.figure import Figure as FigureTable
 from ..util.files import clear_errors, write_whole
+from ..util.spelling import suggestion
 from .flow import draw_flow
 from .kinds.energy import draw_energy
 from .kinds.panels import Panels
@@ -91,6 +92,25 @@ def figures(run: Run) -> Iterator[tuple[str, Figure]]:
     for name, make in _makers(run):
         with suppress(NothingToDrawError):
             yield name, make()
+
+
+def figure_names(run: Run) -> list[str]:
+    """Names of the figures of a run, those among them that may have nothing to show."""
+    return [name for name, _ in _makers(run)]
+
+
+def make_figure(run: Run, name: str) -> Figure:
+    """One of them; raises UserError for another name, and where there is nothing to draw."""
+    known = dict(_makers(run))
+    if name not in known:
+        raise UserError(f"{run.directory}: no figure is called {name!r}{suggestion(name, known)}")
+    if not len(run):
+        raise UserError(f"{run.directory}: the run has no snapshot to draw")
+    try:
+        with plain_text():
+            return known[name]()
+    except NothingToDrawError as reason:
+        raise UserError(f"{run.directory}: figure {name} is not drawn: {reason}") from None
 
 
 def _makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:

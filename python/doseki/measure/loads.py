@@ -101,7 +101,7 @@ def _body_load(
     if section is not None and gauge.approach in run.gauges:
         width = gauge.width or 1.0
         g = float(np.linalg.norm(gravity))
-        expected = expected_loads(run.gauges[gauge.approach], width, g)
+        expected = expected_loads(run.gauges[str(gauge.approach)], width, g)
     return BodyLoad(
         name=name,
         direction=direction,

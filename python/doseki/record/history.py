@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from .units import unit_in
+
 SHARES = ("balance", "migrate", "halo", "wait")  # of the wall time, beside the steps themselves
 
 
@@ -20,3 +22,29 @@ def history_columns(dim: int, material_names: Sequence[str]) -> list[str]:
     ranks = ["imbalance", *(f"share_{name}" for name in SHARES)]
     start = ["time", "step", "dt", "mass", *momentum, *energies]
     return [*start, *work, *carried, *masses, *counts, *ranks]
+
+
+# How names of columns begin or end, and the unit in 3-D of what they hold.
+UNITS = {
+    "time": "s",
+    "dt": "s",
+    "mass": "kg",
+    "momentum": "kg m/s",
+    "impulse": "kg m/s",
+    "energy": "J",
+    "work": "J",
+    "dissipation": "J",
+}
+
+
+def history_units(columns: Sequence[str]) -> dict[str, str]:
+    """Units of columns of a history by name; "" for counts and shares."""
+    dim = 3 if "momentum_z" in columns else 2
+    return {column: unit_in(_unit(column), dim) for column in columns}
+
+
+def _unit(column: str) -> str:
+    if column.startswith(("n_", "share_")):
+        return ""
+    words = column.split("_")
+    return UNITS.get(words[0]) or UNITS.get(words[-1], "")

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
@@ -21,8 +21,11 @@ from . import vtkhdf
 from .between import Between
 from .fields import FIELD_BY_KEY, GRAIN_FIELDS
 from .folder import RunFolder, read_history
+from .history import history_units
 from .particles import FIXED
 
+H = TypeVar("H", bound="History")
+G = TypeVar("G", bound="GaugeRecord")
 ROUNDING = 1e-6  # of the time between two snapshots: the same time
 
 
@@ -120,6 +123,8 @@ class History(Mapping[str, np.ndarray]):
 
     def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         self.columns = list(columns)
+        self.units: dict[str, str] = history_units(self.columns)
+        """Unit of each column; "" where it has none."""
         table = np.array([[float(cell) for cell in row] for row in rows])
         self._table = table.reshape(len(rows), len(self.columns))
 
@@ -164,7 +169,13 @@ class Run(Sequence[Snapshot]):
     def __len__(self) -> int:
         return len(self._headers)
 
-    def __getitem__(self, index: Any) -> Any:
+    @overload
+    def __getitem__(self, index: int) -> Snapshot: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Snapshot]: ...
+
+    def __getitem__(self, index: int | slice) -> Snapshot | list[Snapshot]:
         """Snapshot `index` (negative: from the end), or a list of them for a slice.
 
         Each call gives a new Snapshot, so that its arrays go when the caller drops it.
@@ -235,16 +246,22 @@ class Run(Sequence[Snapshot]):
     @cached_property
     def history(self) -> History:
         """The diagnostics."""
+        return self._history(History)
+
+    def _history(self, kind: type[H]) -> H:
         with readable(self.folder.history):
-            return History(*read_history(self.folder.history))
+            return kind(*read_history(self.folder.history))
 
     @cached_property
-    def gauges(self) -> dict[str, GaugeRecord]:
+    def gauges(self) -> Mapping[str, GaugeRecord]:
         """What the gauges read, by their names."""
+        return self._gauges(GaugeRecord)
+
+    def _gauges(self, kind: type[G]) -> dict[str, G]:
         records = {}
         for file in sorted(self.folder.gauges.glob("*.csv")):
             with readable(file):
-                records[file.stem] = GaugeRecord(*read_history(file))
+                records[file.stem] = kind(*read_history(file))
         return records
 
     @cached_property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from threading import get_ident
 from typing import Any, NamedTuple
 
 import h5py
@@ -93,7 +94,8 @@ def _image(
 ) -> tuple[bytes, dict[str, int]]:
     """A file as bytes, and where in it the numbers of each part begin that is not packed."""
     options, places = packing or {}, {}
-    with h5py.File("image", "w", driver="core", backing_store=False) as file:
+    name = f"image {get_ident()}"  # HDF5 opens no two files of one name: other threads have theirs
+    with h5py.File(name, "w", driver="core", backing_store=False) as file:
         root = file.create_group(ROOT)
         root.attrs["Version"] = VERSION
         root.attrs["Type"] = np.bytes_("PolyData")

@@ -19,10 +19,11 @@ from .hydrographs import completed_inflows
 from .materials import Material, MaterialError, complete_materials, equation_of_state
 from .model import Found, Scenario, file_of, min_sound_speed, names_in_use, terrain_file
 from .particle_files.reader import ParticleTable, read_particles
+from .reading.changes import with_changes
 from .reading.copies import with_copies
 from .reading.files import find_scenario, merged_table, read_with_bases, scenario_folder
 from .reading.messages import to_user_error
-from .reading.overrides import apply_overrides
+from .reading.overrides import changes_of
 from .reading.resolve import resolve_table
 from .reading.units import in_own_units
 from .releases import completed_release
@@ -30,16 +31,24 @@ from .schemes import with_scheme_defaults
 from .tables.body import BodyTable
 from .tables.root import ScenarioTable
 from .tables.terrain.release import Release
-from .values.toml_source import Where, read_toml
+from .values.toml_source import Change, Source, Where, read_toml
 
 HISTORY_ROWS = 1000  # of a run that does not give time_history
 
 
-def load_scenario(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
+def load_scenario(name_or_path: str | Path, overrides: Sequence[str | Change] = ()) -> Scenario:
     """Read, override, evaluate and check a scenario; raises UserError with one clear sentence."""
-    sources = read_with_bases(find_scenario(str(name_or_path)))
+    sources = read_with_bases(read_toml(find_scenario(str(name_or_path))))
+    return checked_scenario(sources, changes_of(overrides))
+
+
+def checked_scenario(sources: Sequence[Source], changes: Sequence[Change] = ()) -> Scenario:
+    """The scenario of a table and of those that it extends, changed; raises UserError.
+
+    All scenarios are read here, whether they come from files or from Python.
+    """
     where = Where(sources)
-    table = apply_overrides(merged_table(sources, where), overrides, where)
+    table = with_changes(merged_table(sources, where), changes, where)
     table = with_scheme_defaults(in_own_units(table, where))
     table, constants = resolve_table(table, where)
     table = with_copies(table, where)

@@ -288,6 +288,15 @@ class Scenario(ScenarioTable):
             }
         return to_toml(table | {name: given.get(name, {}) for name in SECTIONS})
 
+    def values(self) -> dict[str, Any]:
+        """Every key that has a value, defaults among them, and the materials in use, as tables of
+        plain numbers, words and lists.
+        """
+        table = self.model_dump(by_alias=True, exclude_none=True)
+        in_use = {name: self._material_table(name).items() for name in self.material_names}
+        kept = {name: {k: v for k, v in table if v is not None} for name, table in in_use.items()}
+        return table | {"material": kept}
+
     def _material_table(self, name: str) -> dict[str, Any]:
         """What the scheme has of a material; to_toml leaves out what is None."""
         others = {p.name for p in MATERIAL_PARAMETERS if p.scheme not in (None, self.scheme)}

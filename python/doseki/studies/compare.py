@@ -23,7 +23,7 @@ from ..measure.moments import Moment
 from ..measure.views import before_flow, named_window, with_flow
 from ..record.reader import Run, load
 from ..record.writer import jsonable
-from ..run.runner import RunOptions, run_scenario
+from ..running.runner import RunOptions, run_scenario
 from ..scenario.load import load_scenario
 from ..scenario.schemes import RESOLVED, UETA2022
 from ..util.files import clear_errors, write_whole, write_whole_text

@@ -16,7 +16,7 @@ from ..measure.numbers import mean_velocity, speed
 from ..record.particles import BOUND, FREE
 from ..record.reader import Run, Snapshot, load
 from ..record.units import unit_in
-from ..run.runner import RunOptions, run_scenario
+from ..running.runner import RunOptions, run_scenario
 from ..scenario.load import load_scenario
 from ..scenario.model import Scenario
 

@@ -54,3 +54,10 @@ def sync(path: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def free_directory(name: str) -> Path:
+    """runs/NAME, or runs/NAME-2, -3 ... where that is taken."""
+    base = Path("runs") / Path(name).stem
+    candidates = [base, *(base.with_name(f"{base.name}-{k}") for k in range(2, 10000))]
+    return next(path for path in candidates if not path.exists())

@@ -13,7 +13,7 @@ import pytest
 from doseki.assess.failure.failure import explanation
 from doseki.errors import PhysicsError
 from doseki.record.reader import Run, load
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 HEAD = """\

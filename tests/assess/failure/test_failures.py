@@ -10,8 +10,8 @@ from doseki.driver import rewind
 from doseki.driver.checkpoint import CheckpointFolder, from_bytes
 from doseki.errors import UserError
 from doseki.record.folder import RunFolder
-from doseki.run.resume import resume_run
-from doseki.run.runner import RunOptions
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions
 
 OVERLAPPING = """
 [body.other]

@@ -13,7 +13,7 @@ from doseki.figures.kinds.registry import draw
 from doseki.figures.nothing import NothingToDrawError
 from doseki.measure.views import tables
 from doseki.record.reader import load
-from doseki.run.runner import run_scenario
+from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scenario.tables.figure import FIGURES
 from doseki.scenario.tables.figure import Figure as FigureTable

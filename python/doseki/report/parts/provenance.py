@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...record.reader import Run
-from ...run.provenance import commit, provenance_now, read_provenance
+from ...running.provenance import commit, provenance_now, read_provenance
 from ...util.foreign import read_text
 from ...util.input_file import digest_of
 from ..markup import Content, Markup, section, table, tag, terms

@@ -9,7 +9,7 @@ from typing import Any
 from ...errors import UserError
 from ...util.spelling import suggestion
 from ..tables.sections import ALIASES, EXCLUSIVE
-from ..values.toml_source import TomlSource, Where, read_toml
+from ..values.toml_source import Source, TomlSource, Where, read_toml
 
 
 def scenario_folder() -> Path:
@@ -29,22 +29,24 @@ def find_scenario(name: str) -> Path:
     return shipped[name]
 
 
-def read_with_bases(path: Path) -> list[TomlSource]:
-    """The scenario's file, then the file it extends, and so on."""
-    sources = [read_toml(path)]
+def read_with_bases(first: Source) -> list[Source]:
+    """The scenario, then the file it extends, and so on."""
+    sources, files = [first], [first.path] if isinstance(first, TomlSource) else []
     while (base := sources[-1].table.get("extends")) is not None:
-        last = sources[-1].path
+        last = sources[-1]
         if not isinstance(base, str):
-            raise UserError(f"{last}: extends = {base!r} must be the name or path of a scenario")
+            name = last.name
+            raise UserError(f"{name}: extends = {base!r} must be the name or path of a scenario")
         path = find_scenario(base)
-        source = read_toml(path if path.is_absolute() else last.parent / path)
-        if any(source.path.samefile(known.path) for known in sources):
-            raise UserError(f'{last}: extends = "{base}" leads back to the file itself')
+        source = read_toml(path if path.is_absolute() else last.folder / path)
+        if any(source.path.samefile(known) for known in files):
+            raise UserError(f'{last.name}: extends = "{base}" leads back to the file itself')
         sources.append(source)
+        files.append(source.path)
     return sources
 
 
-def merged_table(sources: Sequence[TomlSource], where: Where) -> dict[str, Any]:
+def merged_table(sources: Sequence[Source], where: Where) -> dict[str, Any]:
     """The tables of the sources laid over one another, the first on top."""
     table: dict[str, Any] = {}
     for source in reversed(sources):
@@ -52,7 +54,7 @@ def merged_table(sources: Sequence[TomlSource], where: Where) -> dict[str, Any]:
     return table
 
 
-def _canonical(source: TomlSource, where: Where) -> dict[str, Any]:
+def _canonical(source: Source, where: Where) -> dict[str, Any]:
     """The file's table with aliases replaced by the names they stand for."""
     table = {key: value for key, value in source.table.items() if key != "extends"}
     for alias, key in ALIASES.items():

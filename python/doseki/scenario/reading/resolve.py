@@ -111,7 +111,7 @@ class Names(Mapping[str, Any]):
     def resolve(self, value: Any, keys: KeyPath) -> Any:
         """`value`, which stands at `keys`, with expressions evaluated and choices made."""
         if isinstance(value, dict):
-            if (by := _chooses(value)) is not None:
+            if (by := chooses(value)) is not None:
                 return self.resolve(self._chosen(value, by, keys), keys)
             found = {key: self.resolve(inner, (*keys, key)) for key, inner in value.items()}
             return {key: inner for key, inner in found.items() if inner is not ABSENT}
@@ -193,7 +193,7 @@ class Names(Mapping[str, Any]):
 
 def _parameter_table(raw: Any) -> dict[str, Any]:
     """A parameter may be written as its bare value."""
-    return raw if isinstance(raw, dict) and _chooses(raw) is None else {"value": raw}
+    return raw if isinstance(raw, dict) and chooses(raw) is None else {"value": raw}
 
 
 def _scalars(table: dict[str, Any]) -> dict[str, Any]:
@@ -202,11 +202,11 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
         key: value
         for key, value in table.items()
         if key in TOP_LEVEL_KEYS - WORDS
-        and (not isinstance(value, dict | list) or _chooses(value) is not None)
+        and (not isinstance(value, dict | list) or chooses(value) is not None)
     }
 
 
-def _chooses(value: Any) -> str | None:
+def chooses(value: Any) -> str | None:
     """What a value chooses by: { d2 = ..., d3 = ... } or { ueta2022 = ..., resolved = ... }."""
     if not isinstance(value, dict) or not value:
         return None

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from ...errors import UserError
 from ...util.foreign import read_text
@@ -18,12 +18,39 @@ KeyPath = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
+class TableSource:
+    """A table that was made in Python; files that it names are relative to `folder`."""
+
+    folder: Path
+    table: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return "scenario"
+
+    def line_of(self, keys: KeyPath) -> int | None:
+        """There are no lines."""
+        return None
+
+
+@dataclass(frozen=True)
 class TomlSource:
     """The text of one TOML file and the table it holds."""
 
     path: Path
     text: str
     table: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return str(self.path)
+
+    @property
+    def folder(self) -> Path:
+        """To what files that it names are relative."""
+        return self.path.parent
 
     def line_of(self, keys: KeyPath) -> int | None:
         """The line (from 1) where `keys` is set, or the nearest table that would hold it."""
@@ -39,6 +66,9 @@ class TomlSource:
             if len(here) > best_depth and here == wanted[: len(here)]:
                 best_line, best_depth = number, len(here)
         return best_line
+
+
+Source: TypeAlias = TableSource | TomlSource
 
 
 def _keys_of_line(line: str, header: list[str]) -> list[str] | None:
@@ -65,12 +95,12 @@ def read_toml(path: Path) -> TomlSource:
         raise UserError(f"{path}: not valid TOML: {error}") from None
     except (RecursionError, ValueError) as error:
         raise UserError(f"{path}: cannot be read as TOML: {error}") from None
-    if _is_deep(table):
+    if is_deep(table):
         raise UserError(f"{path}: tables or lists nested more than {MAX_DEPTH} deep")
     return TomlSource(path, text, table)
 
 
-def _is_deep(table: dict[str, Any]) -> bool:
+def is_deep(table: dict[str, Any]) -> bool:
     """Whether the nesting would exhaust functions that call themselves."""
     level: list[Any] = [table]
     for _ in range(MAX_DEPTH):
@@ -79,22 +109,45 @@ def _is_deep(table: dict[str, Any]) -> bool:
     return bool(level)
 
 
+@dataclass(frozen=True)
+class Change:
+    """A value that takes the place of what a scenario has at a key.
+
+    Of a table, its keys are taken over one by one; with `may_add` it may be one that is not there.
+    """
+
+    key: str  # as the user names it
+    value: Any  # what TOML can hold
+    said: str  # how messages name it: --set dp
+    folder: Path = Path()  # to which files that it names are relative
+    may_add: bool = False
+
+
 class Where:
     """Names the place of a key for an error message: file and line, or the --set option."""
 
-    def __init__(self, sources: Sequence[TomlSource]) -> None:
+    def __init__(self, sources: Sequence[Source]) -> None:
         self._sources = sources  # the scenario first, then the files it extends
-        self._options: dict[KeyPath, str] = {}
+        self._changes: dict[KeyPath, Change] = {}
         self._written: dict[KeyPath, KeyPath] = {}
+        self._files: dict[KeyPath, Path] = {}
+
+    @property
+    def files(self) -> Mapping[KeyPath, Path]:
+        """The keys at which files were looked for, as written, and to what these are relative."""
+        return self._files
 
     def folder(self, keys: KeyPath) -> Path:
         """To what a file name given at `keys` is relative: that file, or here for an option."""
         keys = self._as_written(keys)
-        return Path() if self._option(keys) else self._deepest(keys).path.parent
+        change = self._change(keys)
+        folder = self._deepest(keys).folder if change is None else change.folder
+        self._files[keys] = folder
+        return folder
 
-    def note_override(self, keys: KeyPath, option: str) -> None:
-        """Remember that --set gave this key, under the name `option`."""
-        self._options[keys] = option
+    def note_change(self, keys: KeyPath, change: Change) -> None:
+        """Remember that a change gave what stands at these keys."""
+        self._changes[keys] = change
 
     def note_copy(self, keys: KeyPath, written: KeyPath) -> None:
         """Remember that the table at `keys` was made of the one that stands at `written`."""
@@ -110,18 +163,18 @@ class Where:
         return keys if written is None else (*written, *keys[2:])
 
     def _place(self, keys: KeyPath) -> str:
-        if option := self._option(keys):
-            return f"--set {option}"
+        if change := self._change(keys):
+            return change.said
         source = self._deepest(keys)
         line = source.line_of(keys)
-        return f"{source.path}, line {line}" if line else f"{source.path}"
+        return f"{source.name}, line {line}" if line else source.name
 
-    def _option(self, keys: KeyPath) -> str | None:
-        """The --set option that gave `keys`, or a table they are in."""
+    def _change(self, keys: KeyPath) -> Change | None:
+        """The change that gave `keys`, or a table they are in."""
         prefixes = (keys[:length] for length in range(len(keys), 0, -1))
-        return next((self._options[p] for p in prefixes if p in self._options), None)
+        return next((self._changes[p] for p in prefixes if p in self._changes), None)
 
-    def _deepest(self, keys: KeyPath) -> TomlSource:
+    def _deepest(self, keys: KeyPath) -> Source:
         """The source that holds the most of `keys`, an extending file before what it extends."""
         return max(self._sources, key=lambda source: _depth(source.table, keys))
 

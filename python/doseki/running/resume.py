@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from ..compiled import load_core
 from ..driver.active_run import ActiveRun
@@ -18,6 +18,7 @@ from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.load import load_scenario
 from ..scenario.model import Scenario
+from ..scenario.values.toml_source import Change
 from ..scene.build import body_names
 from ..util.files import write_whole_text
 from ..util.sealed import check_seal, sealed
@@ -29,12 +30,13 @@ CHANGEABLE = {
     "time_max", "cflnumber", "cfl_force", "fixed_limits_dt", "alpha", "balsara", "skin", "gravity",
     "title",
 }  # fmt: skip
+Overrides: TypeAlias = Sequence[str | Change]
 NOTHING_YET = "no checkpoint was written yet; the run began anew"
 
 
 def resume_run(
     directory: str | Path,
-    overrides: Sequence[str] = (),
+    overrides: Overrides = (),
     options: RunOptions | None = None,
     until: float = math.inf,
 ) -> tuple[dict[str, Any], list[str]]:
@@ -42,7 +44,7 @@ def resume_run(
 
     With the same threads or others, and no `overrides`, the record becomes that of a run that was
     never interrupted, bit for bit.  It goes on from the newest checkpoint at a time of at most
-    `until`, s.  `overrides` are KEY=VALUE for keys in CHANGEABLE.  Raises as
+    `until`, s.  `overrides` are KEY=VALUE, or changes, for keys in CHANGEABLE.  Raises as
     run_scenario does, and UserError when there is nothing to go on from.
     """
     options = options or RunOptions()
@@ -69,13 +71,13 @@ def resume_run(
         return carry_out(run, options, fresh=False), notes
 
 
-def _begun_anew(folder: RunFolder, overrides: Sequence[str], options: RunOptions) -> dict[str, Any]:
+def _begun_anew(folder: RunFolder, overrides: Overrides, options: RunOptions) -> dict[str, Any]:
     """The run again from its scenario: it was ended before it could write a checkpoint."""
     scenario = _scenario(folder.scenario, overrides)
     return run_scenario(scenario, folder.path, replace(options, overwrite=True))
 
 
-def _scenario(path: Path, overrides: Sequence[str]) -> Scenario:
+def _scenario(path: Path, overrides: Overrides) -> Scenario:
     """The scenario of the run, with overrides that do not contradict the state."""
     before, after = load_scenario(path), load_scenario(path, overrides)
     tables = before.model_dump(by_alias=True), after.model_dump(by_alias=True)

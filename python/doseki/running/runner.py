@@ -12,10 +12,11 @@ from ..assess.failure.failure import Failure, explain_failure
 from ..assess.loads import write_loads
 from ..assess.trust.report import write_trust
 from ..driver.active_run import ActiveRun, Progress
+from ..driver.live import Watch
 from ..driver.ranks import OneRank
 from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
-from ..errors import Interrupted, PhysicsError, ResourceError
+from ..errors import Interrupted, PhysicsError, ResourceError, UserError
 from ..geodata.ground import write_ground
 from ..record.beginning import check_free
 from ..record.reader import load
@@ -61,6 +62,12 @@ class RunOptions:
     checkpoint_minutes: float = CHECKPOINT_MINUTES  # of wall time
     ranks: OneRank = field(default_factory=OneRank)
     tell: Tell = field(default=say_nothing)  # how far the work before the first step has come
+    watch: Watch | None = None  # a callback that looks on; on one rank alone
+    stops: Callable[[Path], StopRequests] = StopRequests  # what asks the run in a folder to stop
+
+    def __post_init__(self) -> None:
+        if self.watch is not None and self.ranks.count > 1:
+            raise UserError("a callback cannot look at a run on several ranks: run it on one")
 
 
 def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
@@ -147,13 +154,15 @@ def _explained(run: ActiveRun, message: str) -> Failure:
 def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any]:
     """Takes a run, `fresh` or restored, to its end; see run_scenario."""
     core, directory = load_core(), run.folder.path
-    threads = run.ranks.threads(options.threads)
+    run.watch = options.watch
+    threads, before = run.ranks.threads(options.threads), core.threads()
     core.set_threads(threads)
     if not (options.threads or chosen_threads() or run.ranks.count > 1):
         run.threads = ThreadChoice(threads, core.set_threads)
     run.ranks.on_root(lambda: note_provenance(run.folder, fresh, threads, run.ranks.count))
     run.ranks.working_in(directory, run.simulation)
-    stop = StopRequests(directory)
+    stop = options.stops(directory)
+    reason = ""
     try:
         with stop.listening():
             if fresh:
@@ -168,6 +177,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
                 options.checkpoint_every, options.checkpoint_minutes, run.position.next_checkpoint
             )
             status = "done" if run.advance(clock, options.progress, stop) else "stopped"
+            reason = _reason(options.watch, stop) if status == "stopped" else ""
     except core.ResourceFailure as failure:
         raise ResourceError(str(failure)) from failure
     except core.PhysicsFailure as failure:
@@ -183,13 +193,20 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
     except ResourceError as error:
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
     finally:
-        core.set_threads(threads)  # it may have been stepping on fewer
-    summary = _summary(run, status)
+        core.set_threads(before)
+    summary = _summary(run, status) | ({"stopped_by": reason} if reason else {})
     run.recorder.close(summary)
     if remark := run.ranks.on_root(lambda: _judge(directory)):
         summary["warnings"].append(remark)
         run.recorder.close(summary)
     return summary
+
+
+def _reason(watch: Watch | None, stop: StopRequests) -> str:
+    """What stopped a run."""
+    if watch is not None and watch.error is not None:
+        return f"an error in the callback: {watch.error!r}"
+    return "the callback" if watch is not None and watch.stopped else stop.reason
 
 
 def _judge(directory: Path) -> str:

@@ -1,0 +1,1 @@
+"""doseki for Python programs: what `import doseki` gives."""
