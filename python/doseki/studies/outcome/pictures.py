@@ -134,5 +134,5 @@ def _observed(
             column, unit = each.column_and_unit(plan.scenario)
             table = read_series(plan.folder / each.file, column, unit)
             inside = (table["time"] >= found.x[0]) & (table["time"] <= found.x[-1])
-            return table["time"][inside], table[column][inside]
+            return table["time"][inside], table["value"][inside]
     return None

@@ -291,13 +291,29 @@ def _flat(table: dict[str, Any], leaf: type[Table] | None = None) -> dict[str, A
 def _middle(name: str, settings: list[str], axes: list[Axis], where: Where) -> Scenario:
     """The scenario in the middle of all ranges; every end of each is tried, too."""
     middle = {axis.name: axis.setting(axis.at(0.5)) for axis in axes}
-    scenario = _loaded(name, [*settings, *middle.values()], ("scenario",), where)
+    try:
+        scenario = load_scenario(name, [*settings, *middle.values()])
+    except UserError as error:
+        keys = _culprit(name, settings, middle)
+        raise where.error(keys, f"{dotted(keys)}: {error}") from None
     for axis in axes:
         others = [setting for key, setting in middle.items() if key != axis.name]
         for value in dict.fromkeys(axis.ends()):
             tried = [*settings, *others, axis.setting(value)]
             _loaded(name, tried, ("vary", axis.name), where)
     return scenario
+
+
+def _culprit(name: str, settings: list[str], middle: Mapping[str, str]) -> KeyPath:
+    """The key of the study file for which the scenario cannot be read."""
+    alone: dict[KeyPath, list[str]] = {("scenario",): []}
+    alone |= {("vary", key): [setting] for key, setting in middle.items()}
+    for keys, added in alone.items():
+        try:
+            load_scenario(name, [*settings, *added])
+        except UserError:
+            return keys
+    return ("vary",)
 
 
 def _loaded(name: str, settings: list[str], keys: KeyPath, where: Where) -> Scenario:

@@ -37,11 +37,15 @@ def read_table(path: Path, columns: dict[str, str], optional: dict[str, str]) ->
 
 
 def read_series(path: Path, value: str, unit: str) -> Table:
-    """Rows of "time", s, a value in `unit` and perhaps its "error"; times rise."""
+    """Rows of "time", s, of the column `value`, in `unit`, and perhaps its "error"; times rise.
+
+    The column is called "value" in what is returned.
+    """
     table = read_table(path, {"time": "s", value: unit}, {"error": unit})
     fallen = np.flatnonzero(np.diff(table["time"]) <= 0)
     if len(fallen):
         raise UserError(f"{path}: row {fallen[0] + 2}: times must rise")
+    table["value"] = table.pop(value)
     return table
 
 

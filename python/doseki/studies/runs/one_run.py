@@ -10,11 +10,12 @@ import signal
 import sys
 import threading
 import time
+import traceback
 from pathlib import Path
 
 import numpy as np
 
-from ...errors import DosekiError, PhysicsError, ResourceError, UserError, one_line
+from ...errors import DosekiError, ResourceError, UserError, one_line
 from ...record.folder import RunFolder
 from ...record.lock import holder_of
 from ...record.reader import Run, load
@@ -130,7 +131,8 @@ def _end_with_parent() -> None:
     """End, with a checkpoint where there is time, when whoever started this process is gone."""
 
     def watch() -> None:
-        sys.stdin.buffer.read()
+        while os.read(0, 1024):
+            pass
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(GRACE)
         os._exit(1)
@@ -142,15 +144,18 @@ def main() -> None:
     """Entry point of the process."""
     directory, name = sys.argv[1:]
     _end_with_parent()
+    code = 0
     try:
         carry_out(directory, name)
-    except (PhysicsError, DosekiError) as error:
+    except DosekiError as error:
         print(error, file=sys.stderr)
-        sys.exit(error.exit_code)
-    # What keeps standard input open must not be waited for.
+        code = error.exit_code
+    except Exception:
+        traceback.print_exc()
+        code = 1
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(0)
+    os._exit(code)  # the thread that watches standard input does not end
 
 
 if __name__ == "__main__":
