@@ -117,6 +117,9 @@ def test_a_study_that_is_killed_leaves_no_run_behind_and_goes_on(tmp_path):
         process.wait()
     wait_for(lambda: not processes_in(out))
     assert done.stat().st_mtime_ns == before
+    # The run that was under way went on from the checkpoint that it wrote when it was ended.
+    told = json.loads(next(out.glob("runs/0001*/run/provenance.json")).read_text())
+    assert len(told["runs"]) > 1
 
 
 def processes_in(out):

@@ -110,6 +110,8 @@ def study(
     """
     from ..studies.study import check_study, report_text, run_study
 
+    if only_check and (output or retry or as_json or not figures):
+        raise UserError("--check makes no run: of the other options it takes --at-once alone")
     if only_check:
         typer.echo(check_study(file, at_once))
         return

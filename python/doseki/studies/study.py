@@ -95,6 +95,7 @@ def run_study(
 def check_study(path: Path, at_once: int | None = None) -> str:
     """What a study will take, from a second of stepping in the middle of its ranges."""
     plan = read_plan(path)
+    _check_at_once(plan, at_once)
     count = len(plan.points()) + (plan.calibrate.max_runs if plan.calibrate else 0)
     simulation, names, _ = filled_simulation(plan.scenario)
     simulation.start()
@@ -122,11 +123,15 @@ def report_text(report: StudyReport) -> str:
 
 
 def _engine(plan: Plan, folder: StudyFolder, at_once: int | None) -> Engine:
+    _check_at_once(plan, at_once)
     if plan.cluster is None:
         return LocalRuns(folder, plan.top.threads, at_once)
-    if at_once is not None:
-        raise UserError("--at-once is of this machine; a cluster has cluster.at_once")
     return ClusterRuns(folder, plan.top.threads, plan.cluster)
+
+
+def _check_at_once(plan: Plan, at_once: int | None) -> None:
+    if plan.cluster is not None and at_once is not None:
+        raise UserError("--at-once is of this machine; a cluster has cluster.at_once")
 
 
 def _beginning(plan: Plan, engine: Engine) -> str:

@@ -133,6 +133,7 @@ def _response(axes: Axes, each: Column, output: Column) -> None:
         axes.xaxis.set_minor_locator(NullLocator())
     elif each.ticks:
         axes.set_xticks(range(len(each.ticks)), list(each.ticks), fontsize="x-small")
+        axes.margins(x=0.3)
     else:
         axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.tick_params(labelsize="x-small")
@@ -177,7 +178,7 @@ def _marks(column: Column, known: np.ndarray) -> np.ndarray:
 
 
 def _named(column: Column, value: float) -> str:
-    return column.ticks[round(value)] if column.ticks else f"{value:.3g}"
+    return column.ticks[round(value)] if column.ticks else f"{value:.4g}"
 
 
 def _norm(values: np.ndarray) -> Normalize:

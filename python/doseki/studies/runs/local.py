@@ -69,6 +69,8 @@ def _reason(place: RunPlace, code: int) -> str:
     """Why a process ended without a row."""
     if code < 0:
         return f"killed by signal {-code}"
+    if not code:
+        return "was stopped before its end"
     said = place.output.read_text(errors="replace").strip().splitlines()
     return said[-1] if code and said else f"ended with code {code}"
 
