@@ -11,7 +11,6 @@ from typing import Any, Protocol
 
 import numpy as np
 from scipy.optimize import OptimizeResult, differential_evolution, dual_annealing, shgo
-from scipy.stats import qmc
 
 from .plan.axes import Axis
 from .plan.sampling import Point
@@ -118,6 +117,8 @@ def calibrated(
 
 def _evolved(dimensions: int, scores: _Scores, how: Calibrate) -> OptimizeResult:
     """Storn & Price (1997): generations whose runs do not wait for each other."""
+    from scipy.stats import qmc
+
     random = np.random.default_rng(how.seed or 0)
     size = how.population or POPULATION
     first = qmc.LatinHypercube(dimensions, seed=random).random(size)

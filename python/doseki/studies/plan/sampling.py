@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import qmc
 
 from .axes import Axis, Value
 from .tables import Sample
@@ -37,6 +36,9 @@ def grid_size(axes: Sequence[Axis]) -> int:
 
 def _shares(kind: str, dimensions: int, count: int, seed: int) -> np.ndarray:
     """Points (count, dimensions) in the unit cube, the same for the same seed."""
+    # Importing it takes as long as all the rest, and the processes of runs need it not.
+    from scipy.stats import qmc
+
     random = np.random.default_rng(seed)
     if kind == "latin_hypercube":
         return qmc.LatinHypercube(dimensions, seed=random).random(count)
