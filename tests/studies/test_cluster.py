@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from doseki.errors import UserError
+from doseki.errors import ResourceError, UserError
 from doseki.studies.runs.row import DONE
 from doseki.studies.study import run_study
 
@@ -57,5 +57,6 @@ def test_without_submitit_one_sentence_says_what_helps(tmp_path, monkeypatch):
 def test_without_slurm_one_sentence_says_so(tmp_path):
     pytest.importorskip("submitit")
     path = write_study(tmp_path, STUDY + CLUSTER.format("slurm"))
-    with pytest.raises(UserError, match="slurm"):
+    # Its commands are missing, or what they talk to.
+    with pytest.raises((UserError, ResourceError), match="slurm"):
         run_study(path, tmp_path / "out", lambda _: None)

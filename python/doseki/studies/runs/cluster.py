@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from ...errors import UserError
+from ...errors import ResourceError, UserError
 from ..plan.tables import Cluster
 from .folder import RunPlace, StudyFolder
 from .local import Finished
@@ -30,7 +30,10 @@ class ClusterRuns:
         self._executor = _executor(folder, threads, cluster)
 
     def carry_out(self, places: Sequence[RunPlace], finished: Finished) -> None:
-        """Run all; `finished` is called as each ends. A file STOP withdraws what has not begun."""
+        """Run all; `finished` is called as each ends. A file STOP withdraws what has not ended.
+
+        Raises ResourceError where the cluster takes no jobs.
+        """
         for start in range(0, len(places), self._batch):
             if self._folder.stop.exists():
                 return
@@ -67,8 +70,12 @@ class ClusterRuns:
             )
             for place in places
         ]
-        with self._executor.batch():
-            return [self._executor.submit(command) for command in commands]
+        try:
+            with self._executor.batch():
+                return [self._executor.submit(command) for command in commands]
+        except submitit.core.utils.FailedJobError as error:
+            kind = self._cluster.kind
+            raise ResourceError(f"{kind} takes no jobs: {error}; start the study again") from None
 
 
 def _executor(folder: StudyFolder, threads: int, cluster: Cluster) -> Any:
