@@ -11,7 +11,7 @@ from .. import __version__
 from .project import bench, list_scenarios, new, validate
 from .results import census, export, loads, maps, plot, report
 from .simulate import check, explain, resume, run
-from .studies import compare, trust
+from .studies import compare, study, trust
 
 _debug = False  # set by --debug
 
@@ -50,6 +50,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "resume": resume,
     "explain": explain,
     "trust": trust,
+    "study": study,
     "plot": plot,
     "report": report,
     "compare": compare,

@@ -1,4 +1,4 @@
-"""Commands that run a scenario several times: trust, compare."""
+"""Commands that run a scenario several times: trust, compare, study."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
-from .options import AsJson, ScenarioName, Settings, Threads, free_directory
+from .options import AsJson, Figures, ScenarioName, Settings, Threads, free_directory
 
 
 def trust(
@@ -79,3 +79,52 @@ def compare(
     comparison = compare_runs(folders, directory)
     typer.echo((directory / "comparison.json").read_text() if as_json else comparison.text())
     typer.echo(f"In {directory}: comparison.md, pictures", err=as_json)
+
+
+def study(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A study file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Folder of the study; one that was begun is gone on with.",
+            show_default="runs/NAME",
+        ),
+    ] = None,
+    at_once: Annotated[
+        int | None,
+        typer.Option(min=1, max=4096, help="Runs at the same time.", show_default="one a core"),
+    ] = None,
+    only_check: Annotated[
+        bool, typer.Option("--check", help="Say what it will take, without a run.")
+    ] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Make runs that failed again.")] = False,
+    figures: Figures = True,
+    as_json: AsJson = False,
+) -> None:
+    """Run a scenario at many values, and compare or calibrate: table, pictures, bands.
+
+    Started again it makes the runs that are missing, and no other.
+    """
+    from ..studies.study import check_study, report_text, run_study
+
+    if only_check and (output or retry or as_json or not figures):
+        raise UserError("--check makes no run: of the other options it takes --at-once alone")
+    if only_check:
+        typer.echo(check_study(file, at_once))
+        return
+    directory = output or Path("runs") / file.stem
+    report = run_study(
+        file, directory, lambda text: typer.echo(text, err=True), at_once, retry, figures
+    )
+    for note in report.notes:
+        typer.echo(f"warning: {note}", err=True)
+    if as_json:
+        typer.echo((directory / "results.json").read_text())
+        return
+    typer.echo(report_text(report))
+    typer.echo(f"\nIn {directory}:")
+    for path in report.files:
+        typer.echo(f"  {path}")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from pydantic import ValidationError
 
 from ...errors import UserError
 from ...util.spelling import suggestion
-from ..table import Kinds
+from ..table import Kinds, Table
 from ..tables.sections import SECTIONS, table_at
 from ..values.toml_source import KeyPath, Where, dotted
 
@@ -26,19 +27,28 @@ EXPECTED = {
 RANGES = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
 
 
+# The kind of table that stands at some keys of a file; None where it is none.
+KindAt = Callable[[KeyPath, dict[str, Any]], type[Table] | None]
+
+
 def to_user_error(
-    error: ValidationError, table: dict[str, Any], where: Where, above: KeyPath = ()
+    error: ValidationError,
+    table: dict[str, Any],
+    where: Where,
+    above: KeyPath = (),
+    kind_at: KindAt = table_at,
 ) -> UserError:
     """The UserError for the first objection; unknown keys come first (they cause others).
 
-    `table` is what was validated and `above` the keys under which it stands in the file.
+    `table` is what was validated and `above` the keys under which it stands in the file, which is
+    a scenario unless `kind_at` knows better.
     """
     objections = sorted(error.errors(), key=lambda item: item["type"] != "extra_forbidden")
     first = objections[0]
     keys = above + _keys_in(table, first)
     for key in reversed(above):
         table = {str(key): table}
-    return where.error(keys, _sentence(keys, first, table))
+    return where.error(keys, _sentence(keys, first, table, kind_at))
 
 
 def _keys_in(table: Any, objection: Any) -> KeyPath:
@@ -59,12 +69,12 @@ def _holds(table: Any, key: str | int) -> bool:
     return isinstance(table, list) and isinstance(key, int) and key < len(table)
 
 
-def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any]) -> str:
+def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: KindAt) -> str:
     name, kind, value = dotted(keys), objection["type"], objection["input"]
     context = objection.get("ctx", {})
-    about = _description(keys, table)
+    about = _description(keys, table, kind_at)
     if kind == "extra_forbidden":
-        return f"{name} is not a known key{_nearest_key(keys, table)}"
+        return f"{name} is not a known key{_nearest_key(keys, table, kind_at)}"
     if kind == "missing":
         return f"{name} is missing{about}"
     if kind == "union_tag_not_found" and not isinstance(value, dict):
@@ -96,10 +106,10 @@ def _tag_sentence(name: str, kinds: Kinds, tag: str | None) -> str:
     return f'{name}.{kinds.key} = "{said}" is not a {kinds.key}{suggestion(said, kinds.words)}'
 
 
-def _description(keys: KeyPath, table: dict[str, Any]) -> str:
+def _description(keys: KeyPath, table: dict[str, Any], kind_at: KindAt) -> str:
     """What the key means, in brackets."""
     for length in range(len(keys), 0, -1):
-        kind = table_at(keys[: length - 1], table)
+        kind = kind_at(keys[: length - 1], table)
         if kind is None:
             continue
         for name, field in kind.model_fields.items():
@@ -109,8 +119,8 @@ def _description(keys: KeyPath, table: dict[str, Any]) -> str:
     return ""
 
 
-def _nearest_key(keys: KeyPath, table: dict[str, Any]) -> str:
-    kind = table_at(keys[:-1], table)
+def _nearest_key(keys: KeyPath, table: dict[str, Any], kind_at: KindAt) -> str:
+    kind = kind_at(keys[:-1], table)
     if kind is None:
         return ""
     known = [field.alias or name for name, field in kind.model_fields.items()]

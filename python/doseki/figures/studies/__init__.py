@@ -1,0 +1,1 @@
+"""Pictures of many runs: parallel coordinates, responses, bands."""

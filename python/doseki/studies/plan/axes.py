@@ -1,0 +1,95 @@
+"""What a study varies: a range, or a list of values, of one key of the scenario."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from ...scenario.values.units import quantity
+
+DIGITS = 6  # of a value that lies somewhere in a range: what a run is known by
+
+Value = float | int | str | bool
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A key of the scenario, by the name that --set knows, and the values that it may have.
+
+    Attributes:
+        name: of the key.
+        unit: of the numbers; empty where the study file gives them without one.
+        choices: of a list of values; empty for a range.
+        low, high: ends of a range, in `unit`.
+        log: whether equal shares of the range are equal ratios.
+        count: points on a grid; None where the file does not say.
+
+    """
+
+    name: str
+    unit: str = ""
+    choices: tuple[Value, ...] = ()
+    low: float = 0.0
+    high: float = 1.0
+    log: bool = False
+    count: int | None = None
+
+    def at(self, share: float) -> Value:
+        """The value at a share (0 to 1) of the range, or the choice that lies there."""
+        if self.choices:
+            return self.choices[min(int(share * len(self.choices)), len(self.choices) - 1)]
+        low, high = self._scaled(self.low), self._scaled(self.high)
+        found = low + min(max(share, 0.0), 1.0) * (high - low)
+        # Rounding must not lead out of the range.
+        rounded = float(f"{math.exp(found) if self.log else found:.{DIGITS}g}")
+        return min(max(rounded, self.low), self.high)
+
+    def grid(self) -> list[Value]:
+        """The choices, or `count` points from end to end."""
+        if self.choices:
+            return list(self.choices)
+        return [self.at(float(share)) for share in np.linspace(0, 1, self.count or 1)]
+
+    def ends(self) -> list[Value]:
+        """The least and the greatest value, or all choices."""
+        return list(self.choices) or [self.low, self.high]
+
+    def setting(self, value: Value) -> str:
+        """KEY=VALUE as --set takes it."""
+        if self.unit and not isinstance(value, str):
+            return f"{self.name}={float(value)!r} {self.unit}"
+        return f"{self.name}={written(value)}"
+
+    def number(self, value: Value) -> float:
+        """The value as a number to draw: words by their place in the list."""
+        if isinstance(value, str):
+            found = quantity(value)
+            return float(self.choices.index(value)) if found is None else found[0]
+        return float(value)
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether its values are numbers, with or without a unit."""
+        words = (v for v in self.choices if isinstance(v, str | bool))
+        return all(isinstance(w, str) and quantity(w) is not None for w in words)
+
+    @property
+    def label(self) -> str:
+        """Name and unit, as a column of a table has it."""
+        units = {
+            found[1].own for v in self.choices if isinstance(v, str) and (found := quantity(v))
+        }
+        unit = self.unit or ("".join(units) if len(units) == 1 else "")
+        return f"{self.name} [{unit}]" if unit else self.name
+
+    def _scaled(self, value: float) -> float:
+        return math.log(value) if self.log else value
+
+
+def written(value: Any) -> str:
+    """A value of a TOML file, as --set takes it."""
+    return tomli_w.dumps({"value": value}).partition("=")[2].strip()

@@ -1,0 +1,1 @@
+"""What is read of each run: results, misfits to observations, and what bands are drawn of."""

@@ -1,0 +1,52 @@
+"""Kinds of tables of a study, each with its keys and what it does, told apart by `kind`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ...errors import UserError
+from ...record.history import history_columns
+from ...scenario.model import Scenario
+from ...scenario.table import Table
+from ...util.spelling import suggestion
+
+# Turns a key and what is wrong with it into the error that names file and line.
+Refuse = Callable[[str, str], UserError]
+KindTables = Mapping[str, type[Table]]
+
+
+def check_gauge(scenario: Scenario, gauge: str, column: str | None, refuse: Refuse) -> None:
+    """Raise where the scenario has no such gauge, or the gauge no such column."""
+    if gauge not in scenario.gauge:
+        raise refuse(
+            "gauge", f'the scenario has no gauge "{gauge}"{suggestion(gauge, scenario.gauge)}'
+        )
+    known = scenario.gauge[gauge].columns(scenario.dim)
+    if column is not None and column not in known:
+        raise refuse("column", f'gauge {gauge} has no column "{column}"{suggestion(column, known)}')
+
+
+def check_history(scenario: Scenario, column: str, refuse: Refuse) -> None:
+    """Raise where the history of a run has no such column."""
+    known = history_columns(scenario.dim, scenario.material_names)
+    if column not in known:
+        raise refuse("column", f'no column "{column}" in the history{suggestion(column, known)}')
+
+
+def check_maps(scenario: Scenario, refuse: Refuse) -> None:
+    """Raise where runs keep no maps."""
+    if scenario.maps is None:
+        raise refuse("kind", "the scenario keeps no maps: give it a table [maps]")
+
+
+def check_fluid(scenario: Scenario, refuse: Refuse) -> None:
+    """Raise where nothing flows, so that there is no front."""
+    if scenario.is_dry:
+        raise refuse("kind", "nothing in the scenario is a fluid, so there is no front")
+
+
+def objection_of(table: Table) -> tuple[str, str] | None:
+    """What a table says of keys of its own that do not go together."""
+    objects: Callable[[], Any] | None = getattr(table, "objection", None)
+    return objects() if objects is not None else None

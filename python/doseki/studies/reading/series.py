@@ -1,0 +1,127 @@
+"""Series of a run over time, and what one number is made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from ...errors import UserError
+from ...measure import numbers as measure
+from ...measure.series import first_above
+from ...measure.views import flow_direction, fluid_names, select, whole_space
+from ...record.reader import Run
+from ...record.units import unit_in
+from ...scenario.table import Table
+
+REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
+    "min": np.min,
+    "max": np.max,
+    "mean": np.mean,
+}
+Taken = Literal["last", "first", "min", "max", "mean", "at"]
+
+
+class Reduced(Table):
+    """What one number is made of a series: keys that all kinds of series have."""
+
+    take: Taken = Field("last", description="what one number is made of the series")
+    at: float | None = Field(None, description='s; with take = "at", linear between samples')
+    after: float | None = Field(None, description="s; samples before do not count")
+    before: float | None = Field(None, description="s; samples after do not count")
+
+    def objection(self) -> tuple[str, str] | None:
+        """A key that does not go with the others, and why; None where all do."""
+        if self.take == "at" and self.at is None:
+            return "at", 'is missing: take = "at" needs a time, s'
+        if self.take != "at" and self.at is not None:
+            return "at", 'goes with take = "at"'
+        for key in ("after", "before"):
+            if self.take == "at" and getattr(self, key) is not None:
+                return key, 'does not go with take = "at"'
+        if self.after is not None and self.before is not None and self.after >= self.before:
+            return "after", "must be less than before"
+        return None
+
+    def reduced(self, series: Series) -> float:
+        """One number of a series; nan where it has no sample that counts."""
+        time, value = series.time, series.value
+        if self.take == "at":
+            assert self.at is not None
+            return series.at(np.array([self.at]))[0]
+        first = -np.inf if self.after is None else self.after
+        last = np.inf if self.before is None else self.before
+        chosen = value[(time >= first) & (time <= last) & np.isfinite(value)]
+        if not len(chosen):
+            return float("nan")
+        if self.take in ("first", "last"):
+            return float(chosen[0 if self.take == "first" else -1])
+        return float(REDUCTIONS[self.take](chosen))
+
+
+@dataclass(frozen=True)
+class Series:
+    """Values (n,) in `unit` at times (n,), s, that do not fall."""
+
+    time: np.ndarray
+    value: np.ndarray
+    unit: str
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Values at times (m,), s, linear between samples; nan outside, and beside a gap."""
+        if not len(self.time):
+            return np.full(len(times), np.nan)
+        return np.interp(times, self.time, self.value, left=np.nan, right=np.nan)
+
+
+def gauge_series(run: Run, gauge: str, column: str) -> Series:
+    """A column of a gauge; raises UserError where the run has not recorded it."""
+    record = run.gauges.get(gauge)
+    if record is None or column not in record.columns or "time" not in record.columns:
+        raise UserError(f"{run.directory}: gauge {gauge} has not recorded {column}")
+    return Series(record["time"], record[column], record.units[column])
+
+
+def history_series(run: Run, column: str) -> Series:
+    """A column of the history."""
+    if column not in run.history.columns:
+        raise UserError(f"{run.directory}: the history has no column {column}")
+    return Series(
+        run.history["time"], run.history[column], history_unit(column, run.scenario["dim"])
+    )
+
+
+def history_unit(column: str, dim: int) -> str:
+    """The unit of a column of the history; empty for numbers and shares."""
+    if column in ("time", "dt"):
+        return "s"
+    if column.startswith("mass"):
+        return unit_in("kg", dim)
+    if column.startswith(("momentum", "impulse")):
+        return unit_in("kg m/s", dim)
+    if column.endswith(("_energy", "_work", "_dissipation")) or column.startswith("energy_"):
+        return unit_in("J", dim)
+    return ""
+
+
+def front_series(run: Run) -> Series:
+    """Where the foremost fluid is along x, m, in each snapshot; nan where there is none."""
+    fluids, everywhere = fluid_names(run), whole_space(run.scenario["dim"])
+    direction = flow_direction(run) or 1
+    front = []
+    for snapshot in run:
+        there = select(snapshot, everywhere, fluids)
+        front.append(measure.front(snapshot["position"][there, 0], direction))
+    return Series(run.times, np.array(front, dtype=float), "m")
+
+
+def time_of_front(run: Run, x: float) -> float:
+    """When the front comes to x, s, linear between snapshots; nan if it never does."""
+    series, direction = front_series(run), flow_direction(run) or 1
+    known = np.isfinite(series.value)
+    if not known.any():
+        return float("nan")
+    return first_above(series.time[known], direction * series.value[known], direction * x)

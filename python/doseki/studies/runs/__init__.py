@@ -1,0 +1,1 @@
+"""Carrying out the runs of a study: their folders, their rows, and who runs them."""

@@ -1,0 +1,221 @@
+"""What is read of runs whose numbers are known, and files of observations that are hostile."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from doseki.errors import UserError
+from doseki.record.reader import load
+from doseki.studies.plan.file import read_plan
+from doseki.studies.reading.bands import ProfileBand, curve_text, read_curve, shared
+from doseki.studies.reading.observations import (
+    ObservedArea,
+    ObservedFront,
+    ObservedValue,
+    ObservedValues,
+    total_score,
+)
+from doseki.studies.reading.observed_files import read_series
+from doseki.studies.reading.results import FrontTime, OfFront, OfHistory, OfMap
+from doseki.studies.reading.series import Reduced, Series
+
+from .small_study import STUDY, write_study
+
+# The front of `flow_folder` is at 3 - t m, from 0 to 3 s.
+
+
+def test_front_and_history_are_read(flow_folder):
+    run = load(flow_folder)
+    assert FrontTime(kind="front_time", x=1.9).read(run) == pytest.approx(1.1)
+    assert np.isnan(FrontTime(kind="front_time", x=-5.0).read(run))
+    assert OfFront(kind="front").read(run) == pytest.approx(0.0, abs=1e-9)
+    assert OfFront(kind="front", take="at", at=1.6).read(run) == pytest.approx(1.4)
+    energy = OfHistory(kind="history", column="bulk_energy", take="max", before=2.0)
+    assert energy.read(run) == pytest.approx(2.0)
+    with pytest.raises(UserError, match="has no column"):
+        OfHistory(kind="history", column="nothing").read(run)
+
+
+SERIES = Series(np.arange(5.0), np.array([3.0, np.nan, 5.0, 1.0, 2.0]), "m")
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ({"take": "last"}, 2.0), ({"take": "first"}, 3.0), ({"take": "min"}, 1.0),
+        ({"take": "max", "after": 2.5}, 2.0), ({"take": "mean", "before": 2.0}, 4.0),
+        ({"take": "at", "at": 2.5}, 3.0), ({"take": "at", "at": 9.0}, np.nan),
+        ({"take": "at", "at": 0.5}, np.nan), ({"take": "max", "after": 8.0}, np.nan),
+    ],
+)  # fmt: skip
+def test_one_number_is_made_of_a_series(keys, expected):
+    assert Reduced(**keys).reduced(SERIES) == pytest.approx(expected, nan_ok=True)
+
+
+def front_file(folder, x, head="time [ms],x [cm],error"):
+    rows = [f"{1000 * t},{100 * value},{2}" for t, value in x]
+    path = folder / "front.csv"
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return path
+
+
+def test_a_front_is_compared_in_its_own_units(flow_folder, tmp_path):
+    each = ObservedFront(kind="front", file="front.csv")
+    front_file(tmp_path, [(0.5, 2.5), (1.1, 1.9), (5.0, 9.0)])  # the last is beyond the run
+    assert each.misfit(load(flow_folder), {}, tmp_path) == pytest.approx(0.0, abs=1e-9)
+    front_file(tmp_path, [(0.5, 2.5 + 0.06), (1.1, 1.9 - 0.06)], "time [ms],x [cm],error [cm]")
+    assert each.misfit(load(flow_folder), {}, tmp_path) == pytest.approx(3.0)
+    # The control: a front that is another one.
+    front_file(tmp_path, [(0.5, 2.2), (1.1, 1.6)], "time [ms],x [cm],error [cm]")
+    assert each.misfit(load(flow_folder), {}, tmp_path) == pytest.approx(15.0)
+
+
+def test_numbers_are_compared(tmp_path):
+    one = ObservedValue(kind="value", result="level", value=2.0, error=0.5)
+    assert one.misfit(None, {"level": 3.0}, tmp_path) == pytest.approx(2.0)
+    (tmp_path / "o.csv").write_text("result,value,error\nlevel,2,0.5\narrival,1,0.1\n")
+    both = ObservedValues(kind="values", file="o.csv", weight=3.0)
+    misfit = both.misfit(None, {"level": 3.0, "arrival": 1.2}, tmp_path)
+    assert misfit == pytest.approx(np.sqrt((4 + 4) / 2))
+    score = total_score({"one": one, "both": both}, {"one": 2.0, "both": 4.0})
+    assert score == pytest.approx(np.sqrt((4 + 3 * 16) / 4))
+    assert np.isnan(total_score({"one": one}, {"one": np.nan}))
+
+
+MAP = """ncols 10
+nrows 4
+xllcorner 100
+yllcorner 200
+cellsize 1
+nodata_value -9999
+"""
+
+
+@pytest.fixture
+def mapped(flow_folder):
+    """A run that has kept maps: cells from x = 102 to 106 m and y = 201 to 203 m are 2 m deep."""
+    (flow_folder / "maps").mkdir()
+    depth = np.zeros((4, 10))
+    depth[1:3, 2:6] = 2.0
+    for name in ("peak_depth", "peak_speed", "peak_pressure", "peak_total_pressure",
+                 "peak_momentum_flux", "arrival_time", "deposit"):  # fmt: skip
+        rows = "\n".join(" ".join(str(v) for v in row) for row in depth)
+        (flow_folder / "maps" / f"{name}.asc").write_text(MAP + rows + "\n")
+    return load(flow_folder)
+
+
+def polygon(folder, corners, kind="Polygon"):
+    ring = [list(corner) for corner in corners]
+    shape = {"type": kind, "coordinates": [ring] if kind == "Polygon" else ring}
+    table = {"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {}, "geometry": shape}]}  # fmt: skip
+    (folder / "area.geojson").write_text(json.dumps(table))
+
+
+AREA = ObservedArea(kind="area", file="area.geojson")
+BOX = [(102, 201), (106, 201), (106, 203), (102, 203), (102, 201)]
+
+
+def test_areas_are_compared(mapped, tmp_path):
+    polygon(tmp_path, BOX)
+    assert AREA.misfit(mapped, {}, tmp_path) == 0.0
+    polygon(tmp_path, [(x + 2, y) for x, y in BOX])  # half of each is common: a third of both
+    assert AREA.misfit(mapped, {}, tmp_path) == pytest.approx(2 / 3)
+    polygon(tmp_path, [(x, y + 2 * (y > 202) - 2 * (y < 202)) for x, y in BOX])
+    assert AREA.misfit(mapped, {}, tmp_path) == pytest.approx(0.5)
+    polygon(tmp_path, BOX[:-1])  # not closed: the last side is drawn
+    assert AREA.misfit(mapped, {}, tmp_path) == 0.0
+    polygon(tmp_path, BOX, "LineString")
+    with pytest.raises(UserError, match="polygons"):
+        AREA.misfit(mapped, {}, tmp_path)
+    polygon(tmp_path, [(x + 1e6, y) for x, y in BOX])
+    with pytest.raises(UserError, match="beside the map"):
+        AREA.misfit(mapped, {}, tmp_path)
+
+
+def test_maps_are_read(mapped):
+    assert OfMap(kind="map", map="peak_depth").read(mapped) == 2.0
+    assert OfMap(kind="map", map="peak_depth", take="mean").read(mapped) == 2.0
+    place = OfMap(kind="map", map="peak_depth", take="at", position=[104.0, 202.0])
+    assert place.read(mapped) == pytest.approx(2.0)
+
+
+HOSTILE = {
+    "nothing": ("", "empty"),
+    "no rows": ("time,y,error\n", "0 rows"),
+    "nan": ("time,y,error\n0,nan,1\n", "row 1: y = nan"),
+    "infinite": ("time,y,error\n0,1e999,1\n", "row 1"),
+    "a word": ("time,y,error\n0,high,1\n", "'high' is not a number"),
+    "another column": ("time,z,error\n0,1,1\n", "no column y"),
+    "another unit": ("time,y [kg],error\n0,1,1\n", "unit"),
+    "times that fall": ("time,y,error\n0,1,1\n0,2,1\n", "row 2: times must rise"),
+    "an error of nothing": ("time,y,error\n0,1,0\n", "greater than 0"),
+    "twice a column": ("time,y,y,error\n0,1,1,1\n", "twice"),
+    "a short row": ("time,y,error\n0,1\n", "2 fields"),
+    "other times": ("time,y,error\n7,1,1\n", "outside of the runs"),
+    "no error": ("time,y\n0,1\n", "in neither"),
+}
+OBSERVATION = """
+[observation.centre]
+kind = "series"
+file = "o.csv"
+gauge = "centre"
+column = "y"
+"""
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_observation_is_refused(name, tmp_path):
+    text, words = HOSTILE[name]
+    (tmp_path / "o.csv").write_text(text)
+    with pytest.raises(UserError) as caught:
+        read_plan(write_study(tmp_path, STUDY + OBSERVATION))
+    assert words in str(caught.value)
+    assert "observation.centre" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_error_stands_once(tmp_path):
+    (tmp_path / "o.csv").write_text("time [ms],y [mm],error [m]\n1,100,0.01\n2,99,0.01\n")
+    assert not read_plan(write_study(tmp_path, STUDY + OBSERVATION)).remarks
+    with pytest.raises(UserError, match="in both"):
+        read_plan(write_study(tmp_path, STUDY + OBSERVATION + "error = 1\n"))
+    found = read_series(tmp_path / "o.csv", "y", "m")
+    assert found["time"] == pytest.approx([0.001, 0.002])
+    assert found["value"] == pytest.approx([0.1, 0.099])
+
+
+def test_a_huge_or_odd_file_is_not_read(tmp_path, monkeypatch):
+    monkeypatch.setattr("doseki.studies.reading.observed_files.MAX_BYTES", 10)
+    (tmp_path / "o.csv").write_text("time,y,error\n0,1,1\n")
+    with pytest.raises(UserError, match="at most"):
+        read_plan(write_study(tmp_path, STUDY + OBSERVATION))
+    (tmp_path / "o.csv").unlink()
+    (tmp_path / "o.csv").mkdir()
+    with pytest.raises(UserError, match="a folder"):
+        read_plan(write_study(tmp_path, STUDY + OBSERVATION))
+
+
+def test_a_profile_keeps_the_volume(flow_folder):
+    run = load(flow_folder)
+    band = ProfileBand(kind="profile", time=2.0, min=-1.0, max=4.0, cell=0.25)
+    curve = band.curve(run)
+    water = run.at(2.0)["material"] == "water"
+    volume = (run.at(2.0)["mass"] / run.at(2.0)["density"])[water].sum()
+    assert curve.value.sum() * 0.25 == pytest.approx(volume)
+    assert curve.value[curve.x < 0.8] == pytest.approx(0.0)
+    assert curve.value[(curve.x > 1.2) & (curve.x < 2.8)] == pytest.approx(0.2, rel=0.11)
+    x, value = read_curve("a", curve_text(curve))
+    assert x == pytest.approx(curve.x)
+    assert value == pytest.approx(curve.value)
+    with pytest.raises(UserError, match="damaged"):
+        read_curve("a", "x,y\n1,2,3\n")
+
+
+def test_amounts_are_shared_by_width():
+    edges = np.array([0.0, 1.0, 2.0, 3.0])
+    found = shared(np.array([1.0, 2.5]), np.array([1.0, 0.5]), np.array([4.0, 1.0]), edges)
+    assert found == pytest.approx([2.0, 2.0, 1.0])
