@@ -16,7 +16,7 @@ from ..polydata import PolyData
 
 ALONG = 41  # points of a line on the ground
 
-Middle = Callable[[str], np.ndarray | None]
+Top = Callable[[str], np.ndarray | None]
 
 
 @dataclass
@@ -52,19 +52,18 @@ class Marks:
 
 
 def gauge_marks(
-    scenario: Scenario, ground: Raster | Profile | None, middle: Middle
+    scenario: Scenario, ground: Raster | Profile | None, top: Top
 ) -> tuple[Marks, list[str]]:
     """Where the gauges of a run look, and the names of those that look at no place.
 
-    `middle` gives that of a fixed body, which gauges of forces are about.
+    `top` gives that of a fixed body, which gauges of forces are about.
     """
     marks, nowhere = Marks(scenario.dim), []
     for name, gauge in scenario.gauge.items():
         if not getattr(gauge, "enabled", True):
             continue
-        if not _mark(marks, name, gauge, scenario, ground) and not _bodies(
-            marks, name, gauge, middle
-        ):
+        has_place = _mark(marks, name, gauge, scenario, ground)
+        if not has_place and not _bodies(marks, name, gauge, top):
             nowhere.append(name)
     return marks, nowhere
 
@@ -145,9 +144,9 @@ def _on_ground(ends: np.ndarray, ground: Raster | Profile | None) -> np.ndarray:
     return np.column_stack([places, height])
 
 
-def _bodies(marks: Marks, name: str, gauge: Any, middle: Middle) -> bool:
+def _bodies(marks: Marks, name: str, gauge: Any, top: Top) -> bool:
     """Mark the fixed bodies on which a gauge reads loads."""
-    found = [middle(body) for body in getattr(gauge, "bodies", None) or ()]
+    found = [top(body) for body in getattr(gauge, "bodies", None) or ()]
     places = [place for place in found if place is not None]
     for place in places:
         marks.add(name, gauge.kind, place[None, :])

@@ -87,15 +87,18 @@ def grain_polygons(snapshot: Snapshot, known: GrainShapes) -> PolyData:
         parts.append(placed(own, table["position"][row], table["orientation"][row]))
         rows.append(row)
     points, faces, owner = joined(parts, snapshot.dim)
-    row = np.array(rows, np.int64)
-    of_point = np.repeat(row, [len(part.points) for part in parts])
+    number = np.array(rows, np.int64)
+    of_point = np.repeat(number, [len(part.points) for part in parts])
     arm = in_space(points - table["position"][of_point])
     velocity = in_space(table["velocity"][of_point]) + np.cross(table["spin"][of_point], arm)
     return PolyData(
         points,
         polys=faces,
         fields={"Velocity": velocity},
-        cell_fields={"Grain": row[owner], "Body": indices(snapshot, table["body"][row[owner]])},
+        cell_fields={
+            "Grain": number[owner],
+            "Body": indices(snapshot, table["body"][number[owner]]),
+        },
         units={"Velocity": "m/s"},
         strings={"BodyNames": snapshot.body_names},
         time=snapshot.time,

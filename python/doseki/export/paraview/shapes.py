@@ -74,4 +74,3 @@ def _unit_ball(subdivisions: int) -> Polygons:
 def _ball(radius: float, subdivisions: int) -> Polygons:
     unit = _unit_ball(subdivisions)
     return Polygons(radius * unit.points, unit.faces)
-

@@ -3,10 +3,12 @@
 In ParaView: File, Load State. For a picture: pvbatch state.py PICTURE.png [TIME]
 """
 
-import glob
+from __future__ import annotations
+
 import json
-import os
 import sys
+from pathlib import Path
+from typing import Any
 
 import paraview
 from paraview import simple
@@ -14,17 +16,21 @@ from paraview import simple
 READS_SNAPSHOTS = (5, 12)  # the first ParaView that reads particles from VTKHDF
 SPEED, UNIT = "Velocity", "m/s"
 PICTURE = (1600, 900)
-FAINT, GREY, EARTH, ROCK, RED = 0.12, (0.62, 0.64, 0.66), (0.74, 0.70, 0.63), (0.2,) * 3, (0.8, 0.1, 0.1)
+FAINT = 0.12
+GREY, EARTH = (0.62, 0.64, 0.66), (0.74, 0.70, 0.63)
+ROCK, RED = (0.2, 0.2, 0.2), (0.8, 0.1, 0.1)
 SEEN_FROM = (-0.30, -0.62, 0.72)  # 3-D: of the flow, as a direction in axes whose last is upwards
 
+Colour = tuple[float, float, float]  # red, green, blue, 0 to 1
 
-def folder():
+
+def folder() -> Path:
     """Where this file stands."""
-    places = [os.getcwd(), os.path.join(os.getcwd(), "paraview")]
+    places = [Path.cwd(), Path.cwd() / "paraview"]
     if "__file__" in globals():
-        places.insert(0, os.path.dirname(os.path.abspath(__file__)))
+        places.insert(0, Path(__file__).resolve().parent)
     for place in places:
-        if os.path.isfile(os.path.join(place, "scene.json")):
+        if (place / "scene.json").is_file():
             return place
     raise RuntimeError(
         "scene.json is not found: start ParaView as  paraview --script=DIR/paraview/state.py"
@@ -34,34 +40,29 @@ def folder():
 class Stage:
     """The view, and what is put into it."""
 
-    def __init__(self, place):
+    def __init__(self, place: Path) -> None:
         self.place = place
-        with open(os.path.join(place, "scene.json"), encoding="utf-8") as file:
-            self.scene = json.load(file)
+        self.scene = json.loads((place / "scene.json").read_text(encoding="utf-8"))
         self.flat = self.scene["dim"] == 2
         self.view = simple.GetActiveViewOrCreate("RenderView")
         self.colours = simple.GetColorTransferFunction(SPEED)
         self.legend = False
 
-    def path(self, *names):
-        """A file beside this one."""
-        return os.path.normpath(os.path.join(self.place, *names))
-
-    def opened(self, key, name):
+    def opened(self, key: str, name: str) -> Any:
         """The reader of a part of the scene, or None where there is none."""
         if key not in self.scene:
             return None
-        return self.read(self.path(self.scene[key]), name)
+        return self.read(self.place / self.scene[key], name)
 
-    def read(self, path, name):
+    def read(self, path: Path, name: str) -> Any:
         """The reader of a file, under a name that tells what it is."""
-        reader = simple.OpenDataFile(path)
+        reader = simple.OpenDataFile(str(path))
         if reader is None:
             raise RuntimeError(f"{path} cannot be read")
         simple.RenameSource(name, reader)
         return reader
 
-    def show(self, source, kind="Surface", colour=None):
+    def show(self, source: Any, kind: str = "Surface", colour: Colour | None = None) -> Any:
         """Show a source as surface, points or glyphs, in a colour or by its speed."""
         shown = simple.Show(source, self.view)
         shown.SetRepresentationType(kind)
@@ -73,7 +74,7 @@ class Stage:
             shown.AmbientColor = shown.DiffuseColor = colour
         return shown
 
-    def dots(self, source, colour=None):
+    def dots(self, source: Any, colour: Colour | None = None) -> Any:
         """Show particles as balls of their spacing."""
         shown = self.show(source, "Point Gaussian", colour)
         shown.GaussianRadius = 0.55 * self.scene["spacing"]
@@ -81,23 +82,23 @@ class Stage:
         return shown
 
 
-def between(source, array, low, high, name):
-    """The particles with `array` from `low` to `high`."""
+def between(source: Any, array: str, value: int, name: str) -> Any:
+    """The particles whose `array` is `value`."""
     chosen = simple.Threshold(registrationName=name, Input=source)
     chosen.Scalars = ["POINTS", array]
-    chosen.LowerThreshold, chosen.UpperThreshold = low, high
+    chosen.LowerThreshold, chosen.UpperThreshold = value, value
     chosen.ThresholdMethod = "Between"
     return chosen
 
 
-def particles(stage):
+def particles(stage: Stage) -> Any:
     """The snapshots, or the export for older versions; None where neither can be read."""
-    run = stage.scene["run"]
+    run = (stage.place / stage.scene["run"]).resolve()
     version = paraview.simple.GetParaViewVersion()
-    index, older = stage.path(run, "snapshots.vtkhdf.series"), stage.path(run, "vtu", "run.pvd")
-    if (version.major, version.minor) >= READS_SNAPSHOTS and os.path.isfile(index):
+    index, older = run / "snapshots.vtkhdf.series", run / "vtu" / "run.pvd"
+    if (version.major, version.minor) >= READS_SNAPSHOTS and index.is_file():
         return stage.read(index, "particles")
-    if os.path.isfile(older):
+    if older.is_file():
         return stage.read(older, "particles")
     print(
         f"Particles are not shown: ParaView {version.major}.{version.minor} does not read them "
@@ -106,11 +107,12 @@ def particles(stage):
     return None
 
 
-def show_flow(stage):
+def show_flow(stage: Stage) -> None:
     """What flows: surfaces where they were exported, and particles."""
-    surfaces = sorted(glob.glob(stage.path(stage.scene["run"], "surface", "*.pvd")))
+    run = (stage.place / stage.scene["run"]).resolve()
+    surfaces = sorted((run / "surface").glob("*.pvd"))
     for file in surfaces:
-        surface = stage.read(file, "surface of " + os.path.basename(file)[:-4])
+        surface = stage.read(file, "surface of " + file.stem)
         shown = stage.show(surface)
         shown.LineWidth = 3.0
         shown.Specular = 0.3
@@ -118,20 +120,20 @@ def show_flow(stage):
     if source is None:
         return
     simple.Hide(source, stage.view)
-    free = between(source, "Motion", 0, 0, "free particles")
+    free = between(source, "Motion", 0, "free particles")
     for name, number in stage.scene["fluids"].items():
-        flow = between(free, "Material", number, number, name)
+        flow = between(free, "Material", number, name)
         stage.dots(flow)
         if surfaces:
             simple.Hide(flow, stage.view)
     simple.Hide(free, stage.view)
-    walls = between(source, "Motion", 1, 1, "fixed particles")
+    walls = between(source, "Motion", 1, "fixed particles")
     stage.dots(walls, GREY)
     if not stage.flat:
         simple.Hide(walls, stage.view)
 
 
-def show_grains(stage):
+def show_grains(stage: Stage) -> None:
     """Bodies that move: balls that carry an arrow along their own first axis, and other shapes."""
     shapes = stage.opened("shapes", "bodies of other shapes")
     if shapes is not None:
@@ -149,7 +151,7 @@ def show_grains(stage):
     arrows.GlyphType.ShaftRadius, arrows.GlyphType.TipRadius = 0.06, 0.14
 
 
-def glyphs(shown, kind, size, factor):
+def glyphs(shown: Any, kind: str, size: str, factor: float) -> None:
     """Glyphs turned by the quaternion w, x, y, z of each point."""
     shown.GlyphType = kind
     shown.Scaling, shown.ScaleMode = 1, "Magnitude"
@@ -158,7 +160,7 @@ def glyphs(shown, kind, size, factor):
     shown.SelectOrientationVectors = "Orientation"
 
 
-def show_structures(stage):
+def show_structures(stage: Stage) -> None:
     """Fixed bodies, the ground, and gauges with their names."""
     structures = stage.opened("structures", "structures")
     if structures is not None:
@@ -176,10 +178,10 @@ def show_structures(stage):
         label = simple.Show(text, stage.view)
         label.TextPropMode = "Billboard 3D Text"
         label.BillboardPosition = place
-        label.Color, label.FontSize, label.Bold = RED, 14, 1
+        label.Color, label.FontSize, label.Bold = RED, 16, 1
 
 
-def finish(stage):
+def finish(stage: Stage) -> None:
     """Colours with their units, the time, and where it is seen from."""
     view, scene = stage.view, stage.scene
     stage.colours.ApplyPreset("Viridis (matplotlib)", True)
@@ -189,12 +191,12 @@ def finish(stage):
         bar = simple.GetScalarBar(stage.colours, view)
         bar.Title, bar.ComponentTitle, bar.Visibility = "speed", "[" + UNIT + "]", 1
         bar.TitleColor = bar.LabelColor = (0, 0, 0)
-        bar.TitleFontSize = bar.LabelFontSize = 14
+        bar.TitleFontSize = bar.LabelFontSize = 18
         bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%-#.3g", "%-#.3g"
-        bar.ScalarBarThickness, bar.ScalarBarLength = 14, 0.3
+        bar.ScalarBarThickness, bar.ScalarBarLength = 16, 0.35
     time = simple.AnnotateTime(registrationName="time", Format="t = {time:.3f} s")
     clock = simple.Show(time, view)
-    clock.Color, clock.FontSize = (0, 0, 0), 16
+    clock.Color, clock.FontSize = (0, 0, 0), 22
     view.UseColorPaletteForBackground, view.Background = 0, (1.0, 1.0, 1.0)
     view.ViewSize = list(PICTURE)
     view.OrientationAxesLabelColor = (0, 0, 0)
@@ -202,12 +204,12 @@ def finish(stage):
     look(stage)
 
 
-def look(stage):
+def look(stage: Stage) -> None:
     """Put the camera so that what moves fills the picture."""
     view, scene = stage.view, stage.scene
     low, high, up = scene["low"], scene["high"], scene["up"]
-    middle = [(a + b) / 2 for a, b in zip(low, high)]
-    size = max(b - a for a, b in zip(low, high)) or 1.0
+    middle = [(low[k] + high[k]) / 2 for k in range(3)]
+    size = max(high[k] - low[k] for k in range(3)) or 1.0
     view.CameraFocalPoint, view.CameraParallelProjection = middle, 1 if stage.flat else 0
     if stage.flat:
         view.InteractionMode = "2D"
@@ -216,11 +218,11 @@ def look(stage):
         wide, tall = high[0] - low[0], high[1] - low[1]
         view.CameraParallelScale = 0.65 * max(tall, wide * PICTURE[1] / PICTURE[0])
         return
-    view.CameraPosition = [m + 1.35 * size * d for m, d in zip(middle, SEEN_FROM)]
+    view.CameraPosition = [middle[k] + 1.25 * size * SEEN_FROM[k] for k in range(3)]
     view.CameraViewUp = up
 
 
-def main():
+def main() -> None:
     """Build the scene; take a picture where one is asked for."""
     simple._DisableFirstRenderCameraReset()
     stage = Stage(folder())

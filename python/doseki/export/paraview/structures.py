@@ -9,6 +9,7 @@ import numpy as np
 from ...geodata.ground import Profile
 from ...geodata.raster import Raster
 from ...scenario.model import Scenario
+from ...scenario.values.directions import upwards
 from ...scene.groups import Group
 from ...scene.kinds.registry import bodies_of
 from ...scene.moved import Displacement, is_gone
@@ -60,10 +61,24 @@ class Structures:
             time=time if self.move else None,
         )
 
-    def middle(self, name: str) -> np.ndarray | None:
-        """The middle of what a table shows at the start (dim,), m; None where it shows nothing."""
+    def top(self, name: str) -> np.ndarray | None:
+        """The highest point above the middle of what a table shows at the start (dim,), m.
+
+        None where it shows nothing.
+        """
         group = self._groups.get(name)
-        return None if group is None else np.asarray(group.centre.mean(axis=0))
+        if group is None:
+            return None
+        up = upwards(np.asarray(self._scenario.gravity))
+        middle = group.centre.mean(axis=0)
+        shapes = [polygons_of(shape, True) for shape in group.shapes]
+        heights = [
+            (placed(shapes[which], centre, turn).points @ up).max()
+            for which, centre, turn in zip(
+                group.shape, group.centre, group.orientation, strict=True
+            )
+        ]
+        return np.asarray(middle + (max(heights) - middle @ up) * up)
 
 
 def ground_surface(ground: Raster | Profile) -> PolyData:

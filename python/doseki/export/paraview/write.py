@@ -86,7 +86,7 @@ class _Writer:
         ground = self._run.ground
         if ground is not None:
             self._one("ground", ground_surface(ground))
-        marks, nowhere = gauge_marks(self._scenario, ground, structures.middle)
+        marks, nowhere = gauge_marks(self._scenario, ground, structures.top)
         if marks.points:
             self._one("gauges", marks.polydata())
         if nowhere:

@@ -153,8 +153,8 @@ def _members(cloud: Cloud, cell: float) -> tuple[np.ndarray, np.ndarray]:
         keys.append(key[there])
     particle, key = np.concatenate(particles), np.concatenate(keys)
     wet = np.unique(key[~cloud.solid[particle]], axis=0)
-    there = np.isin(_joined(key, wet), _joined(wet, wet))
-    particle, key = particle[there], key[there]
+    wanted = np.isin(_joined(key, wet), _joined(wet, wet))
+    particle, key = particle[wanted], key[wanted]
     order = np.lexsort((particle, *key.T[::-1]))
     return particle[order], key[order]
 
