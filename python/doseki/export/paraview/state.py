@@ -16,7 +16,7 @@ from paraview import simple
 READS_SNAPSHOTS = (5, 12)  # the first ParaView that reads particles from VTKHDF
 SPEED, UNIT = "Velocity", "m/s"
 PICTURE = (1600, 900)
-FAINT = 0.12
+FAINT, CLEAR = 0.12, 0.65
 GREY, EARTH = (0.62, 0.64, 0.66), (0.74, 0.70, 0.63)
 ROCK, RED = (0.2, 0.2, 0.2), (0.8, 0.1, 0.1)
 SEEN_FROM = (-0.30, -0.62, 0.72)  # 3-D: of the flow, as a direction in axes whose last is upwards
@@ -116,6 +116,7 @@ def show_flow(stage: Stage) -> None:
         shown = stage.show(surface)
         shown.LineWidth = 3.0
         shown.Specular = 0.3
+        shown.Opacity = CLEAR if "grains" in stage.scene and not stage.flat else 1.0
     source = particles(stage)
     if source is None:
         return
@@ -218,7 +219,7 @@ def look(stage: Stage) -> None:
         wide, tall = high[0] - low[0], high[1] - low[1]
         view.CameraParallelScale = 0.65 * max(tall, wide * PICTURE[1] / PICTURE[0])
         return
-    view.CameraPosition = [middle[k] + 1.25 * size * SEEN_FROM[k] for k in range(3)]
+    view.CameraPosition = [middle[k] + 1.45 * size * SEEN_FROM[k] for k in range(3)]
     view.CameraViewUp = up
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.record.export import export_vtu
+from doseki.export.vtu import export_vtu
 from doseki.record.fields import FIELDS
 from doseki.record.reader import load
 
