@@ -110,10 +110,13 @@ def test_the_index_and_the_table_say_what_there_is(blocks, dim):
     assert [float(entry.get("timestep")) for entry in entries] == run.times.tolist()
     assert all((folder / entry.get("file")).is_file() for entry in entries)
     header, *rows = csv.reader((folder / "water.csv").read_text().splitlines())
-    assert header[1:] == {
-        2: ["length [m]", "area [m2]", "area of particles [m2]"],
-        3: ["area [m2]", "volume [m3]", "volume of particles [m3]"],
-    }[dim]
+    assert (
+        header[1:]
+        == {
+            2: ["length [m]", "area [m2]", "area of particles [m2]"],
+            3: ["area [m2]", "volume [m3]", "volume of particles [m3]"],
+        }[dim]
+    )
     table = np.array(rows, float)
     assert table[:, 0] == pytest.approx(run.times)
     assert table[:, 2] == pytest.approx(SIDE**dim, rel=0.2)
