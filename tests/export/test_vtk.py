@@ -160,9 +160,9 @@ import vtkmodules.vtkRenderingOpenGL2
 run, picture = sys.argv[1:]
 renderer = vtkRenderer()
 readers = []
-for name in ("surface/water_000001.vtp", "paraview/shapes/000001.vtp", "paraview/grains/000001.vtp"):
+for name in ("surface/water_000001", "paraview/shapes/000001", "paraview/grains/000001"):
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(f"{run}/{name}")
+    reader.SetFileName(f"{run}/{name}.vtp")
     mapper = vtkPolyDataMapper()
     if "grains" in name:
         mapper, cube = vtkGlyph3DMapper(), vtkCubeSource()

@@ -33,7 +33,7 @@ def folder() -> Path:
         if (place / "scene.json").is_file():
             return place
     raise RuntimeError(
-        "scene.json is not found: start ParaView as  paraview --script=DIR/paraview/state.py"
+        "scene.json is not found: open state.py by File, Load State, or start ParaView in its folder"
     )
 
 
@@ -125,7 +125,7 @@ def show_flow(stage: Stage) -> None:
     for name, number in stage.scene["fluids"].items():
         flow = between(free, "Material", number, name)
         stage.dots(flow)
-        if surfaces:
+        if surfaces and not stage.flat:
             simple.Hide(flow, stage.view)
     simple.Hide(free, stage.view)
     walls = between(source, "Motion", 1, "fixed particles")
@@ -219,7 +219,7 @@ def look(stage: Stage) -> None:
         wide, tall = high[0] - low[0], high[1] - low[1]
         view.CameraParallelScale = 0.65 * max(tall, wide * PICTURE[1] / PICTURE[0])
         return
-    view.CameraPosition = [middle[k] + 1.45 * size * SEEN_FROM[k] for k in range(3)]
+    view.CameraPosition = [middle[k] + 1.65 * size * SEEN_FROM[k] for k in range(3)]
     view.CameraViewUp = up
 
 
@@ -232,8 +232,8 @@ def main() -> None:
     show_grains(stage)
     finish(stage)
     simple.Render(stage.view)
-    asked = [] if getattr(paraview, "fromGUI", False) else sys.argv[1:]
-    if asked:
+    asked = sys.argv[1:]
+    if asked and asked[0].endswith(".png"):
         if len(asked) > 1:
             simple.GetAnimationScene().AnimationTime = float(asked[1])
         simple.SaveScreenshot(asked[0], stage.view, ImageResolution=list(PICTURE))
