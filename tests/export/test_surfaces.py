@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 import trimesh
@@ -173,3 +175,9 @@ def test_more_than_can_be_done_is_refused_with_a_cell_that_fits(monkeypatch):
 def test_nothing_has_no_surface():
     found = surface(np.zeros((0, 3)), 0.1)
     assert (len(found.points), found.area, found.volume) == (0, 0.0, 0.0)
+
+
+def test_without_scikit_image_it_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "skimage.measure", None)
+    with pytest.raises(UserError, match=r"pip install 'doseki\[surface\]'"):
+        surface(ball(0.2), 0.2)

@@ -33,7 +33,7 @@ def folder() -> Path:
         if (place / "scene.json").is_file():
             return place
     raise RuntimeError(
-        "scene.json is not found: open state.py by File, Load State, or start ParaView in its folder"
+        "scene.json is not found: open this by File, Load State, or start ParaView in its folder"
     )
 
 
