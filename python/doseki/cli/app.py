@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from .. import __version__
+from .exporting import export
 from .project import bench, list_scenarios, new, validate
-from .results import census, export, loads, maps, plot, report
+from .results import census, loads, maps, plot, report
 from .simulate import check, explain, resume, run
 from .studies import compare, study, trust
 

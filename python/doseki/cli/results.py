@@ -157,24 +157,3 @@ def loads(
         return
     for name, text in load_lines(found):
         typer.echo(f"{name:<{NAME}}{text}".rstrip())
-
-
-def export(
-    directory: Directory,
-    vtu: Annotated[
-        bool, typer.Option("--vtu", help="VTU files and a .pvd, for older viewers.")
-    ] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="Output folder.", show_default="DIR/vtu"
-        ),
-    ] = None,
-) -> None:
-    """Write the snapshots of a run in another format."""
-    from ..record.export import export_vtu
-    from ..record.reader import load
-
-    if not vtu:
-        raise UserError("say which format to export to: --vtu")
-    typer.echo(str(export_vtu(load(directory), output)))

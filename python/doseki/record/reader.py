@@ -228,7 +228,7 @@ class Run(Sequence[Snapshot]):
         if interpolate:
             later = int(np.searchsorted(times, time))
             ends = times[later - 1], times[later]
-            return Between(time, ends, (self[later - 1], self[later]), self._periods())
+            return Between(time, ends, (self[later - 1], self[later]), self.periods())
         if not nearest:
             warnings.warn(
                 f"{self.directory}: no snapshot at {time:g} s, took that of {times[found]:g} s;"
@@ -237,7 +237,7 @@ class Run(Sequence[Snapshot]):
             )
         return self[found]
 
-    def _periods(self) -> list[tuple[int, float, float]]:
+    def periods(self) -> list[tuple[int, float, float]]:
         """Each periodic axis with the ends of the domain, m."""
         axes = ["xyz".index(axis) for axis in self.scenario.get("periodic", [])]
         ends = [self.scenario.get(key, []) for key in ("domain_min", "domain_max")]

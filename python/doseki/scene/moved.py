@@ -1,4 +1,4 @@
-"""Where fixed bodies with a prescribed motion are when a run begins later than at zero."""
+"""Where fixed bodies with a prescribed motion are, as when a run begins later than at zero."""
 
 from __future__ import annotations
 
@@ -12,20 +12,24 @@ from ..scenario.tables.motion import Motion
 from .groups import UPRIGHT, Group, matrices
 
 
-def is_gone(scenario: Scenario, name: str) -> bool:
-    """Whether a body has been removed before the run begins."""
+def is_gone(scenario: Scenario, name: str, now: float | None = None) -> bool:
+    """Whether a body has been removed at a time, s; default: before the run begins."""
     motion = scenario.body[name].prescribed_motion
-    return motion is not None and (motion.removed_at or np.inf) <= scenario.begins_at
+    now = scenario.begins_at if now is None else now
+    return motion is not None and (motion.removed_at or np.inf) <= now
 
 
 class Displacement:
-    """How a body [body.NAME] has moved until the run begins; not at all without a motion."""
+    """How a body [body.NAME] has moved until a time, s; not at all without a motion.
 
-    def __init__(self, scenario: Scenario, name: str) -> None:
+    Without a time until the run begins.
+    """
+
+    def __init__(self, scenario: Scenario, name: str, now: float | None = None) -> None:
         motion, self._dim = scenario.body[name].prescribed_motion, scenario.dim
         self._turn, self._shift, self._pivot = UPRIGHT, np.zeros(self._dim), np.zeros(self._dim)
         if motion is not None:
-            self._take(motion, scenario.begins_at)
+            self._take(motion, scenario.begins_at if now is None else now)
 
     def _take(self, motion: Motion, now: float) -> None:
         spent = max(min(now, np.inf if motion.stop is None else motion.stop) - motion.start, 0.0)

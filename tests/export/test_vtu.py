@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
-from doseki.record.export import export_vtu
+from doseki.export.vtu import export_vtu
 from doseki.record.reader import load
 
 TYPES = {"Float64": np.float64, "Int32": np.int32, "Int64": np.int64, "UInt8": np.uint8}

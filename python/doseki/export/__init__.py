@@ -1,0 +1,1 @@
+"""Runs in files of other programs: VTU, surfaces of what flows, and a scene for ParaView."""

@@ -1,0 +1,1 @@
+"""The surface of what flows: a level of its smoothed share of the space."""
