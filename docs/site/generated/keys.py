@@ -203,7 +203,7 @@ def _said(info: FieldInfo, about: Meaning) -> str:
     for told in (only.scheme, f"{only.dim}-D"):
         text = text.removeprefix(f"{told}: ")
     for unit in about.units:
-        text = re.sub(rf", {re.escape(unit)}(?=$|;| \\()", "", text)
+        text = re.sub(rf", {re.escape(unit)}(?=$|;| \()", "", text)
         text = re.sub(rf"^{re.escape(unit)} (?=\w)", "", text)
         text = "" if text == unit else text.removeprefix(f"{unit}, ").removeprefix(f"{unit}; ")
     return text
