@@ -1,7 +1,7 @@
 """`./doseki docs`: builds the documentation into build/site.
 
-Every warning of the build is an error: a link that leads nowhere, an anchor that is not there, a page
-that no menu shows.
+Every warning of the build is an error: a link that leads nowhere, an anchor that is not there, a
+page that no menu shows.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
-"""Formulas as MathML: browsers draw them without scripts, fonts or a network.
+r"""Formulas as MathML: browsers draw them without scripts, fonts or a network.
 
-A displayed formula with a \\tag{30} has the anchor #eq-30, and its number beside it.
+A displayed formula with a \tag{30} has the anchor #eq-30, and its number beside it.
 """
 
 from __future__ import annotations
 
 import html
 import re
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 from docutils import nodes
@@ -18,7 +18,7 @@ TAG = re.compile(r"\\tag\{([^}]*)\}")
 _converter = LatexToMathML(annotation=False)
 
 
-@lru_cache(maxsize=None)
+@cache
 def mathml(latex: str, display: bool) -> str:
     """The formula as a MathML element; raises math_core.LatexError where it is not LaTeX."""
     return _converter.convert_with_local_state(latex, displaystyle=display)
@@ -45,9 +45,8 @@ def displayed(translator: Any, node: nodes.math_block) -> None:
     else:
         name, shown = anchor(number[1]), html.escape(number[1])
         link = f'<a class="number" href="#{name}" title="Link to this equation">({shown})</a>'
-        translator.body.append(
-            f'<div class="formula numbered" id="{name}"><div class="scroll">{drawn}</div>{link}</div>\n'
-        )
+        scrolls = f'<div class="scroll">{drawn}</div>'
+        translator.body.append(f'<div class="formula numbered" id="{name}">{scrolls}{link}</div>\n')
     raise nodes.SkipNode
 
 

@@ -101,7 +101,7 @@ NESTED = ("decisions/", "reference/keys/")  # pages that an index of their own l
 
 
 def arranged(names: Iterable[str]) -> dict[str, list[str]]:
-    """The pages of each heading, of all page `names` (paths without .md); empty ones are left out."""
+    """The pages of each heading, of all page `names` (paths without .md); none is empty."""
     left = {name for name in names if name != "index" and not _is_nested(name)}
     placed: dict[str, list[str]] = {}
     for heading in MENU:

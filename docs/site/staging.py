@@ -1,4 +1,4 @@
-"""The folder that Sphinx reads: the pages of docs, those of the project's top, and generated ones."""
+"""The folder that Sphinx reads: pages of docs, of the project's top, and generated ones."""
 
 from __future__ import annotations
 
@@ -90,13 +90,13 @@ def _relinked(text: str, path: Path, place: str, root: Path) -> str:
             return match[0]
         there = (path.parent / target).resolve()
         if there in found:
-            return f"{match[1]}{os.path.relpath(found[there], Path(place).parent)}{anchor}{match[4]}"
+            return (
+                f"{match[1]}{os.path.relpath(found[there], Path(place).parent)}{anchor}{match[4]}"
+            )
         return match[0]
 
     found = {file.resolve(): name for name, file in pages_of(root).items()}
-    found |= {
-        (root / "docs" / folder).resolve(): f"{folder}/index.md" for folder in ("decisions",)
-    }
+    found |= {(root / "docs" / folder).resolve(): f"{folder}/index.md" for folder in ("decisions",)}
     docs = (root / "docs").resolve()
     found |= {p.resolve(): p.resolve().relative_to(docs).as_posix() for p in _attachments(docs)}
     return UNREACHED.sub(lambda m: _named(m, path, root, found), LINK.sub(moved, text))
@@ -114,4 +114,3 @@ def _named(match: re.Match[str], path: Path, root: Path, found: dict[Path, str])
         return match[0]
     shown = there.relative_to(root.resolve()).as_posix()
     return f"`{shown}`" if words.strip("`") == shown else f"{words} (`{shown}`)"
-

@@ -14,7 +14,10 @@ def decision_pages(root: Path) -> Iterator[tuple[str, str]]:
     rows = [(f"[{_number(r)}]({r.name})", _title(r)) for r in records]
     tree = "\n".join(["```{toctree}", ":hidden:", "", *(r.stem for r in records), "```"])
     if records:
-        yield "decisions/index.md", f"{INTRODUCTION}\n{table(('Record', 'Decision'), rows)}\n{tree}\n"
+        yield (
+            "decisions/index.md",
+            f"{INTRODUCTION}\n{table(('Record', 'Decision'), rows)}\n{tree}\n",
+        )
 
 
 def _number(record: Path) -> str:

@@ -16,10 +16,13 @@ def field_pages() -> Iterator[tuple[str, str]]:
     """The page of fields."""
     particles, grains = _rows(FIELDS), _rows(GRAIN_FIELDS)
     header = ("In Python", "In files", "Shape", "Unit", "Type", "Meaning")
-    yield "reference/fields.md", TEXT.format(
-        particles=table(header, particles, "keys scenario-fields"),
-        grains=table(header, grains, "keys scenario-fields"),
-        quantities=table(("Name", "Unit"), _quantities()),
+    yield (
+        "reference/fields.md",
+        TEXT.format(
+            particles=table(header, particles, "keys scenario-fields"),
+            grains=table(header, grains, "keys scenario-fields"),
+            quantities=table(("Name", "Unit"), _quantities()),
+        ),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from inspect import get_annotations
 from typing import Any
 
 import numpy as np
@@ -106,14 +107,16 @@ def _of_kinds(section: str, kinds: Kinds) -> str:
         links = [f"[{_shared_title(base)}](#{_slug(section, base)})" for base in common]
         text.append(f"It also has: {', '.join(links)}." if links else "")
         parts.append("\n\n".join(t for t in text if t))
-    for base in shared:
-        parts.append(
-            f"({_slug(section, base)})=\n## {_shared_title(base)[0].upper()}{_shared_title(base)[1:]}\n\n"
-            f"{_described(base)}\n\n{_keys_table(section, base, _own(base))}"
-        )
+    parts += [_shared_section(section, base) for base in shared]
     inner = {k: None for kind in (*by_class, *shared) for k in _tables_in(kind)}
     parts += [_inner_table(section, key, held) for key, held in inner]
     return "\n\n".join(parts) + "\n"
+
+
+def _shared_section(section: str, base: type[Table]) -> str:
+    title = _shared_title(base)
+    heading = f"({_slug(section, base)})=\n## {title[0].upper()}{title[1:]}"
+    return f"{heading}\n\n{_described(base)}\n\n{_keys_table(section, base, _own(base))}"
 
 
 def _ancestors(kind: type[Table]) -> list[type[Table]]:
@@ -122,7 +125,7 @@ def _ancestors(kind: type[Table]) -> list[type[Table]]:
 
 def _own(kind: type[Table]) -> dict[str, FieldInfo]:
     """The keys that a class declares itself."""
-    declared = kind.__dict__.get("__annotations__", {})
+    declared = get_annotations(kind)
     return {key: info for key, info in kind.model_fields.items() if key in declared}
 
 
@@ -274,4 +277,3 @@ def _of_motion(key: str) -> list[str]:
     if len(ways) == len(WAYS):
         return []
     return ["resolved", " and ".join(ways) + " bodies"]
-

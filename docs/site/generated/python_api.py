@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -59,24 +60,21 @@ def _directive(module: str, name: str, value: Any) -> str:
 
 
 def _returned(values: dict[str, Any]) -> Iterator[type]:
-    """Classes of doseki that exported functions return, and what the public parts of these return."""
+    """Classes of doseki that exported functions return, and what their public parts return."""
     seen = {value for value in values.values() if inspect.isclass(value)}
     ahead = [value for value in values.values() if callable(value)]
     while ahead:
-        kind = _class_returned(ahead.pop(0))
-        if kind is None or kind in seen:
-            continue
-        seen.add(kind)
-        yield kind
-        ahead += [member for name, member in vars(kind).items() if not name.startswith("_")
-                  or name == "__getitem__"]  # fmt: skip
+        for kind in _classes_returned(ahead.pop(0)):
+            if kind not in seen:
+                seen.add(kind)
+                yield kind
+                ahead += [m for n, m in vars(kind).items() if n[0] != "_" or n == "__getitem__"]
 
 
-def _class_returned(member: Any) -> type | None:
+def _classes_returned(member: Any) -> Iterator[type]:
     function = getattr(member, "fget", None) or getattr(member, "func", None) or member
-    word = getattr(function, "__annotations__", {}).get("return")
-    if not isinstance(word, str) or not word.isidentifier():
-        return None
-    found = getattr(import_module(function.__module__), word, None)
-    ours = inspect.isclass(found) and found.__module__.startswith("doseki.")
-    return found if ours else None
+    annotations = getattr(function, "__annotations__", {})
+    for word in re.findall(r"\w+", str(annotations.get("return", ""))):
+        found = getattr(import_module(function.__module__), word, None)
+        if inspect.isclass(found) and found.__module__.startswith("doseki."):
+            yield found
