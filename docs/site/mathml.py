@@ -15,13 +15,17 @@ from math_core import LatexToMathML
 from sphinx.application import Sphinx
 
 TAG = re.compile(r"\\tag\{([^}]*)\}")
+# A combining arrow has no width, so that browsers draw it beside the letter.
+COMBINING_ARROW = '<mo stretchy="false">\u20d7</mo>'
+ARROW = '<mo stretchy="false" class="vector">\u2192</mo>'
 _converter = LatexToMathML(annotation=False)
 
 
 @cache
 def mathml(latex: str, display: bool) -> str:
     """The formula as a MathML element; raises math_core.LatexError where it is not LaTeX."""
-    return _converter.convert_with_local_state(latex, displaystyle=display)
+    drawn = _converter.convert_with_local_state(latex, displaystyle=display)
+    return drawn.replace(COMBINING_ARROW, ARROW)
 
 
 def anchor(number: str) -> str:

@@ -189,13 +189,14 @@ def _row(section: str, kind: type[Table], key: str, info: FieldInfo) -> tuple[st
     about = meaning_of(info)
     name = info.alias or key
     limits = f"; {' and '.join(about.limits)}" if about.limits else ""
+    meaning = "which kind it is" if key in ("shape", "kind") else _said(info, about)
     return (
         f"`{name}`",
         prose(about.words + limits),
         unit_of(key, about, info),
         default_of(kind, key, info),
         obeyed_by(kind, key, about),
-        sentence(prose(_said(info, about))),
+        sentence(prose(meaning)),
     )
 
 
