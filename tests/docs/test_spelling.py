@@ -50,7 +50,7 @@ def test_a_misspelt_word_is_found(known):
     assert list(unknown_words(text, known)) == ["rouhg"]
 
 
-def test_own_words_are_sorted_and_needed(known):
+def test_own_words_are_sorted():
     words = OWN_WORDS.read_text(encoding="utf-8").split()
     assert words == sorted(set(words))
 
