@@ -25,7 +25,7 @@ class Inflow(Part):
     """A section through which particles enter, at a constant rate or as a hydrograph says."""
 
     material: MaterialName = Field(description="name of the material that enters")
-    rate: Rate | None = Field(None, description='m3/s, or a string such as "3 L/s"')
+    rate: Rate | None = Field(None, description='discharge, m3/s, or such as "3 L/s"')
     hydrograph: Hydrograph | None = Field(
         None,
         description="[[t, Q], ...] in s after `start` and m3/s, or a CSV file with columns t and"
@@ -36,7 +36,7 @@ class Inflow(Part):
         description="[[t, thickness, velocity], ...] in s after `start`, m and m/s, or a CSV file "
         "with these columns; excludes rate, hydrograph and depth",
     )
-    width: Length = Field(description="m; a 2-D run enters rate/width")
+    width: Length = Field(description="of the section, m; a 2-D run enters rate/width")
     position: Position = Field(description="bottom point of the section, m")
     direction: Direction = Field(description="direction of the flow")
     depth: Depth | None = Field(
@@ -44,8 +44,10 @@ class Inflow(Part):
         description='m, extent along the section\'s upward normal, or "normal": of uniform flow',
     )
     ks: Length | None = Field(None, description="roughness of the bed in the normal depth, m")
-    start: Instant = Field(0.0, description="s")
-    duration: Duration | None = Field(None, description="s; a hydrograph has its own")
+    start: Instant = Field(0.0, description="when it begins, s")
+    duration: Duration | None = Field(
+        None, description="how long it goes on, s; a hydrograph has its own"
+    )
     array: Array | None = Field(None, description="copies; each is an inflow NAME.1, NAME.2 ...")
     jitter: float = Field(
         0.0, ge=0, lt=0.5, description="random displacement along each axis, in spacings"

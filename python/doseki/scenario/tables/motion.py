@@ -12,9 +12,9 @@ from ..values.types import Duration, Instant, Position, Spin, Velocity
 class Motion(Table):
     """A prescribed motion of a fixed body."""
 
-    velocity: Velocity | None = Field(None, description="m/s; default: none")
+    velocity: Velocity | None = Field(None, description="of the body, m/s; default: none")
     angular_velocity: Spin | None = Field(
-        None, description="rad/s, anticlockwise; 3-D: a vector; default: none"
+        None, description="anticlockwise, rad/s; 3-D: a vector; default: none"
     )
     pivot: Position | None = Field(
         None, description="point about which it turns, which goes with it, m"

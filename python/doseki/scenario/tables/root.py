@@ -55,10 +55,12 @@ class ScenarioTable(Table):
     time_out: Duration = Field(description="time between snapshots, s")
     time_history: Duration | None = Field(None, description="s between history rows")
     scheme: Literal["ueta2022", "resolved"] = Field("ueta2022", description="the list of terms")
-    kernel: Literal["wendland_c2", "wendland_c6"] = Field(
-        "wendland_c6", description="W; the resolved scheme has wendland_c2 by default"
+    kernel: Annotated[Literal["wendland_c2", "wendland_c6"], OF_RESOLVED] = Field(
+        "wendland_c6", description="W; ueta2022 has wendland_c6 alone"
     )
-    eos: EquationOfState = Field("linear", description="resolved: law of pressure")
+    eos: Annotated[EquationOfState, OF_RESOLVED] = Field(
+        "linear", description="resolved: law of pressure"
+    )
     viscosity: Annotated[Literal["morris", "monaghan_cleary"], OF_RESOLVED] = Field(
         "morris",
         description="resolved: form of the viscous term; the second keeps angular momentum",
@@ -81,7 +83,9 @@ class ScenarioTable(Table):
     speed_max: Speed | None = Field(
         None, description="highest speed expected, m/s: sound speed 10 times that; excludes xi"
     )
-    precision: Literal["double", "float"] = Field("double", description="of the pair arithmetic")
+    precision: Annotated[Literal["double", "float"], OF_UETA2022] = Field(
+        "double", description="of the pair arithmetic"
+    )
     gravity: Acceleration | None = Field(None, description="m/s2; excludes slope")
     slope: Angle | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")
     g: Annotated[Positive, Measured(ACCELERATION)] = Field(
