@@ -3,8 +3,6 @@
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
-
 # Imported on first use: reading a scenario or a record must not wait for the compiled core.
 _LAZY = {
     "load": "record.reader",
@@ -19,6 +17,18 @@ __all__ = ["__version__", *_LAZY]  # noqa: PLE0604 (names of lazily imported att
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return _version()
     if name not in _LAZY:
         raise AttributeError(f"module 'doseki' has no attribute {name!r}")
     return getattr(import_module(f".{_LAZY[name]}", __name__), name)
+
+
+def _version() -> str:
+    """The version that was installed, which is that of its tag; of bare sources it is unknown."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("doseki")
+    except PackageNotFoundError:
+        return "0+unknown"

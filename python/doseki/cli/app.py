@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from .. import __version__
 from .project import bench, list_scenarios, new, validate
 from .results import census, export, loads, maps, plot, report
 from .simulate import check, explain, resume, run
@@ -28,6 +27,8 @@ app = typer.Typer(
 
 def _version(value: bool) -> None:
     if value:
+        from .. import __version__
+
         typer.echo(f"doseki {__version__}")
         raise typer.Exit
 

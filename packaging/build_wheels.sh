@@ -1,0 +1,84 @@
+#!/bin/sh
+# Builds the source distribution and the wheels of what is committed here, and tries each in a bare system:
+#
+#     packaging/build_wheels.sh [FOLDER]          default: dist; docs/releasing.md has the whole way to a release
+#
+# Every step runs in a Debian of its own, unpacked afresh: one with a compiler, and for each wheel one that
+# has Python and nothing else. The packed systems are kept in DOSEKI_ROOTS (default: build/roots), a compiler's
+# cache in DOSEKI_CCACHE if that is set. DOSEKI_MIRROR is where Debian comes from. Needs root, git and mmdebstrap.
+set -eu
+
+root=$(dirname "$(dirname "$(readlink -f "$0")")")
+packaging=$root/packaging
+output=$(readlink -m "${1:-$root/dist}")
+roots=$(readlink -m "${DOSEKI_ROOTS:-$root/build/roots}")
+
+builder_suite=bookworm # g++ 12
+old_suite=bullseye     # its C library and libgomp are what modules are linked against
+python_suite=trixie    # its Python is built for the wheel of Python 3.12 and later, and tries that wheel
+
+. "$packaging/systems.sh"
+
+make_systems() {
+    make_system builder "$builder_suite" apt \
+        g++ make ccache git python3-dev python3-venv zlib1g-dev xz-utils dpkg-dev ca-certificates
+    make_system old "$old_suite" extract libc6-dev libgomp1
+    make_system "bare-$builder_suite" "$builder_suite" apt python3-venv ca-certificates
+    make_system "bare-$python_suite" "$python_suite" apt python3-venv ca-certificates
+    [ -f "$roots/python.tar" ] || make_python
+}
+
+# A Python of 3.12 or later in /opt/python of the builder, from Debian's sources: Debian 12 has none.
+make_python() {
+    say "compiling the Python of $python_suite ..."
+    unpack builder
+    DOSEKI_SUITE=$python_suite run_inside "$packaging/inside/python.sh"
+    tar -C "$system" -cf "$roots/python.tar.new" opt/python
+    mv "$roots/python.tar.new" "$roots/python.tar"
+    discard
+}
+
+# Writes the source distribution and the wheels into the output folder.
+build() {
+    say "building ..."
+    unpack builder
+    tar -xf "$roots/python.tar" -C "$system"
+    mkdir -p "$system/old" "$system/out"
+    tar -xf "$roots/old.tar" -C "$system/old"
+    keep_links_within "$system/old"
+    git clone -q --no-local "$root" "$system/source"
+    git -C "$system/source" checkout -q --detach "$(git -C "$root" rev-parse HEAD)"
+    cp -r "$packaging" "$system/packaging"
+    [ -z "${DOSEKI_CCACHE:-}" ] || share "$DOSEKI_CCACHE" /ccache
+    run_inside "$packaging/inside/build.sh"
+    mkdir -p "$output"
+    cp "$system"/out/* "$output"
+    discard
+}
+
+# check SUITE FILE: FILE of the output folder is installed and used in a system without a compiler.
+check() {
+    say "trying $2 in $1 without a compiler ..."
+    unpack "bare-$1"
+    mkdir "$system/dist"
+    cp "$output"/doseki-*.tar.gz "$output/$2" "$system/dist"
+    run_inside "$packaging/inside/check.sh"
+    discard
+}
+
+wheel_for() {
+    cd "$output"
+    ls -t doseki-*-"$1"-*.whl | head -n 1
+}
+
+[ "$(id -u)" = 0 ] || fail "this needs root, which makes systems of their own"
+command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing; on Debian: apt-get install mmdebstrap"
+[ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] || say "what is not committed is left out"
+trap discard EXIT
+trap 'exit 1' HUP INT TERM
+make_systems
+build
+check "$builder_suite" "$(wheel_for cp311)"
+check "$python_suite" "$(wheel_for abi3)"
+say "all is well; in $output:"
+ls -l "$output" >&2

@@ -1,0 +1,31 @@
+# In the builder: the source distribution of /source, and from it a wheel for each Python, into /out.
+sets=${DOSEKI_INSTRUCTION_SETS:-all}
+platform=manylinux_2_28_x86_64
+
+python3 -m venv /opt/tools
+/opt/tools/bin/pip install -q -r /packaging/requirements.txt
+PATH=/opt/tools/bin:$PATH
+python=/opt/tools/bin/python
+
+# Modules are linked against the C library of /old. Its libgomp is the one that they bring along: that of
+# the builder needs a newer C library.
+mkdir -p /opt/old
+libraries=/old/usr/lib/x86_64-linux-gnu
+cp -L "$libraries/libgomp.so.1" /opt/old/
+gcc -O2 -fPIC -fvisibility=hidden -fno-builtin -c /packaging/old_glibc.c -o /opt/old/old_glibc.o
+LDFLAGS="--sysroot=/old -L$libraries -L/old/lib/x86_64-linux-gnu -static-libstdc++"
+LDFLAGS="$LDFLAGS -Wl,--wrap=exp,--wrap=log,--wrap=pow /opt/old/old_glibc.o -lpthread"
+export LDFLAGS
+if [ -d /ccache ]; then
+    export CCACHE_DIR=/ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
+
+git config --global --add safe.directory /source
+uv build -q --sdist --python /usr/bin/python3 -o /out /source
+sdist=$(ls /out/doseki-*.tar.gz)
+for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
+    rm -rf /raw
+    uv build -q --wheel --python "$interpreter" -o /raw "$sdist" -C cmake.define.DOSEKI_INSTRUCTION_SETS="$sets"
+    LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl
+done
+$python /packaging/finish_wheels.py /out /repaired/*.whl
