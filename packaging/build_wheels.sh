@@ -61,15 +61,26 @@ check() {
     say "trying $2 in $1 without a compiler ..."
     unpack "bare-$1"
     mkdir "$system/dist"
-    cp "$output"/doseki-*.tar.gz "$output/$2" "$system/dist"
+    cp "$output"/doseki-*.tar.gz "$output/$2" "$packaging/start_up.py" "$system/dist"
     run_inside "$packaging/inside/check.sh"
     discard
 }
 
-wheel_for() {
+# The recipes for containers, in a system of their own: no daemon is needed.
+check_image() {
+    say "trying the recipe of the images ..."
+    unpack "bare-$builder_suite"
+    mkdir "$system/dist"
+    cp "$output/$(wheel_for cp311)" "$packaging/image/install.sh" "$system/dist"
+    run_inside "$packaging/inside/check_image.sh"
+    discard
+}
+
+# The newest wheel with this tag in the output folder.
+wheel_for() (
     cd "$output"
     ls -t doseki-*-"$1"-*.whl | head -n 1
-}
+)
 
 [ "$(id -u)" = 0 ] || fail "this needs root, which makes systems of their own"
 command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing; on Debian: apt-get install mmdebstrap"
@@ -80,5 +91,6 @@ make_systems
 build
 check "$builder_suite" "$(wheel_for cp311)"
 check "$python_suite" "$(wheel_for abi3)"
+check_image
 say "all is well; in $output:"
 ls -l "$output" >&2

@@ -12,8 +12,9 @@ python=/opt/tools/bin/python
 mkdir -p /opt/old
 libraries=/old/usr/lib/x86_64-linux-gnu
 cp -L "$libraries/libgomp.so.1" /opt/old/
+ln -s libgomp.so.1 /opt/old/libgomp.so
 gcc -O2 -fPIC -fvisibility=hidden -fno-builtin -c /packaging/old_glibc.c -o /opt/old/old_glibc.o
-LDFLAGS="--sysroot=/old -L$libraries -L/old/lib/x86_64-linux-gnu -static-libstdc++"
+LDFLAGS="--sysroot=/old -L/opt/old -L$libraries -L/old/lib/x86_64-linux-gnu -static-libstdc++"
 LDFLAGS="$LDFLAGS -Wl,--wrap=exp,--wrap=log,--wrap=pow /opt/old/old_glibc.o -lpthread"
 export LDFLAGS
 if [ -d /ccache ]; then
@@ -21,11 +22,13 @@ if [ -d /ccache ]; then
 fi
 
 git config --global --add safe.directory /source
-uv build -q --sdist --python /usr/bin/python3 -o /out /source
+uv build --sdist --python /usr/bin/python3 -o /out /source
 sdist=$(ls /out/doseki-*.tar.gz)
 for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
     rm -rf /raw
-    uv build -q --wheel --python "$interpreter" -o /raw "$sdist" -C cmake.define.DOSEKI_INSTRUCTION_SETS="$sets"
+    uv build --wheel --python "$interpreter" -o /raw "$sdist" \
+        -C cmake.define.DOSEKI_INSTRUCTION_SETS="$sets" \
+        -C cmake.define.OpenMP_gomp_LIBRARY=/opt/old/libgomp.so
     LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl
 done
 $python /packaging/finish_wheels.py /out /repaired/*.whl
