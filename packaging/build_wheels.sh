@@ -38,7 +38,7 @@ make_python() {
     discard
 }
 
-# Writes the source distribution and the wheels into the output folder.
+# Makes the source distribution and the wheels.
 build() {
     say "building ..."
     unpack builder
@@ -46,22 +46,22 @@ build() {
     mkdir -p "$system/old" "$system/out"
     tar -xf "$roots/old.tar" -C "$system/old"
     keep_links_within "$system/old"
-    git clone -q --no-local "$root" "$system/source"
-    git -C "$system/source" checkout -q --detach "$(git -C "$root" rev-parse HEAD)"
+    printf '[safe]\n\tdirectory = *\n' >"$system/gitconfig" # the clone may be another user's, and git asks
+    GIT_CONFIG_GLOBAL=$system/gitconfig git clone -q --no-local "$root" "$system/source"
     cp -r "$packaging" "$system/packaging"
     [ -z "${DOSEKI_CCACHE:-}" ] || share "$DOSEKI_CCACHE" /ccache
     run_inside "$packaging/inside/build.sh"
-    mkdir -p "$output"
-    cp "$system"/out/* "$output"
+    mkdir -p "$made"
+    cp "$system"/out/doseki-* "$made"
     discard
 }
 
-# check SUITE FILE: FILE of the output folder is installed and used in a system without a compiler.
+# check SUITE TAG: the wheel with that tag is installed and used in a system without a compiler.
 check() {
-    say "trying $2 in $1 without a compiler ..."
+    say "trying the wheel $2 in $1 without a compiler ..."
     unpack "bare-$1"
     mkdir "$system/dist"
-    cp "$output"/doseki-*.tar.gz "$output/$2" "$packaging/start_up.py" "$system/dist"
+    cp "$made"/doseki-*.tar.gz "$made"/doseki-*-"$2"-*.whl "$packaging/start_up.py" "$system/dist"
     run_inside "$packaging/inside/check.sh"
     discard
 }
@@ -71,26 +71,24 @@ check_image() {
     say "trying the recipe of the images ..."
     unpack "bare-$builder_suite"
     mkdir "$system/dist"
-    cp "$output/$(wheel_for cp311)" "$packaging/image/install.sh" "$system/dist"
+    cp "$made"/doseki-*-cp311-*.whl "$packaging/image/install.sh" "$system/dist"
     run_inside "$packaging/inside/check_image.sh"
     discard
 }
 
-# The newest wheel with this tag in the output folder.
-wheel_for() (
-    cd "$output"
-    ls -t doseki-*-"$1"-*.whl | head -n 1
-)
-
 [ "$(id -u)" = 0 ] || fail "this needs root, which makes systems of their own"
 command -v mmdebstrap >/dev/null || fail "mmdebstrap is missing; on Debian: apt-get install mmdebstrap"
-[ -z "$(git -C "$root" status --porcelain --untracked-files=no)" ] || say "what is not committed is left out"
-trap discard EXIT
+[ ! -d "$output" ] || [ -z "$(ls -A "$output")" ] || fail "$output is not empty"
+mkdir -p "$roots"
+made=$(mktemp -d "$roots/made.XXXXXX")
+trap 'discard; rm -rf "$made"' EXIT
 trap 'exit 1' HUP INT TERM
 make_systems
 build
-check "$builder_suite" "$(wheel_for cp311)"
-check "$python_suite" "$(wheel_for abi3)"
+check "$builder_suite" cp311
+check "$python_suite" abi3
 check_image
+mkdir -p "$output"
+mv "$made"/* "$output"
 say "all is well; in $output:"
 ls -l "$output" >&2

@@ -2,7 +2,8 @@
 
     python finish_wheels.py OUTPUT WHEEL...
 
-Runs in the builder (inside/build.sh): licences and versions are those of the packages that were linked.
+Runs in the builder (inside/build.sh): licences and versions are those of the packages that were
+linked.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ def parts() -> list[Part]:
 
 
 def bill(version: str) -> str:
-    """The bill of materials of doseki, as CycloneDX 1.6 in JSON; raises ValueError if that is not so."""
+    """The bill of materials as CycloneDX 1.6 in JSON; raises ValueError where it is not valid."""
     bom = Bom()
     root = Component(
         type=ComponentType.APPLICATION,
@@ -124,7 +125,7 @@ def unbound_symbols(module: Path) -> list[str]:
 
 
 def check_modules(package: Path) -> None:
-    """All instruction sets are there, and would load on the oldest system promised; else ValueError."""
+    """All instruction sets are there, and load on the oldest system promised; else ValueError."""
     modules = sorted(package.glob("_core_*.so"))
     if len(modules) != 3:
         raise ValueError(f"modules: {[module.name for module in modules]}; expected v4, v3, scalar")

@@ -17,16 +17,18 @@ gcc -O2 -fPIC -fvisibility=hidden -fno-builtin -c /packaging/old_glibc.c -o /opt
 LDFLAGS="--sysroot=/old -L/opt/old -L$libraries -L/old/lib/x86_64-linux-gnu -static-libstdc++"
 LDFLAGS="$LDFLAGS -Wl,--wrap=exp,--wrap=log,--wrap=pow /opt/old/old_glibc.o -lpthread"
 export LDFLAGS
-if [ -d /ccache ]; then
-    export CCACHE_DIR=/ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-fi
 
 git config --global --add safe.directory /source
 uv build --sdist --python /usr/bin/python3 -o /out /source
-sdist=$(ls /out/doseki-*.tar.gz)
+mkdir /doseki
+tar -xf /out/doseki-*.tar.gz -C /doseki --strip-components 1
+
+# What computes knows nothing of Python: the second wheel has it from the compiler's cache.
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_DIR=/ccache
+export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
 for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
     rm -rf /raw
-    uv build --wheel --python "$interpreter" -o /raw "$sdist" \
+    uv build --wheel --python "$interpreter" -o /raw /doseki \
         -C cmake.define.DOSEKI_INSTRUCTION_SETS="$sets" \
         -C cmake.define.OpenMP_gomp_LIBRARY=/opt/old/libgomp.so
     LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl

@@ -43,8 +43,12 @@ def test_a_version_needs_no_coloured_text():
 
 
 def test_the_package_alone_imports_next_to_nothing():
-    program = "import sys; before = set(sys.modules); import doseki; print(len({*sys.modules} - before))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    program = (
+        "import sys; before = set(sys.modules); import doseki; print(len({*sys.modules} - before))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
     assert int(done.stdout) <= 5
 
 
