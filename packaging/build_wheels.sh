@@ -4,14 +4,14 @@
 #     packaging/build_wheels.sh [FOLDER]          default: dist; docs/releasing.md has the whole way to a release
 #
 # Every step runs in a Debian of its own, unpacked afresh: one with a compiler, and for each wheel one that
-# has Python and nothing else. The packed systems are kept in DOSEKI_ROOTS (default: build/roots), a compiler's
+# has Python and nothing else. The packed systems are kept in DOSEKI_ROOTS (default: .tools/roots), a compiler's
 # cache in DOSEKI_CCACHE if that is set. DOSEKI_MIRROR is where Debian comes from. Needs root, git and mmdebstrap.
 set -eu
 
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 packaging=$root/packaging
 output=$(readlink -m "${1:-$root/dist}")
-roots=$(readlink -m "${DOSEKI_ROOTS:-$root/build/roots}")
+roots=$(readlink -m "${DOSEKI_ROOTS:-$root/.tools/roots}")
 
 builder_suite=bookworm # g++ 12
 old_suite=bullseye     # its C library and libgomp are what modules are linked against
