@@ -23,12 +23,14 @@ uv build --sdist --python /usr/bin/python3 -o /out /source
 mkdir /doseki
 tar -xf /out/doseki-*.tar.gz -C /doseki --strip-components 1
 
-# What computes knows nothing of Python: the second wheel has it from the compiler's cache.
+# What computes knows nothing of Python: the second wheel has it from the compiler's cache, which wants the same
+# names of compiler and folder.
+export CC=gcc CXX=g++
 export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_DIR=/ccache
 export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
 for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
-    rm -rf /raw
-    uv build --wheel --python "$interpreter" -o /raw /doseki \
+    rm -rf /raw /doseki/build
+    uv build --wheel --python "$interpreter" -o /raw /doseki -C build-dir=build/wheel \
         -C cmake.define.DOSEKI_INSTRUCTION_SETS="$sets" \
         -C cmake.define.OpenMP_gomp_LIBRARY=/opt/old/libgomp.so
     LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl
