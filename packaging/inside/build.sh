@@ -36,3 +36,16 @@ for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
     LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl
 done
 $python /packaging/finish_wheels.py /out /repaired/*.whl
+
+# With the old C library, the modules of each wheel lack nothing but Python.
+for wheel in /out/*.whl; do
+    rm -rf /unpacked
+    $python -m zipfile -e "$wheel" /unpacked
+    for module in /unpacked/doseki/_core_*.so; do
+        LD_TRACE_LOADED_OBJECTS=1 LD_BIND_NOW=1 LD_WARN=yes \
+            LD_LIBRARY_PATH=/old/lib/x86_64-linux-gnu:$libraries \
+            /old/lib64/ld-linux-x86-64.so.2 "$module" >/bound 2>&1
+        grep -q "libm.so.6 => /old/" /bound
+        if grep -E 'undefined symbol|not found' /bound | grep -v 'symbol: _*Py'; then exit 1; fi
+    done
+done
