@@ -36,6 +36,7 @@ for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
     LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl
 done
 $python /packaging/finish_wheels.py /out /repaired/*.whl
+abi3audit --strict /out/*-abi3-*.whl
 
 # With the old C library, the modules of each wheel lack nothing but Python.
 for wheel in /out/*.whl; do
