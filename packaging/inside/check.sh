@@ -17,7 +17,7 @@ for isa in $(python -c 'from doseki.compiled import available_instruction_sets a
     DOSEKI_ISA=$isa doseki run collision -o "collision-$isa"
 done
 doseki run flume --set time_max=0.01
-doseki run dambreak --set time_max=0.2 -o dambreak
+doseki run dambreak --set time_max=0.1 -o dambreak
 doseki plot dambreak
 doseki export dambreak --vtu
 
@@ -25,7 +25,7 @@ doseki export dambreak --vtu
 ! doseki run collision --ranks 2 -o never 2>said || exit 1
 grep 'pip install doseki\[mpi\]' said
 /venv/bin/pip install -q "$wheel[mpi]"
-doseki run dambreak --set time_max=0.1 --ranks 2 -o ranks
+doseki run dambreak --set time_max=0.03 --ranks 2 -o ranks
 
 # The fast tests without those of the clone's own house; only the installed package may be imported.
 mkdir /tests

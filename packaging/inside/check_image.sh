@@ -5,8 +5,8 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 ! command -v g++ || exit 1
 mkdir /work
 cd /work
-mpiexec --oversubscribe -n 2 doseki run dambreak --set time_max=0.1 -o started --threads 1
-doseki run dambreak --set time_max=0.1 --ranks 2 -o starting --threads 1
+mpiexec --oversubscribe -n 2 doseki run dambreak --set time_max=0.03 -o started --threads 1
+doseki run dambreak --set time_max=0.03 --ranks 2 -o starting --threads 1
 python - <<'PYTHON'
 from mpi4py import MPI
 
