@@ -1,5 +1,4 @@
 # In the builder: the source distribution of /source, and from it a wheel for each Python, into /out.
-sets=${DOSEKI_INSTRUCTION_SETS:-all}
 platform=manylinux_2_28_x86_64
 
 python3 -m venv /opt/tools
@@ -31,7 +30,7 @@ export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file
 for interpreter in /usr/bin/python3 /opt/python/bin/python3; do
     rm -rf /raw /doseki/build
     uv build --wheel --python "$interpreter" -o /raw /doseki -C build-dir=build/wheel \
-        -C cmake.define.DOSEKI_INSTRUCTION_SETS="$sets" \
+        -C cmake.define.DOSEKI_INSTRUCTION_SETS=all \
         -C cmake.define.OpenMP_gomp_LIBRARY=/opt/old/libgomp.so
     LD_LIBRARY_PATH=/opt/old auditwheel repair --plat "$platform" -w /repaired /raw/doseki-*.whl
 done
