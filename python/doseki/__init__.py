@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .scenario.load import list_scenarios as list_scenarios
     from .scenario.load import load_scenario as load_scenario
 
-__version__ = "0.1.0"
+    __version__: str
 
 # Imported on first use: reading a scenario or a record must not wait for the compiled core.
 _LAZY = {
@@ -42,9 +42,21 @@ __all__ = ["__version__", *_LAZY]  # noqa: PLE0604 (names of lazily imported att
 if not TYPE_CHECKING:  # which knows the names above, and is to miss all others
 
     def __getattr__(name: str) -> Any:
+        if name == "__version__":
+            return _version()
         if name not in _LAZY:
             raise AttributeError(f"module 'doseki' has no attribute {name!r}")
         return getattr(import_module(f".{_LAZY[name]}", __name__), name)
 
     def __dir__() -> list[str]:
-        return sorted({*globals(), *_LAZY})
+        return sorted({*globals(), *_LAZY, "__version__"})
+
+
+def _version() -> str:
+    """The version that was installed, which is that of its tag; of bare sources it is unknown."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("doseki")
+    except PackageNotFoundError:
+        return "0+unknown"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -82,7 +83,8 @@ def test_polygons_with_holes_and_parts(any_format):
     assert second.attributes["name"] == "a"
     assert second.extent == (WEST + 20, SOUTH, WEST + 30, SOUTH + 10)
     assert same_crs(found.crs, "EPSG:32633") is True
-    assert same_crs(found.crs, "EPSG:31287") is False
+    known = find_spec("rasterio") is not None  # by it systems are told apart
+    assert same_crs(found.crs, "EPSG:31287") is (False if known else None)
 
 
 def test_lines_with_heights(any_format):

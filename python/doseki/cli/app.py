@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from .. import __version__
 from .exporting import export
 from .project import bench, list_scenarios, new, validate
 from .results import census, loads, maps, plot, report
@@ -29,6 +28,8 @@ app = typer.Typer(
 
 def _version(value: bool) -> None:
     if value:
+        from .. import __version__
+
         typer.echo(f"doseki {__version__}")
         raise typer.Exit
 

@@ -8,9 +8,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from ..errors import UserError
 from .options import Threads, free_directory
@@ -30,6 +27,10 @@ def list_scenarios() -> None:
 
     See also: doseki check NAME looks one over, doseki run NAME runs it.
     """
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
     from ..scenario.load import list_scenarios as shipped
 
     table = Table("scenario", "what it is", box=None)
