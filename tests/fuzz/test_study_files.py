@@ -6,13 +6,13 @@ from contextlib import suppress
 
 import pytest
 from hypothesis import given
-from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from doseki.errors import UserError
 from doseki.studies.plan.file import read_plan
 
 from ..studies.small_study import STUDY, write_study
+from .examples import examples
 
 STUDY_OF_ALL = (
     STUDY.replace("values = [5, 10, 20]", 'min = 5\nmax = 20\nscale = "log"').replace(
@@ -78,7 +78,7 @@ def test_the_study_itself_is_good(folder):
     assert len(read_plan(write_study(folder, STUDY_OF_ALL)).points()) == 4
 
 
-@hypothesis_settings(max_examples=60)
+@examples(60, 1500)
 @given(number=st.sampled_from(KEYS), word=st.sampled_from([*WORDS, None]))
 def test_a_hostile_value_is_read_or_refused(folder, number, word):
     lines = list(LINES)

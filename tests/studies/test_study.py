@@ -135,7 +135,7 @@ def processes_in(out):
     return found
 
 
-def wait_for(condition, most=120.0):
+def wait_for(condition, most=600.0):
     """Until something is so; no matter how fast the machine is."""
     end = time.monotonic() + most
     while not condition():
