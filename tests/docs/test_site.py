@@ -11,7 +11,12 @@ from docs.site.staging import pages_of
 
 from .markdown import ROOT
 
-pytestmark = pytest.mark.minutes
+pytestmark = [
+    pytest.mark.minutes,
+    # Of Sphinx's own extensions, which use what its next version but one will not have.
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+    pytest.mark.filterwarnings("ignore::PendingDeprecationWarning"),
+]
 LOADED = re.compile(r'<(?:script|link|img|iframe|source)\b[^>]*?\b(?:src|href)="([^"]+)"')
 IN_STYLE = re.compile(r"url\(\s*['\"]?([^'\")]+)")
 
