@@ -25,11 +25,14 @@ TITLE, KEY, BAR = 26, 62, 62  # pixels from the top to the title, the key, the s
 class Stage:
     """The frame around the particles of a movie; everything is placed in pixels."""
 
-    def __init__(self, run: Run, view: View, extent: Extent, colours: Colouring) -> None:
-        """`extent` is what the frames show, m."""
+    def __init__(
+        self, run: Run, view: View, extent: Extent, colours: Colouring, pixels: int
+    ) -> None:
+        """`extent` is what the frames show, m, `pixels` how wide that is."""
         left, right, bottom, top = extent
-        self._height = max(1, round((top - bottom) / (right - left) * WIDTH))
-        width, height = LEFT + WIDTH + RIGHT, ABOVE + self._height + BELOW
+        self._width = pixels
+        self._height = max(1, round((top - bottom) / (right - left) * pixels))
+        width, height = LEFT + pixels + RIGHT, ABOVE + self._height + BELOW
         self._size = width, height + height % 2  # MP4 wants even sizes
         self.figure = Figure(figsize=(self._size[0] / DPI, self._size[1] / DPI), dpi=DPI)
         canvas = FigureCanvasAgg(self.figure)
@@ -43,7 +46,7 @@ class Stage:
         self._still = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
     def frame(self, pixels: np.ndarray, time: str) -> Image.Image:
-        """A picture with the particles as pixels (rows, WIDTH, 3) uint8, and their time."""
+        """A picture with the particles as pixels (rows, `pixels`, 3) uint8, and their time."""
         frame = self._still.copy()
         frame.paste(Image.fromarray(pixels[1:-1, 1:-1]), (LEFT + 1, ABOVE + 1))
         font = ImageFont.load_default(size=18)
@@ -57,7 +60,7 @@ class Stage:
     def _axes(self, extent: Extent) -> Axes:
         width, height = self._size
         below = height - ABOVE - self._height
-        box = (LEFT / width, below / height, WIDTH / width, self._height / height)
+        box = (LEFT / width, below / height, self._width / width, self._height / height)
         axes = self.figure.add_axes(box)
         axes.set(xlim=extent[:2], ylim=extent[2:])
         axes.yaxis.set_major_locator(MaxNLocator(max(2, self._height // 60)))
@@ -75,8 +78,8 @@ class Stage:
 
     def _draw_bar(self, metres: float) -> None:
         length = nice_length(BAR_SHARE * metres)
-        end = LEFT + WIDTH
-        ends = (end - length / metres * WIDTH) / self._size[0], end / self._size[0]
+        end = LEFT + self._width
+        ends = (end - length / metres * self._width) / self._size[0], end / self._size[0]
         level = self._up(BAR + 16)
         bar = Line2D(ends, (level, level), color="black", linewidth=3, solid_capstyle="butt")
         bar.set_gid("scale bar")
