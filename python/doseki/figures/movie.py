@@ -39,9 +39,9 @@ def make_movie(
     """Write every snapshot as one frame into `path`, which ends in .gif, .webp or .mp4.
 
     `colour` names a quantity (see quantities.py), `window` a window of the scenario (default:
-    everything, gravity pointing down), `width` the pixels of what is shown.  3-D runs are seen from the side, as shaded surfaces behind
-    translucent water.  Raises UserError for another ending, a file that exists,
-    an unknown colour or window, and an .mp4 without ffmpeg.
+    everything, gravity pointing down), `width` the pixels of what is shown.  3-D runs are seen
+    from the side, as shaded surfaces behind translucent water.  Raises UserError for another
+    ending, a file that exists, an unknown colour or window, and an .mp4 without ffmpeg.
     """
     path = Path(path)
     encode = ENCODERS.get(path.suffix.lower())

@@ -20,6 +20,7 @@ WIDTH = 1100  # pixels of the particles
 DPI = 100
 LEFT, RIGHT, BELOW, ABOVE = 90, 30, 60, 90  # pixels around them
 TITLE, KEY, BAR = 26, 62, 62  # pixels from the top to the title, the key, the scale bar
+NARROW = 800  # pixels of the particles; with fewer there is no room for key and bar side by side
 
 
 class Stage:
@@ -39,7 +40,8 @@ class Stage:
         axes = self._axes(extent)
         name_axes(axes, run.scenario["dim"], view.rotate)
         title = view.title or run.scenario.get("title", "")
-        self.figure.text(LEFT / self._size[0], self._up(TITLE), title, fontsize=11)
+        size = 8.5 if self._is_narrow else 11
+        self.figure.text(LEFT / self._size[0], self._up(TITLE), title, fontsize=size)
         self._draw_key(colours)
         self._draw_bar(right - left)
         canvas.draw()
@@ -52,6 +54,10 @@ class Stage:
         font = ImageFont.load_default(size=18)
         ImageDraw.Draw(frame).text((LEFT, ABOVE - 42), time, "black", font)
         return frame
+
+    @property
+    def _is_narrow(self) -> bool:
+        return self._width < NARROW
 
     def _up(self, pixels: float) -> float:
         """Pixels from the top as a share of the height from below."""
@@ -70,18 +76,20 @@ class Stage:
         entries = colours.legend_entries()
         handles = [Patch(color=colour, label=label) for label, colour in entries]
         heading = [Patch(alpha=0.0, label=colours.heading)] if colours.heading else []
+        start, size, gap = (95, 8, 0.7) if self._is_narrow else (140, 9, 1.2)
         self.figure.legend(
             handles=[*heading, *handles], ncols=len(handles) + len(heading), frameon=False,
-            loc="center left", bbox_to_anchor=((LEFT + 140) / self._size[0], self._up(KEY - 6)),
-            fontsize=9, handlelength=1.0, columnspacing=1.2, borderpad=0.0,
+            loc="center left", bbox_to_anchor=((LEFT + start) / self._size[0], self._up(KEY - 6)),
+            fontsize=size, handlelength=1.0, handletextpad=0.5, columnspacing=gap, borderpad=0.0,
         )  # fmt: skip
 
     def _draw_bar(self, metres: float) -> None:
         length = nice_length(BAR_SHARE * metres)
         end = LEFT + self._width
         ends = (end - length / metres * self._width) / self._size[0], end / self._size[0]
-        level = self._up(BAR + 16)
+        top = self._size[1] - 28 if self._is_narrow else BAR
+        level = self._up(top + 16)
         bar = Line2D(ends, (level, level), color="black", linewidth=3, solid_capstyle="butt")
         bar.set_gid("scale bar")
         self.figure.add_artist(bar)
-        self.figure.text(ends[1], self._up(BAR + 8), f"{length:g} m", fontsize=9, ha="right")
+        self.figure.text(ends[1], self._up(top + 8), f"{length:g} m", fontsize=9, ha="right")
