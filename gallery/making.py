@@ -103,7 +103,7 @@ def make_pictures(page: Page, run: Run, folder: Path) -> list[str]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     name = page.scenario
-    drawn = {path.stem: path for path in Path(run.directory).glob("figures/*.png")}
+    drawn = {path.stem: path for path in Path(run.directory).glob("*/*.png")}
     if not set(page.figures) <= set(drawn):
         drawn = {path.stem: path for path in draw_run(run.directory).pictures}
     missing = [figure for figure in page.figures if figure not in drawn]
@@ -118,12 +118,15 @@ def make_pictures(page: Page, run: Run, folder: Path) -> list[str]:
         draw_chart(page.chart(run)).savefig(whole)
         _shrink(whole, made[-1])
         whole.unlink()
-    film = folder / f"{name}.webp"
+    film, thumbnail = folder / f"{name}.webp", folder / f"{name}-small.webp"
     film.unlink(missing_ok=True)
     shown = page.film
+    if shown is None:
+        _thumbnail(made[0], thumbnail)
+        return [path.name for path in made]
     make_movie(run, film, shown.colour, shown.window, shown.frames_per_second, shown.width)
     _fit_film(film, shown.frames_per_second)
-    _thumbnail(film, folder / f"{name}-small.webp")
+    _thumbnail(film, thumbnail)
     return [path.name for path in made]
 
 
@@ -169,10 +172,10 @@ def _fit_film(film: Path, frames_per_second: int) -> None:
     _bounded(film, FILM_BYTES)
 
 
-def _thumbnail(film: Path, target: Path) -> None:
-    """A frame of the film, two fifths into it."""
-    with Image.open(film) as frames:
-        frames.seek(2 * frames.n_frames // 5)
+def _thumbnail(shown: Path, target: Path) -> None:
+    """A picture, or of a film the frame two fifths into it."""
+    with Image.open(shown) as frames:
+        frames.seek(2 * getattr(frames, "n_frames", 1) // 5)
         picture = frames.convert("RGB")
     height = round(picture.height * THUMBNAIL_WIDTH / picture.width)
     small = picture.resize((THUMBNAIL_WIDTH, height), Image.Resampling.LANCZOS)

@@ -69,4 +69,4 @@ class Page:
     then: Sequence[tuple[str, str]]
     settings: tuple[str, ...] = ()
     chart: Callable[[Run], Chart] | None = None
-    film: Film = field(default_factory=Film)
+    film: Film | None = field(default_factory=Film)

@@ -41,7 +41,7 @@ def page_text(page: Page, entry: Entry) -> str:
     parts = [
         f"# {entry['title']}",
         entry["description"],
-        f"![film of the run]({name}.webp)",
+        *([f"![film of the run]({name}.webp)"] * (page.film is not None)),
         f"    {command_of(page)}",
         "## What it teaches",
         " ".join(page.teaches.split()),

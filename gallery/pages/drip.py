@@ -9,7 +9,7 @@ from doseki.record.reader import Run
 from ..page import Film, Number, Page
 from ..reading import moving, over_time, parameter
 
-LOOKED_AT = 0.18  # s: the first drop is whole, and has not come to the basin
+LOOKED_AT = 0.14  # s: the first drop is whole, and has not come to the basin
 
 
 def numbers(run: Run) -> list[Number]:
@@ -55,8 +55,8 @@ before trusting a picture.
     figures=("drops", "level"),
     film=Film("speed", width=480),
     then=(
-        ("./doseki run drip --set fall=0.1", "gentler drops: the crater is a third as deep"),
-        ("./doseki run drip --set depth=0.02", "a basin that the crater reaches the floor of"),
+        ("./doseki run drip --set fall=0.1", "drops that fall half as far"),
+        ("./doseki run drip --set depth=0.08", "a deeper basin: where does the crater end?"),
         ("./doseki run drip --set speed=0.25", "the tap opened half as far"),
     ),
 )

@@ -75,7 +75,7 @@ another, the friction of contacts acts.
     film=Film("material"),
     then=(
         ("./doseki run mud-slump --set cv=0.45", "3 % more sediment: the mud is twice as strong"),
-        ("./doseki run mud-slump --set cv=0.3", "a mud that runs like water"),
+        ("./doseki run mud-slump --set cv=0.3", "a thin mud, of a twentieth of the strength"),
         ("./doseki run mud-slump --set dim=3", "a strip of it in three dimensions"),
     ),
 )

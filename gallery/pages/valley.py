@@ -7,7 +7,7 @@ import math
 from doseki.measure.hydrographs import passage
 from doseki.record.reader import Run
 
-from ..page import Film, Number, Page
+from ..page import Number, Page
 from ..reading import load_on, parameter
 
 
@@ -51,8 +51,8 @@ peaks. The cells are coarse, six particles over the release, and `check` says wh
 chain is the same on a real map.
 """,
     numbers=numbers,
-    figures=("overview",),
-    film=Film("speed", frames_per_second=8),
+    figures=("overview", "peak_depth"),
+    film=None,
     then=(
         ("./doseki maps runs/valley", "depth, speed, pressure, arrival: rasters with coordinates"),
         ("./doseki run valley --set slit=1.5", "a dam that is nearly shut"),
