@@ -61,7 +61,8 @@ PAGE = Page(
 Driftwood: a rigid body that is lighter than water. It waits on the dry bed, floats as soon as the
 bore has it lifted, dives below the deck of a low bridge and is wedged between deck and bed. From
 then on the bridge is a dam: the water behind it rises. The load on the deck comes in parts, what
-the water gives and what the log gives where it touches, and the log's is the larger by far.
+the water gives and what the log gives where it touches. While the log is driven under the deck its
+share is by far the larger; once it lies, both are alike.
 """,
     numbers=numbers,
     figures=("flood", "bridge"),

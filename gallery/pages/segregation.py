@@ -48,13 +48,15 @@ PAGE = Page(
 Why boulders are at the front and on top of a debris flow. Nothing but shear, gravity and two
 sizes is needed: small grains drop into gaps that open below them, large ones find none and are
 levered up (kinetic sieving and squeeze expulsion). The chute is periodic, so that 180 mm of it
-stand for an endless one, and a gauge of kind `mass_centre` follows each size.
+stand for an endless one, and a gauge of kind `mass_centre` follows each size. Ten
+seconds bring them half the way; twice that show the surface of large grains.
 """,
     numbers=numbers,
     figures=("chute",),
     chart=chart,
     film=Film("material", "chute"),
     then=(
+        ("./doseki run segregation --set time_max=25", "the rest of the way up"),
         (
             "./doseki run segregation --set ratio=1",
             "one size under two names: they mix, none rises",
