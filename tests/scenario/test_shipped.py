@@ -9,7 +9,6 @@ from doseki.scenario.load import list_scenarios, load_scenario
 from doseki.scene.build import build_bodies, build_scene
 from doseki.scene.inflow_sections import build_inflows
 
-
 # What a scenario is told, and its page of the gallery explains.
 EXPECTED = {"elastic-gate": "3 particles across an elastic body"}
 
