@@ -48,15 +48,16 @@ PAGE = Page(
 Why boulders are at the front and on top of a debris flow. Nothing but shear, gravity and two
 sizes is needed: small grains drop into gaps that open below them, large ones find none and are
 levered up (kinetic sieving and squeeze expulsion). The chute is periodic, so that 180 mm of it
-stand for an endless one, and a gauge of kind `mass_centre` follows each size. Ten
-seconds bring them half the way; twice that show the surface of large grains.
+stand for an endless one, and a gauge of kind `mass_centre` follows each size. After
+ten seconds nearly all large grains are at the surface but the lowest row, which bumps as regular
+as these hold in place.
 """,
     numbers=numbers,
     figures=("chute",),
     chart=chart,
     film=Film("material", "chute"),
     then=(
-        ("./doseki run segregation --set time_max=25", "the rest of the way up"),
+        ("./doseki run segregation --set time_max=25", "does the lowest row come loose?"),
         (
             "./doseki run segregation --set ratio=1",
             "one size under two names: they mix, none rises",
