@@ -256,7 +256,7 @@ def test_movie_refuses_other_endings_and_existing_files(flow_folder, tmp_path):
     (tmp_path / "m.gif").write_text("mine")
     with pytest.raises(UserError, match="exists"):
         make_movie(load(flow_folder), tmp_path / "m.gif")
-    with pytest.raises(UserError, match=r"\.gif or an \.mp4"):
+    with pytest.raises(UserError, match=r"\.webp or an \.mp4"):
         make_movie(load(flow_folder), tmp_path / "m.avi")
 
 
