@@ -105,6 +105,29 @@ def test_a_mass_that_is_weaker_than_its_bed_is_named(doubts):
     assert not any("friction inside" in doubt for doubt in smooth)
 
 
+DISCS = """
+[body.discs]
+shape = "disc"
+material = "basalt"
+d = 0.08
+wetted = 0.6
+count = 3
+min = [0.1, {foot}]
+max = [0.4, 0.4]
+settle = {settle}
+"""
+
+
+@pytest.mark.parametrize(
+    ("foot", "settle", "hangs"), [(0, "'0.5 s'", False), (0.06, "false", True)]
+)
+def test_discs_that_water_sees_smaller_lie_on_what_they_touch(doubts, foot, settle, hangs):
+    """Their particles are 1.6 spacings within their outline, more than bodies that touch have."""
+    dry = ("[body.water]", DISCS.format(foot=foot, settle=settle) + "[body.water]\nenabled = false")
+    told = doubts(replace=dry, scheme="resolved")
+    assert any("discs: touches nothing" in doubt for doubt in told) is hangs
+
+
 # Water makes room for whole boxes, not for one that is cut.
 CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"')}
 

@@ -194,20 +194,22 @@ def test_a_figure_that_was_made_impossible_by_hand_is_named(two_grains):
         plot_run(two_grains)
 
 
-@pytest.mark.parametrize(("colour", "window"), [("material", None), ("velocity_x", "end")])
-def test_gif_has_one_frame_per_snapshot(flow_folder, tmp_path, colour, window):
+@pytest.mark.parametrize(
+    ("name", "colour", "window"),
+    [("m.gif", "material", None), ("m.gif", "velocity_x", "end"), ("m.webp", "material", None)],
+)
+def test_movies_have_one_frame_per_snapshot(flow_folder, tmp_path, name, colour, window):
     run = load(flow_folder)
-    with Image.open(make_movie(run, tmp_path / "m.gif", colour, window)) as frames:
+    with Image.open(make_movie(run, tmp_path / name, colour, window, width=300)) as frames:
+        assert frames.width == 300 + stage.LEFT + stage.RIGHT
         assert frames.n_frames == len(run)
         first = np.asarray(frames.convert("RGB"))
         frames.seek(len(run) - 1)
         assert np.any(np.asarray(frames.convert("RGB")) != first)
 
 
-def test_movies_of_space_show_surfaces_from_the_side(tmp_path, record_run, monkeypatch):
+def test_movies_of_space_show_surfaces_from_the_side(tmp_path, record_run):
     """A block of water in front of a stone: it covers the stone, and axes and bar are there."""
-    monkeypatch.setattr(movie, "WIDTH", 120)
-    monkeypatch.setattr(stage, "WIDTH", 120)
 
     def state(time):
         grid = np.stack(np.meshgrid(*[np.arange(0.0, 1.0, 0.1)] * 3), axis=-1).reshape(-1, 3)
@@ -218,7 +220,7 @@ def test_movies_of_space_show_surfaces_from_the_side(tmp_path, record_run, monke
 
     window = "\n[window.all]\nmin = [-9.0, -9.0, -9.0]\nmax = [9.0, 9.0, 9.0]\n"
     record_run(tmp_path / "run", dim=3, times=(0.0, 2.0), state_at=state, tables=window)
-    camera = movie._Camera(load(tmp_path / "run"), "material", "all")
+    camera = movie._Camera(load(tmp_path / "run"), "material", "all", width=120)
     first, last = (np.asarray(frame, int) for frame in camera.frames())
     (axes,) = camera.stage.figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (m)", "z (m)")
@@ -254,7 +256,7 @@ def test_movie_refuses_other_endings_and_existing_files(flow_folder, tmp_path):
     (tmp_path / "m.gif").write_text("mine")
     with pytest.raises(UserError, match="exists"):
         make_movie(load(flow_folder), tmp_path / "m.gif")
-    with pytest.raises(UserError, match=r"\.gif or an \.mp4"):
+    with pytest.raises(UserError, match=r"\.webp or an \.mp4"):
         make_movie(load(flow_folder), tmp_path / "m.avi")
 
 

@@ -12,7 +12,7 @@ import pytest
 from .arrows import CPP_SUFFIXES, sources
 
 ROOT = Path(__file__).resolve().parents[2]
-PYTHON = ("python", "tests", "validation", "bench", "packaging", "docs/site")
+PYTHON = ("python", "tests", "validation", "bench", "packaging", "docs/site", "gallery")
 CLANG_FORMAT = str(Path(sysconfig.get_path("scripts")) / "clang-format")
 RUFF, MYPY = ([sys.executable, "-m", tool] for tool in ("ruff", "mypy"))
 

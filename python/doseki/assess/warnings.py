@@ -12,6 +12,7 @@ from ..driver.gauges import outside_everything
 from ..record.particles import BOUND, DRIVEN, FIXED, FREE
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED, UETA2022
+from ..scenario.tables.bodies import Grains
 from ..scene.ground import ground_of
 from ..util.finding import Finding
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
@@ -285,5 +286,13 @@ def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterat
         if scenario.bed is not None:  # which has particles near fluid alone
             height = ground_of(scenario.bed).height_above(position[of_it]).min()
             apart = min(apart, float(height) / scenario.dp + 0.5)
-        if apart > TOUCHING:
+        if apart > TOUCHING + _rim(scenario, name):
             yield Detached(name, apart)
+
+
+def _rim(scenario: Scenario, name: str) -> float:
+    """How far the particles of grains lie below where they touch, since water sees them smaller."""
+    table = scenario.body.get(name)
+    if not isinstance(table, Grains):
+        return 0.0
+    return (1 - table.wetted) * max(d for d, _ in table.rows) / 2 / scenario.dp

@@ -18,7 +18,8 @@ NAME = 18  # columns of the names of loads
 def plot(
     directory: Directory,
     movie: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Also make a movie: FILE.gif or FILE.mp4.")
+        Path | None,
+        typer.Option(metavar="FILE", help="Also make a movie: FILE.gif, FILE.webp or FILE.mp4."),
     ] = None,
     colour: Annotated[
         str, typer.Option(help="Colour of the movie: material, velocity_x ...")

@@ -24,6 +24,7 @@ from .stage import WIDTH, Stage
 from .text import plain_text
 
 SIDEWAYS = np.array([0.0, 1.0, 0.0])  # away from the viewer
+QUALITY = 60  # of 100, of a .webp
 SAMPLES = 20  # snapshots looked at to choose the limits of the picture and of the colours
 
 
@@ -33,25 +34,26 @@ def make_movie(
     colour: str = "material",
     window: str | None = None,
     frames_per_second: int = 20,
+    width: int = WIDTH,
 ) -> Path:
-    """Write every snapshot as one frame into `path`, which ends in .gif or .mp4.
+    """Write every snapshot as one frame into `path`, which ends in .gif, .webp or .mp4.
 
     `colour` names a quantity (see quantities.py), `window` a window of the scenario (default:
-    everything, gravity pointing down).  3-D runs are seen from the side, as shaded surfaces behind
-    translucent water.  Raises UserError for another ending, a file that exists,
-    an unknown colour or window, and an .mp4 without ffmpeg.
+    everything, gravity pointing down), `width` the pixels of what is shown.  3-D runs are seen
+    from the side, as shaded surfaces behind translucent water.  Raises UserError for another
+    ending, a file that exists, an unknown colour or window, and an .mp4 without ffmpeg.
     """
     path = Path(path)
-    encode = {".gif": _encode_gif, ".mp4": _encode_mp4}.get(path.suffix.lower())
+    encode = ENCODERS.get(path.suffix.lower())
     if encode is None:
-        raise UserError(f"{path}: a movie is a .gif or an .mp4")
+        raise UserError(f"{path}: a movie is a .gif, a .webp or an .mp4")
     if path.exists():
         raise UserError(f"{path}: exists and is not overwritten")
     if not len(run):
         raise UserError(f"{run.directory}: the run has no snapshot to show")
     with plain_text():
         try:
-            camera = _Camera(run, colour, window)
+            camera = _Camera(run, colour, window, width)
         except NothingToDrawError as reason:
             raise UserError(f"{run.directory}: no movie: {reason}") from None
     with clear_errors(path):
@@ -63,8 +65,8 @@ def make_movie(
 class _Camera:
     """Turns snapshots into frames that all have the same limits and colours."""
 
-    def __init__(self, run: Run, colour: str, window: str | None) -> None:
-        self._run = run
+    def __init__(self, run: Run, colour: str, window: str | None, width: int = WIDTH) -> None:
+        self._run, self._width = run, width
         self._view = self._choose_view(window)
         step = max(1, len(run) // SAMPLES)
         samples = [*run[::step], run[-1]]
@@ -75,7 +77,7 @@ class _Camera:
         else:
             self._extent = extent_of(samples, self._view)
         self._colours = colouring(run, samples, colour, self._view)
-        self.stage = Stage(run, self._view, self._extent, self._colours)
+        self.stage = Stage(run, self._view, self._extent, self._colours, width)
 
     def _choose_view(self, window: str | None) -> View:
         if window is not None:
@@ -93,10 +95,10 @@ class _Camera:
     def _pixels(self, snapshot: Snapshot) -> np.ndarray:
         if self._side is not None:
             balls = balls_of(self._run, snapshot, self._colours, self._space, self._side)
-            return render(balls, self._side, self._extent, WIDTH)
+            return render(balls, self._side, self._extent, self._width)
         shown = dots(snapshot, self._view)
         rgba = self._colours.rgba(snapshot)[shown.index]
-        return picture(shown, rgba, self._extent, WIDTH)
+        return picture(shown, rgba, self._extent, self._width)
 
 
 def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
@@ -104,6 +106,14 @@ def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: in
     first = next(small)
     first.save(
         path, format="GIF", save_all=True, append_images=small, loop=0,
+        duration=round(1000 / frames_per_second),
+    )  # fmt: skip
+
+
+def _encode_webp(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
+    first = next(frames)
+    first.save(
+        path, format="WEBP", save_all=True, append_images=frames, loop=0, quality=QUALITY,
         duration=round(1000 / frames_per_second),
     )  # fmt: skip
 
@@ -126,3 +136,6 @@ def _encode_mp4(path: Path, frames: Iterator[Image.Image], frames_per_second: in
         _, message = encoder.communicate()
     if encoder.returncode:
         raise UserError(f"{path}: ffmpeg failed: {message.decode().strip()}")
+
+
+ENCODERS = {".gif": _encode_gif, ".webp": _encode_webp, ".mp4": _encode_mp4}

@@ -11,7 +11,7 @@ MAX_PARTICLES = 2_000_000_000
 BYTES_PER_PARTICLE = 500  # what a run holds, lists included
 
 
-def check_size(counts: Mapping[str, int]) -> None:
+def check_size(counts: Mapping[str, float]) -> None:
     """Refuse what cannot be held, before anything is allocated.
 
     Args:
