@@ -33,7 +33,9 @@ def test_a_stiff_layer_has_the_friction_of_its_weight():
 
 @pytest.mark.validate
 @pytest.mark.xfail(
-    strict=True, reason="friction that follows each sound wave amplifies those that run upstream"
+    strict=True,
+    raises=AssertionError,
+    reason="friction that follows each sound wave amplifies those that run upstream",
 )
 def test_a_liquid_has_the_friction_of_its_weight():
     """It has more: walls whose normal force swings below zero give none of it back."""

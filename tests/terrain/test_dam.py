@@ -95,7 +95,9 @@ def rest_of(record):
 
 @pytest.mark.validate
 @pytest.mark.xfail(
-    strict=True, reason="wall particles of the ground inside the dam bear a share of the thrust"
+    strict=True,
+    raises=AssertionError,
+    reason="wall particles of the ground inside the dam bear a share of the thrust",
 )
 def test_water_at_rest_presses_on_a_dam_across_a_channel(tmp_path):
     record, exact = across_a_channel(tmp_path)

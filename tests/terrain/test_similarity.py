@@ -122,7 +122,11 @@ def test_at_first_the_profile_is_that_of_the_solution(tmp_path):
 
 
 @pytest.mark.validate
-@pytest.mark.xfail(strict=True, reason="the bed has too much friction for a liquid (terrain.md)")
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="the bed has too much friction for a liquid (terrain.md)",
+)
 def test_the_profile_stays_that_of_the_solution(tmp_path):
     """While the pile slides 48 m and becomes an eighth longer."""
     assert max(misfits(tmp_path, 8, [2.5, 5.0])) < 0.05
