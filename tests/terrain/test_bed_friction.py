@@ -35,7 +35,7 @@ def test_a_stiff_layer_has_the_friction_of_its_weight():
 @pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
-    reason="friction that follows each sound wave amplifies those that run upstream",
+    reason="waves of sound grow along the bed, and friction counts only where they press",
 )
 def test_a_liquid_has_the_friction_of_its_weight():
     """It has more: walls whose normal force swings below zero give none of it back."""
