@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from doseki.run.provenance import read_provenance
+from doseki.run.runner import RunOptions, run_scenario
 from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 
@@ -20,8 +22,6 @@ from doseki.figures.movie import make_movie
 from doseki.figures.plot import draw_run
 from doseki.record.folder import RunFolder
 from doseki.record.reader import Run, load
-from doseki.run.provenance import read_provenance
-from doseki.run.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from .page import Chart, Page

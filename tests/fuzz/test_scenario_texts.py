@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 
 from doseki.errors import DosekiError, ResourceError, UserError
+from doseki.record import particles as sets
 from doseki.scenario.load import load_scenario
-from doseki.scene import size
 from doseki.scene.build import build_bodies
 from doseki.scene.inflow_sections import build_inflows
 
@@ -43,7 +43,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(autouse=True)
 def few_particles(monkeypatch):
     """What is refused for its size, not built: thousands of large scenarios would take hours."""
-    monkeypatch.setattr(size, "MAX_PARTICLES", 20_000)
+    monkeypatch.setattr(sets, "MAX_PARTICLES", 20_000)
 
 
 @examples(80, 6000)

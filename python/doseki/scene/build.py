@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..record.particles import BOUND, FREE, ParticleSet, concatenate
+from ..record.particles import BOUND, FREE, ParticleSet, check_size, concatenate
 from ..scenario.model import Scenario
 from ..scenario.tables.terrain.terrain import TERRAIN
 from ..util.finding import Finding
@@ -31,7 +31,6 @@ from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
 from .meshes.meeting import without_common
-from .size import check_size
 
 BURIED = 0.5  # spacings in the ground that no flow gets to
 IN_THE_GROUND = 0.25  # spacings that particles may be nearer to a bed than those that rest on it

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..record.particles import FIXED, ParticleSet
+from ..record.particles import FIXED, ParticleSet, check_size
 from ..scenario.model import Scenario
 from ..scenario.values.directions import section_axes
 from .ground import ground_of
 from .lattices import ROUNDING
-from .size import check_size
 
 NEAREST = 0.4  # spacings between an inflow and a terrain
 

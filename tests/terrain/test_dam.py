@@ -1,0 +1,249 @@
+"""Dams on maps: water at rest in a channel with banks, and a jet along a sloping bed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from doseki.run.runner import RunOptions, run_scenario
+
+from doseki.record.reader import load
+from doseki.scenario.load import load_scenario
+from doseki.scene.ground import ground_of
+
+from .scenes import grid, profile, text
+
+G, DEPTH, FACE = 9.81, 0.4, 1.6  # m/s2; water at the dam as filled, its place along x, m
+PARTS = ("static", "dynamic", "contact")
+
+# The dam reaches three spacings into the bed and the banks.
+LAKE = """
+dim = 3
+dp = 0.04
+time_max = 0.2
+time_out = 0.2
+scheme = "resolved"
+gravity = [0, 0, -9.81]
+speed_max = 2.0
+relax = 0.4
+[terrain]
+file = "terrain.asc"
+material = "basalt"
+wall = "free_slip"
+[body.lake]
+shape = "box"
+material = "water"
+min = [0.2, 0.1, -0.12]
+max = [1.6, 1.9, 0.4]
+pressure = "= 9810*(0.4 - z)"
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+wall = "free_slip"
+normal = [-1, 0, 0]
+min = [1.6, 0.05, -0.17]
+max = [1.72, 1.95, 0.52]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+interval = 0.02
+[gauge.level]
+kind = "surface_height"
+position = [1.2, 1.0, 0.04]
+interval = 0.02
+"""
+
+
+def channel(x, y):
+    """A bed 0.4 m wide that falls by 1 in 10 to the dam, banks of 45 degrees, a slope behind."""
+    banks = np.maximum(np.abs(y - 1.0) - 0.2, 0.0)
+    return -0.1 * (x - FACE) + banks + np.maximum(0.7 - x, 0.0)
+
+
+def hydrostatic(scenario, level):
+    """Thrust of water that stands to `level` in the section of the ground at the dam, N."""
+    y = np.linspace(0.1, 1.9, 3601)
+    places = np.column_stack([np.full_like(y, FACE), y])
+    ground = ground_of(scenario.bed).field.at(np.ascontiguousarray(places))["height"]
+    depth = np.maximum(level - ground, 0.0)
+    return 0.5 * 1000 * G * float(np.mean(depth**2)) * (y[-1] - y[0])
+
+
+def across_a_channel(folder):
+    """The record of the load on a dam in 3-D, and the thrust at the level that the water has."""
+    grid(folder / "terrain.asc", channel, (2.4, 2.0), 0.05)
+    path = folder / "case.toml"
+    path.write_text(LAKE)
+    scenario = load_scenario(path)
+    run_scenario(scenario, folder / "run", RunOptions(threads=1))
+    gauges = load(folder / "run").gauges
+    level = 0.04 + float(gauges["level"]["height"][1:].mean())
+    # Water has no particles in the sharp corners of its banks: it stands a little lower.
+    assert 0.95 * DEPTH < level < 1.01 * DEPTH
+    return gauges["dam"], hydrostatic(scenario, level)
+
+
+def rest_of(record):
+    """What is left of the force when its parts are taken away, N: (axes, rows)."""
+    axes = [axis for axis in "xyz" if f"force_{axis}" in record]
+    parts = [sum(record[f"{part}_force_{axis}"] for part in PARTS) for axis in axes]
+    whole = [record[f"force_{axis}"] for axis in axes]
+    return np.array(whole)[:, 1:] - np.array(parts)[:, 1:]
+
+
+@pytest.mark.validate
+@pytest.mark.xfail(
+    strict=True,
+    raises=AssertionError,
+    reason="8 % low: probably the wall particles of the ground inside the dam bear it",
+)
+def test_water_at_rest_presses_on_a_dam_across_a_channel(tmp_path):
+    record, exact = across_a_channel(tmp_path)
+    assert record["force_x"][1:].mean() == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.validate
+def test_the_split_of_a_load_in_a_channel_adds_up(tmp_path):
+    """To rounding; and nothing pushes the dam towards one bank."""
+    record, exact = across_a_channel(tmp_path)
+    assert np.abs(rest_of(record)).max() < 1e-9 * exact
+    assert abs(record["force_y"][1:].mean()) < 0.01 * exact
+    assert record["force_x"][1:].mean() > 0.8 * exact
+
+
+# The same in 2-D on a level bed, 40 over the depth.
+POOL = """
+[body.back]
+shape = "box"
+material = "basalt"
+fixed = true
+wall = "free_slip"
+normal = [1, 0]
+min = [-0.04, -0.04]
+max = [0, 0.52]
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+wall = "free_slip"
+normal = [-1, 0]
+min = [0.4, -0.04]
+max = [0.52, 0.52]
+[material.water]
+rho0 = {rho}
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.4, 0.4]
+pressure = "= {rho}*9.81*(0.4 - y)"
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+interval = 0.02
+"""
+
+
+def thrust(folder, rho):
+    """Mean force and its static part, over that of water."""
+    profile(folder / "terrain.csv", lambda x: 0 * x, -0.5, 1.5)
+    path = folder / "case.toml"
+    path.write_text(text(2, dp=0.01, time=0.3, speed=2.0, more=POOL.format(rho=rho)))
+    run_scenario(load_scenario(path), folder / "run", RunOptions(threads=1))
+    record = load(folder / "run").gauges["dam"]
+    exact = 0.5 * 1000 * G * DEPTH**2
+    assert np.abs(rest_of(record)).max() < 1e-9 * exact
+    return [record[f"{part}force_x"][1:].mean() / exact for part in ("", "static_")]
+
+
+@pytest.mark.minutes
+def test_water_at_rest_presses_on_a_dam_in_two_dimensions(tmp_path):
+    assert thrust(tmp_path, 1000) == pytest.approx([1.0, 1.0], rel=0.01)
+
+
+@pytest.mark.minutes
+def test_heavier_water_is_told_apart(tmp_path):
+    """The control: 3 % heavier."""
+    assert min(thrust(tmp_path, 1030)) > 1.015
+
+
+# A jet 0.1 m thick runs down a section of a map onto a dam; there is no gravity. Its inflow is
+# six thicknesses away: from nearer it would push against the pressure before the dam.
+JET = """
+dim = 2
+dp = 0.01
+time_max = 0.9
+time_out = 0.9
+scheme = "resolved"
+gravity = [0, 0]
+speed_max = 4.0
+[terrain]
+file = "terrain.asc"
+section = {section}
+material = "basalt"
+wall = "free_slip"
+[inflow.jet]
+material = "water"
+rate = {rate}
+duration = 100
+width = 1
+depth = 0.1
+position = {position}
+direction = {direction}
+[body.dam]
+shape = "box"
+material = "aluminium"
+fixed = true
+wall = "free_slip"
+min = [1.05, -0.04]
+max = [1.14, 0.6]
+rotate = -20
+pivot = [1.05, 0]
+[outflow.above]
+min = [-9, 0.45]
+max = [9, 9]
+[outflow.back]
+min = [-9, -9]
+max = [0.1, 9]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+interval = 0.01
+"""
+TILT, SPEED = math.radians(20), 2.0
+
+
+def jet(folder, speed):
+    """Force along the bed and across it, over rho v2 b at SPEED, after 0.6 s."""
+    cos, sin = math.cos(TILT), math.sin(TILT)
+    grid(folder / "terrain.asc", lambda x, y: -math.tan(TILT) * (x - 1.35), (2.4, 1.0), 0.05)
+    path = folder / "case.toml"
+    path.write_text(
+        JET.format(
+            section=[[0.3, 0.5], [2.2, 0.5]],
+            rate=0.1 * speed,
+            position=[1.05 - 0.65 * cos, 0.65 * sin],
+            direction=[cos, -sin],
+        )
+    )
+    run_scenario(load_scenario(path), folder / "run", RunOptions(threads=1))
+    record = load(folder / "run").gauges["dam"]
+    assert np.abs(rest_of(record)).max() < 1e-9 * 400
+    late = record["time"] > 0.6
+    x, y = (record[f"force_{axis}"][late].mean() for axis in "xy")
+    return np.array([x * cos - y * sin, x * sin + y * cos]) / (1000 * SPEED**2 * 0.1)
+
+
+@pytest.mark.validate
+def test_a_jet_along_the_bed_loses_its_momentum_at_a_dam(tmp_path):
+    along, across = jet(tmp_path, SPEED)
+    assert along == pytest.approx(1.0, rel=0.03)
+    assert abs(across) < 0.03
+
+
+@pytest.mark.validate
+def test_a_faster_jet_is_told_apart(tmp_path):
+    """The control: a twentieth more speed."""
+    assert jet(tmp_path, 1.05 * SPEED)[0] > 1.06
