@@ -3,7 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/vector.h>
 
-#include "boundaries/terrain.hpp"
+#include "boundaries/tile_layer.hpp"
 #include "interface/boundaries.hpp"
 #include "interface/reader.hpp"
 #include "python/values.hpp"

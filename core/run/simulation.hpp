@@ -111,7 +111,7 @@ public:
         if (archive.loads()) expect_particles();
         open_boundaries.serialise(archive);
         terrain.serialise(archive);
-        if (archive.loads()) terrain.expect_tiles(particles);
+        if (archive.loads()) terrain.expect_groups(particles);
         bodies.serialise(archive);
         if (archive.loads()) bodies.expect_points(particles);
         scheme_->serialise(archive);
@@ -170,6 +170,9 @@ private:
     /// How far a particle goes, in supports, between two looks for what has left. When lists are
     /// built does not matter, for that follows the skin and the ranks.
     static constexpr double outflow_distance = 0.2;
+    /// How far a particle may go, in supports, until walls are looked for anew: farther than it
+    /// mostly goes while lists hold.
+    static constexpr double terrain_margin = 0.2;
 
     static auto contact_properties(const Array<Material>& materials) {
         Array<ContactProperties> contact;
@@ -213,6 +216,10 @@ private:
 
     void rebuild_lists();
     void wrap_positions();
+    /// Makes numbers of all ranks of those of one.
+    auto gathering() {
+        return [this](const Array<double>& part) { return ranks().gather(part); };
+    }
     void look_at_terrain();
     bool remove_outflow();
     void drop_removed();
@@ -291,7 +298,9 @@ double Simulation<Lists>::next_event() const {
 
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
-    const bool worn = lists_.wear(particles, moved);
+    bool worn = lists_.wear(particles, moved);
+    // What flies side by side wears no lists out, and yet comes nearer to the ground.
+    worn |= terrain.is_there() && lists_.moved() >= terrain_margin * lists_.min_support();
     bool changed = open_boundaries.inject(particles, time_);
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
     moved_since_outflow_ += moved;
@@ -324,7 +333,7 @@ void Simulation<Lists>::rebuild_lists() {
     lists_.cut_space(particles, phases());
     look_at_terrain();
     drop_removed();
-    terrain.fill(particles, open_boundaries.next_id, open_boundaries.adds);
+    terrain.fill(particles, open_boundaries.next_id, ranks().rank(), gathering());
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
@@ -345,9 +354,8 @@ void Simulation<Lists>::look_at_terrain() {
     const Array<double> own = support_radii(*scheme_, options_);
     const double largest = own.empty() ? 0.0 : *std::max_element(own.begin(), own.end());
     const double support = ranks().largest(largest);
-    const double skin = max(options_.skin, CheapestSkin<D>::max_skin);
-    const auto gather = [this](const Array<double>& part) { return ranks().gather(part); };
-    terrain.look(particles, support, skin * support, gather, open_boundaries.removed);
+    terrain.look(particles, support, terrain_margin * support, ranks().rank(), gathering(),
+                 open_boundaries.removed);
 }
 
 /// True where any rank has particles that left.

@@ -212,7 +212,7 @@ def test_maps_are_files_in_the_format_of_the_terrain(tmp_path, driver):
     peaks = peaks_of(grid, slab((0, 0, 0), (4, 4, 1), 0.25))
     rasters = rasters_of(peaks, slab((0, 0, 0), (4, 4, 1), 0.25), MapSettings(0.25))
     folder = RunFolder(tmp_path)
-    files = write_maps(folder, rasters, 2.5)
+    files = write_maps(folder, rasters, MapSettings(0.25), 2.5)
     assert len(files) == 7
     assert {file.suffix for file in files} == {grid.suffix}
     back = read_maps(folder)
