@@ -12,6 +12,7 @@
 #include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "boundaries/fluid_columns.hpp"
+#include "boundaries/ground_source.hpp"
 #include "boundaries/height_field.hpp"
 #include "boundaries/tile_grid.hpp"
 #include "boundaries/wall_groups.hpp"
@@ -41,10 +42,21 @@ public:
     bool is_there() const { return wall_.layers > 0; }
 
     /// `field` has its lean. Throws std::invalid_argument for more columns than have numbers.
-    void set(std::shared_ptr<const HeightField<D>> field, const TerrainWall& wall) {
+    void set(std::shared_ptr<HeightField<D>> field, const TerrainWall& wall) {
         field_ = std::move(field), wall_ = wall;
         grid_ = TileGrid<D>(*field_, wall.dp);
         there_ = WallGroups(wall.layers);
+    }
+
+    /// This rank is to hold only the part of the map that it needs, which `source` gives it.
+    void share(GroundSource<D> source) { source_ = std::move(source); }
+    /// Gets the part of the map that is near particles of this rank and near all bodies. All ranks
+    /// call it before they ask for the ground, `reach` [m] away from these at most.
+    template <class Largest>
+    void fetch(const Particles<D>& particles, double reach, const Largest& largest) {
+        if (!source_ || !is_there()) return;
+        const double across = reach + field_->lean() * wall_.layers * wall_.dp + grid_.side();
+        source_.fetch(*field_, particles, across, largest);
     }
 
     /// Finds the groups that fluid may feel before it has gone `margin` [m], marks in `removed` the
@@ -103,7 +115,8 @@ private:
     void add_particle(Particles<D>& particles, std::int64_t tile,
                       const typename WallTile<D>::Slot& slot, std::int64_t id) const;
 
-    std::shared_ptr<const HeightField<D>> field_;
+    std::shared_ptr<HeightField<D>> field_;
+    GroundSource<D> source_;  // of the map, where a rank holds a part of it
     TerrainWall wall_;
     TileGrid<D> grid_;
     WallGroups there_, wanted_;

@@ -15,7 +15,9 @@ template <int D>
 class BoundHeightField {
 public:
     explicit BoundHeightField(const nb::dict& table)
-        : field_(BoundaryTables<D>::height_field(to_table(table))) {}
+        : field_(BoundaryTables<D>::height_field(to_table(table))) {
+        field_.hold_all();
+    }
 
     nb::dict at(const nb::object& places) const {
         const auto place = vectors<D - 1>(places);

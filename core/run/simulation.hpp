@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "base/array.hpp"
@@ -220,6 +221,8 @@ private:
     auto gathering() {
         return [this](const Array<double>& part) { return ranks().gather(part); };
     }
+    double largest_support();
+    void fetch_ground();
     void look_at_terrain();
     bool remove_outflow();
     void drop_removed();
@@ -331,12 +334,14 @@ void Simulation<Lists>::rebuild_lists() {
     wrap_positions();
     bodies.loads.lose_members();
     lists_.cut_space(particles, phases());
+    fetch_ground();
     look_at_terrain();
     drop_removed();
     terrain.fill(particles, open_boundaries.next_id, ranks().rank(), gathering());
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
+    fetch_ground();
     lists_.rebuild(
         particles, [this] { return support_radii(*scheme_, options_); }, steps_, phases());
 }
@@ -347,13 +352,28 @@ void Simulation<Lists>::wrap_positions() {
     for (auto& x : particles.position) x = wrapped(domain_, x);
 }
 
+/// Of all ranks [m].
+template <class Lists>
+double Simulation<Lists>::largest_support() {
+    const Array<double> own = support_radii(*scheme_, options_);
+    const double largest = own.empty() ? 0.0 : *std::max_element(own.begin(), own.end());
+    return ranks().largest(largest);
+}
+
+/// For what is asked of the ground until the lists are built again, and then of where particles
+/// have come to.
+template <class Lists>
+void Simulation<Lists>::fetch_ground() {
+    if (!terrain.is_there() || ranks().alone()) return;
+    terrain.fetch(particles, (1.0 + 4.0 * terrain_margin) * largest_support(),
+                  [this](std::span<double> values) { ranks().largest(values); });
+}
+
 /// Fluid must find a bed wherever it may be before the lists are built anew.
 template <class Lists>
 void Simulation<Lists>::look_at_terrain() {
     if (!terrain.is_there()) return;
-    const Array<double> own = support_radii(*scheme_, options_);
-    const double largest = own.empty() ? 0.0 : *std::max_element(own.begin(), own.end());
-    const double support = ranks().largest(largest);
+    const double support = largest_support();
     terrain.look(particles, support, terrain_margin * support, ranks().rank(), gathering(),
                  open_boundaries.removed);
 }
