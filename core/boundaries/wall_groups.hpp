@@ -36,7 +36,8 @@ public:
     template <class Of>
     bool has(std::size_t k, const Of& of) const {
         const auto layer = static_cast<std::size_t>(of.layer);
-        return k < size() && layer < layers_ && words_[k * layers_ + layer] >> of.column & 1;
+        return k < size() && layer < layers_ && of.column >= 0 &&
+               words_[k * layers_ + layer] >> of.column & 1;
     }
     bool has(const Group& group) const { return has(place(group.tile), group); }
     /// Whether it has all groups of the other.
