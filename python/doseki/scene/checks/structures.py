@@ -17,8 +17,8 @@ from ..ground import ground_of
 from ..kinds.box_walls import SLAB
 
 DEEP = 3  # spacings, as far as the kernel sees
-DEPTHS = (0.25, 0.75, 1.25, 1.75, 2.25)  # spacings, at which a structure is looked for
-NEAR = 0.75  # spacings from a place at which it is still there
+DEPTHS = (0.25, 0.75, 1.25, 1.75, 2.4)  # spacings, at which a structure is looked for
+NEAR = 0.87  # spacings from a place at which it is still there: inside a lattice, none is farther
 
 
 @dataclass(frozen=True)
