@@ -62,8 +62,9 @@ public:
     /// Finds the groups that fluid may feel before it has gone `margin` [m], marks in `removed` the
     /// particles of groups that it has left, and remembers which to add. All ranks call it:
     /// `gather` makes numbers of all ranks of those of one; `rank` is the own one.
+    /// True where any rank has groups to add or to drop.
     template <class Gather>
-    void look(const Particles<D>& particles, double support, double margin, int rank,
+    bool look(const Particles<D>& particles, double support, double margin, int rank,
               const Gather& gather, Array<std::uint8_t>& removed);
 
     /// Adds the particles of the groups that look() has found; their ids go on from `next_id`.
@@ -120,6 +121,7 @@ private:
     TerrainWall wall_;
     TileGrid<D> grid_;
     WallGroups there_, wanted_;
+    bool changes_ = false;        // wanted_ is not there yet
     Array<WallTile<D>> layouts_;  // of tiles near fluid of this rank, in the order of their numbers
 };
 
@@ -202,23 +204,26 @@ WallGroups Terrain<D>::felt(const FluidColumns<D>& fluid, double reach) const {
 
 template <int D>
 template <class Gather>
-void Terrain<D>::look(const Particles<D>& particles, double support, double margin, int rank,
+bool Terrain<D>::look(const Particles<D>& particles, double support, double margin, int rank,
                       const Gather& gather, Array<std::uint8_t>& removed) {
     const double reach = support + margin, farthest = reach + slack * wall_.dp;
     const FluidColumns<D> fluid(grid_, particles, farthest);
     lay_out(fluid, farthest);
     wanted_ = WallGroups::merged(gather(felt(fluid, reach).as_numbers(rank)), wall_.layers);
-    if (wanted_.contains(there_)) return;
+    const bool adds = !there_.contains(wanted_), drops = !wanted_.contains(there_);
+    changes_ = adds || drops;
+    if (!drops) return changes_;
     removed.resize(particles.size(), 0);
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (is_own(particles, p) && !wanted_.has(group_of(particles, p))) removed[p] = 1;
+    return true;
 }
 
 template <int D>
 template <class Gather>
 void Terrain<D>::fill(Particles<D>& particles, std::int64_t& next_id, int rank,
                       const Gather& gather) {
-    if (!is_there()) return;
+    if (!changes_) return;
     Array<double> counts;  // place in wanted_, particles
     std::size_t added = 0;
     for (std::size_t k = 0; k < wanted_.size(); ++k) {
@@ -242,7 +247,7 @@ void Terrain<D>::fill(Particles<D>& particles, std::int64_t& next_id, int rank,
                 k, [&](const auto& slot) { add_particle(particles, wanted_.tile(k), slot, id++); });
         next_id += count;
     }
-    there_ = wanted_;
+    there_ = wanted_, changes_ = false;
 }
 
 template <int D>

@@ -60,8 +60,6 @@ public:
     /// Margin of the lists over the smallest support radius, as a fraction of it.
     double skin() const { return skin_; }
     double min_support() const { return min_support_; }
-    /// How far any particle has gone since lists were built, at most [m].
-    double moved() const { return moved_; }
     std::int64_t rebuilds() const { return rebuilds_; }
     std::size_t bytes() const { return lists_.bytes() + wear_.bytes(); }
 

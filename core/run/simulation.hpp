@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <span>
 #include <string>
 
 #include "base/array.hpp"
@@ -16,6 +15,7 @@
 #include "run/diagnostics.hpp"
 #include "run/failure.hpp"
 #include "run/lists.hpp"
+#include "run/terrain_looks.hpp"
 
 namespace doseki {
 
@@ -34,7 +34,8 @@ public:
                  averaging_time(materials(), options)),
           options_(options),
           domain_(domain),
-          lists_(*scheme_, domain, options.skin, options.auto_skin) {
+          lists_(*scheme_, domain, options.skin, options.auto_skin),
+          terrain_looks_(terrain, lists_.halo().ranks) {
         for (const Material& material : materials()) sound_speed_ = max(sound_speed_, material.c0);
     }
 
@@ -82,6 +83,7 @@ public:
         bodies.start(particles);
         bodies.set_velocities(particles, 0.0);
         remove_outflow();
+        look_at_terrain();
         renew_lists();
     }
 
@@ -106,6 +108,7 @@ public:
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
         archive("moved_since_outflow", moved_since_outflow_);
+        terrain_looks_.serialise(archive);
         archive("account", account_);
         lists_.serialise_wear(archive);
         particles.serialise(archive);
@@ -171,9 +174,6 @@ private:
     /// How far a particle goes, in supports, between two looks for what has left. When lists are
     /// built does not matter, for that follows the skin and the ranks.
     static constexpr double outflow_distance = 0.2;
-    /// How far a particle may go, in supports, until walls are looked for anew: farther than it
-    /// mostly goes while lists hold.
-    static constexpr double terrain_margin = 0.2;
 
     static auto contact_properties(const Array<Material>& materials) {
         Array<ContactProperties> contact;
@@ -207,6 +207,7 @@ private:
                (scheme_->kernel_support() * sound_speed_);
     }
     Ranks& ranks() { return lists_.halo().ranks; }
+    Array<double> supports() { return support_radii(*scheme_, options_); }
 
     void step(double limit);
     void kick(double half_dt);
@@ -217,13 +218,9 @@ private:
 
     void rebuild_lists();
     void wrap_positions();
-    /// Makes numbers of all ranks of those of one.
-    auto gathering() {
-        return [this](const Array<double>& part) { return ranks().gather(part); };
+    bool look_at_terrain() {
+        return terrain_looks_.look(particles, supports(), open_boundaries.removed);
     }
-    double largest_support();
-    void fetch_ground();
-    void look_at_terrain();
     bool remove_outflow();
     void drop_removed();
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
@@ -231,6 +228,7 @@ private:
     Options<D> options_;
     Domain<D> domain_;
     RunLists<Lists> lists_;
+    TerrainLooks<D> terrain_looks_;
     double time_ = 0.0, last_dt_ = 0.0;
     double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
     double dissipation_ = 0.0;
@@ -301,16 +299,17 @@ double Simulation<Lists>::next_event() const {
 
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
-    bool worn = lists_.wear(particles, moved);
-    // What flies side by side wears no lists out, and yet comes nearer to the ground.
-    worn |= terrain.is_there() && lists_.moved() >= terrain_margin * lists_.min_support();
-    bool changed = open_boundaries.inject(particles, time_);
+    const bool worn = lists_.wear(particles, moved);
+    const bool injected = open_boundaries.inject(particles, time_);
+    bool changed = injected;
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
     moved_since_outflow_ += moved;
     if (moved_since_outflow_ >= outflow_distance * lists_.min_support()) {
         moved_since_outflow_ = 0.0;
         changed |= remove_outflow();
     }
+    const bool looks = terrain_looks_.wear(moved, lists_.min_support());
+    if (injected || looks) changed |= look_at_terrain();
     if (changed || worn) rebuild_lists();
 }
 
@@ -334,48 +333,19 @@ void Simulation<Lists>::rebuild_lists() {
     wrap_positions();
     bodies.loads.lose_members();
     lists_.cut_space(particles, phases());
-    fetch_ground();
-    look_at_terrain();
     drop_removed();
-    terrain.fill(particles, open_boundaries.next_id, ranks().rank(), gathering());
+    terrain_looks_.fill(particles, open_boundaries.next_id);
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
-    fetch_ground();
-    lists_.rebuild(
-        particles, [this] { return support_radii(*scheme_, options_); }, steps_, phases());
+    terrain_looks_.fetch(particles, supports());
+    lists_.rebuild(particles, [this] { return supports(); }, steps_, phases());
 }
 
 template <class Lists>
 void Simulation<Lists>::wrap_positions() {
     if (!domain_.any_periodic()) return;
     for (auto& x : particles.position) x = wrapped(domain_, x);
-}
-
-/// Of all ranks [m].
-template <class Lists>
-double Simulation<Lists>::largest_support() {
-    const Array<double> own = support_radii(*scheme_, options_);
-    const double largest = own.empty() ? 0.0 : *std::max_element(own.begin(), own.end());
-    return ranks().largest(largest);
-}
-
-/// For what is asked of the ground until the lists are built again, and then of where particles
-/// have come to.
-template <class Lists>
-void Simulation<Lists>::fetch_ground() {
-    if (!terrain.is_there() || ranks().alone()) return;
-    terrain.fetch(particles, (1.0 + 4.0 * terrain_margin) * largest_support(),
-                  [this](std::span<double> values) { ranks().largest(values); });
-}
-
-/// Fluid must find a bed wherever it may be before the lists are built anew.
-template <class Lists>
-void Simulation<Lists>::look_at_terrain() {
-    if (!terrain.is_there()) return;
-    const double support = largest_support();
-    terrain.look(particles, support, terrain_margin * support, ranks().rank(), gathering(),
-                 open_boundaries.removed);
 }
 
 /// True where any rank has particles that left.

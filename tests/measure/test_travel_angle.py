@@ -26,7 +26,7 @@ def state(place, numbers=None, motion=0):
     n = len(place)
     return {
         "id": np.arange(n) if numbers is None else np.array(numbers),
-        "position": place + [WEST, SOUTH, 0.0],
+        "position": place + np.array([WEST, SOUTH, 0.0]),
         "velocity": np.zeros((n, 3)), "mass": np.full(n, 1000.0), "density": np.full(n, 1000.0),
         "motion": np.full(n, motion, np.int32),
     }  # fmt: skip

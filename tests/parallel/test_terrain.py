@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.terrain.scenes import profile, text
+from tests.terrain.scenes import grid, profile, text
 
 import doseki
 
@@ -40,3 +40,35 @@ def test_a_slide_on_two_ranks(command, tmp_path):
         assert np.array_equal(other["id"], one["id"])
         assert np.array_equal(other["position"][walls], one["position"][walls])
         np.testing.assert_allclose(other["position"], one["position"], atol=1e-7)
+
+
+SLAB = """
+[body.slide]
+shape = "release"
+material = "water"
+polygon = [[4, 2], [6, 2], [6, 4], [4, 4]]
+thickness = 0.5
+[body.ball]
+shape = "sphere"
+material = "basalt"
+centre = [7.5, 3.0, 25.2]
+radius = 0.5
+"""
+
+
+@pytest.mark.minutes
+def test_ranks_hold_the_part_of_the_map_that_they_need(work, tmp_path):
+    """The same bits as with the whole map on each, while the parts go along with the flow."""
+    grid(
+        tmp_path / "terrain.asc", lambda x, y: 30 - 0.8 * x + 0.05 * (y - 3) ** 2, (80.0, 6.0), 0.2
+    )
+    file = tmp_path / "case.toml"
+    file.write_text(text(3, dp=0.25, speed=12.0, more=SLAB))
+    found = work("ground_parts", 2, str(file), "900")
+    assert found["same"]
+    assert found["light"] == [False, True]
+    assert found["farthest"] > 12.0
+    for rank in found["ranks"]:
+        assert 0 < max(rank["sizes"]) < 0.5 * found["nodes"]
+        assert rank["first"][-1] > rank["first"][0], "the part does not go along with the flow"
+        assert len(rank["sizes"]) < 60, "it is cut anew too often"

@@ -36,7 +36,7 @@ def findings(path, kind):
 
 
 def wall_2d(folder, depth, slope=0.0, keys="", kind="load", more=""):
-    """A wall from x = 3 to 4.2 that goes so many spacings into the ground, where that is highest."""
+    """A wall from x = 3 to 4.2 that goes so many spacings into the lowest ground."""
     profile(folder / "terrain.csv", lambda x: slope * (3 - x))
     low = -slope * 1.2 - depth * DP
     box = f"min = [3.0, {low}]\nmax = [4.2, 1.0]\n{keys}"
@@ -46,7 +46,9 @@ def wall_2d(folder, depth, slope=0.0, keys="", kind="load", more=""):
     return path
 
 
-@pytest.mark.parametrize(("depth", "fewer"), [(0, True), (1, True), (2, True), (3, False), (4, False)])
+@pytest.mark.parametrize(
+    ("depth", "fewer"), [(0, True), (1, True), (2, True), (3, False), (4, False)]
+)
 def test_a_wall_is_to_reach_three_spacings_into_its_bed(tmp_path, depth, fewer):
     found = findings(wall_2d(tmp_path, depth), Shallow)
     assert bool(found) == fewer
