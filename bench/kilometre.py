@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A valley of 1 km: makes its map and scenario, and times a stretch of a run against the estimate.
+"""A valley of 1 km: makes its map and scenario, and times a stretch of a run.
 
 ../.venv/bin/python kilometre.py FOLDER [--dp 0.5] [--seconds 60] [--begin 0]
 
-Writes FOLDER/valley.asc and FOLDER/kilometre.toml, which `doseki check` and `doseki run` take, says
-what `check` expects of a run with that dp, and steps it for so many seconds of processor time.
+Writes FOLDER/valley.asc and FOLDER/kilometre.toml, which `doseki check` and `doseki run` take, and
+steps it for so many seconds of processor time.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def stretch(path: Path, dp: float, seconds: float, begin: float) -> dict[str, fl
 
 
 def main() -> None:
-    """Make the case, estimate and measure."""
+    """Make the case and measure."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--dp", type=float, default=2.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,6 +18,7 @@ from ..nothing import NothingToDrawError
 
 LONGEST = 7.0  # inches of the longer side of a map
 SHORTEST = 2.5  # inches of the shorter one
+LETTERS = 64  # in a line of the title
 SIDE = 2.6  # inches beside a map, for its axis and its key
 AROUND = 0.15  # of the extent of the flow, shown around it
 LEAST_AROUND = 5.0  # cells
@@ -51,7 +53,7 @@ def draw_map(quantity: MapQuantity, values: Raster, bed: Raster, title: str) -> 
         vmin=None if quantity == ARRIVAL_TIME else 0.0,
     )  # fmt: skip
     figure.colorbar(image, ax=axes, label=f"{quantity.label} ({quantity.unit})", shrink=0.8)
-    axes.set_title(title, fontsize="medium", wrap=True)
+    axes.set_title(fill(title, LETTERS), fontsize="medium")
     return figure
 
 
