@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from tests.terrain.scenes import grid, profile, text
 
 import doseki
@@ -36,10 +37,14 @@ def test_a_slide_on_two_ranks(command, tmp_path):
     assert command(2, "resume", tmp_path / "both", *more).returncode == 0
     one, *others = (doseki.load(tmp_path / name)[-1] for name in ("one", "two", "both"))
     walls = one["body"] == "terrain"
+    felt = cKDTree(one["position"][~walls]).query(one["position"][walls])[0] < 2.6 * 0.05
     for other in others:
-        assert np.array_equal(other["id"], one["id"])
-        assert np.array_equal(other["position"][walls], one["position"][walls])
-        np.testing.assert_allclose(other["position"], one["position"], atol=1e-7)
+        flow = other["body"] != "terrain"
+        assert np.array_equal(other["id"][flow], one["id"][~walls])
+        np.testing.assert_allclose(other["position"][flow], one["position"][~walls], atol=1e-7)
+        # What nothing feels is dropped at the next look, which rounding may put a step later.
+        apart = cKDTree(other["position"][~flow]).query(one["position"][walls][felt])[0]
+        assert apart.max() == 0
 
 
 SLAB = """
@@ -67,7 +72,7 @@ def test_ranks_hold_the_part_of_the_map_that_they_need(work, tmp_path):
     found = work("ground_parts", 2, str(file), "900")
     assert found["same"]
     assert found["light"] == [False, True]
-    assert found["farthest"] > 12.0
+    assert found["farthest"] > 8.0
     for rank in found["ranks"]:
         assert 0 < max(rank["sizes"]) < 0.5 * found["nodes"]
         assert rank["first"][-1] > rank["first"][0], "the part does not go along with the flow"
