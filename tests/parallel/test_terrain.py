@@ -51,12 +51,14 @@ SLAB = """
 [body.slide]
 shape = "release"
 material = "water"
-polygon = [[4, 2], [6, 2], [6, 4], [4, 4]]
+polygon = [[14, 2], [16, 2], [16, 4], [14, 4]]
 thickness = 0.5
+velocity = [8, 0, -6.4]
 [body.ball]
 shape = "sphere"
 material = "basalt"
-centre = [7.5, 3.0, 25.2]
+centre = [17.5, 3.0, 17.2]
+velocity = [8, 0, -6.4]
 radius = 0.5
 """
 
@@ -68,11 +70,11 @@ def test_ranks_hold_the_part_of_the_map_that_they_need(work, tmp_path):
         tmp_path / "terrain.asc", lambda x, y: 30 - 0.8 * x + 0.05 * (y - 3) ** 2, (80.0, 6.0), 0.2
     )
     file = tmp_path / "case.toml"
-    file.write_text(text(3, dp=0.25, speed=12.0, more=SLAB))
-    found = work("ground_parts", 2, str(file), "900")
+    file.write_text(text(3, dp=0.25, speed=16.0, more=SLAB))
+    found = work("ground_parts", 2, str(file), "700")
     assert found["same"]
     assert found["light"] == [False, True]
-    assert found["farthest"] > 8.0
+    assert found["farthest"] > 20.0
     for rank in found["ranks"]:
         assert 0 < max(rank["sizes"]) < 0.5 * found["nodes"]
         assert rank["first"][-1] > rank["first"][0], "the part does not go along with the flow"
