@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from doseki.run.provenance import read_provenance
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.provenance import read_provenance
+from doseki.running.runner import RunOptions, run_scenario
 from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 

@@ -31,8 +31,48 @@ public:
     Horizontal<D> origin{};                  // node 0 [m]
     double cell = 1.0;                       // distance between nodes [m]
     std::array<std::int64_t, axes> nodes{};  // along each axis; 2 or more
-    Array<double> heights;                   // [m], the first axis fastest
+    Array<double> heights;                   // [m] of part(), the first axis fastest
     Array<std::uint8_t> unknown;             // by node: the map has nothing there; may be empty
+
+    /// Some of the nodes: the first along each axis, and how many.
+    struct Part {
+        std::array<std::int64_t, axes> first{}, count{};
+
+        std::int64_t size() const {
+            std::int64_t size = 1;
+            for (const std::int64_t n : count) size *= n;
+            return size;
+        }
+        bool contains(const Part& other) const {
+            if (other.size() == 0) return true;
+            for (int a = 0; a < axes; ++a)
+                if (other.first[a] < first[a] ||
+                    other.first[a] + other.count[a] > first[a] + count[a])
+                    return false;
+            return true;
+        }
+    };
+    /// The nodes that are held; of places beyond them nothing may be asked.
+    const Part& part() const { return part_; }
+    /// All nodes are held.
+    void hold_all() { part_ = {{}, nodes}; }
+    void hold(const Part& part, Array<double> heights_of_it, Array<std::uint8_t> unknown_of_it) {
+        part_ = part, heights.swap(heights_of_it), unknown.swap(unknown_of_it);
+    }
+    /// The nodes that heights and slopes over a box in plan need.
+    Part around(const Horizontal<D>& from, const Horizontal<D>& to) const {
+        Part part;
+        for (int a = 0; a < axes; ++a) {
+            const auto cell_of = [&](double place) {
+                const double last = static_cast<double>(nodes[a] - 2);
+                return static_cast<std::int64_t>(
+                    std::clamp(std::floor((place - origin[a]) / cell), 0.0, last));
+            };
+            part.first[a] = std::max<std::int64_t>(cell_of(from[a]) - 1, 0);
+            part.count[a] = std::min(cell_of(to[a]) + 3, nodes[a]) - part.first[a];
+        }
+        return part;
+    }
 
     struct Surface {
         double height;          // [m]
@@ -87,14 +127,14 @@ public:
         for (int a = 0; a < axes; ++a) {
             const double u = std::round((place[a] - origin[a]) / cell);
             if (!(u >= 0.0 && u < static_cast<double>(nodes[a]))) return true;
-            index += static_cast<std::int64_t>(u) * stride, stride *= nodes[a];
+            index += among_held(a, static_cast<std::int64_t>(u)) * stride, stride *= part_.count[a];
         }
         return !unknown.empty() && unknown[static_cast<std::size_t>(index)] != 0;
     }
 
     /// How far at most normals lean from the vertical: the sine of the steepest slope there can be.
     double lean() const { return lean_; }
-    /// Finds lean(), once the heights are there.
+    /// Finds lean(), once all heights are there.
     void measure_lean() {
         double steepest = 0.0;  // between nodes; the cubic may rise half as steeply again
         std::int64_t stride = 1;
@@ -115,6 +155,12 @@ public:
 
 private:
     double lean_ = 1.0;
+    Part part_;
+
+    /// Where a node is among those held along an axis; of one that is not, the nearest.
+    std::int64_t among_held(int a, std::int64_t k) const {
+        return std::clamp(k - part_.first[a], std::int64_t{0}, part_.count[a] - 1);
+    }
 
     /// Four nodes along one axis, and what each adds to the value and to its slope per cell.
     struct Stencil {
@@ -136,21 +182,21 @@ private:
                 (u - inside) * cell};
     }
 
-    /// Height of a node of the line that begins at `base`; one outside the grid lies on the
-    /// straight line through the two next to it.
-    double node(int a, std::int64_t base, std::int64_t stride, std::int64_t k) const {
+    /// Height of a node of the row whose first held one is at `base`; one outside the grid lies on
+    /// the straight line through the two next to it.
+    double node(std::int64_t base, std::int64_t k) const {
         const auto of = [&](std::int64_t j) {
-            return heights[static_cast<std::size_t>(base + j * stride)];
+            return heights[static_cast<std::size_t>(base + among_held(0, j))];
         };
         if (k < 0) return 2.0 * of(0) - of(1);
-        if (k >= nodes[a]) return 2.0 * of(nodes[a] - 1) - of(nodes[a] - 2);
+        if (k >= nodes[0]) return 2.0 * of(nodes[0] - 1) - of(nodes[0] - 2);
         return of(k);
     }
 
     double sum_along(const std::array<double, 4>& weight, const Stencil& x,
                      std::int64_t base) const {
         double sum = 0.0;
-        for (int k = 0; k < 4; ++k) sum += weight[k] * node(0, base, 1, x.first + k);
+        for (int k = 0; k < 4; ++k) sum += weight[k] * node(base, x.first + k);
         return sum;
     }
 
@@ -184,7 +230,7 @@ private:
         const std::int64_t rows = nodes[1];
         if (j < 0) return 2.0 * row(weight, x, 0) - row(weight, x, 1);
         if (j >= rows) return 2.0 * row(weight, x, rows - 1) - row(weight, x, rows - 2);
-        return sum_along(weight, x, j * nodes[0]);
+        return sum_along(weight, x, among_held(1, j) * part_.count[0]);
     }
 };
 

@@ -71,9 +71,12 @@ public:
     }
     void set_terrain(const NamedValues& field, const NamedValues& wall) override {
         auto bed = std::make_shared<HeightField<D>>(BoundaryTables<D>::height_field(field));
-        bed->measure_lean();
+        bed->measure_lean(), bed->hold_all();
         sim_.bodies.rigid.ground = std::make_shared<const GroundSurface<D>>(bed);
         sim_.terrain.set(std::move(bed), BoundaryTables<D>::terrain_wall(wall));
+    }
+    void share_terrain(GroundReader read) override {
+        sim_.terrain.share(GroundSource<D>(std::move(read)));
     }
     void add_load_meter(const NamedValues& meter) override {
         sim_.bodies.loads.add(BodyTables<D>::load_meter(meter));

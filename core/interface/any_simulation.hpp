@@ -2,6 +2,7 @@
 // A simulation of any scheme, dimension and precision, as its caller sees it.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -47,6 +48,9 @@ public:
     virtual void move_body(const NamedValues& motion) = 0;
     /// A bed that is a surface, and what its wall particles are like.
     virtual void set_terrain(const NamedValues& field, const NamedValues& wall) = 0;
+    /// Where a rank that is to hold only a part of the terrain gets it from, see GroundSource.
+    using GroundReader = std::function<Array<double>(const Array<double>&)>;
+    virtual void share_terrain(GroundReader read) = 0;
     /// Sums what acts on the fixed bodies of these indices, about a point and, with `count`, on
     /// panels.
     virtual void add_load_meter(const NamedValues& meter) = 0;

@@ -42,6 +42,15 @@ public:
     void set_terrain(const nb::dict& field, const nb::dict& wall) {
         core_->set_terrain(to_table(field), to_table(wall));
     }
+    void share_terrain(nb::object source) {
+        core_->share_terrain([source = std::move(source)](const Array<double>& part) {
+            const nb::gil_scoped_acquire locked;
+            using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+            const std::vector<double> request(part.begin(), part.end());
+            const auto found = nb::cast<Numbers>(source(request));
+            return Array<double>(found.data(), found.data() + found.size());
+        });
+    }
     void add_load_meter(const nb::dict& meter) { core_->add_load_meter(to_table(meter)); }
     void set_stresses(const nb::object& deviatoric_stress) {
         NamedValues columns;
@@ -142,6 +151,9 @@ void bind_setup(Class& c) {
         .def("set_terrain", &P::set_terrain, nb::arg("field"), nb::arg("wall"),
              nb::sig("def set_terrain(self, field: doseki.solver.protocol.Table, wall: "
                      "doseki.solver.protocol.Table) -> None"))
+        .def("share_terrain", &P::share_terrain, nb::arg("source"),
+             nb::sig("def share_terrain(self, source: collections.abc.Callable[[list[float]], "
+                     "numpy.ndarray]) -> None"))
         .def("add_load_meter", &P::add_load_meter, nb::arg("meter"),
              nb::sig("def add_load_meter(self, meter: doseki.solver.protocol.Table) -> None"))
         .def("set_stresses", &P::set_stresses, nb::arg("deviatoric_stress"),

@@ -3,7 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/vector.h>
 
-#include "boundaries/terrain.hpp"
+#include "boundaries/tile_layer.hpp"
 #include "interface/boundaries.hpp"
 #include "interface/reader.hpp"
 #include "python/values.hpp"
@@ -15,7 +15,9 @@ template <int D>
 class BoundHeightField {
 public:
     explicit BoundHeightField(const nb::dict& table)
-        : field_(BoundaryTables<D>::height_field(to_table(table))) {}
+        : field_(BoundaryTables<D>::height_field(to_table(table))) {
+        field_.hold_all();
+    }
 
     nb::dict at(const nb::object& places) const {
         const auto place = vectors<D - 1>(places);

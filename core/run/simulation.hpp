@@ -15,6 +15,7 @@
 #include "run/diagnostics.hpp"
 #include "run/failure.hpp"
 #include "run/lists.hpp"
+#include "run/terrain_looks.hpp"
 
 namespace doseki {
 
@@ -33,7 +34,8 @@ public:
                  averaging_time(materials(), options)),
           options_(options),
           domain_(domain),
-          lists_(*scheme_, domain, options.skin, options.auto_skin) {
+          lists_(*scheme_, domain, options.skin, options.auto_skin),
+          terrain_looks_(terrain, lists_.halo().ranks) {
         for (const Material& material : materials()) sound_speed_ = max(sound_speed_, material.c0);
     }
 
@@ -81,6 +83,7 @@ public:
         bodies.start(particles);
         bodies.set_velocities(particles, 0.0);
         remove_outflow();
+        look_at_terrain();
         renew_lists();
     }
 
@@ -105,13 +108,14 @@ public:
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
         archive("moved_since_outflow", moved_since_outflow_);
+        terrain_looks_.serialise(archive);
         archive("account", account_);
         lists_.serialise_wear(archive);
         particles.serialise(archive);
         if (archive.loads()) expect_particles();
         open_boundaries.serialise(archive);
         terrain.serialise(archive);
-        if (archive.loads()) terrain.expect_tiles(particles);
+        if (archive.loads()) terrain.expect_groups(particles);
         bodies.serialise(archive);
         if (archive.loads()) bodies.expect_points(particles);
         scheme_->serialise(archive);
@@ -203,6 +207,7 @@ private:
                (scheme_->kernel_support() * sound_speed_);
     }
     Ranks& ranks() { return lists_.halo().ranks; }
+    Array<double> supports() { return support_radii(*scheme_, options_); }
 
     void step(double limit);
     void kick(double half_dt);
@@ -213,7 +218,9 @@ private:
 
     void rebuild_lists();
     void wrap_positions();
-    void look_at_terrain();
+    bool look_at_terrain() {
+        return terrain_looks_.look(particles, supports(), open_boundaries.removed);
+    }
     bool remove_outflow();
     void drop_removed();
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
@@ -221,6 +228,7 @@ private:
     Options<D> options_;
     Domain<D> domain_;
     RunLists<Lists> lists_;
+    TerrainLooks<D> terrain_looks_;
     double time_ = 0.0, last_dt_ = 0.0;
     double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
     double dissipation_ = 0.0;
@@ -292,13 +300,16 @@ double Simulation<Lists>::next_event() const {
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
     const bool worn = lists_.wear(particles, moved);
-    bool changed = open_boundaries.inject(particles, time_);
+    const bool injected = open_boundaries.inject(particles, time_);
+    bool changed = injected;
     changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
     moved_since_outflow_ += moved;
     if (moved_since_outflow_ >= outflow_distance * lists_.min_support()) {
         moved_since_outflow_ = 0.0;
         changed |= remove_outflow();
     }
+    const bool looks = terrain_looks_.wear(moved, lists_.min_support());
+    if (injected || looks) changed |= look_at_terrain();
     if (changed || worn) rebuild_lists();
 }
 
@@ -322,32 +333,19 @@ void Simulation<Lists>::rebuild_lists() {
     wrap_positions();
     bodies.loads.lose_members();
     lists_.cut_space(particles, phases());
-    look_at_terrain();
     drop_removed();
-    terrain.fill(particles, open_boundaries.next_id, open_boundaries.adds);
+    terrain_looks_.fill(particles, open_boundaries.next_id);
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
-    lists_.rebuild(
-        particles, [this] { return support_radii(*scheme_, options_); }, steps_, phases());
+    terrain_looks_.fetch(particles, supports());
+    lists_.rebuild(particles, [this] { return supports(); }, steps_, phases());
 }
 
 template <class Lists>
 void Simulation<Lists>::wrap_positions() {
     if (!domain_.any_periodic()) return;
     for (auto& x : particles.position) x = wrapped(domain_, x);
-}
-
-/// Fluid must find a bed wherever it may be before the lists are built anew.
-template <class Lists>
-void Simulation<Lists>::look_at_terrain() {
-    if (!terrain.is_there()) return;
-    const Array<double> own = support_radii(*scheme_, options_);
-    const double largest = own.empty() ? 0.0 : *std::max_element(own.begin(), own.end());
-    const double support = ranks().largest(largest);
-    const double skin = max(options_.skin, CheapestSkin<D>::max_skin);
-    const auto gather = [this](const Array<double>& part) { return ranks().gather(part); };
-    terrain.look(particles, support, skin * support, gather, open_boundaries.removed);
 }
 
 /// True where any rank has particles that left.

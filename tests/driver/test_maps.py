@@ -53,7 +53,7 @@ extent = [{WEST}, {SOUTH}, {WEST + 1}, {SOUTH + 0.5}]
 """
 NAMES = (
     "peak_depth", "peak_speed", "peak_pressure", "peak_total_pressure", "peak_momentum_flux",
-    "arrival_time", "deposit",
+    "peak_travel_angle", "arrival_time", "deposit",
 )  # fmt: skip
 
 

@@ -21,6 +21,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from tests.fuzz.generators import EVERYTHING
 from tests.run.channel import channel_text
+from tests.terrain.scenes import grid
+from tests.terrain.scenes import text as terrain_text
 
 from doseki.scenario.load import load_scenario
 from doseki.scenario.model import Scenario
@@ -33,6 +35,13 @@ JUNK = [
     float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1.0, 0.5, 1e-300, 1e300, -1e300, 32767.0,
     -32768.0, 2.0**31 - 1, -(2.0**31), 2.0**63, 255.0, 2.0**27, 2.0**32 - 1,
 ]  # fmt: skip
+SLIDE = """
+[body.slide]
+shape = "release"
+material = "water"
+polygon = [[0.5, 1], [1.5, 1], [1.5, 2], [0.5, 2]]
+thickness = 0.3
+"""
 OPERATIONS = (
     "cut", "empty", "double", "drop", "retype", "reshape", "set", "set", "set", "fill", "shuffle",
     "noise", "exchange", "neutral",
@@ -150,7 +159,8 @@ def main(count: int, log: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "case.toml"
         starts = []
-        for text in (channel_text(), EVERYTHING):
+        grid(Path(folder) / "terrain.asc", lambda x, y: 2 - 0.5 * x + 0.1 * np.sin(3 * y), (4, 3))
+        for text in (channel_text(), EVERYTHING, terrain_text(3, more=SLIDE)):
             file.write_text(text)
             starts.append(Start(load_scenario(file)))
     counts: Counter[str] = Counter()

@@ -32,6 +32,7 @@ def slab(low, high, dp, velocity=(0.0, 0.0, 0.0), motion=FREE):
     position = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
     n = len(position)
     return {
+        "id": np.arange(n),
         "position": position + np.array([WEST, SOUTH, 900.0]),
         "velocity": np.tile(velocity, (n, 1)),
         "mass": np.full(n, RHO * dp**3), "density": np.full(n, RHO),
@@ -40,7 +41,8 @@ def slab(low, high, dp, velocity=(0.0, 0.0, 0.0), motion=FREE):
 
 
 def joined(*states):
-    return {name: np.concatenate([state[name] for state in states]) for name in states[0]}
+    found = {name: np.concatenate([state[name] for state in states]) for name in states[0]}
+    return found | {"id": np.arange(len(found["mass"]))}
 
 
 def peaks_of(grid, *states, min_depth=0.05):
@@ -212,8 +214,8 @@ def test_maps_are_files_in_the_format_of_the_terrain(tmp_path, driver):
     peaks = peaks_of(grid, slab((0, 0, 0), (4, 4, 1), 0.25))
     rasters = rasters_of(peaks, slab((0, 0, 0), (4, 4, 1), 0.25), MapSettings(0.25))
     folder = RunFolder(tmp_path)
-    files = write_maps(folder, rasters, 2.5)
-    assert len(files) == 7
+    files = write_maps(folder, rasters, MapSettings(0.25), 2.5)
+    assert len(files) == 8
     assert {file.suffix for file in files} == {grid.suffix}
     back = read_maps(folder)
     for name, raster in rasters.items():

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from doseki.geodata.raster import Raster, write_raster
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, empty_simulation, load_core
 
@@ -64,6 +65,39 @@ min = {{ d2 = ["= length - 0.01", "-inf"], d3 = ["= length - 0.01", "-inf", "-in
 max = {{ d2 = ["inf", "inf"], d3 = ["inf", "inf", "inf"] }}
 """
 
+# A release on a map, with a boulder, whose walls come and go.
+TERRAIN = """\
+dim = {dim}
+dp = 0.1
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 4
+gravity = {{ d2 = [0, -9.8], d3 = [0, 0, -9.8] }}
+
+[terrain]
+file = "{file}"
+material = "basalt"
+wall = "rough"
+ks = 0.05
+
+[body.slide]
+shape = "release"
+material = "water"
+{place}
+thickness = 0.4
+
+[body.boulder]
+shape = {{ d2 = "disc", d3 = "sphere" }}
+material = "basalt"
+centre = {{ d2 = [3.0, 1.0], d3 = [3.0, 1.0, 1.0] }}
+radius = 0.3
+"""
+PLACES = {
+    2: "between = [0.6, 2.0]",
+    3: "polygon = [[0.6, 0.6], [2.0, 0.6], [2.0, 1.4], [0.6, 1.4]]",
+}
+
 
 def flume(dim, precision, h_mode, size):
     """The flume of the paper's scheme, with strength."""
@@ -89,6 +123,22 @@ def channel(dim, size, folder):
     file = Path(folder) / "channel.toml"
     text = RESOLVED.format(dim=dim, length=length, turbulence=turbulence, periodic=periodic)
     file.write_text(text)
+    return load_scenario(str(file))
+
+
+def slide(dim, folder):
+    """A release on a map that has a hole."""
+    x, y = np.meshgrid(np.arange(25) * 0.2 + 0.1, np.arange(10) * 0.2 + 0.1)
+    heights = 2.0 - 0.5 * x + 0.05 * np.sin(4 * x + y)
+    name = "map.csv" if dim == 2 else "map.asc"
+    if dim == 2:
+        rows = zip(x[0].tolist(), heights[0].tolist(), strict=True)
+        (Path(folder) / name).write_text("x,z\n" + "".join(f"{a},{b}\n" for a, b in rows))
+    else:
+        heights[0, -1] = np.nan
+        write_raster(Path(folder) / name, Raster(heights[::-1], 0.0, 0.0, 0.2))
+    file = Path(folder) / "slide.toml"
+    file.write_text(TERRAIN.format(dim=dim, file=name, place=PLACES[dim]))
     return load_scenario(str(file))
 
 
@@ -121,3 +171,4 @@ for mode in MODES:
 with tempfile.TemporaryDirectory() as folder:
     for dim in (2, 3):
         exercise(channel(dim, size, folder))
+        exercise(slide(dim, folder))

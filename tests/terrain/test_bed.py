@@ -84,7 +84,7 @@ def test_cells_without_data_are_filled_and_said(path, tmp_path):
         (["terrain.wall=voellmy"], "needs mu"),
         (["attraction=1"], "attraction"),
         (["periodic=['y']", "domain_min=[0,0,0]", "domain_max=[6,4,20]"], "not periodic"),
-        (["dp=1e-6"], "tiles|particles"),
+        (["dp=1e-6"], "columns|particles"),
     ],
 )
 def test_what_cannot_be_is_refused_in_a_sentence(path, settings, said):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from doseki.run.runner import RunOptions, run_scenario
+from doseki.running.runner import RunOptions, run_scenario
 
 from doseki.record.reader import load
 from doseki.scenario.load import load_scenario

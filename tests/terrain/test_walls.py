@@ -102,13 +102,17 @@ def test_a_run_that_is_restored_goes_on_with_the_same_bits(slide):
         ("terrain_tiles", lambda tiles: tiles[::-1].copy()),
         ("terrain_tiles", lambda tiles: tiles + 10**6),
         ("terrain_tiles", lambda tiles: tiles[1:]),
+        ("terrain_groups", lambda groups: groups[:-1]),
+        ("terrain_groups", lambda groups: groups & ~np.uint64(1)),
+        ("terrain_groups", lambda groups: groups | np.uint64(1 << 40)),
+        ("point", lambda points: points - 10**6),
     ],
 )
 def test_tiles_of_another_terrain_are_refused(slide, name, change):
     simulation, names = simulation_of(slide)
     kept = simulation.checkpoint()
     other = empty_simulation(load_scenario(slide), names)
-    with pytest.raises(ValueError, match=r"terrain_tiles|point"):
+    with pytest.raises(ValueError, match=r"terrain_tiles|terrain_groups|point"):
         other.restore(kept | {name: change(kept[name])})
 
 

@@ -82,7 +82,7 @@ class RunningMaps:
     def _write(self, state: Mapping[str, np.ndarray], time: float) -> None:
         assert self._peaks is not None
         rasters = rasters_of(self._peaks, state, self.settings)
-        write_maps(self._folder, rasters, time)
+        write_maps(self._folder, rasters, self.settings, time)
         self.runout = asdict(runout(rasters, self._peaks.grid))
 
     @property

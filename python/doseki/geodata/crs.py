@@ -12,6 +12,7 @@ PROJECTED = (
     "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS",
 )  # fmt: skip
 FEET = re.compile(r'UNIT\[\s*"([^"]*(?:foot|feet|ft|yard|link|chain)[^"]*)"', re.IGNORECASE)
+LAST_CODE = re.compile(r'(?:^EPSG:|(?:AUTHORITY|ID)\[\s*"EPSG",\s*"?)(\d+)"?(?:\s*\]){0,2}\s*$')
 MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG
 IN_DEGREES = re.compile(r"(?:^|:)(?:CRS84h?|EPSG:[^:]*:?(?:4326|4258|4979))$", re.IGNORECASE)
 
@@ -58,6 +59,29 @@ def _check_named(path: object, name: str) -> None:
         raise GeodataError(in_degrees(path))
     if found.is_projected and found.linear_units_factor[1] != 1.0:
         raise GeodataError(not_metres(path, found.linear_units))
+
+
+def epsg_code(crs: str | None) -> int | None:
+    """The number of a system (WKT, or a name such as "EPSG:32633") with EPSG.
+
+    None where it has none, or where only rasterio could find it and is not installed.
+    """
+    if not crs:
+        return None
+    if found := LAST_CODE.search(crs):
+        return int(found[1])
+    try:
+        from rasterio import Env
+        from rasterio.crs import CRS
+        from rasterio.errors import CRSError
+    except ImportError:
+        return None
+    try:
+        with Env():
+            code = CRS.from_user_input(crs).to_epsg(confidence_threshold=MIN_CONFIDENCE)
+    except CRSError:
+        return None
+    return None if code is None else int(code)
 
 
 def in_degrees(path: object) -> str:

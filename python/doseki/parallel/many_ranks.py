@@ -14,12 +14,14 @@ from mpi4py import MPI
 
 from ..driver.ranks import OneRank
 from ..scenario.model import Scenario
+from ..scene.ground import ground_of
 from ..solver.build import empty_simulation, filled_simulation
-from ..solver.protocol import Columns, Rates, Simulation, SimulationView
+from ..solver.protocol import Columns, CoreSimulation, Rates, Simulation, SimulationView
 from ..solver.restoring import check_state
 from ..util.cores import allowed_cores
 from ..util.finding import Finding
 from ..util.telling import Tell, say_nothing
+from .ground import SharedGround
 from .rank_failure import RankFailure
 from .simulation import RankedSimulation
 from .watchdog import Watchdog
@@ -104,7 +106,17 @@ class ManyRanks(OneRank):
             core = filled_simulation(scenario).simulation
         else:
             core = empty_simulation(scenario, names)
-        return RankedSimulation(core, self._comm, scenario.dim), names, warnings
+        return self._joined(core, scenario), names, warnings
+
+    def _joined(self, core: CoreSimulation, scenario: Scenario) -> RankedSimulation:
+        """One of several, which holds its part of the terrain; only rank 0 keeps the whole."""
+        if scenario.bed is not None:
+            bed = scenario.bed if self.is_root else None
+            core.share_terrain(SharedGround(self._comm, bed).part)
+            if not self.is_root:
+                scenario.forget_heights()
+                ground_of.cache_clear()
+        return RankedSimulation(core, self._comm, scenario.dim)
 
     def restored_simulation(
         self, scenario: Scenario, body_names: list[str], state: Columns
@@ -112,7 +124,7 @@ class ManyRanks(OneRank):
         """See OneRank."""
         core = empty_simulation(scenario, body_names)
         check_state(core, state, len(scenario.material_names), len(body_names))
-        simulation = RankedSimulation(core, self._comm, scenario.dim)
+        simulation = self._joined(core, scenario)
         core.restore_shared(state)
         return simulation, False
 

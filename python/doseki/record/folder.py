@@ -12,7 +12,7 @@ from ..geodata.ground import ground_files
 from ..util.foreign import read_text, readable
 
 RASTERS = (".tif", ".asc")  # endings of rasters
-MAP_FILES = (*RASTERS, ".prj", ".png", ".csv", ".json")
+MAP_FILES = (*RASTERS, ".prj", ".png", ".geojson", ".csv", ".json")
 INPUTS = "inputs"  # folder of copies of the files that a scenario names
 
 

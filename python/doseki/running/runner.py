@@ -73,6 +73,7 @@ class RunOptions:
 def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
     last = run.history_row()
+    released = run.ranks.on_root(lambda: released_volumes(scenario))
     balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
     return {
         "status": status,
@@ -92,7 +93,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "ledger_residual": balance,
         "largest_overlap": simulation.grains()["worst_overlap"],
         "warnings": sentences(run.warnings) + (run.maps.remarks if run.maps else []),
-        **({"released": released} if (released := released_volumes(scenario)) else {}),
+        **({"released": released} if released else {}),
         **({"runout": run.maps.runout} if run.maps else {}),
         **last,
     }
@@ -118,8 +119,7 @@ def run_scenario(
             lambda: Recorder(directory, text, *names, scenario.dim, options.overwrite, inputs),
         )
         if (bed := scenario.bed) is not None:
-            ground = bed.ground
-            options.ranks.on_root(lambda: write_ground(Path(directory), ground))
+            options.ranks.on_root(lambda: write_ground(Path(directory), bed.ground))
         run = ActiveRun(
             scenario, state.simulation, recorder, state.body_names, options.ranks, state.warnings
         )

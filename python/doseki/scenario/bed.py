@@ -67,11 +67,19 @@ class Bed:
         nodes = np.array(self.heights.shape[::-1])
         return self.origin - 0.5 * self.cell, self.origin + (nodes - 0.5) * self.cell
 
-    @property
+    @cached_property
     def corners(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (dim,) of the box around the ground, m."""
         low, high = self.extent
         return np.append(low, self.heights.min()), np.append(high, self.heights.max())
+
+    def without_heights(self) -> Bed:
+        """The same place without memory for heights, which are NaN; `corners` are kept."""
+        shape = self.heights.shape
+        nothing = np.broadcast_to(np.nan, shape), np.broadcast_to(np.uint8(0), shape)
+        light = Bed(self.origin, self.cell, *nothing)
+        light.__dict__["corners"] = self.corners
+        return light
 
     @property
     def unknown_share(self) -> float:

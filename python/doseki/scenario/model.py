@@ -85,6 +85,10 @@ class Scenario(ScenarioTable):
         made._earlier, made._bed = found.earlier, found.bed
         return made
 
+    def forget_heights(self) -> None:
+        """Let go of the map, of which another rank gives the parts that are needed."""
+        self._bed = None if self._bed is None else self._bed.without_heights()
+
     @property
     def where(self) -> Where:
         """Names the place of a key in error messages."""

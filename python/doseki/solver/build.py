@@ -21,6 +21,7 @@ from ..scene.build import Scene, build_scene
 from ..scene.checks.grain_numbers import check_grain_numbers
 from ..scene.checks.panels import check_panels
 from ..scene.checks.sensors import sensor_findings
+from ..scene.checks.structures import structure_findings
 from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..scene.lattices import ROUNDING
@@ -241,8 +242,8 @@ def filled_simulation(
         _fill(alone, scenario, scene)
         scene = replace(scene, particles=relaxed(scene.particles, alone, scenario.relax, tell))
     simulation = empty_simulation(scenario, body_names, isa)
-    of_sensors = _fill(simulation, scenario, scene)
-    return Filled(simulation, body_names, [*scene.warnings, *of_sensors])
+    of_walls = _fill(simulation, scenario, scene)
+    return Filled(simulation, body_names, [*scene.warnings, *of_walls])
 
 
 def _check_relaxing(scenario: Scenario, scene: Scene) -> None:
@@ -257,7 +258,7 @@ def _check_relaxing(scenario: Scenario, scene: Scene) -> None:
 
 
 def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[Finding]:
-    """Particles and bodies into an empty simulation; warnings about sensors."""
+    """Particles and bodies into an empty simulation; warnings about sensors and structures."""
     particles, body_names, bodies = scene.particles, scene.names, scene.bodies
     simulation.add_particles(
         **{name: np.ascontiguousarray(v) for name, v in vars(particles).items()}
@@ -275,7 +276,8 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
         simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)
     add_bodies(simulation, scenario, bodies, body_names)
     check_panels(scenario, particles, body_names, {"normal": normal, "depth": depth})
-    return list(sensor_findings(scenario, particles, body_names, normal, depth))
+    walls = scenario, particles, body_names, normal, depth
+    return [*sensor_findings(*walls), *structure_findings(*walls)]
 
 
 def build_simulation(

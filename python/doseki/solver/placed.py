@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -81,6 +81,16 @@ class Placed:
         corner = np.asarray(field["origin"], float) - self._origin[:-1]
         heights = np.ascontiguousarray(np.asarray(field["heights"]) - self._origin[-1])
         self._core.set_terrain({**field, "origin": corner.tolist(), "heights": heights}, wall)
+
+    def share_terrain(self, source: Callable[[list[float]], np.ndarray]) -> None:
+        """See CoreSimulation."""
+
+        def near(part: list[float]) -> np.ndarray:
+            found = np.array(source(part))
+            found[: len(found) // 2] -= self._origin[-1]
+            return found
+
+        self._core.share_terrain(near)
 
     def state(self) -> Columns:
         """See SimulationView."""

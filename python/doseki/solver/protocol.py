@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol, TypedDict
 
 import numpy as np
@@ -306,6 +306,14 @@ class CoreSimulation(Simulation, Protocol):
 
     def set_terrain(self, field: Table, wall: Table) -> None:
         """The bed as a surface, and what its wall particles are like; before the run starts."""
+        ...
+
+    def share_terrain(self, source: Callable[[list[float]], Floats]) -> None:
+        """Hold only the part of the terrain that this rank needs.
+
+        `source` gives parts: it is called on all ranks together, with the first node along each
+        axis and how many (0: none), and gives heights, m, and then 1 for each unknown node.
+        """
         ...
 
     def add_load_meter(self, meter: Table) -> None:

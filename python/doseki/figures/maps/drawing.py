@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,10 +18,12 @@ from ..nothing import NothingToDrawError
 
 LONGEST = 7.0  # inches of the longer side of a map
 SHORTEST = 2.5  # inches of the shorter one
+LETTERS = 64  # in a line of the title
 SIDE = 2.6  # inches beside a map, for its axis and its key
 AROUND = 0.15  # of the extent of the flow, shown around it
 LEAST_AROUND = 5.0  # cells
 SUN = {"azdeg": 315.0, "altdeg": 45.0}
+DARKEST = -1.2  # of the grey that stands for no light, below white's 1
 CONTOURS = 14  # lines at most
 COLOURS = {ARRIVAL_TIME.name: "viridis_r", DEPOSIT.name: "YlOrBr"}
 OTHERS = "plasma_r"
@@ -50,7 +53,7 @@ def draw_map(quantity: MapQuantity, values: Raster, bed: Raster, title: str) -> 
         vmin=None if quantity == ARRIVAL_TIME else 0.0,
     )  # fmt: skip
     figure.colorbar(image, ax=axes, label=f"{quantity.label} ({quantity.unit})", shrink=0.8)
-    axes.set_title(title, fontsize="medium", wrap=True)
+    axes.set_title(fill(title, LETTERS), fontsize="medium")
     return figure
 
 
@@ -103,7 +106,12 @@ def _draw_bed(axes: Axes, bed: Raster, extent: tuple[float, float, float, float]
     filled = np.where(known, bed.values, np.nanmean(bed.values))
     relief = LightSource(**SUN).hillshade(filled, vert_exag=1.0, dx=bed.cell, dy=bed.cell)
     axes.imshow(
-        np.where(known, relief, np.nan), extent=extent, cmap="gray", vmin=-0.3, vmax=1.15, zorder=1
+        np.where(known, relief, np.nan),
+        extent=extent,
+        cmap="gray",
+        vmin=DARKEST,
+        vmax=1.0,
+        zorder=1,
     )
     levels = MaxNLocator(CONTOURS, steps=[1, 2, 5, 10]).tick_values(
         float(np.nanmin(bed.values)), float(np.nanmax(bed.values))
@@ -113,7 +121,9 @@ def _draw_bed(axes: Axes, bed: Raster, extent: tuple[float, float, float, float]
     lines = axes.contour(
         bed.x, bed.y, bed.values, levels=levels, colors="0.25", linewidths=0.5, zorder=3
     )
-    axes.clabel(lines, fontsize="x-small", fmt="%g")
+    lines.set_in_layout(False)
+    for label in axes.clabel(lines, fontsize="x-small", fmt="%g"):
+        label.set_in_layout(False)  # it lies in the map, and would push it aside
 
 
 def draw_profile(profile: Mapping[str, np.ndarray], title: str) -> Figure:

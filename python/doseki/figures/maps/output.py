@@ -82,7 +82,7 @@ def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, lis
     )
     bed = map_grid(run.folder, settings)
     maps = maps_from_snapshots(run, bed, settings)
-    write_maps(run.folder, maps, float(run.times[-1]))
+    write_maps(run.folder, maps, settings, float(run.times[-1]))
     said = [
         f"from {len(run)} snapshots: what peaked between them is missed; a table [maps] in the "
         "scenario keeps maps while a run goes on"

@@ -21,14 +21,18 @@ ROUND = ("disc", "sphere")
 
 @dataclass(frozen=True)
 class Space:
-    """What of the space is drawn: a box around what moves, corners (3,), and walls near it."""
+    """What of the space is drawn: a box around what moves, corners (3,), and walls near it.
+
+    Particles of the body `buried` are not: those of a terrain, which is drawn itself.
+    """
 
     view: View
     low: np.ndarray
     high: np.ndarray
+    buried: str | None = None
 
     @classmethod
-    def around(cls, snapshots: Sequence[Snapshot], view: View) -> Space:
+    def around(cls, snapshots: Sequence[Snapshot], view: View, buried: str | None = None) -> Space:
         """The box around what moves at some moments, within the view.
 
         Raises NothingToDrawError where there is no particle at any of them.
@@ -41,7 +45,7 @@ class Space:
         if not ends:
             raise NothingToDrawError("there are no particles")
         low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
-        return cls(view, np.maximum(low, view.lower), np.minimum(high, view.upper))
+        return cls(view, np.maximum(low, view.lower), np.minimum(high, view.upper), buried)
 
     def is_near(self, position: np.ndarray) -> np.ndarray:
         """Mask (N,) of what is in the box, or not far from it."""
@@ -53,6 +57,8 @@ class Space:
         """Mask (N,) of what is drawn: walls near what moves, but none between it and the viewer."""
         shown = self.view.contains(snapshot["position"])
         shown &= ~snapshot["fixed"] | self.is_near(position)
+        if self.buried is not None:
+            shown &= snapshot["body"] != self.buried
         before = np.zeros(len(position), bool)
         for axis, towards in enumerate(away):
             if abs(towards) > HIDES:

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LightSource
 
 from ...geodata.ground import Profile
 from ...geodata.raster import Raster
 from ...measure.views import View
 from ...record.reader import Run
+from ...scenario.tables.terrain.terrain import TERRAIN
 from ..layout import Extent
 from .box import Space
-from .surfaces import Balls
+from .surfaces import Balls, no_balls, picture_shape
 
 COLOUR = "#b3ada3"
 SPACE_COLOUR = (0.70, 0.68, 0.64)
+SUN = {"azdeg": 315.0, "altdeg": 45.0}
+DARKEST = 0.62  # grey of what faces away from the sun
 ACROSS = 240  # points of the ground along the longer side of what is drawn
 
 
@@ -29,12 +33,37 @@ def draw_ground(axes: Axes, run: Run, view: View, extent: Extent) -> None:
     axes.fill(corners[:, 0], corners[:, 1], color=COLOUR, linewidth=0, zorder=0)
 
 
+def terrain_of(run: Run) -> str | None:
+    """The body that a map makes the ground of a 3-D run; None without one."""
+    return TERRAIN if isinstance(run.ground, Raster) else None
+
+
+def relief(run: Run, extent: Extent, width: int) -> np.ndarray | None:
+    """The terrain from above, (rows, `width`, 3) from 0 to 1, lit from the north-west.
+
+    It is light, so that colours of what lies on it can be told; None without a terrain.
+    """
+    if not isinstance(run.ground, Raster):
+        return None
+    rows, columns = picture_shape(extent, width)
+    pixel = (extent[1] - extent[0]) / columns
+    x = extent[0] + pixel * (np.arange(columns) + 0.5)
+    y = extent[3] - pixel * (np.arange(rows) + 0.5)
+    height = run.ground.sampled(*np.meshgrid(x, y))
+    known = ~np.isnan(height)
+    picture = np.ones((rows, columns, 3))
+    if known.any() and min(rows, columns) > 1:
+        filled = np.where(known, height, np.mean(height[known]))
+        light = LightSource(**SUN).hillshade(filled, dx=pixel, dy=pixel)
+        shade = DARKEST + (1.0 - DARKEST) * light
+        picture[known] = shade[known, None]
+    return picture
+
+
 def ground_balls(run: Run, space: Space) -> Balls:
     """The surface of a terrain around what is drawn, as balls; none without one."""
     if not isinstance(run.ground, Raster):
-        none = np.zeros((0, 3))
-        flags = np.zeros(0, bool)
-        return Balls(none, np.zeros(0), none, flags, flags)
+        return no_balls()
     room = 0.15 * float(np.max(space.high - space.low))
     low, high = (space.low - room)[:2], (space.high + room)[:2]
     step = float(np.max(high - low)) / ACROSS

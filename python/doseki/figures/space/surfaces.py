@@ -65,17 +65,38 @@ class Balls:
     clear: np.ndarray
 
 
+def no_balls() -> Balls:
+    """None at all."""
+    none = np.zeros((0, 3))
+    flags = np.zeros(0, bool)
+    return Balls(none, np.zeros(0), none, flags, flags)
+
+
 def joined(*parts: Balls) -> Balls:
     """All balls of several."""
     columns = zip(*(vars(part).values() for part in parts), strict=True)
     return Balls(*(np.concatenate(column) for column in columns))
 
 
-def render(balls: Balls, camera: Camera, extent: Extent, width: int) -> np.ndarray:
-    """A picture (rows, `width`, 3) uint8 on white of what `extent` holds, in the camera's axes."""
-    pixel = (extent[1] - extent[0]) / width
-    height = max(1, round((extent[3] - extent[2]) / pixel))
-    picture, nearest = np.ones((height, width, 3)), np.full((height, width), np.inf)
+def picture_shape(extent: Extent, width: int) -> tuple[int, int]:
+    """Rows and columns of a picture of what `extent` holds, so many pixels wide."""
+    return max(1, round((extent[3] - extent[2]) * width / (extent[1] - extent[0]))), width
+
+
+def render(
+    balls: Balls,
+    camera: Camera,
+    extent: Extent,
+    width: int,
+    background: np.ndarray | None = None,
+) -> np.ndarray:
+    """A picture (rows, `width`, 3) uint8 of what `extent` holds, in the camera's axes.
+
+    The background is white, or a picture (rows, `width`, 3) of colours from 0 to 1.
+    """
+    height, width = picture_shape(extent, width)
+    picture = np.ones((height, width, 3)) if background is None else background.copy()
+    nearest = np.full((height, width), np.inf)
     for solid in (~balls.clear & balls.smooth, ~balls.clear & ~balls.smooth):
         colour, depth = _layer(balls, solid, camera, extent, (height, width))
         front = depth < nearest

@@ -12,10 +12,19 @@ from ...geodata.grid import Raster
 from ...geodata.raster import read_raster, write_raster
 from ...record.folder import RunFolder
 from ...util.files import clear_errors
+from .contours import write_contours
 from .grid import MapSettings
 from .peaks import Peaks, deposit
-from .quantities import ARRIVAL_TIME, DEPOSIT, QUANTITIES, REMEMBERED, MapQuantity
+from .quantities import (
+    ARRIVAL_TIME,
+    DEPOSIT,
+    PEAK_DEPTH,
+    QUANTITIES,
+    REMEMBERED,
+    MapQuantity,
+)
 
+CONTOURS = f"{PEAK_DEPTH.name}_contours.geojson"
 NODATA = -9999.0  # that of a terrain might be a depth
 
 
@@ -35,8 +44,13 @@ def _masked(grid: Raster, values: np.ndarray) -> Raster:
     return grid.with_values(np.where(beside, np.nan, values))
 
 
-def write_maps(folder: RunFolder, rasters: Mapping[str, Raster], time: float) -> list[Path]:
-    """Write DIR/maps/NAME.tif or .asc; returns the files. `time`, s, is that of the deposit."""
+def write_maps(
+    folder: RunFolder, rasters: Mapping[str, Raster], settings: MapSettings, time: float
+) -> list[Path]:
+    """Write DIR/maps/NAME.tif or .asc, and contours of the largest depth; returns the rasters.
+
+    `time`, s, is that of the deposit.
+    """
     with clear_errors(folder.maps):
         folder.maps.mkdir(exist_ok=True)
     files = []
@@ -45,6 +59,8 @@ def write_maps(folder: RunFolder, rasters: Mapping[str, Raster], time: float) ->
         path = folder.maps / f"{quantity.name}{raster.suffix}"
         write_raster(path, raster, _tags(quantity, time))
         files.append(path)
+    depth = rasters[PEAK_DEPTH.name]
+    write_contours(folder.maps / CONTOURS, depth, PEAK_DEPTH, settings.dry_below)
     return files
 
 

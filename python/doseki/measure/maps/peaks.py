@@ -16,8 +16,11 @@ from .quantities import (
     PEAK_PRESSURE,
     PEAK_SPEED,
     PEAK_TOTAL_PRESSURE,
+    PEAK_TRAVEL_ANGLE,
     REMEMBERED,
 )
+from .travel import KEYS as TRAVEL
+from .travel import Travel
 
 CELLS, OUTSIDE = "cells", "outside"  # of a state, beside the quantities
 
@@ -38,6 +41,7 @@ class Peaks:
         self.values = {quantity.name: np.zeros(size) for quantity in REMEMBERED}
         self.values[ARRIVAL_TIME.name].fill(np.nan)
         self.outside = 0.0  # largest share of the volume that was beside the map
+        self._travel = Travel(grid)
 
     def look(self, time: float, state: Mapping[str, np.ndarray]) -> None:
         """Take in the particles at a time, s."""
@@ -46,6 +50,10 @@ class Peaks:
         if total > 0:
             self.outside = max(self.outside, float(columns.outside / total))
         self._take(time, columns)
+        cells, angle = self._travel.look(state)
+        reached = ~np.isnan(self.values[ARRIVAL_TIME.name][cells])
+        steepest = self.values[PEAK_TRAVEL_ANGLE.name]
+        steepest[cells[reached]] = np.maximum(steepest[cells[reached]], angle[reached])
 
     def _take(self, time: float, columns: Columns) -> None:
         depth = columns.volume / self.grid.cell**2
@@ -74,12 +82,12 @@ class Peaks:
         """What must be kept to go on to the same bits: of the cells that were reached alone."""
         cells = np.flatnonzero(~np.isnan(self.values[ARRIVAL_TIME.name]))
         kept = {name: values[cells] for name, values in self.values.items()}
-        return {CELLS: cells, OUTSIDE: np.array([self.outside])} | kept
+        return {CELLS: cells, OUTSIDE: np.array([self.outside])} | kept | self._travel.state
 
     @state.setter
     def state(self, state: Mapping[str, np.ndarray]) -> None:
         """Raises ValueError for the state of another map."""
-        names = {CELLS, OUTSIDE, *self.values}
+        names = {CELLS, OUTSIDE, *self.values, *TRAVEL}
         if set(state) != names:
             raise ValueError("the maps of the scenario are not those of its checkpoint")
         cells = state[CELLS]
@@ -95,6 +103,7 @@ class Peaks:
             values.fill(np.nan if name == ARRIVAL_TIME.name else 0.0)
             values[cells] = kept
         self.outside = float(state[OUTSIDE][0])
+        self._travel.state = {name: state[name] for name in TRAVEL}
 
     def map_of(self, name: str) -> np.ndarray:
         """A quantity on the cells (rows, cols); 0 where nothing came, of arrival times NaN."""

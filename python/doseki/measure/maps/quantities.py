@@ -31,9 +31,12 @@ PEAK_TOTAL_PRESSURE = MapQuantity(
     "peak_total_pressure", "Pa", "largest sum of rho v2 and the weight on the bed"
 )
 PEAK_MOMENTUM_FLUX = MapQuantity("peak_momentum_flux", "m3/s2", "largest momentum flux h v2")
+PEAK_TRAVEL_ANGLE = MapQuantity(
+    "peak_travel_angle", "deg", "largest travel angle of what came by", "pta"
+)
 ARRIVAL_TIME = MapQuantity("arrival_time", "s", "time of arrival")
 DEPOSIT = MapQuantity("deposit", "m", "depth of what has come to rest, vertical")
 
 PEAKS = (PEAK_DEPTH, PEAK_SPEED, PEAK_PRESSURE, PEAK_TOTAL_PRESSURE, PEAK_MOMENTUM_FLUX)
-REMEMBERED = (*PEAKS, ARRIVAL_TIME)  # of all the time so far
+REMEMBERED = (*PEAKS, PEAK_TRAVEL_ANGLE, ARRIVAL_TIME)  # of all the time so far
 QUANTITIES = (*REMEMBERED, DEPOSIT)

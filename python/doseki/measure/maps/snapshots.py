@@ -13,7 +13,7 @@ from .files import rasters_of
 from .grid import MapSettings
 from .peaks import Peaks, gravity_of
 
-KEYS = ("position", "velocity", "mass", "density", "motion")
+KEYS = ("id", "position", "velocity", "mass", "density", "motion")
 
 
 def maps_from_snapshots(run: Run, grid: Raster, settings: MapSettings) -> dict[str, Raster]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..bed import TILE_COLUMNS
 from ..model import Scenario
 from ..tables.terrain.release import Release
 from ..tables.terrain.terrain import TERRAIN
 
-MAX_TILES = 2**31  # that particles can number
+MAX_COLUMNS = 2**31  # of dp x dp, that particles can number
 
 
 def check_terrain(scenario: Scenario) -> None:
@@ -41,10 +43,11 @@ def check_terrain(scenario: Scenario) -> None:
             )
     low, high = scenario.bed.extent
     side = TILE_COLUMNS[scenario.dim]
-    tiles = float(((high - low) / (side * scenario.dp) + 2).prod())
-    if tiles > MAX_TILES:
+    tiles = np.ceil((high - low) / (side * scenario.dp) + 2)
+    columns = float((side * tiles).prod())
+    if columns >= MAX_COLUMNS:
         raise error(
             ("terrain",),
-            f"terrain: {tiles:.3g} tiles of {side} dp cover the map; at most "
-            f"{MAX_TILES:.3g}: give terrain.window, or increase dp",
+            f"terrain: {columns:.3g} columns of dp cover the map; at most "
+            f"{MAX_COLUMNS:.3g}: give terrain.window, or increase dp",
         )

@@ -1,0 +1,121 @@
+"""Checks of structures that stand on a terrain and whose loads are read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...record.particles import FIXED, ParticleSet
+from ...scenario.gauges.loads.load import Load
+from ...scenario.gauges.loads.metered import Metered
+from ...scenario.model import Scenario
+from ...scenario.tables.bodies import Box
+from ...util.finding import Finding
+from ..ground import ground_of
+from ..kinds.box_walls import SLAB
+
+DEEP = 3  # spacings, as far as the kernel sees
+DEPTHS = (0.25, 0.75, 1.25, 1.75, 2.4)  # spacings, at which a structure is looked for
+NEAR = 0.87  # spacings from a place at which it is still there: inside a lattice, none is farther
+
+
+@dataclass(frozen=True)
+class Shallow(Finding):
+    """A structure that does not reach far enough into the ground."""
+
+    gauge: str
+    reach: float  # m, where it is least
+    at: tuple[float, ...]  # m
+    dp: float
+
+    def __str__(self) -> str:
+        place = ", ".join(f"{x:.1f}" for x in self.at)
+        return (
+            f"{self.place}: reaches {self.reach:.2g} m into the ground at ({place}) m; what "
+            f"gauge.{self.gauge} reads of water beside it is up to 8 % low: let it go {DEEP} dp = "
+            f"{DEEP * self.dp:.3g} m into bed and banks"
+        )
+
+
+@dataclass(frozen=True)
+class OneFace(Finding):
+    """A thin box, of which the static part of a load sees one face."""
+
+    gauge: str
+    layers: float
+    dp: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: is {self.layers:.2g} dp thick, so that the static part of gauge."
+            f"{self.gauge} counts what stands on one face alone, that towards what moves at the "
+            f"start: give its `normal` where that is meant, or {SLAB + 0.5:g} dp = "
+            f"{(SLAB + 0.5) * self.dp:.3g} m of thickness"
+        )
+
+
+def structure_findings(
+    scenario: Scenario, particles: ParticleSet, names: list[str], normal: np.ndarray,
+    depth: np.ndarray,
+) -> Iterator[Finding]:  # fmt: skip
+    """A doubt about each fixed body on a terrain whose load is read."""
+    if scenario.bed is None:
+        return
+    for name, gauge in _metered_bodies(scenario).items():
+        own = [names.index(each) for each in scenario.names_of_bodies(name)]
+        of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
+        if not of_it.any():
+            continue
+        yield from _shallow(scenario, name, gauge, particles.position[of_it], normal[of_it])
+        table = scenario.body[name]
+        if isinstance(scenario.gauge[gauge], Load) and isinstance(table, Box):
+            yield from _one_face(scenario, name, gauge, table)
+
+
+def _metered_bodies(scenario: Scenario) -> dict[str, str]:
+    """Bodies with the first gauge that reads what acts on each."""
+    found: dict[str, str] = {}
+    for name, gauge in scenario.gauge.items():
+        for body in gauge.bodies if isinstance(gauge, Metered) else ():
+            if body in scenario.body:
+                found.setdefault(body, name)
+    return found
+
+
+def _one_face(scenario: Scenario, name: str, gauge: str, box: Box) -> Iterator[Finding]:
+    thickness = (box.max - box.min) / scenario.dp
+    if box.normal is None and np.count_nonzero(thickness < SLAB + 0.5) == 1:
+        yield OneFace(f"body.{name}", gauge, float(thickness.min()), scenario.dp)
+
+
+def _shallow(
+    scenario: Scenario, name: str, gauge: str, position: np.ndarray, normal: np.ndarray
+) -> Iterator[Finding]:
+    """Follows the body down into the ground from where its surface comes out of it."""
+    assert scenario.bed is not None
+    from scipy.spatial import cKDTree
+
+    dp = scenario.dp
+    ground, tree = ground_of(scenario.bed), cKDTree(position)
+    found = ground.field.nearest(np.ascontiguousarray(position))
+    height = found["distance"]
+    out = (height > 0) & (height < dp) & (np.linalg.norm(normal, axis=1) > 0)
+    if not out.any():
+        return
+    # Along the face: the ground may slope across it.
+    facing, down = normal[out], -found["normal"][out]
+    down = down - (down * facing).sum(axis=1)[:, None] * facing
+    length = np.linalg.norm(down, axis=1)
+    keep = length > 0.5  # a face that lies on the ground leads nowhere
+    down = down[keep] / length[keep, None]
+    foot = position[out][keep] + height[out][keep, None] * down
+    reach, there = np.zeros(len(foot)), np.ones(len(foot), bool)
+    for depth in DEPTHS:
+        there &= tree.query(foot + depth * dp * down)[0] < NEAR * dp
+        reach[there] = (depth + DEPTHS[0]) * dp
+    if len(foot) and not there.all():
+        least = int(np.argmin(reach))
+        at = tuple(foot[least].tolist())
+        yield Shallow(f"body.{name}", gauge, float(reach[least]), at, dp)

@@ -1,0 +1,107 @@
+"""Structures on a terrain whose loads are read: how far they go into the ground, and how thick."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.terrain.scenes import grid, profile, text
+
+from doseki.scenario.load import load_scenario
+from doseki.scene.checks.structures import OneFace, Shallow
+from doseki.solver.build import filled_simulation
+
+DP = 0.1
+DAM = """
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+{keys}
+[body.lake]
+shape = "box"
+material = "water"
+min = {low}
+max = {high}
+[gauge.dam]
+kind = "{kind}"
+bodies = ["dam"]
+interval = 0.1
+{more}
+"""
+
+
+def findings(path, kind):
+    scenario = load_scenario(path)
+    return [each for each in filled_simulation(scenario).warnings if isinstance(each, kind)]
+
+
+def wall_2d(folder, depth, slope=0.0, keys="", kind="load", more=""):
+    """A wall from x = 3 to 4.2 that goes so many spacings into the lowest ground."""
+    profile(folder / "terrain.csv", lambda x: slope * (3 - x))
+    low = -slope * 1.2 - depth * DP
+    box = f"min = [3.0, {low}]\nmax = [4.2, 1.0]\n{keys}"
+    path = folder / "case.toml"
+    filled = DAM.format(keys=box, low=[2.0, 0.0], high=[3.0, 0.5], kind=kind, more=more)
+    path.write_text(text(2, dp=DP, speed=4.0, more=filled))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("depth", "fewer"), [(0, True), (1, True), (2, True), (3, False), (4, False)]
+)
+def test_a_wall_is_to_reach_three_spacings_into_its_bed(tmp_path, depth, fewer):
+    found = findings(wall_2d(tmp_path, depth), Shallow)
+    assert bool(found) == fewer
+    if fewer:
+        (one,) = found
+        assert one.reach == pytest.approx(depth * DP, abs=0.8 * DP)
+        assert "body.dam: reaches" in str(one)
+        assert "3 dp = 0.3 m" in str(one)
+
+
+@pytest.mark.parametrize(("depth", "fewer"), [(0.5, True), (3, False)])
+def test_on_a_slope_the_deeper_side_is_told(tmp_path, depth, fewer):
+    found = findings(wall_2d(tmp_path, depth, slope=0.4), Shallow)
+    assert bool(found) == fewer
+    if fewer:
+        assert found[0].at[0] == pytest.approx(4.2, abs=2 * DP)
+
+
+def valley_wall(folder, reach):
+    """A wall across a valley of 45 degrees, which goes so many spacings into its banks."""
+    grid(folder / "terrain.asc", lambda x, y: np.abs(y - 2.0))
+    top = 0.8
+    half = top + reach * DP * np.sqrt(2)
+    box = f"min = [3.0, {2 - half}, -0.5]\nmax = [4.2, {2 + half}, {top}]\nnormal = [-1, 0, 0]"
+    path = folder / "case.toml"
+    lake = {"low": [2.0, 1.5, 0.0], "high": [3.0, 2.5, 0.5]}
+    filled = DAM.format(keys=box, kind="load", more="", **lake)
+    path.write_text(text(3, dp=DP, speed=4.0, more=filled))
+    return path
+
+
+@pytest.mark.parametrize(("reach", "fewer"), [(0.5, True), (4, False)])
+def test_banks_count_as_the_bed_does(tmp_path, reach, fewer):
+    found = findings(valley_wall(tmp_path, reach), Shallow)
+    assert bool(found) == fewer
+    if fewer:
+        assert abs(abs(found[0].at[1] - 2.0) - 0.8) < 3 * DP
+
+
+def test_a_wall_without_a_gauge_is_not_looked_at(tmp_path):
+    path = wall_2d(tmp_path, 0)
+    path.write_text(path.read_text().split("[gauge.dam]")[0])
+    assert not findings(path, Shallow)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "keys", "told"),
+    [(0.5, "", True), (0.8, "", True), (0.9, "", False), (0.5, "normal = [-1, 0]", False)],
+)
+def test_a_thin_box_has_one_face_in_the_static_part(tmp_path, thickness, keys, told):
+    path = wall_2d(tmp_path, 3, keys=keys)
+    path.write_text(path.read_text().replace("4.2, 1.0", f"{3 + thickness}, 1.0"))
+    found = findings(path, OneFace)
+    assert bool(found) == told
+    if told:
+        assert "8.5 dp = 0.85 m" in str(found[0])
