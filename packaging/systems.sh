@@ -18,7 +18,7 @@ make_system() {
     mkdir -p "$roots"
     packages=$(printf '%s,' "$@")
     mmdebstrap --quiet --variant="$variant" --components=main --include="${packages%,}" \
-        "$suite" "$roots/$name.new.tar" "${DOSEKI_MIRROR:-http://deb.debian.org/debian}"
+        "$suite" "$roots/$name.new.tar" ${DOSEKI_MIRROR:+"$DOSEKI_MIRROR"}
     mv "$roots/$name.new.tar" "$roots/$name.tar"
 }
 
@@ -40,6 +40,10 @@ unpack() {
     certificates=/etc/ssl/certs/ca-certificates.crt
     [ ! -f "$certificates" ] || cp -L "$certificates" "$system$certificates"
     mount -t proc proc "$system/proc"
+    # Its own terminals: a test closes one.
+    mkdir -p "$system/dev/pts"
+    mount -t devpts -o newinstance,ptmxmode=0666,mode=0620 devpts "$system/dev/pts"
+    ln -sfn pts/ptmx "$system/dev/ptmx"
 }
 
 # share FOLDER PLACE: FOLDER of this machine at PLACE of the system.
@@ -62,7 +66,7 @@ run_inside() {
 # Removes the system; nothing of this machine may be mounted in it then.
 discard() {
     [ -n "$system" ] || return 0
-    for place in proc ccache; do
+    for place in proc dev/pts ccache; do
         ! mountpoint -q "$system/$place" || umount "$system/$place" || fail "$system/$place stays mounted"
     done
     rm -rf --one-file-system "$system"

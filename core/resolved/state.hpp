@@ -11,7 +11,7 @@ namespace doseki {
 template <int D>
 struct ResolvedState : Particles<D> {
     ResolvedState(const Array<Material>&, const Options<D>& options)
-        : has_bed_slip(options.flow.has_voellmy_walls()) {
+        : has_voellmy_beds(options.flow.has_voellmy_walls()) {
         this->wall.in_use = true;
     }
 
@@ -24,9 +24,10 @@ struct ResolvedState : Particles<D> {
     Field<double> surface;        // free-surface indicator
     Field<double> mixing_length;  // [m]
     Field<double> mean_pressure;  // over a time, where friction depends on it [Pa]
-    bool has_bed_slip;            // without, the field below stays empty
+    bool has_voellmy_beds;        // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
     Field<Vec<double, D>> bed_slip;  // [m]
+    Field<double> bed_load;  // normal stress on them, over a time [Pa]
 
     template <class F>
     void for_each_field(F&& f) {
@@ -34,7 +35,7 @@ struct ResolvedState : Particles<D> {
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
         f("correction_excess", correction_excess), f("shift", shift), f("surface", surface);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
-        if (has_bed_slip) f("bed_slip", bed_slip);
+        if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);
     }
 
     /// Stresses of a fluid are not part of its state.

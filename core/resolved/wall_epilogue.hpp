@@ -119,18 +119,33 @@ private:
         const Vec<double, D>& n = state_.wall.normal[p];
         Vec<double, D>& slip = state_.bed_slip[p];
         const double area = records_[p - first_wall_].volume * dot(sums.area, n);
-        if (!(sums.weight > min_weight) || !(area > 0.0)) return slip = {};
+        if (!(sums.weight > min_weight) || !(area > 0.0)) {
+            state_.bed_load[p] = 0.0;
+            return slip = {};
+        }
         const Vec<double, D> u = sliding(p, sums);
         const Vec<double, D>& g = model_.options.gravity;
-        const double rho = sums.density / sums.weight, pressed = -dot(sums.force, n) / area,
-                     speed = std::sqrt(dot(u, u));
-        const double stress = voellmy_stress(wall.mu, wall.effective_share * pressed, rho,
+        const double rho = sums.density / sums.weight, speed = std::sqrt(dot(u, u)),
+                     load = mean_load(p, -dot(sums.force, n) / area, rho);
+        const double stress = voellmy_stress(wall.mu, wall.effective_share * load, rho,
                                              std::sqrt(dot(g, g)), speed, wall.turbulent_xi);
         const BedSpring spring = BedSpring::of(rho, model_.constants.c, model_.options.flow.dp);
         slip = tangential(slip, n);
         // The fluid is held; the wall gets the opposite.
         return -1.0 * sliding_spring(slip, u, dt_, area * spring.stiffness, area * spring.damping,
                                      area * stress);
+    }
+
+    /// Eq. (107). Friction that followed each wave of sound would drive the waves along the bed until
+    /// they lift the fluid off it.
+    double mean_load(std::size_t p, double pressed, double rho) const {
+        double& load = state_.bed_load[p];
+        const Vec<double, D>& g = model_.options.gravity;
+        const double weight = rho * std::sqrt(dot(g, g)),
+                     depth = weight > 0.0 ? load / weight : 0.0,
+                     time = bed_load_crossings * depth / model_.constants.c;
+        load = dt_ < time ? load + dt_ / time * (pressed - load) : pressed;
+        return load;
     }
 
     const ResolvedModel<D>& model_;

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from doseki.running.runner import RunOptions, run_scenario
 
 from doseki.record.reader import load
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scene.ground import ground_of
 
