@@ -49,7 +49,12 @@ def test_it_holds_what_it_needs_and_no_more(wheel):
     modules = [name for name in names if re.fullmatch(r"doseki/_core_\w+\.[\w.-]+\.so", name)]
     assert len(modules) == 1
     assert any(name.startswith("doseki/_core_") and name.endswith(".pyi") for name in names)
-    for file in ("scenarios/flume.toml", "report/browser/viewer.js", "cli/main.py"):
+    for file in (
+        "scenarios/flume.toml",
+        "report/browser/viewer.js",
+        "cli/main.py",
+        "bench/command.py",
+    ):
         assert f"doseki/{file}" in names
     assert {name.partition("/")[0] for name in names} == {"doseki", names[-1].partition("/")[0]}
     assert wheel.stat().st_size < 5e6

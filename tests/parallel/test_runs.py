@@ -103,11 +103,11 @@ def test_the_history_tells_how_the_work_is_spread(on_ranks):
     one, two = on_ranks(1, "dambreak").history, on_ranks(2, "dambreak").history
     assert np.all(one["imbalance"] == 1)
     assert all(np.all(one[f"share_{name}"] == 0) for name in ("balance", "migrate", "halo", "wait"))
-    last = {name: two[name][-1] for name in SHARED}
-    assert 1 <= last["imbalance"] <= 2
-    shares = [last[f"share_{name}"] for name in ("balance", "migrate", "halo", "wait")]
-    assert all(0 <= share < 1 for share in shares)
-    assert sum(shares) > 0
+    assert np.all(two["imbalance"] >= 1)
+    assert np.all(np.isfinite(two["imbalance"]))
+    shares = np.array([two[f"share_{name}"] for name in ("balance", "migrate", "halo", "wait")])
+    assert np.all((shares >= 0) & (shares < 1))
+    assert shares.max() > 0  # a cut begins the count anew: the last row may have none
 
 
 @pytest.mark.ranks
