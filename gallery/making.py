@@ -10,8 +10,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from doseki.running.provenance import read_provenance
-from doseki.running.runner import RunOptions, run_scenario
 from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 
@@ -22,6 +20,8 @@ from doseki.figures.movie import make_movie
 from doseki.figures.plot import draw_run
 from doseki.record.folder import RunFolder
 from doseki.record.reader import Run, load
+from doseki.running.provenance import read_provenance
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from .page import Chart, Page

@@ -27,7 +27,7 @@ struct ResolvedState : Particles<D> {
     bool has_voellmy_beds;        // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
     Field<Vec<double, D>> bed_slip;  // [m]
-    Field<double> bed_load;  // normal stress on them, over a time [Pa]
+    Field<double> bed_load;          // normal stress on them, over a time [Pa]
 
     template <class F>
     void for_each_field(F&& f) {

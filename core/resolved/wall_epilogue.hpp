@@ -136,8 +136,8 @@ private:
                                      area * stress);
     }
 
-    /// Eq. (107). Friction that followed each wave of sound would drive the waves along the bed until
-    /// they lift the fluid off it.
+    /// Eq. (107). Friction that followed each wave of sound would drive the waves along the bed
+    /// until they lift the fluid off it.
     double mean_load(std::size_t p, double pressed, double rho) const {
         double& load = state_.bed_load[p];
         const Vec<double, D>& g = model_.options.gravity;

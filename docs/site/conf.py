@@ -27,7 +27,10 @@ extensions = [
 ]
 root_doc = "index"
 exclude_patterns: list[str] = []
-suppress_warnings = ["myst.header"]  # pages may go from a title to a smaller heading
+suppress_warnings = [
+    "myst.header",  # pages may go from a title to a smaller heading
+    "ref.python",  # a class has the name that it is imported by and that of its module
+]
 default_role = "code"
 highlight_language = "none"
 nitpicky = False

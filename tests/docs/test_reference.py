@@ -113,7 +113,6 @@ def test_all_that_doseki_exports_is_listed():
     ((_, text),) = api_pages()
     for name in doseki.__all__:
         assert name.startswith("__") or f":: doseki.{name}\n" in text
-    assert "doseki.record.reader.Run\n" in text
     assert "doseki.record.reader.Snapshot\n" in text
 
 

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import zipfile
 from pathlib import Path
 
@@ -70,17 +71,20 @@ def test_it_has_the_licences_of_what_is_in_it(wheel):
 
 
 def test_it_runs_where_it_is_installed(wheel, tmp_path):
+    """With the packages of this environment, but not the clone that it has doseki from."""
     zipfile.ZipFile(wheel).extractall(tmp_path / "site")
-    command = [sys.executable, "-m", "doseki.cli.main", "run", "collision", "-o", "out", "--json"]
-    done = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, check=False,
-        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    where = "import doseki; print(doseki.__file__, doseki.__version__)"
-    told = subprocess.run(
-        [sys.executable, "-c", where], cwd=tmp_path, capture_output=True, text=True, check=True,
-        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
-    ).stdout.split()  # fmt: skip
+    places = [str(tmp_path / "site"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(dict.fromkeys(places))}
+
+    def python(*words: str) -> str:
+        done = subprocess.run(
+            [sys.executable, "-S", *words],
+            cwd=tmp_path, capture_output=True, text=True, check=False, env=environment,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    python("-m", "doseki.cli.main", "run", "collision", "-o", "out", "--json")
+    told = python("-c", "import doseki; print(doseki.__file__, doseki.__version__)").split()
     assert Path(told[0]).is_relative_to(tmp_path)
     assert told[1] == wheel.name.split("-")[1]

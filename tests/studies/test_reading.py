@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
+from doseki.measure.maps.quantities import QUANTITIES
 from doseki.record.reader import load
 from doseki.studies.plan.file import read_plan
 from doseki.studies.reading.bands import ProfileBand, curve_text, read_curve, shared
@@ -100,8 +101,7 @@ def mapped(flow_folder):
     (flow_folder / "maps").mkdir()
     depth = np.zeros((4, 10))
     depth[1:3, 2:6] = 2.0
-    for name in ("peak_depth", "peak_speed", "peak_pressure", "peak_total_pressure",
-                 "peak_momentum_flux", "arrival_time", "deposit"):  # fmt: skip
+    for name in (quantity.name for quantity in QUANTITIES):
         rows = "\n".join(" ".join(str(v) for v in row) for row in depth)
         (flow_folder / "maps" / f"{name}.asc").write_text(MAP + rows + "\n")
     return load(flow_folder)

@@ -62,19 +62,31 @@ def _directive(module: str, name: str, value: Any) -> str:
 def _returned(values: dict[str, Any]) -> Iterator[type]:
     """Classes of doseki that exported functions return, and what their public parts return."""
     seen = {value for value in values.values() if inspect.isclass(value)}
-    ahead = [value for value in values.values() if callable(value)]
+    ahead = [part for value in values.values() for part in (value, *_public_parts(value))]
     while ahead:
         for kind in _classes_returned(ahead.pop(0)):
             if kind not in seen:
                 seen.add(kind)
                 yield kind
-                ahead += [m for n, m in vars(kind).items() if n[0] != "_" or n == "__getitem__"]
+                ahead += _public_parts(kind)
+
+
+def _public_parts(value: Any) -> list[Any]:
+    """What a class has, by itself or from other classes of doseki."""
+    kinds = [
+        kind for kind in getattr(value, "__mro__", ()) if kind.__module__.startswith("doseki.")
+    ]
+    members = [each for kind in kinds for each in vars(kind).items()]
+    return [part for name, part in members if name[0] != "_" or name == "__getitem__"]
 
 
 def _classes_returned(member: Any) -> Iterator[type]:
     function = getattr(member, "fget", None) or getattr(member, "func", None) or member
     annotations = getattr(function, "__annotations__", {})
+    module = getattr(function, "__module__", None)
+    if module is None:
+        return
     for word in re.findall(r"\w+", str(annotations.get("return", ""))):
-        found = getattr(import_module(function.__module__), word, None)
+        found = getattr(import_module(module), word, None)
         if inspect.isclass(found) and found.__module__.startswith("doseki."):
             yield found
