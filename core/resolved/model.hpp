@@ -20,9 +20,9 @@ namespace doseki {
 /// flow, and the greatest, at rest.
 inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest = 1000.0;
 
-/// Over which Voellmy's friction takes the mean of the normal stress on a bed: a share of the time
-/// that sound takes through the depth of which that stress is the weight.
-inline constexpr double bed_load_crossings = 0.5;
+/// The time over which Voellmy's friction takes the mean of the normal stress on a bed, over the
+/// time that sound takes through the depth of which that stress is the weight.
+inline constexpr double bed_load_crossings = 1.5;
 
 /// Densities below which a fluid expands no further: what tears apart leaves a void, not water
 /// under tension.
