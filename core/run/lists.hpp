@@ -89,11 +89,13 @@ public:
     template <class Supports>
     void rebuild(State& state, const Supports& supports, std::int64_t steps, PhaseTimer& phases);
 
-    void serialise_wear(Archive& archive) {
+    /// Of a run that has made `steps`.
+    void serialise_wear(Archive& archive, std::int64_t steps) {
         archive("rebuilds", rebuilds_), archive("moved", moved_);
         archive("skin_width", skin_width_), archive("skin", skin_);
         archive("rebuild_step", rebuild_step_), archive("approach", approach_);
         archive("min_support", min_support_);
+        if (archive.loads()) expect_fit(0 <= rebuild_step_ && rebuild_step_ <= steps, "rebuild_step");
     }
     void serialise_lists(Archive& archive, const State& state) {
         lists_.serialise(archive);

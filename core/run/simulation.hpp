@@ -110,7 +110,7 @@ public:
         archive("moved_since_outflow", moved_since_outflow_);
         terrain_looks_.serialise(archive);
         archive("account", account_);
-        lists_.serialise_wear(archive);
+        lists_.serialise_wear(archive, steps_);
         particles.serialise(archive);
         if (archive.loads()) expect_particles();
         open_boundaries.serialise(archive);
