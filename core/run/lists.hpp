@@ -95,7 +95,8 @@ public:
         archive("skin_width", skin_width_), archive("skin", skin_);
         archive("rebuild_step", rebuild_step_), archive("approach", approach_);
         archive("min_support", min_support_);
-        if (archive.loads()) expect_fit(0 <= rebuild_step_ && rebuild_step_ <= steps, "rebuild_step");
+        if (archive.loads())
+            expect_fit(0 <= rebuild_step_ && rebuild_step_ <= steps, "rebuild_step");
     }
     void serialise_lists(Archive& archive, const State& state) {
         lists_.serialise(archive);
