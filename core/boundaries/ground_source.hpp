@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/array.hpp"
+#include "base/box.hpp"
 #include "boundaries/height_field.hpp"
 #include "model/particles.hpp"
 
@@ -37,12 +38,13 @@ public:
     template <class Largest>
     void fetch(HeightField<D>& field, const Particles<D>& particles, double across,
                const Largest& largest) const {
-        Box box;
+        auto area = Area::nowhere();
         for (std::size_t p = 0; p < particles.size(); ++p)
-            if (!particles.is_wall(p)) box.add(horizontal(particles.position[p]), across);
-        box.add(around_bodies(field, particles, across, largest));
-        const Part needed = box.part(field, 0.0);
-        const Part roomy = box.part(field, room * across);
+            if (!particles.is_wall(p)) area.add(horizontal(particles.position[p]));
+        area = grown(area, across);
+        area.add(around_bodies(field, particles, across, largest));
+        const Part needed = part(field, area);
+        const Part roomy = part(field, grown(area, room * across));
         const bool lacks =
             !field.part().contains(needed) || field.part().size() > too_much * roomy.size();
         double any_lacks = lacks ? 1.0 : 0.0;
@@ -64,40 +66,25 @@ private:
     static constexpr double room = 1.0;          // more than is needed, of `across`
     static constexpr std::int64_t too_much = 3;  // times what is needed: given back
 
-    /// In plan; empty where nothing was added.
-    struct Box {
-        Horizontal<D> from, to;
-        bool is_empty = true;
+    /// In plan.
+    using Area = Box<axes>;
 
-        void add(const Horizontal<D>& place, double around) {
-            Box other{place, place, false};
-            for (int a = 0; a < axes; ++a) other.from[a] -= around, other.to[a] += around;
-            add(other);
-        }
-        void add(const Box& other) {
-            if (other.is_empty) return;
-            for (int a = 0; a < axes; ++a) {
-                from[a] = is_empty ? other.from[a] : std::min(from[a], other.from[a]);
-                to[a] = is_empty ? other.to[a] : std::max(to[a], other.to[a]);
-            }
-            is_empty = false;
-        }
-        Part part(const HeightField<D>& field, double around) const {
-            if (is_empty) return {};
-            Horizontal<D> low = from, high = to;
-            for (int a = 0; a < axes; ++a) low[a] -= around, high[a] += around;
-            return field.around(low, high);
-        }
-    };
+    static Area grown(Area area, double around) {
+        if (area.is_empty()) return area;
+        for (int a = 0; a < axes; ++a) area.low[a] -= around, area.high[a] += around;
+        return area;
+    }
+    static Part part(const HeightField<D>& field, const Area& area) {
+        return area.is_empty() ? Part{} : field.around(area.low, area.high);
+    }
 
     /// Of bodies of all ranks. The foot of a perpendicular lies the farther away the higher a body
     /// is.
     template <class Largest>
-    static Box around_bodies(const HeightField<D>& field, const Particles<D>& particles,
-                             double across, const Largest& largest) {
-        constexpr double none = -std::numeric_limits<double>::max();
+    static Area around_bodies(const HeightField<D>& field, const Particles<D>& particles,
+                              double across, const Largest& largest) {
         std::array<double, 2 * axes> ends;  // upper ends, then lower ones with the other sign
-        ends.fill(none);
+        ends.fill(-std::numeric_limits<double>::infinity());
         for (std::size_t p = 0; p < particles.size(); ++p) {
             if (!particles.is_bound(p)) continue;
             const Horizontal<D> place = horizontal(particles.position[p]);
@@ -109,11 +96,11 @@ private:
             }
         }
         largest(ends);
-        Box box;
-        box.is_empty = ends[0] == none;
+        Area area;
         for (std::size_t a = 0; a < axes; ++a)
-            box.to[static_cast<int>(a)] = ends[a], box.from[static_cast<int>(a)] = -ends[axes + a];
-        return box;
+            area.high[static_cast<int>(a)] = ends[a],
+            area.low[static_cast<int>(a)] = -ends[axes + a];
+        return area;
     }
 
     Read read_;

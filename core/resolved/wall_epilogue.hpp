@@ -126,9 +126,10 @@ private:
         const Vec<double, D> u = sliding(p, sums);
         const Vec<double, D>& g = model_.options.gravity;
         const double rho = sums.density / sums.weight, speed = std::sqrt(dot(u, u)),
-                     load = mean_load(p, -dot(sums.force, n) / area, rho);
-        const double stress = voellmy_stress(wall.mu, wall.effective_share * load, rho,
-                                             std::sqrt(dot(g, g)), speed, wall.turbulent_xi);
+                     gravity = std::sqrt(dot(g, g)),
+                     load = mean_load(p, -dot(sums.force, n) / area, rho * gravity);
+        const double stress = voellmy_stress(wall.mu, wall.effective_share * load, rho, gravity,
+                                             speed, wall.turbulent_xi);
         const BedSpring spring = BedSpring::of(rho, model_.constants.c, model_.options.flow.dp);
         slip = tangential(slip, n);
         // The fluid is held; the wall gets the opposite.
@@ -136,13 +137,11 @@ private:
                                      area * stress);
     }
 
-    /// Eq. (107). Friction that followed each wave of sound would drive the waves along the bed
-    /// until they lift the fluid off it.
-    double mean_load(std::size_t p, double pressed, double rho) const {
+    /// Eq. (107); `weight` is that of the fluid [N/m^3]. Friction that followed each wave of sound
+    /// would drive the waves along the bed until they lift the fluid off it.
+    double mean_load(std::size_t p, double pressed, double weight) const {
         double& load = state_.bed_load[p];
-        const Vec<double, D>& g = model_.options.gravity;
-        const double weight = rho * std::sqrt(dot(g, g)),
-                     depth = weight > 0.0 ? load / weight : 0.0,
+        const double depth = weight > 0.0 ? load / weight : 0.0,
                      time = bed_load_crossings * depth / model_.constants.c;
         load = dt_ < time ? load + dt_ / time * (pressed - load) : pressed;
         return load;

@@ -219,7 +219,8 @@ private:
     void rebuild_lists();
     void wrap_positions();
     bool look_at_terrain() {
-        return terrain_looks_.look(particles, supports(), open_boundaries.removed);
+        return terrain_looks_.look(
+            particles, [this] { return supports(); }, open_boundaries.removed);
     }
     bool remove_outflow();
     void drop_removed();
@@ -338,8 +339,9 @@ void Simulation<Lists>::rebuild_lists() {
     if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
-    terrain_looks_.fetch(particles, supports());
-    lists_.rebuild(particles, [this] { return supports(); }, steps_, phases());
+    const auto supports = [this] { return this->supports(); };
+    terrain_looks_.fetch(particles, supports);
+    lists_.rebuild(particles, supports, steps_, phases());
 }
 
 template <class Lists>

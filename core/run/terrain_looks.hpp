@@ -24,23 +24,24 @@ public:
     }
 
     /// Fluid must find a bed wherever it may be until the next look. True where walls are to come
-    /// or go, on any rank; `supports` are those of the particles [m].
-    bool look(const Particles<D>& particles, const Array<double>& supports,
+    /// or go, on any rank; `supports()` are those of the particles [m].
+    template <class Supports>
+    bool look(const Particles<D>& particles, const Supports& supports,
               Array<std::uint8_t>& removed) {
         moved_ = 0.0;
         if (!terrain_.is_there()) return false;
-        fetch(particles, supports);
-        const double support = largest(supports);
+        const double support = largest(supports());
+        if (!ranks_.alone()) fetch_around(particles, support);
         return terrain_.look(particles, support, margin * support, ranks_.rank(), gathering(),
                              removed);
     }
 
     /// Gets the part of the map that is asked for until the next look, and then of where particles
     /// have come to.
-    void fetch(const Particles<D>& particles, const Array<double>& supports) const {
+    template <class Supports>
+    void fetch(const Particles<D>& particles, const Supports& supports) const {
         if (!terrain_.is_there() || ranks_.alone()) return;
-        terrain_.fetch(particles, (1.0 + 4.0 * margin) * largest(supports),
-                       [this](std::span<double> values) { ranks_.largest(values); });
+        fetch_around(particles, largest(supports()));
     }
 
     /// Adds the particles that look() has found.
@@ -53,6 +54,10 @@ public:
 private:
     static constexpr double margin = 0.2;  // that a particle may go between two looks, in supports
 
+    void fetch_around(const Particles<D>& particles, double support) const {
+        terrain_.fetch(particles, (1.0 + 4.0 * margin) * support,
+                       [this](std::span<double> values) { ranks_.largest(values); });
+    }
     double largest(const Array<double>& supports) const {
         return ranks_.largest(
             supports.empty() ? 0.0 : *std::max_element(supports.begin(), supports.end()));

@@ -43,20 +43,10 @@ if not TYPE_CHECKING:  # which knows the names above, and is to miss all others
 
     def __getattr__(name: str) -> Any:
         if name == "__version__":
-            return _version()
+            return import_module(".version", __name__).version()
         if name not in _LAZY:
             raise AttributeError(f"module 'doseki' has no attribute {name!r}")
         return getattr(import_module(f".{_LAZY[name]}", __name__), name)
 
     def __dir__() -> list[str]:
         return sorted({*globals(), *_LAZY, "__version__"})
-
-
-def _version() -> str:
-    """The version that was installed, which is that of its tag; of bare sources it is unknown."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("doseki")
-    except PackageNotFoundError:
-        return "0+unknown"

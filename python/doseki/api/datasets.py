@@ -11,9 +11,9 @@ import numpy as np
 from ..errors import ResourceError, UserError
 from ..record.fields import FIELD_BY_KEY, SYMMETRIC, ParticleField
 from ..record.reader import Run, Snapshot
+from ..util.extras import extra
 from ..util.memory import available_bytes
 from ..util.spelling import suggestion
-from .extras import extra
 from .frames import attributes, frame_of
 
 if TYPE_CHECKING:

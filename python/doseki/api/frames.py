@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..record.reader import GaugeRecord, History
-from .extras import extra
+from ..util.extras import extra
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,12 +13,12 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from .. import __version__
 from ..compiled import available_instruction_sets, load_core
 from ..errors import ResourceError, UserError
 from ..scenario.schemes import RESOLVED, UETA2022
 from ..solver.protocol import CoreSimulation
 from ..util.cores import allowed_cores, shared_cores
+from ..version import version
 from .case import SCHEMES, Case, clocked, make_simulation
 from .flows import FLOWS, print_flows, time_flows
 from .report import checks, growth, machine, memory_check, phase_table, speed_table
@@ -247,7 +247,7 @@ def _chosen_flows(options: Mapping[str, str | None], quick: bool) -> list[str]:
 def append_history(path: Path, rows: Sequence[Row]) -> None:
     """Adds one line of JSON to `path`: when, where, and the rows."""
     date = datetime.now(UTC).isoformat(timespec="seconds")
-    record = {"date": date, "version": __version__, "machine": machine(), "rows": list(rows)}
+    record = {"date": date, "version": version(), "machine": machine(), "rows": list(rows)}
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a", encoding="utf-8") as file:
         file.write(json.dumps(record) + "\n")

@@ -28,9 +28,9 @@ app = typer.Typer(
 
 def _version(value: bool) -> None:
     if value:
-        from .. import __version__
+        from ..version import version
 
-        typer.echo(f"doseki {__version__}")
+        typer.echo(f"doseki {version()}")
         raise typer.Exit
 
 

@@ -38,13 +38,14 @@ UNITS = {
 
 
 def history_units(columns: Sequence[str]) -> dict[str, str]:
-    """Units of columns of a history by name; "" for counts and shares."""
+    """Units of columns of a history by name."""
     dim = 3 if "momentum_z" in columns else 2
-    return {column: unit_in(_unit(column), dim) for column in columns}
+    return {column: history_unit(column, dim) for column in columns}
 
 
-def _unit(column: str) -> str:
+def history_unit(column: str, dim: int) -> str:
+    """The unit of a column in a run of `dim` dimensions; "" for counts and shares."""
     if column.startswith(("n_", "share_")):
         return ""
     words = column.split("_")
-    return UNITS.get(words[0]) or UNITS.get(words[-1], "")
+    return unit_in(UNITS.get(words[0]) or UNITS.get(words[-1], ""), dim)

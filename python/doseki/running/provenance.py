@@ -17,12 +17,12 @@ from typing import Any
 
 import psutil
 
-from .. import __version__
 from ..compiled import load_core
 from ..errors import UserError
 from ..record.folder import RunFolder
 from ..util.files import write_whole_text
 from ..util.foreign import read_text, readable
+from ..version import version
 
 LIBRARIES = (
     "numpy", "scipy", "h5py", "matplotlib", "pydantic", "simpleeval", "threadpoolctl", "trimesh",
@@ -35,7 +35,7 @@ MAX_BYTES = 4 * 2**20
 def provenance_now(threads: int = 0, ranks: int = 1) -> dict[str, Any]:
     """Versions, machine and command of this process; the host's name is left out."""
     return {
-        "doseki": __version__,
+        "doseki": version(),
         "commit": commit(),
         "core": load_core().__name__.rpartition("_core_")[2],
         "python": platform.python_version(),

@@ -7,7 +7,6 @@ from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LightSource
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -15,6 +14,7 @@ from ...geodata.grid import Raster
 from ...measure.maps.quantities import ARRIVAL_TIME, DEPOSIT, PEAK_DEPTH, PEAK_SPEED, MapQuantity
 from ..layout import chart_grid
 from ..nothing import NothingToDrawError
+from ..space.ground import hillshade
 
 LONGEST = 7.0  # inches of the longer side of a map
 SHORTEST = 2.5  # inches of the shorter one
@@ -22,7 +22,6 @@ LETTERS = 64  # in a line of the title
 SIDE = 2.6  # inches beside a map, for its axis and its key
 AROUND = 0.15  # of the extent of the flow, shown around it
 LEAST_AROUND = 5.0  # cells
-SUN = {"azdeg": 315.0, "altdeg": 45.0}
 DARKEST = -1.2  # of the grey that stands for no light, below white's 1
 CONTOURS = 14  # lines at most
 COLOURS = {ARRIVAL_TIME.name: "viridis_r", DEPOSIT.name: "YlOrBr"}
@@ -103,10 +102,8 @@ def _draw_bed(axes: Axes, bed: Raster, extent: tuple[float, float, float, float]
     known = np.isfinite(bed.values)
     if not known.any() or min(bed.shape) < 2:
         return
-    filled = np.where(known, bed.values, np.nanmean(bed.values))
-    relief = LightSource(**SUN).hillshade(filled, vert_exag=1.0, dx=bed.cell, dy=bed.cell)
     axes.imshow(
-        np.where(known, relief, np.nan),
+        np.where(known, hillshade(bed.values, bed.cell), np.nan),
         extent=extent,
         cmap="gray",
         vmin=DARKEST,

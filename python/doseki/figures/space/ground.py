@@ -53,11 +53,20 @@ def relief(run: Run, extent: Extent, width: int) -> np.ndarray | None:
     known = ~np.isnan(height)
     picture = np.ones((rows, columns, 3))
     if known.any() and min(rows, columns) > 1:
-        filled = np.where(known, height, np.mean(height[known]))
-        light = LightSource(**SUN).hillshade(filled, dx=pixel, dy=pixel)
-        shade = DARKEST + (1.0 - DARKEST) * light
+        shade = DARKEST + (1.0 - DARKEST) * hillshade(height, pixel)
         picture[known] = shade[known, None]
     return picture
+
+
+def hillshade(height: np.ndarray, cell: float) -> np.ndarray:
+    """Heights (rows, columns), m, rows from the north, lit from the north-west: from 0 to 1.
+
+    It means nothing where a height is unknown.  There are two rows and columns or more, and one
+    height that is known.
+    """
+    known = np.isfinite(height)
+    filled = np.where(known, height, np.mean(height[known]))
+    return np.asarray(LightSource(**SUN).hillshade(filled, dx=cell, dy=cell))
 
 
 def ground_balls(run: Run, space: Space) -> Balls:

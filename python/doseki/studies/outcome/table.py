@@ -12,14 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import UserError
+from ...util.extras import extra
 from ...util.files import write_whole, write_whole_text
 from ..plan.file import Plan
 from ..plan.sampling import Point
 from ..runs.folder import RunPlace
 from ..runs.row import DONE, Row
-
-MISSING = "parquet = true needs pyarrow: pip install 'doseki[parquet]'"
 
 
 @dataclass(frozen=True)
@@ -107,10 +105,8 @@ def write_table(table: Table, directory: Path) -> list[Path]:
 
 def check_parquet() -> None:
     """Raise UserError where no Parquet file can be written."""
-    try:
+    with extra("parquet", "parquet = true"):
         import pyarrow.parquet  # noqa: F401
-    except ImportError:
-        raise UserError(MISSING) from None
 
 
 def _about(table: Table, columns: dict[str, list[Any]]) -> dict[str, Any]:

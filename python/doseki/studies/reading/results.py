@@ -12,6 +12,7 @@ from ...geodata.grid import Raster
 from ...measure.loads import WINDOWS, body_loads
 from ...measure.maps.files import read_maps
 from ...measure.maps.quantities import QUANTITIES
+from ...record.history import history_unit
 from ...record.reader import Run
 from ...scenario.gauges.loads.load import Load
 from ...scenario.model import Scenario
@@ -22,7 +23,6 @@ from .series import (
     front_series,
     gauge_series,
     history_series,
-    history_unit,
     time_of_front,
 )
 

@@ -14,7 +14,6 @@ from ...measure import numbers as measure
 from ...measure.series import first_above
 from ...measure.views import flow_direction, fluid_names, select, whole_space
 from ...record.reader import Run
-from ...record.units import unit_in
 from ...scenario.table import Table
 
 REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
@@ -89,22 +88,7 @@ def history_series(run: Run, column: str) -> Series:
     """A column of the history."""
     if column not in run.history.columns:
         raise UserError(f"{run.directory}: the history has no column {column}")
-    return Series(
-        run.history["time"], run.history[column], history_unit(column, run.scenario["dim"])
-    )
-
-
-def history_unit(column: str, dim: int) -> str:
-    """The unit of a column of the history; empty for numbers and shares."""
-    if column in ("time", "dt"):
-        return "s"
-    if column.startswith("mass"):
-        return unit_in("kg", dim)
-    if column.startswith(("momentum", "impulse")):
-        return unit_in("kg m/s", dim)
-    if column.endswith(("_energy", "_work", "_dissipation")) or column.startswith("energy_"):
-        return unit_in("J", dim)
-    return ""
+    return Series(run.history["time"], run.history[column], run.history.units[column])
 
 
 def front_series(run: Run) -> Series:
