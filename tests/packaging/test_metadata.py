@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -69,6 +70,11 @@ def test_scripts_are_shell():
     assert len(scripts) >= 6
     for script in scripts:
         subprocess.run(["sh", "-n", str(script)], check=True)
+
+
+@pytest.mark.parametrize("script", ["doseki", ".ci/run", "packaging/build_wheels.sh"])
+def test_what_readers_type_as_a_command_may_be_run(script):
+    assert os.access(ROOT / script, os.X_OK)
 
 
 def test_files_that_recipes_name_exist():
