@@ -89,7 +89,7 @@ struct RigidBodyColumns {
                    "shape_radius");
         for (std::size_t k = 0; k < n; ++k) {
             expect_index(kind[k], 4, "shape_kind");
-            const bool facets = Shape<D>{static_cast<ShapeKind>(kind[k])}.has_facets();
+            const bool facets = has_facets(static_cast<ShapeKind>(kind[k]));
             expect_fit((facet_count[k] > 0) == facets, "shape_kind");
         }
         expect_parts(facet_count, corners.size(), D, "shape_facets");

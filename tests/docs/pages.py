@@ -27,6 +27,7 @@ PAGES = {
     "how-to/own-grains.md": "grains.toml",
     "how-to/hydrographs.md": "flood.toml",
     "how-to/read-results.md": BASE,
+    "how-to/python.md": BASE,
     "how-to/restart.md": BASE,
     "how-to/ranks.md": BASE,
     "explanation/resolution.md": BASE,

@@ -9,19 +9,15 @@ import pytest
 
 from doseki.studies.plan.file import KINDS, read_plan
 
+from ..docs.markdown import blocks_of
 from .small_study import STUDY, write_study
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "studies.md"
 
 
-def blocks(text):
-    """Indented blocks of a page, without their indent."""
-    found = re.findall(r"(?:^    .*\n|^\n(?=    ))+", text, re.MULTILINE)
-    return ["\n".join(line[4:] for line in block.splitlines()) for block in found]
-
-
 def test_the_first_study_can_be_run(tmp_path):
-    (text,) = (block for block in blocks(PAGE.read_text()) if "scenario = " in block)
+    blocks = blocks_of(PAGE.read_text())
+    (text,) = (block.text for block in blocks if "scenario = " in block.text)
     path = tmp_path / "study.toml"
     path.write_text(text)
     plan = read_plan(path)

@@ -11,6 +11,10 @@ namespace doseki {
 
 enum class ShapeKind : std::uint8_t { ball, convex, mesh, ground };
 
+inline bool has_facets(ShapeKind kind) {
+    return kind == ShapeKind::convex || kind == ShapeKind::mesh;
+}
+
 /// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D
 /// a disc), what facets enclose, convex or not, a sheet of facets, or the ground of a terrain.
 template <int D>
@@ -22,7 +26,6 @@ struct Shape {
     Array<Vec<double, D>> samples;  // points of the surface that may touch another shape
     std::shared_ptr<const ContactSurface<D>> surface;  // that others touch; none of a ball
 
-    bool has_facets() const { return kind == ShapeKind::convex || kind == ShapeKind::mesh; }
     bool is_ball() const { return kind == ShapeKind::ball; }
 
     /// Makes the surface; call once everything else is there. `ground` is that of the run.
