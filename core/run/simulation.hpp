@@ -243,7 +243,7 @@ private:
 /// end of the step.
 template <class Lists>
 void Simulation<Lists>::step(double limit) {
-    const auto timing = ranks().clock.measure_total();
+    const auto timing = ranks().clock.measure_step();
     const double before = time_, end = min(limit, next_event()),
                  dt = min(next_timestep(), end - before), power = scheme_->dissipated_power();
 

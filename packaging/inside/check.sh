@@ -27,10 +27,12 @@ grep 'pip install doseki\[mpi\]' said
 /venv/bin/pip install -q "$wheel[mpi]"
 doseki run dambreak --set time_max=0.03 --ranks 2 -o ranks
 
-# The fast tests without those of the clone's own house; only the installed package may be imported.
+# The fast tests, with all extras; without those of the clone's own house and pages. Only the installed package
+# may be imported.
 mkdir /tests
 tar -xf /dist/doseki-*.tar.gz -C /tests --strip-components 1
 rm -r /tests/python
 cd /tests
-/venv/bin/pip install -q hypothesis pytest pytest-xdist
-python -m tests.tiers fast -q --durations=0 --durations-min=5 --ignore=tests/house
+extras=$(python -c 'import importlib.metadata as m; print(*m.metadata("doseki").get_all("Provides-Extra"), sep=",")')
+/venv/bin/pip install -q "$wheel[$extras]" hypothesis ipykernel nbclient nbformat pytest pytest-xdist
+python -m tests.tiers fast -q --durations=0 --durations-min=5 --ignore=tests/house --ignore=tests/docs

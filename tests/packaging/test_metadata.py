@@ -74,6 +74,8 @@ def test_scripts_are_shell():
 
 @pytest.mark.parametrize("script", ["doseki", ".ci/run", "packaging/build_wheels.sh"])
 def test_what_readers_type_as_a_command_may_be_run(script):
+    if not (ROOT / script).exists():
+        pytest.skip(f"{script} is not in a source distribution")
     assert os.access(ROOT / script, os.X_OK)
 
 
