@@ -61,7 +61,7 @@ def test_the_ground_ends_where_the_dam_begins(tmp_path, x):
 def test_what_moves_leaves_the_ground_whole(tmp_path):
     """The control: with a motion that has not begun the ground goes on below the dam."""
     place, volume = walls(pool(tmp_path, more=MOVING))
-    assert place[:, 0].max() > 1.75
+    assert place[:, 0].max() > 1.7
     assert volume == pytest.approx(np.full(len(volume), 0.01))
 
 
@@ -92,8 +92,8 @@ shape = "box"
 material = "basalt"
 fixed = true
 normal = [-1, 0, 0]
-min = [2.0, 1.0, -1.0]
-max = [3.0, 3.0, 1.0]
+min = [2.03, 1.02, -1.0]
+max = [3.03, 3.02, 1.0]
 rotate = {angle}
 rotate_axis = [0, 0, 1]
 [body.ball]
@@ -149,6 +149,6 @@ def test_cells_are_cut_by_the_volume_of_bodies(tmp_path, name, angle, volume):
     cut = (share > 0) & (share < 1)
     assert cut.any()
     moved = np.column_stack(middle) - place
-    assert not moved[share == 1].any()
+    assert np.abs(moved[share == 1]).max() < 1e-9
     assert np.abs(moved[cut]).max() < 0.05
     assert (np.linalg.norm(moved[cut], axis=1) > 0).any()
