@@ -155,13 +155,10 @@ class Built(Code):
         self._compile(source)
 
     def _compile(self, source: Path) -> None:
-        cmake = shutil.which("cmake") or shutil.which(
-            "cmake", path=str(Path(sys.executable).parent)
-        )
+        here = str(Path(sys.executable).parent)
+        cmake = shutil.which("cmake") or shutil.which("cmake", path=here)
         if cmake is None:
-            raise SystemExit(
-                f"{self.name}: cmake is missing; it comes with Debian's cmake, or PyPI's"
-            )
+            raise SystemExit(f"{self.name}: cmake is missing (cmake of Debian or PyPI)")
         print(f"compiling {self.name} into {self.build} ...", file=sys.stderr)
         self.build.mkdir(parents=True, exist_ok=True)
         log = self.build / "build.log"
