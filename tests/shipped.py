@@ -13,3 +13,10 @@ ONLY = {
 }  # fmt: skip
 CASES = [(name, dim) for name in NAMES for dim in (2, 3) if ONLY.get(name, dim) == dim]
 FIRST = [(name, ONLY.get(name, 2)) for name in NAMES]
+# Settings for tests of a scenario that is too large at the spacing that it is shipped with.
+PARTS = {
+    "flume-3d": [
+        "dp=0.005", "flume_length=0.8", "load_start=0.4", "load_mass=0.5", "load_length=0.126",
+        "load_packing=0.4", "width=0.05", "wall_height=0.03", "board_length=0.1", "board_width=0.1",
+    ],
+}  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.shipped import CASES, FIRST, NAMES
+from tests.shipped import CASES, FIRST, NAMES, PARTS
 
 import doseki
 from doseki.running.runner import RunOptions, run_scenario
@@ -27,16 +27,8 @@ COARSE = {
     ("flume-strength", 3): 0.025,
     ("dambreak", 3): 0.03,
     ("channel", 3): 0.0075,
-    ("flume-3d", 3): 0.005,
     ("flume-strip", 3): 0.005,
 }
-# Of a part of a scenario that is too large at any spacing that it can have.
-PARTS = {
-    "flume-3d": [
-        "flume_length=0.8", "load_start=0.4", "load_mass=0.5", "load_length=0.126", "width=0.05",
-        "load_packing=0.4", "wall_height=0.03", "board_length=0.1", "board_width=0.1",
-    ],
-}  # fmt: skip
 
 
 def coarse_scenario(name, dim, *more):
