@@ -48,7 +48,7 @@ DeformableBody read_elastic_body(const NamedValues& table, const Array<const cha
     Fracture<double> fracture;
     std::int64_t seed = 0;
     if (table.find("fracture")) read.law("fracture", fracture);
-    read("seed", seed, optional);
+    read("flaw_seed", seed, optional);
     for (const char* key : others) read.allow(key);
     read.finish();
     body.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, seed));

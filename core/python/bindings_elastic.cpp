@@ -108,7 +108,7 @@ void bind(nb::module_& m, const char* name) {
              nb::sig("def add(self, body: doseki.solver.protocol.Table, **points: numpy.ndarray) "
                      "-> None"),
              "Add a body (rho0, young_modulus, poisson_ratio, elastic_law, spacing, hourglass, "
-             "damping; fracture with the parameters of that law, seed) of points (rest, position, "
+             "damping; fracture with the parameters of that law, flaw_seed) of points (rest, position, "
              "velocity, clamped).")
         .def("start", &B::start, unlocked)
         .def("advance", &B::advance, nb::arg("dt"), unlocked)
