@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <span>
 
@@ -91,10 +93,12 @@ public:
     void advance(double dt, const Point& point, const Body& body);
 
     void serialise(Archive& archive) {
-        archive("bond_state", state_), archive("bond_work", work_);
+        Array<BondState<D>> states(state_.begin() + 1, state_.end());
+        archive("bond_state", states), archive("bond_work", work_);
         if (!archive.loads()) return;
-        expect_fit(state_.size() == size() && std::isfinite(work_), "bond_state");
-        for (const BondState<D>& s : state_) expect_state(s);
+        expect_fit(states.size() + 1 == size() && std::isfinite(work_), "bond_state");
+        for (const BondState<D>& s : states) expect_state(s);
+        std::copy(states.begin(), states.end(), state_.begin() + 1);
         broken_ = 0;
         for (std::size_t n = 1; n < size(); ++n) broken_ += intactness(n) <= 0.0;
     }

@@ -172,7 +172,7 @@ PRESETS = {
     )
 }
 KEYS = tuple(dict.fromkeys(k for p in PRESETS.values() for k in (*p.needed, *p.optional)))
-DECIDED = ("law", "rheology", "based_on")  # by a preset
+DECIDED = ("law", "rheology", "fracture", "based_on")  # by a preset
 
 
 def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:
