@@ -53,8 +53,9 @@ public:
           rest_(a.rest - b.rest),
           share_(ends.weight * a.volume * b.volume) {}
 
-    BondChange take(double dt) {
-        if (!state_.cracked() && !begins()) return {};
+    /// `beside`: whether another bond of its points has a crack.
+    BondChange take(double dt, bool beside) {
+        if (!state_.cracked() && !begins(beside)) return {};
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
         return with_value(body_.law->fracture, [&](const auto& law) {
@@ -106,15 +107,16 @@ private:
         return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed};
     }
 
-    /// A bond beside a crack is stretched by it though its points have little stress: what it
+    /// A bond beside a crack is stretched by it though its points have little stress: there, what it
     /// bears itself counts too.
-    bool begins() {
+    bool begins(bool beside) {
         const auto [stress, normal] = largest_principal(
             symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))));
         const double along = dot(normal, rest_);
         if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
         const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;
-        const double tension = max(stress, dot(pull(), outward) / area(outward));
+        const double own = beside ? dot(pull(), outward) / area(outward) : 0.0,
+                     tension = max(stress, own);
         const CrackSite place = site(outward);
         if (!with_value(body_.law->fracture,
                         [&](const auto& law) { return law.starts(tension, place); }))
@@ -188,11 +190,16 @@ private:
 template <int D>
 template <class Point, class Body>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
+    Array<std::uint8_t> at_crack(first_bond_.size() - 1, 0);
+    for (std::size_t n = 1; n < size(); ++n)
+        if (state_[n].opening > 0.0) at_crack[pairs_[n].a] = at_crack[pairs_[n].b] = 1;
     change_ = reduce(size() - 1, BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
         const BondEnds& ends = pairs_[k + 1];
         BondState<D>& state = state_[k + 1];
         if (state.whole == 0.0) return BondChange{};
-        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).take(dt);
+        const bool beside = at_crack[ends.a] != 0 || at_crack[ends.b] != 0;
+        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
+            .take(dt, beside);
     });
     work_ += change_.work, broken_ += change_.broken;
 }
