@@ -86,8 +86,15 @@ private:
     }
     /// The same of both points.
     Vec<double, D> pull() const { return pull_of(a_) + pull_of(b_); }
-    /// Its area over the weight, for a crack of this normal.
-    double area(const Vec<double, D>& normal) const { return 2.0 * std::abs(dot(normal, rest_)); }
+    /// Its area over the weight, for a crack of this normal: an even stress across a plane pulls on
+    /// all bonds that the plane cuts with the area of that plane.
+    double area(const Vec<double, D>& normal) const {
+        const Vec<double, D> corrected = corrected_rest(a_) + corrected_rest(b_);
+        return max(std::abs(dot(normal, corrected)), 0.5 * std::abs(dot(normal, rest_)));
+    }
+    Vec<double, D> corrected_rest(const BondPoint<D>& i) const {
+        return i.spans ? i.B * rest_ : rest_;
+    }
     /// Energy that point i loses with the bond.
     double lost_by(const BondPoint<D>& i) const {
         if (!i.spans) return 0.0;
@@ -98,9 +105,8 @@ private:
 
     CrackSite site(const Vec<double, D>& normal) const {
         const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
-        const double along = dot(normal, rest_);
         // With these shares, all bonds across a direction have the volume of the body.
-        const double volume = 2.0 * share_ * along * along;
+        const double volume = share_ * area(normal) * std::abs(dot(normal, rest_));
         const double radius = (D == 2 ? 0.564 : 0.620) * body_.spacing;  // of a ball as large
         const std::uint64_t key = (std::uint64_t{ends_.a} << 32) | ends_.b;
         const double growth = DeformableBody::crack_speed * c / radius;
@@ -148,25 +154,29 @@ private:
         const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
         const double ease = relaxation / place.stiffness, pressed = -dot(traction, normal);
         const Vec<double, D> along = traction + pressed * normal;
-        const Vec<double, D> going = dt * (inverse(mean_deformation(), 0.0) * (a_.v - b_.v));
-        Vec<double, D> jump = state_.jump;
-        double opening = state_.opening - ease * pressed + (opens() ? dot(going, normal) : 0.0);
-        if (opening > 0.0) {
-            jump = jump + going + ease * traction;
+        const double before = state_.opening;
+        Vec<double, D> slip{};
+        if (before > 0.0) {
+            slip = ease * along;
         } else {
             const double hold = friction * max(0.0, pressed), shear = norm(along);
-            if (shear > hold) jump = jump + (ease * (1.0 - hold / shear)) * along;
+            if (shear > hold) slip = (ease * (1.0 - hold / shear)) * along;
         }
-        opening = max(0.0, opening);
-        jump = jump + (opening - state_.opening - dot(jump - state_.jump, normal)) * normal;
-        const double work = set_jump(jump);
+        const double opening = max(0.0, before - ease * pressed + following(dt, -pressed));
+        const double work = set_jump(state_.jump + slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
         if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
         const double lost = share_ * (lost_by(a_) + lost_by(b_));
         state_.whole = 0.0;
         return {work + lost, 0, 1};
     }
-    bool opens() const { return state_.opening > 0.0; }
+    /// How far the sides go apart in a step, where that does not take from what they bear: else a
+    /// crack would drive them.
+    double following(double dt, double tension) const {
+        const Vec<double, D> apart = inverse(mean_deformation(), 0.0) * (a_.v - b_.v);
+        const double going = dt * dot(apart, state_.normal);
+        return going * tension > 0.0 ? going : 0.0;
+    }
 
     Mat<double, D> mean_deformation() const {
         if (!a_.spans) return b_.F;
