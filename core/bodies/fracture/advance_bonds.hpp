@@ -59,7 +59,7 @@ public:
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
         return with_value(body_.law->fracture, [&](const auto& law) {
-            return law.failed(crack) ? slide(dt, place) : widen(law, crack, dt, place);
+            return law.failed(crack) ? slide(place) : widen(law, crack, dt, place);
         });
     }
 
@@ -70,7 +70,7 @@ private:
     /// neighbours do not overshoot together.
     static constexpr double relaxation = 0.7;
     /// Of the length of a bond: sides of a crack farther apart than this part for good.
-    static constexpr double reach = 0.1;
+    static constexpr double reach = 0.03;
     /// Of the sides of a crack: that of rock (Byerlee, Pure Appl. Geophys. 116, 1978).
     static constexpr double friction = 0.6;
 
@@ -150,7 +150,7 @@ private:
 
     /// A broken bond: its sides go apart without a force, press on each other where they meet, and
     /// slide there when friction does not hold them.
-    BondChange slide(double dt, const CrackSite& place) {
+    BondChange slide(const CrackSite& place) {
         const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
         const double ease = relaxation / place.stiffness, pressed = -dot(traction, normal);
         const Vec<double, D> along = traction + pressed * normal;
@@ -162,7 +162,7 @@ private:
             const double hold = friction * max(0.0, pressed), shear = norm(along);
             if (shear > hold) slip = (ease * (1.0 - hold / shear)) * along;
         }
-        const double opening = max(0.0, before - ease * pressed + following(dt, -pressed));
+        const double opening = max(0.0, before - ease * pressed);
         const double work = set_jump(state_.jump + slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
         if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
@@ -170,14 +170,6 @@ private:
         state_.whole = 0.0;
         return {work + lost, 0, 1};
     }
-    /// How far the sides go apart in a step, where that does not take from what they bear: else a
-    /// crack would drive them.
-    double following(double dt, double tension) const {
-        const Vec<double, D> apart = inverse(mean_deformation(), 0.0) * (a_.v - b_.v);
-        const double going = dt * dot(apart, state_.normal);
-        return going * tension > 0.0 ? going : 0.0;
-    }
-
     Mat<double, D> mean_deformation() const {
         if (!a_.spans) return b_.F;
         return b_.spans ? 0.5 * (a_.F + b_.F) : a_.F;
