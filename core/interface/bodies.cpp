@@ -45,11 +45,16 @@ DeformableBody read_elastic_body(const NamedValues& table, const Array<const cha
     read("rho0", body.rho0), read("elastic_law", law);
     read("young_modulus", modulus), read("poisson_ratio", ratio);
     read("spacing", body.spacing), read("hourglass", body.hourglass), read("damping", body.damping);
+    Fracture<double> fracture;
+    std::int64_t seed = 0;
+    if (table.find("fracture")) read.law("fracture", fracture);
+    read("flaw_seed", seed, optional);
     for (const char* key : others) read.allow(key);
     read.finish();
+    body.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, seed));
     auto chosen = alternative<Hyperelastic<double>>(law);
     with_value(chosen, [&](auto& known) { known.lame = Lame<double>::of(modulus, ratio); });
-    body.law = std::make_shared<const ElasticLaw>(chosen);
+    body.law = std::make_shared<const ElasticLaw>(ElasticLaw{chosen, fracture});
     return body;
 }
 

@@ -8,6 +8,7 @@
 #include "bodies/deformable/interactions.hpp"
 #include "bodies/deformable/power_iteration.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/fracture/bonded_terms.hpp"
 #include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
 
@@ -54,6 +55,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
         solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}};
         springs_damp_ |= viscosity > 0.0;
     }
+    find_bonds();
     correct_gradients();
     limit_timestep();
     compute_accelerations(0.0, gravity);
@@ -164,6 +166,7 @@ void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
         solid_[p].x = x[p];
         motion_[p].v = v[p] + half_dt * a[p];
     });
+    if (bonds_.any()) return sum_bonded_forces(take);
     auto update = [this](std::size_t p, const DeformationAccumulators<double, D>& sums) {
         update_point(p, sums);
     };
@@ -199,6 +202,7 @@ void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     });
     if (!std::isfinite(sum))
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
+    if (bonds_.any()) advance_bonds(dt);
 }
 
 template <int D>

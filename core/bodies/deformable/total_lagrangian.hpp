@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
+#include "bodies/fracture/bonds.hpp"
 #include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
@@ -15,6 +16,8 @@ template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
+template <class T, int D>
+struct SpringSums;
 
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
@@ -101,6 +104,19 @@ public:
     /// Of strain, without that of the springs [J], 2-D: [J/m].
     double strain_energy() const;
     double kinetic_energy() const;
+    /// Of bodies that may break: of their springs, that which went into cracks, and that which
+    /// damping took [J], 2-D: [J/m].
+    double spring_energy();
+    double fracture_work() const { return bonds_.work(); }
+    double damping_work() const { return damping_work_; }
+
+    /// Of bodies that may break: which pairs hold, how many do not, what the last step did.
+    const Bonds<D>& bonds() const { return bonds_; }
+    /// Ends for good the bonds between points a and b for which apart(a, b): those of two bodies.
+    template <class Apart>
+    void part_bonds(const Apart& apart) {
+        bonds_.part(apart);
+    }
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
     /// alone.
@@ -129,6 +145,9 @@ public:
             start(gravity);
             a = accelerations, deformation_ = deformations, slot_ = slots;
         }
+        bonds_.serialise(archive);
+        archive("elastic_damping_work", damping_work_);
+        expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
     }
 
     Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
@@ -168,6 +187,15 @@ private:
     void sum_over_pairs(const Term& term, const Epilogue& epilogue);
     ElasticTerm<D> records() const;
 
+    // Of bodies that may break: bodies/fracture/breaking.hpp.
+    void find_bonds();
+    template <class F>
+    void sum_bonded_forces(const F& take);
+    void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
+                       const Mat<double, D>& shape);
+    void damp_bonded_springs();
+    void advance_bonds(double dt);
+
     Array<DeformableBody> bodies_;
     Array<Vec<double, D>> apart_;  // by body: shift of its places at rest
     double reach_ = 0.0;           // how far along x places at rest are taken
@@ -179,6 +207,11 @@ private:
     Neighbours<D> neighbours_;
     Array<MotionRecord<double, D>> motion_;
     Array<ElasticRecord<D>> solid_;
+    Bonds<D> bonds_;
+    Array<Mat<double, D>> stress_;  // of breakable bodies, without damping
+    Array<std::uint8_t> spans_;     // whether the bonds of a point span the space
+    Array<double> damping_power_;   // of each point of a breakable body
+    double damping_work_ = 0.0;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
 };

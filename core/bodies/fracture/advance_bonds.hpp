@@ -1,0 +1,209 @@
+#pragma once
+// How cracks begin, open, close and end.
+
+#include "bodies/fracture/bonds.hpp"
+#include "physics/fracture.hpp"
+#include "physics/hyperelastic/strain.hpp"
+
+namespace doseki {
+
+template <int D>
+void Bonds<D>::index(std::size_t points) {
+    first_bond_.assign(points + 1, 0);
+    for (std::size_t n = 1; n < size(); ++n)
+        ++first_bond_[pairs_[n].a + 1], ++first_bond_[pairs_[n].b + 1];
+    for (std::size_t p = 0; p < points; ++p) first_bond_[p + 1] += first_bond_[p];
+    bond_.assign(first_bond_[points], 0);
+    Array<std::size_t> next(first_bond_.begin(), first_bond_.end());
+    for (std::size_t n = 1; n < size(); ++n)
+        for (const std::uint32_t p : {pairs_[n].a, pairs_[n].b})
+            bond_[next[p]++] = static_cast<std::uint32_t>(n);
+}
+
+template <int D>
+void Bonds<D>::add_code(std::size_t p, std::size_t points, std::uint32_t j) {
+    std::uint32_t code = 0;
+    if (p < points)
+        for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+            const BondEnds& ends = pairs_[bond_[k]];
+            if (ends.a == p && ends.b == j) code = 2 * bond_[k];
+            if (ends.b == p && ends.a == j) code = 2 * bond_[k] + 1;
+        }
+    code_.push_back(code);
+}
+
+/// Second Piola-Kirchhoff stress: of the material, so that it does not turn.
+template <int D>
+Sym<double, D> material_stress(const BondPoint<D>& point) {
+    if (!point.spans) return {};
+    return symmetric_part(inverse(point.F, 0.0) * point.P);
+}
+
+/// One bond, its points, and what happens to it in a step.
+template <int D>
+class BondStep {
+public:
+    BondStep(const BondEnds& ends, const BondPoint<D>& a, const BondPoint<D>& b,
+             const DeformableBody& body, BondState<D>& state)
+        : ends_(ends),
+          a_(a),
+          b_(b),
+          body_(body),
+          state_(state),
+          rest_(a.rest - b.rest),
+          share_(ends.weight * a.volume * b.volume) {}
+
+    /// `beside`: whether another bond of its points has a crack.
+    BondChange take(double dt, bool beside) {
+        if (!state_.cracked() && !begins(beside)) return {};
+        Crack crack{state_.opening, state_.max_opening, state_.damage};
+        const CrackSite place = site(state_.normal);
+        return with_value(body_.law->fracture, [&](const auto& law) {
+            return law.failed(crack) ? slide(place) : widen(law, crack, dt, place);
+        });
+    }
+
+private:
+    /// Of the length of a bond: below this part of it along the normal, a crack does not cross it.
+    static constexpr double least_crossing = 0.25;
+    /// Of what would take the stress of a bond away in one step of its crack, so that those of
+    /// neighbours do not overshoot together.
+    static constexpr double relaxation = 0.7;
+    /// Of the length of a bond: sides of a crack farther apart than this part for good.
+    static constexpr double reach = 0.03;
+    /// Of the sides of a crack: that of rock (Byerlee, Pure Appl. Geophys. 116, 1978).
+    static constexpr double friction = 0.6;
+
+    Vec<double, D> at_rest() const { return rest_ + state_.jump; }
+    Vec<double, D> now() const { return a_.x - b_.x; }
+
+    /// Force over the weight with which point i resists a change of the jump, Eq. (109).
+    Vec<double, D> pull_of(const BondPoint<D>& i) const {
+        if (!i.spans) return {};
+        const Mat<double, D> S = i.P * transposed(i.B);
+        const Vec<double, D> misfit = now() - i.F * at_rest();
+        return transposed(i.F) * (S * at_rest() + i.kappa * misfit) - transposed(S) * misfit;
+    }
+    /// The same of both points.
+    Vec<double, D> pull() const { return pull_of(a_) + pull_of(b_); }
+    /// Its area over the weight, for a crack of this normal: an even stress across a plane pulls on
+    /// all bonds that the plane cuts with the area of that plane.
+    double area(const Vec<double, D>& normal) const {
+        const Vec<double, D> corrected = corrected_rest(a_) + corrected_rest(b_);
+        return max(std::abs(dot(normal, corrected)), 0.5 * std::abs(dot(normal, rest_)));
+    }
+    Vec<double, D> corrected_rest(const BondPoint<D>& i) const {
+        return i.spans ? i.B * rest_ : rest_;
+    }
+    /// Energy that point i loses with the bond.
+    double lost_by(const BondPoint<D>& i) const {
+        if (!i.spans) return 0.0;
+        const Vec<double, D> misfit = now() - i.F * at_rest();
+        return dot(misfit, i.P * (transposed(i.B) * at_rest())) +
+               0.5 * i.kappa * dot(misfit, misfit);
+    }
+
+    CrackSite site(const Vec<double, D>& normal) const {
+        const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
+        // With these shares, all bonds across a direction have the volume of the body.
+        const double volume = share_ * area(normal) * std::abs(dot(normal, rest_));
+        const double radius = (D == 2 ? 0.564 : 0.620) * body_.spacing;  // of a ball as large
+        const std::uint64_t key = (std::uint64_t{ends_.a} << 32) | ends_.b;
+        const double growth = DeformableBody::crack_speed * c / radius;
+        return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed};
+    }
+
+    /// A bond beside a crack is stretched by it though its points have little stress: there, what it
+    /// bears itself counts too.
+    bool begins(bool beside) {
+        const auto [stress, normal] = largest_principal(
+            symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))));
+        const double along = dot(normal, rest_);
+        if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
+        const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;
+        const double own = beside ? dot(pull(), outward) / area(outward) : 0.0,
+                     tension = max(stress, own);
+        const CrackSite place = site(outward);
+        if (!with_value(body_.law->fracture,
+                        [&](const auto& law) { return law.starts(tension, place); }))
+            return false;
+        state_.normal = outward;
+        return true;
+    }
+
+    /// Eq. (111): the crack of a bond that still bears tension.
+    template <class Law>
+    BondChange widen(const Law& law, Crack& crack, double dt, const CrackSite& place) {
+        const Vec<double, D> normal = state_.normal;
+        const double tension = dot(pull(), normal) / area(normal);
+        law.grow(crack, tension, dt, place);
+        const double excess = tension - law.traction(crack, place),
+                     stiffness = place.stiffness + law.slope(crack, tension, place);
+        crack.opening = max(0.0, crack.opening + relaxation * excess / stiffness);
+        crack.max_opening = max(crack.max_opening, crack.opening);
+        law.grow(crack, 0.0, 0.0, place);
+        const double work = set_jump(state_.jump + (crack.opening - state_.opening) * normal);
+        state_.opening = crack.opening, state_.max_opening = crack.max_opening;
+        state_.damage = crack.damage;
+        return {work, law.failed(crack) ? 1u : 0u, 0};
+    }
+
+    /// A broken bond: its sides go apart without a force, press on each other where they meet, and
+    /// slide there when friction does not hold them.
+    BondChange slide(const CrackSite& place) {
+        const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
+        const double ease = relaxation / place.stiffness, pressed = -dot(traction, normal);
+        const Vec<double, D> along = traction + pressed * normal;
+        const double before = state_.opening;
+        Vec<double, D> slip{};
+        if (before > 0.0) {
+            slip = ease * along;
+        } else {
+            const double hold = friction * max(0.0, pressed), shear = norm(along);
+            if (shear > hold) slip = (ease * (1.0 - hold / shear)) * along;
+        }
+        const double opening = max(0.0, before - ease * pressed);
+        const double work = set_jump(state_.jump + slip + (opening - before) * normal);
+        state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
+        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
+        const double lost = share_ * (lost_by(a_) + lost_by(b_));
+        state_.whole = 0.0;
+        return {work + lost, 0, 1};
+    }
+    Mat<double, D> mean_deformation() const {
+        if (!a_.spans) return b_.F;
+        return b_.spans ? 0.5 * (a_.F + b_.F) : a_.F;
+    }
+    /// Returns the energy that this takes.
+    double set_jump(const Vec<double, D>& jump) {
+        const double work = share_ * dot(pull(), jump - state_.jump);
+        state_.jump = jump;
+        return work;
+    }
+
+    const BondEnds& ends_;
+    BondPoint<D> a_, b_;
+    const DeformableBody& body_;
+    BondState<D>& state_;
+    Vec<double, D> rest_;
+    double share_;
+};
+
+template <int D>
+template <class Point, class Body>
+void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
+    Array<std::uint8_t> at_crack(first_bond_.size() - 1, 0);
+    for (std::size_t n = 1; n < size(); ++n)
+        if (state_[n].opening > 0.0) at_crack[pairs_[n].a] = at_crack[pairs_[n].b] = 1;
+    change_ = reduce(size() - 1, BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
+        const BondEnds& ends = pairs_[k + 1];
+        BondState<D>& state = state_[k + 1];
+        if (state.whole == 0.0) return BondChange{};
+        const bool beside = at_crack[ends.a] != 0 || at_crack[ends.b] != 0;
+        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
+            .take(dt, beside);
+    });
+    work_ += change_.work, broken_ += change_.broken;
+}
+
+}  // namespace doseki

@@ -1,0 +1,135 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <span>
+
+#include "base/array.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/principal.hpp"
+#include "bodies/deformable/deformable_body.hpp"
+#include "bodies/deformable/elastic_law.hpp"
+#include "bodies/fracture/bond_records.hpp"
+#include "model/archive.hpp"
+
+namespace doseki {
+
+/// A point of a breakable body, as its bonds see it.
+template <int D>
+struct BondPoint {
+    Vec<double, D> rest, x, v;
+    Mat<double, D> F, B;   // deformation gradient and correction, Eq. (80)
+    Mat<double, D> P;      // first Piola-Kirchhoff stress without damping
+    double volume, kappa;  // at rest; stiffness of the springs
+    bool spans;            // whether its bonds span the space, so that it has a stress
+};
+
+/// What one step did to bonds: energy that went into them [J], 2-D: [J/m], how many ceased to bear
+/// tension, and how many are gone.
+struct BondChange {
+    double work = 0.0;
+    std::size_t broken = 0, gone = 0;
+
+    BondChange operator+(const BondChange& other) const {
+        return {work + other.work, broken + other.broken, gone + other.gone};
+    }
+};
+
+/// The pair of points a < b of a bond, and -F of Eq. (25) at rest.
+struct BondEnds {
+    std::uint32_t a = 0, b = 0;
+    double weight = 0.0;
+};
+
+/// The bonds between points of breakable bodies: pairs at rest, each once. Cracks live on them,
+/// Eqs. (108) to (114): a crack opens across a bond, along the largest principal stress that there
+/// was when it began, until the bond is broken: then it bears compression with friction, and no
+/// tension. How they go on is in fracture/advance_bonds.hpp.
+template <int D>
+class Bonds {
+public:
+    bool any() const { return pairs_.size() > 1; }
+    /// All numbers but 0, which is that of pairs that cannot break.
+    std::size_t size() const { return pairs_.size(); }
+
+    /// A bond between points a < b, `weight` = -F of Eq. (25) at rest.
+    void add(std::uint32_t a, std::uint32_t b, double weight) {
+        pairs_.push_back({a, b, weight});
+        state_.emplace_back();
+    }
+    void clear() {
+        pairs_.assign(1, BondEnds{}), state_.assign(1, {}), code_.clear(), first_code_.clear();
+        work_ = 0.0, change_ = {}, broken_ = 0;
+    }
+    /// Finds the bonds of each of `points` points, which were added in the order of their first.
+    void index(std::size_t points);
+    /// Codes of a list: `neighbour(p)` of each lane, of one more entry of the cluster that begins
+    /// with point `first`.
+    void begin_cluster() { first_code_.push_back(code_.size()); }
+    void add_code(std::size_t p, std::size_t points, std::uint32_t j);
+
+    BondRows<D> rows() const { return {code_, first_code_, state_}; }
+
+    /// Calls f(j, intactness) for the bonds of point p: 1 whole, 0 where it bears no tension.
+    template <class F>
+    void for_each_bond(std::size_t p, const F& f) const {
+        if (p + 1 >= first_bond_.size()) return;
+        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
+            const BondEnds& ends = pairs_[bond_[n]];
+            f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]));
+        }
+    }
+    /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
+    /// only as those of two bodies.
+    template <class Apart>
+    void part(const Apart& apart) {
+        for (std::size_t n = 1; n < size(); ++n)
+            if (apart(pairs_[n].a, pairs_[n].b)) state_[n].whole = 0.0, state_[n].damage = 1.0;
+    }
+    /// Bonds that bear no tension.
+    std::size_t broken() const { return broken_; }
+    /// What the last step did.
+    const BondChange& change() const { return change_; }
+    /// Energy that all steps took [J], 2-D: [J/m].
+    double work() const { return work_; }
+
+    /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody.
+    template <class Point, class Body>
+    void advance(double dt, const Point& point, const Body& body);
+
+    void serialise(Archive& archive) {
+        Array<BondState<D>> states(state_.begin() + 1, state_.end());
+        archive("bond_state", states), archive("bond_work", work_);
+        if (!archive.loads()) return;
+        expect_fit(states.size() + 1 == size() && std::isfinite(work_), "bond_state");
+        for (const BondState<D>& s : states) expect_state(s);
+        std::copy(states.begin(), states.end(), state_.begin() + 1);
+        broken_ = 0;
+        for (std::size_t n = 1; n < size(); ++n) broken_ += intactness(n) <= 0.0;
+    }
+
+private:
+    double intactness(std::size_t n) const {
+        return state_[n].whole == 0.0 ? 0.0 : 1.0 - state_[n].damage;
+    }
+    static void expect_state(const BondState<D>& s) {
+        bool good = (s.whole == 0.0 || s.whole == 1.0) && s.damage >= 0.0 && s.damage <= 1.0 &&
+                    s.opening >= 0.0 && s.max_opening >= s.opening && std::isfinite(s.max_opening);
+        for (int a = 0; a < D; ++a)
+            good = good && std::isfinite(s.jump[a]) && std::abs(s.normal[a]) <= 1.0 + 1e-9;
+        expect_fit(good, "bond_state");
+    }
+
+    Array<BondEnds> pairs_ = Array<BondEnds>(1);
+    Array<BondState<D>> state_ = Array<BondState<D>>(1);
+    Array<std::size_t> first_bond_;  // in bond_, of each point, and the end
+    Array<std::uint32_t> bond_;
+    Array<std::uint32_t> code_;
+    Array<std::size_t> first_code_;
+    double work_ = 0.0;
+    BondChange change_;
+    std::size_t broken_ = 0;
+};
+
+}  // namespace doseki
