@@ -51,10 +51,17 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
         const double stiffness = body.hourglass * body.shear_modulus(),
                      viscosity = body.hourglass * body.viscosity();
-        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}};
+        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}, 0.0};
         springs_damp_ |= viscosity > 0.0;
     }
-    correct_gradients();
+    set_parts(holders());
+    const Array<std::uint8_t> flat = correct_gradients();
+    for (std::size_t p = 0; p < size(); ++p)
+        if (flat[p] && !gone(p))
+            throw PhysicsFailure("an elastic body is too thin for its spacing of " +
+                                     std::to_string(body_of(p).spacing) +
+                                     " m: neighbours of a point do not span it",
+                                 FailureKind::empty);
     limit_timestep();
     compute_accelerations(0.0, gravity);
 }
@@ -70,15 +77,24 @@ void TotalLagrangian<D>::sort() {
         for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
         field.swap(sorted);
     };
-    reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(radii);
+    reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(gone_);
+    reorder(radii);
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;
     neighbours_.build(lanes<double>, rest_, radii, 0.0);
 }
 
-/// The records hold places at rest, so the deformation they give is what a gradient makes of none.
+/// A point of none is the only one of its part.
 template <int D>
-void TotalLagrangian<D>::correct_gradients() {
+void TotalLagrangian<D>::set_parts(std::span<const std::int32_t> part) {
+    for (std::size_t p = 0; p < size(); ++p)
+        solid_[p].part = part[p] >= 0 ? part[p] : -1.0 - static_cast<double>(p);
+}
+
+/// The records are to hold places at rest, so that the deformation they give is what a gradient
+/// makes of none. Returns the points of which there is no gradient.
+template <int D>
+Array<std::uint8_t> TotalLagrangian<D>::correct_gradients() {
     // The matrix is 1 inside; 0 where neighbours do not span the space.
     constexpr double min_determinant = 1e-4;
     correction_.resize(size());
@@ -88,12 +104,41 @@ void TotalLagrangian<D>::correct_gradients() {
         correction_[p] = inverse(sums.place, min_determinant);
     };
     sum_over_pairs(DeformationTerm<D>{records()}, finish);
-    for (std::size_t p = 0; p < size(); ++p)
-        if (flat[p])
-            throw PhysicsFailure("an elastic body is too thin for its spacing of " +
-                                     std::to_string(body_of(p).spacing) +
-                                     " m: neighbours of a point do not span it",
-                                 FailureKind::empty);
+    return flat;
+}
+
+template <int D>
+Array<std::uint8_t> TotalLagrangian<D>::flat_points(std::span<const std::int32_t> part) {
+    set_parts(part);
+    for (std::size_t p = 0; p < size(); ++p) solid_[p].x = rest_[p];
+    return correct_gradients();
+}
+
+template <int D>
+void TotalLagrangian<D>::divide(const Division& division) {
+    for (const std::int32_t parent : division.parent) {
+        const auto k = static_cast<std::size_t>(parent);
+        bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
+    }
+    for (std::size_t p = 0; p < size(); ++p) {
+        if (division.body[p] >= 0)
+            body_[p] = division.body[p];
+        else if (!gone(p))
+            gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
+    }
+    flat_points(holders());
+    limit_timestep();
+    update_deformations();
+}
+
+/// Those of the places of now.
+template <int D>
+void TotalLagrangian<D>::update_deformations() {
+    for (std::size_t p = 0; p < size(); ++p) solid_[p].x = x[p], motion_[p].v = v[p];
+    auto update = [this](std::size_t p, const DeformationAccumulators<double, D>& sums) {
+        update_point(p, sums);
+    };
+    sum_over_pairs(DeformationTerm<D>{records()}, update);
 }
 
 /// Accelerations by internal forces about rest, which are linear in small displacements and
@@ -135,6 +180,11 @@ template <int D>
 void TotalLagrangian<D>::update_point(std::size_t p,
                                       const DeformationAccumulators<double, D>& sums) {
     const DeformableBody& body = body_of(p);
+    if (gone(p)) {
+        deformation_[p] = identity<double, D>();
+        solid_[p].Q = solid_[p].F = solid_[p].F_rate = {};
+        return;
+    }
     const Mat<double, D>& B = correction_[p];
     deformation_[p] = sums.place * B;
     const Mat<double, D> rate = sums.velocity * B;
@@ -204,6 +254,14 @@ void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
 template <int D>
 Array<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
     Array<std::uint32_t> found;
+    for (const std::uint32_t j : pairs_of(p))
+        if (solid_[j].part == solid_[p].part) found.push_back(j);
+    return found;
+}
+
+template <int D>
+Array<std::uint32_t> TotalLagrangian<D>::pairs_of(std::size_t p) const {
+    Array<std::uint32_t> found;
     neighbours_.clusters()[p / lanes<double>].for_each_moving([&](std::uint32_t entry) {
         const std::uint32_t j = entry & ListEntry::index_mask;
         const Vec<double, D> apart = rest_[j] - rest_[p];
@@ -238,9 +296,8 @@ double TotalLagrangian<D>::timestep() const {
 template <int D>
 double TotalLagrangian<D>::strain_energy() const {
     double sum = 0.0;
-    for (std::size_t p = 0; p < size(); ++p) {
-        sum += volume(p) * body_of(p).energy(deformation_[p]);
-    }
+    for (std::size_t p = 0; p < size(); ++p)
+        if (!gone(p)) sum += volume(p) * body_of(p).energy(deformation_[p]);
     return sum;
 }
 
@@ -260,7 +317,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
         for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
         return result;
     };
-    normal_ = sorted(normal_);
+    normal_ = sorted(normal_), depth_ = sorted(depth_);
     surfaces_.start(solids_);
     flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
     for (std::size_t p = 0; p < particles.size(); ++p)
@@ -281,15 +338,20 @@ void DeformableBodies<D>::end_step(double dt, double memory) {
 
 /// Normals turn as surfaces do, with F^-T.
 template <int D>
+Vec<double, D> DeformableBodies<D>::normal(std::size_t k) const {
+    const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
+    const double length = std::sqrt(dot(n, n));
+    return length > 0.0 ? (1.0 / length) * n : n;
+}
+
+template <int D>
 double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) const {
     Array<double> gone(particles.size(), 0.0);
     for_each_point(particles, [&](std::size_t p, std::size_t k) {
         const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
         gone[p] = dot(step, step);
         particles.position[p] = particles.position[p] + step;
-        const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
-        const double length = std::sqrt(dot(n, n));
-        particles.wall.normal[p] = length > 0.0 ? (1.0 / length) * n : n;
+        particles.wall.normal[p] = normal(k), particles.wall.depth[p] = depth_[k];
         particles.acceleration[p] = acceleration_[k];
     });
     return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));
@@ -302,6 +364,61 @@ void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) 
                                     ? Vec<double, D>{}
                                     : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
     });
+}
+
+/// Points that their neighbours do not span hold to nothing.
+template <int D>
+Division DeformableBodies<D>::division_of(std::span<const std::int32_t> label) {
+    const Array<std::int32_t> before = solids_.holders();
+    Array<std::uint8_t> loose(size(), 0);
+    auto holds = [&](std::uint32_t p, std::uint32_t j) {
+        return before[p] >= 0 && before[p] == before[j] && label[p] == label[j] && !loose[p] &&
+               !loose[j];
+    };
+    for (;;) {
+        const auto part = components(size(), [&](std::uint32_t p, auto&& f) {
+            for (const std::uint32_t j : solids_.pairs_of(p))
+                if (holds(p, j)) f(j);
+        });
+        Division division = divided(part, before, bodies(), fewest_points<D>);
+        if (!division.any()) return division;
+        const Array<std::uint8_t> flat = solids_.flat_points(division.body);
+        bool more = false;
+        for (std::size_t p = 0; p < size(); ++p)
+            if (flat[p] && division.body[p] >= 0) loose[p] = 1, more = true;
+        if (!more) return division;
+    }
+}
+
+template <int D>
+Fragments<D> DeformableBodies<D>::divide(std::span<const std::int32_t> label) {
+    Array<std::int32_t> by_slot(size());
+    for (std::size_t k = 0; k < size(); ++k) by_slot[solids_.slot(k)] = label[k];
+    solids_.update_deformations();
+    const Array<Vec<double, D>> places = surfaces_.places(solids_);
+    const Division division = division_of(by_slot);
+    Fragments<D> fragments{};
+    if (!division.any()) return fragments;
+    const Array<std::int32_t> before = solids_.holders();
+    const CrackPoints<D> crack = crack_points(solids_, before, division.body);
+    for (const auto& points : division.dust) {
+        fragments.dust.push_back(dust_grain(solids_, points));
+        auto& normals = fragments.dust_normals.emplace_back();
+        for (const std::uint32_t p : points) normals.push_back(normal(p));
+    }
+    fragments.first_contact_point = surfaces_.first_contact_point();
+    fragments.curve_body = surfaces_.curve_bodies(solids_);
+    solids_.divide(division);
+    fragments.vertex = surfaces_.divide(solids_, division, before, crack, places);
+    turn_to_cracks(solids_, crack, before, division.body, normal_, depth_);
+    for (const std::int32_t parent : division.parent) {
+        const auto k = static_cast<std::size_t>(parent);
+        material_.push_back(std::int32_t{material_[k]}), group_.push_back(std::int32_t{group_[k]});
+        breaks_.push_back(std::uint8_t{breaks_[k]});
+    }
+    fragments.parent = division.parent, fragments.dust_parent = division.dust_parent;
+    fragments.divided = division.divides;
+    return fragments;
 }
 
 template <int D>

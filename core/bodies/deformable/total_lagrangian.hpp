@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
+#include "bodies/fragments/division.hpp"
 #include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
@@ -49,6 +50,7 @@ public:
             x.push_back(points.position[k]);
             v.push_back(points.clamped[k] ? Vec<double, D>{} : points.velocity[k]);
             body_.push_back(number), clamped_.push_back(points.clamped[k]);
+            gone_.push_back(0);
         }
         bodies_.push_back(body), apart_.push_back(apart);
     }
@@ -84,11 +86,28 @@ public:
         return bodies_[static_cast<std::size_t>(body_[p])];
     }
     std::int32_t body(std::size_t p) const { return body_[p]; }
+    /// Whether the point has become dust: it stays where it is and does nothing.
+    bool gone(std::size_t p) const { return gone_[p] != 0; }
+    /// The body of each point, -1 of those that are gone.
+    Array<std::int32_t> holders() const {
+        Array<std::int32_t> holder(size());
+        for (std::size_t p = 0; p < size(); ++p) holder[p] = gone(p) ? -1 : body_[p];
+        return holder;
+    }
     bool clamped(std::size_t p) const { return clamped_[p] != 0; }
     /// Where the point that was added as number k is stored.
     std::uint32_t slot(std::size_t k) const { return slot_[k]; }
     /// Points within the support of one at rest, itself among them.
+    Array<std::uint32_t> pairs_of(std::size_t p) const;
+    /// Those of the same body.
     Array<std::uint32_t> neighbours_of(std::size_t p) const;
+    /// Points whose neighbours of the same part do not span the space, for a part of each point.
+    Array<std::uint8_t> flat_points(std::span<const std::int32_t> part);
+    /// Gives points to new bodies, which are like their parents, or to none. What they had in
+    /// common with points of other bodies ends.
+    void divide(const Division& division);
+    /// Finds deformation gradients for the places of now.
+    void update_deformations();
     /// The place that goes with point p by its deformation gradient, from `offset` at rest: shares
     /// of points, which add up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
@@ -116,11 +135,15 @@ public:
         archive("elastic_position", x), archive("elastic_velocity", v),
             archive("elastic_body", body_);
         archive("elastic_clamped", clamped_), archive("elastic_slot", slot_);
+        archive("elastic_gone", gone_);
+        double stable_step = stable_step_;
+        archive("elastic_stable_step", stable_step);
         Array<Vec<double, D>> accelerations = a;
         Array<Mat<double, D>> deformations = deformation_;
         archive("elastic_acceleration", accelerations),
             archive("elastic_deformation", deformations);
         if (archive.loads()) {
+            expect_fit(stable_step > 0.0, "elastic_stable_step");
             expect_whole(numbers.size(), accelerations.size(), deformations.size());
             const auto slots = slot_;
             bodies_.clear();
@@ -128,6 +151,7 @@ public:
                 bodies_.push_back(DeformableBody::of(&numbers[k]));
             start(gravity);
             a = accelerations, deformation_ = deformations, slot_ = slots;
+            stable_step_ = stable_step;
         }
     }
 
@@ -141,7 +165,8 @@ private:
         const std::size_t n = x.size();
         expect_fit(numbers == apart_.size() * DeformableBody::count, "elastic_numbers");
         expect_fit(rest_.size() == n && v.size() == n && body_.size() == n &&
-                       clamped_.size() == n && slot_.size() == n && accelerations == n &&
+                       clamped_.size() == n && gone_.size() == n && slot_.size() == n &&
+                       accelerations == n &&
                        deformations == n,
                    "elastic_position");
         for (const std::int32_t body : body_) expect_index(body, apart_.size(), "elastic_body");
@@ -153,7 +178,8 @@ private:
 
     Vec<double, D> room_for(const DeformableBody& body, std::span<const Vec<double, D>> position);
     void sort();
-    void correct_gradients();
+    void set_parts(std::span<const std::int32_t> part);
+    Array<std::uint8_t> correct_gradients();
     void limit_timestep();
     template <class F>
     void sum_internal_forces(double half_dt, const F& take);
@@ -173,7 +199,7 @@ private:
     double reach_ = 0.0;           // how far along x places at rest are taken
     Array<Vec<double, D>> rest_;
     Array<std::int32_t> body_;
-    Array<std::uint8_t> clamped_;
+    Array<std::uint8_t> clamped_, gone_;
     Array<std::uint32_t> slot_;
     Array<Mat<double, D>> correction_, deformation_;
     Neighbours<D> neighbours_;
