@@ -71,7 +71,8 @@ public:
     void cut(Particles<D>& particles, std::span<const std::int32_t> label, double time) {
         if (label.size() != deformable.size())
             throw std::invalid_argument("cut: one label for each point of deformable bodies");
-        part(label, time);
+        deformable.cut(label);
+        part(time);
         place(particles);
         set_velocities(particles, 0.0);
     }
@@ -137,7 +138,7 @@ private:
     void number_bodies();
     /// Makes bodies of parts that do not hold together any more. Returns what their dust brings to
     /// the rigid bodies.
-    BodySums<D> part(std::span<const std::int32_t> label, double time);
+    BodySums<D> part(double time);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void shrink_dust(std::size_t first);
@@ -239,7 +240,7 @@ void Bodies<D>::number_bodies() {
 template <int D>
 BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return {};
-    const BodySums<D> before = rigid.sums();
+    BodySums<D> before = rigid.sums();
     rigid.begin_step(), deformable.begin_step();
     deformable_step_ = deformable.timestep();
     for (double left = dt; left > 0.0;) {
@@ -258,6 +259,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
         if (!deformable.empty()) deformable.push(step, gravity_);
         rigid.push(gravity_, step);
+        if (deformable.has_cracked()) before = before + part(t + dt - left);
         drift(0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
@@ -280,8 +282,8 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
 }
 
 template <int D>
-BodySums<D> Bodies<D>::part(std::span<const std::int32_t> label, double time) {
-    const Fragments<D> fragments = deformable.divide(label);
+BodySums<D> Bodies<D>::part(double time) {
+    const Fragments<D> fragments = deformable.divide();
     BodySums<D> born;
     if (!fragments.any()) return born;
     auto origin = [&](std::int32_t parent) -> Origin {

@@ -64,11 +64,16 @@ DeformableBody read_elastic_body(const NamedValues& table, const Array<const cha
     read("rho0", body.rho0), read("elastic_law", law);
     read("young_modulus", modulus), read("poisson_ratio", ratio);
     read("spacing", body.spacing), read("hourglass", body.hourglass), read("damping", body.damping);
+    Fracture<double> fracture;
+    std::int64_t seed = 0;
+    if (table.find("fracture")) read.law("fracture", fracture);
+    read("flaw_seed", seed, optional);
     for (const char* key : others) read.allow(key);
     read.finish();
+    body.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, seed));
     auto chosen = alternative<Hyperelastic<double>>(law);
     with_value(chosen, [&](auto& known) { known.lame = Lame<double>::of(modulus, ratio); });
-    body.law = std::make_shared<const ElasticLaw>(chosen);
+    body.law = std::make_shared<const ElasticLaw>(ElasticLaw{chosen, fracture});
     return body;
 }
 
@@ -140,18 +145,16 @@ void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
     const Array<const char*> own{"material", "particles", "rest",    "position", "velocity",
                                  "clamped",  "vertex",    "carrier", "crease",
-                                 "breaks",   "cell_count", "cell_node"};
+                                 "cell_count", "cell_node"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
-    bool breaks = false;
-    Reader read(table, "elastic body");
-    read("material", material), read("breaks", breaks, optional);
+    Reader(table, "elastic body")("material", material);
     ColumnReader column(table, "elastic body");
     const auto members = column.numbers<std::int32_t>("particles");
     const SolidPoints<D> points = solid_points<D>(column);
     bodies.deformable.add(particles, body, material, members, points,
-                          surface_of<D>(table, points.rest), cells_of(table), breaks);
+                          surface_of<D>(table, points.rest), cells_of(table));
 }
 
 template <int D>

@@ -94,8 +94,13 @@ template <bool periodic, class Term>
     auto neighbour = [](std::uint32_t entry) {
         return OneRow<Pack<real>>{entry & ListEntry::index_mask};
     };
+    [[maybe_unused]] PairEntry at{first, 0};
     list.for_each_moving([&](std::uint32_t entry) {
-        term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)));
+        if constexpr (SeesEntries<Term>)
+            term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)), at),
+                ++at.number;
+        else
+            term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)));
     });
     if constexpr (requires { term.after_moving(sums); }) term.after_moving(sums);
     list.for_each_fixed([&](std::uint32_t entry) {

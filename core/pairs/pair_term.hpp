@@ -13,9 +13,11 @@
 //       void add(Accumulators<T>&, const Pair<T, D>&, const auto& i, const auto& j) const;
 //       void add_fixed(...) const;                       // the same for a fixed j
 //       void after_moving(Accumulators<T>&) const;       // between the two; may be left out
+//       using SeesEntries = void;                        // may be left out, see pair_entry.hpp
 //   };
 
 #include "base/members.hpp"
+#include "pairs/pair_entry.hpp"
 #include "pairs/records.hpp"
 #include "pairs/rows.hpp"
 
@@ -55,6 +57,15 @@ concept AddsMoving =
     };
 
 template <class Term>
+concept AddsEntries =
+    requires(const Term& term, AccumulatorsOf<Term>& sums, LaneRows<typename Term::Real> i,
+             OneRow<Pack<typename Term::Real>> j, Pair<Pack<typename Term::Real>, Term::dim> pair,
+             PairEntry at) { term.add(sums, pair, term.load(i), term.load_moving(j), at); };
+
+template <class Term>
+concept AddsPairs = AddsMoving<Term> || AddsEntries<Term>;
+
+template <class Term>
 concept AddsFixed =
     requires(const Term& term, AccumulatorsOf<Term>& sums, LaneRows<typename Term::Real> i,
              OneRow<Pack<typename Term::Real>> j, Pair<Pack<typename Term::Real>, Term::dim> pair) {
@@ -63,7 +74,7 @@ concept AddsFixed =
 
 template <class Term>
 concept PairTerm = NamesItsNumbers<Term> && HasAccumulators<Term> && LoadsParticles<Term> &&
-                   LoadsMoving<Term> && LoadsFixed<Term> && AddsMoving<Term> && AddsFixed<Term>;
+                   LoadsMoving<Term> && LoadsFixed<Term> && AddsPairs<Term> && AddsFixed<Term>;
 
 template <class Term, class Epilogue>
 concept EpilogueOf = requires(const Epilogue& epilogue, const AccumulatorsOf<Term, double>& sums) {
@@ -88,7 +99,7 @@ constexpr bool check_pair_term() {
                       "a pair term needs `load_fixed(OneRow<T> j) const`: a fixed neighbour");
         if constexpr (HasAccumulators<Term> && LoadsParticles<Term> && LoadsMoving<Term> &&
                       LoadsFixed<Term>) {
-            static_assert(AddsMoving<Term>,
+            static_assert(AddsPairs<Term>,
                           "a pair term needs `add(Accumulators<T>&, const Pair<T, D>&, i, j) "
                           "const`, with i as load() and j as load_moving() give them");
             static_assert(AddsFixed<Term>,

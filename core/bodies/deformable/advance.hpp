@@ -8,6 +8,7 @@
 #include "bodies/deformable/interactions.hpp"
 #include "bodies/deformable/power_iteration.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/fracture/bonded_terms.hpp"
 #include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
 
@@ -51,17 +52,11 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
         const double stiffness = body.hourglass * body.shear_modulus(),
                      viscosity = body.hourglass * body.viscosity();
-        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}, 0.0};
+        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}};
         springs_damp_ |= viscosity > 0.0;
     }
-    set_parts(holders());
-    const Array<std::uint8_t> flat = correct_gradients();
-    for (std::size_t p = 0; p < size(); ++p)
-        if (flat[p] && !gone(p))
-            throw PhysicsFailure("an elastic body is too thin for its spacing of " +
-                                     std::to_string(body_of(p).spacing) +
-                                     " m: neighbours of a point do not span it",
-                                 FailureKind::empty);
+    find_bonds();
+    correct_gradients();
     limit_timestep();
     compute_accelerations(0.0, gravity);
 }
@@ -84,17 +79,9 @@ void TotalLagrangian<D>::sort() {
     neighbours_.build(lanes<double>, rest_, radii, 0.0);
 }
 
-/// A point of none is the only one of its part.
+/// The records hold places at rest, so the deformation they give is what a gradient makes of none.
 template <int D>
-void TotalLagrangian<D>::set_parts(std::span<const std::int32_t> part) {
-    for (std::size_t p = 0; p < size(); ++p)
-        solid_[p].part = part[p] >= 0 ? part[p] : -1.0 - static_cast<double>(p);
-}
-
-/// The records are to hold places at rest, so that the deformation they give is what a gradient
-/// makes of none. Returns the points of which there is no gradient.
-template <int D>
-Array<std::uint8_t> TotalLagrangian<D>::correct_gradients() {
+void TotalLagrangian<D>::correct_gradients() {
     // The matrix is 1 inside; 0 where neighbours do not span the space.
     constexpr double min_determinant = 1e-4;
     correction_.resize(size());
@@ -104,41 +91,12 @@ Array<std::uint8_t> TotalLagrangian<D>::correct_gradients() {
         correction_[p] = inverse(sums.place, min_determinant);
     };
     sum_over_pairs(DeformationTerm<D>{records()}, finish);
-    return flat;
-}
-
-template <int D>
-Array<std::uint8_t> TotalLagrangian<D>::flat_points(std::span<const std::int32_t> part) {
-    set_parts(part);
-    for (std::size_t p = 0; p < size(); ++p) solid_[p].x = rest_[p];
-    return correct_gradients();
-}
-
-template <int D>
-void TotalLagrangian<D>::divide(const Division& division) {
-    for (const std::int32_t parent : division.parent) {
-        const auto k = static_cast<std::size_t>(parent);
-        bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
-    }
-    for (std::size_t p = 0; p < size(); ++p) {
-        if (division.body[p] >= 0)
-            body_[p] = division.body[p];
-        else if (!gone(p))
-            gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
-    }
-    flat_points(holders());
-    limit_timestep();
-    update_deformations();
-}
-
-/// Those of the places of now.
-template <int D>
-void TotalLagrangian<D>::update_deformations() {
-    for (std::size_t p = 0; p < size(); ++p) solid_[p].x = x[p], motion_[p].v = v[p];
-    auto update = [this](std::size_t p, const DeformationAccumulators<double, D>& sums) {
-        update_point(p, sums);
-    };
-    sum_over_pairs(DeformationTerm<D>{records()}, update);
+    for (std::size_t p = 0; p < size(); ++p)
+        if (flat[p])
+            throw PhysicsFailure("an elastic body is too thin for its spacing of " +
+                                     std::to_string(body_of(p).spacing) +
+                                     " m: neighbours of a point do not span it",
+                                 FailureKind::empty);
 }
 
 /// Accelerations by internal forces about rest, which are linear in small displacements and
@@ -180,11 +138,6 @@ template <int D>
 void TotalLagrangian<D>::update_point(std::size_t p,
                                       const DeformationAccumulators<double, D>& sums) {
     const DeformableBody& body = body_of(p);
-    if (gone(p)) {
-        deformation_[p] = identity<double, D>();
-        solid_[p].Q = solid_[p].F = solid_[p].F_rate = {};
-        return;
-    }
     const Mat<double, D>& B = correction_[p];
     deformation_[p] = sums.place * B;
     const Mat<double, D> rate = sums.velocity * B;
@@ -214,6 +167,7 @@ void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
         solid_[p].x = x[p];
         motion_[p].v = v[p] + half_dt * a[p];
     });
+    if (bonds_.any()) return sum_bonded_forces(take);
     auto update = [this](std::size_t p, const DeformationAccumulators<double, D>& sums) {
         update_point(p, sums);
     };
@@ -249,13 +203,14 @@ void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     });
     if (!std::isfinite(sum))
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
+    if (bonds_.any()) advance_bonds(dt);
 }
 
 template <int D>
 Array<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
     Array<std::uint32_t> found;
     for (const std::uint32_t j : pairs_of(p))
-        if (solid_[j].part == solid_[p].part) found.push_back(j);
+        if (body_[j] == body_[p] && gone_[j] == gone_[p]) found.push_back(j);
     return found;
 }
 
@@ -273,16 +228,65 @@ Array<std::uint32_t> TotalLagrangian<D>::pairs_of(std::size_t p) const {
 template <int D>
 Array<PointShare> TotalLagrangian<D>::carriers(std::size_t p, const Vec<double, D>& offset) const {
     Array<PointShare> shares{{static_cast<std::uint32_t>(p), 1.0}};
-    const Vec<double, D> along = correction_[p] * offset;
+    const auto all = [](std::uint32_t) { return true; };
+    const Vec<double, D> along = inverse(shape_around(p, all), 0.0) * offset;
     for (const std::uint32_t j : neighbours_of(p)) {
         const Vec<double, D> R = rest_[p] - rest_[j];
-        const double F = WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(p).support()),
-                     share = -volume(j) * F * dot(R, along);
+        const double share = pair_weight(j, R) * dot(R, along);
         if (j == p || share == 0.0) continue;
         shares[0].share += share;
         shares.push_back({j, -share});
     }
     return shares;
+}
+
+/// Adds a multiple of u (x) v.
+template <int D>
+void add_outer(Mat<double, D>& sum, double factor, const Vec<double, D>& u,
+               const Vec<double, D>& v) {
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) sum(a, b) += factor * u[a] * v[b];
+}
+
+template <int D>
+template <class Holds>
+Mat<double, D> TotalLagrangian<D>::shape_around(std::size_t p, const Holds& holds) const {
+    Mat<double, D> shape{};
+    for (const std::uint32_t j : neighbours_of(p)) {
+        if (j == p || !holds(j)) continue;
+        const Vec<double, D> R = rest_[p] - rest_[j];
+        add_outer(shape, pair_weight(j, R), R, R);
+    }
+    return shape;
+}
+
+template <int D>
+Mat<double, D> TotalLagrangian<D>::motion_around(std::size_t p) const {
+    Mat<double, D> moved{};
+    for (const std::uint32_t j : neighbours_of(p)) {
+        if (j == p) continue;
+        const Vec<double, D> R = rest_[p] - rest_[j];
+        add_outer(moved, pair_weight(j, R), x[p] - x[j], R);
+    }
+    return moved * inverse(shape_around(p, [](std::uint32_t) { return true; }), 0.0);
+}
+
+template <int D>
+void TotalLagrangian<D>::divide(const Division& division) {
+    for (const std::int32_t parent : division.parent) {
+        const auto k = static_cast<std::size_t>(parent);
+        bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
+    }
+    for (std::size_t p = 0; p < size(); ++p) {
+        if (division.body[p] >= 0)
+            body_[p] = division.body[p];
+        else if (!gone(p))
+            gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
+    }
+    bonds_.part([this](std::uint32_t p, std::uint32_t j) {
+        return gone(p) || gone(j) || body_[p] != body_[j];
+    });
+    update_deformations();
 }
 
 template <int D>
@@ -364,61 +368,6 @@ void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) 
                                     ? Vec<double, D>{}
                                     : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
     });
-}
-
-/// Points that their neighbours do not span hold to nothing.
-template <int D>
-Division DeformableBodies<D>::division_of(std::span<const std::int32_t> label) {
-    const Array<std::int32_t> before = solids_.holders();
-    Array<std::uint8_t> loose(size(), 0);
-    auto holds = [&](std::uint32_t p, std::uint32_t j) {
-        return before[p] >= 0 && before[p] == before[j] && label[p] == label[j] && !loose[p] &&
-               !loose[j];
-    };
-    for (;;) {
-        const auto part = components(size(), [&](std::uint32_t p, auto&& f) {
-            for (const std::uint32_t j : solids_.pairs_of(p))
-                if (holds(p, j)) f(j);
-        });
-        Division division = divided(part, before, bodies(), fewest_points<D>);
-        if (!division.any()) return division;
-        const Array<std::uint8_t> flat = solids_.flat_points(division.body);
-        bool more = false;
-        for (std::size_t p = 0; p < size(); ++p)
-            if (flat[p] && division.body[p] >= 0) loose[p] = 1, more = true;
-        if (!more) return division;
-    }
-}
-
-template <int D>
-Fragments<D> DeformableBodies<D>::divide(std::span<const std::int32_t> label) {
-    Array<std::int32_t> by_slot(size());
-    for (std::size_t k = 0; k < size(); ++k) by_slot[solids_.slot(k)] = label[k];
-    solids_.update_deformations();
-    const Array<Vec<double, D>> places = surfaces_.places(solids_);
-    const Division division = division_of(by_slot);
-    Fragments<D> fragments{};
-    if (!division.any()) return fragments;
-    const Array<std::int32_t> before = solids_.holders();
-    const CrackPoints<D> crack = crack_points(solids_, before, division.body);
-    for (const auto& points : division.dust) {
-        fragments.dust.push_back(dust_grain(solids_, points));
-        auto& normals = fragments.dust_normals.emplace_back();
-        for (const std::uint32_t p : points) normals.push_back(normal(p));
-    }
-    fragments.first_contact_point = surfaces_.first_contact_point();
-    fragments.curve_body = surfaces_.curve_bodies(solids_);
-    solids_.divide(division);
-    fragments.vertex = surfaces_.divide(solids_, division, before, crack, places);
-    turn_to_cracks(solids_, crack, before, division.body, normal_, depth_);
-    for (const std::int32_t parent : division.parent) {
-        const auto k = static_cast<std::size_t>(parent);
-        material_.push_back(std::int32_t{material_[k]}), group_.push_back(std::int32_t{group_[k]});
-        breaks_.push_back(std::uint8_t{breaks_[k]});
-    }
-    fragments.parent = division.parent, fragments.dust_parent = division.dust_parent;
-    fragments.divided = division.divides;
-    return fragments;
 }
 
 template <int D>

@@ -6,7 +6,6 @@
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/surfaces.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
-#include "bodies/fragments/components.hpp"
 #include "bodies/fragments/dust.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
@@ -48,7 +47,7 @@ public:
     /// Vertices of its surface are carried by points numbered within the body.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
              std::span<const std::int32_t> members, const SolidPoints<D>& points,
-             std::span<const SurfaceVertex<D>> surface, const BodyCells& cells, bool breaks) {
+             std::span<const SurfaceVertex<D>> surface, const BodyCells& cells) {
         const auto first = static_cast<std::uint32_t>(solids_.size()),
                    first_vertex = CellNode::outline | static_cast<std::uint32_t>(surfaces_.size()),
                    own = static_cast<std::uint32_t>(members.size());
@@ -68,23 +67,27 @@ public:
             depth_.push_back(particles.wall.depth[p]);
         }
         solids_.add(body, points);
-        material_.push_back(material), breaks_.push_back(breaks);
+        material_.push_back(material);
         group_.push_back(members.empty() ? 0
                                          : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
 
     std::size_t bodies() const { return solids_.bodies(); }
     /// Whether a body may come apart.
-    bool breaks(std::size_t body) const { return breaks_[body] != 0; }
+    bool breaks(std::size_t body) const { return solids_.breaks(body); }
     std::int32_t material(std::size_t body) const { return material_[body]; }
     /// The [body.NAME] of the scenario that a body belongs to.
     std::int32_t group(std::size_t body) const { return group_[body]; }
     const TotalLagrangian<D>& solids() const { return solids_; }
     std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
 
+    /// Whether the last push has broken bonds.
+    bool has_cracked() const { return solids_.bonds().change().broken > 0; }
     /// Makes bodies of the parts of those that do not hold together any more, where there are any.
-    /// `label`: of each point in the order of adding; points of different labels do not hold.
-    Fragments<D> divide(std::span<const std::int32_t> label);
+    Fragments<D> divide();
+    /// Ends the bonds between points with different labels, in the order of adding; only bodies
+    /// that may break have bonds.
+    void cut(std::span<const std::int32_t> label);
 
     /// Call once, after all bodies are in.
     void start(Particles<D>& particles, const Vec<double, D>& gravity);
@@ -144,8 +147,7 @@ public:
         solids_.serialise(archive, gravity);
         surfaces_.serialise(archive, solids_);
         archive("deformable_normal", normal_), archive("deformable_material", material_);
-        archive("deformable_depth", depth_), archive("deformable_breaks", breaks_);
-        archive("deformable_group", group_);
+        archive("deformable_depth", depth_), archive("deformable_group", group_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
         if (archive.loads()) {
@@ -153,7 +155,6 @@ public:
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
                            material_.size() == solids_.bodies() &&
-                           breaks_.size() == solids_.bodies() &&
                            group_.size() == solids_.bodies(),
                        "deformable_normal");
         }
@@ -175,12 +176,11 @@ private:
     }
 
     TotalLagrangian<D> solids_;
-    Division division_of(std::span<const std::int32_t> label);
+    Division division() const;
 
     Array<Vec<double, D>> normal_;            // at rest
     Array<double> depth_;                     // below the surface [m]
     Array<std::int32_t> material_, group_;  // by body
-    Array<std::uint8_t> breaks_;
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;
 };

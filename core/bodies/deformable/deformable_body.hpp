@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <memory>
 
 #include "base/matrix.hpp"
@@ -15,8 +16,14 @@ struct DeformableBody {
     double spacing;    // of its points at rest [m]
     double hourglass;  // stiffness and damping of the springs over those of the body in shear
     double damping;    // viscosity of Kelvin-Voigt's damper over rho0 c_P spacing, Eq. (82)
+    std::uint64_t seed = 0;  // of the random numbers of its flaws
+
+    /// Of cracks over that of P waves (Lawn and Wilshaw, Fracture of Brittle Solids, 1975).
+    static constexpr double crack_speed = 0.4;
 
     double shear_modulus() const;  // at small strains [Pa]
+    double young_modulus() const;  // at small strains [Pa]
+    bool breaks() const;           // whether cracks can begin
     /// First Piola-Kirchhoff stress without damping.
     template <int D>
     Mat<double, D> stress(const Mat<double, D>& F) const;
@@ -35,7 +42,7 @@ struct DeformableBody {
     double viscosity() const { return damping * rho0 * wave_speed() * spacing; }
 
     /// As an archive keeps it.
-    static constexpr std::size_t count = 7;
+    static constexpr std::size_t count = 11;
     std::array<double, count> numbers() const;
     static DeformableBody of(const double* numbers);
 };

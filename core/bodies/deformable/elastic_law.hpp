@@ -1,11 +1,13 @@
 #pragma once
+#include "physics/fracture.hpp"
 #include "physics/hyperelastic.hpp"
 
 namespace doseki {
 
-/// The law of one body, which only what evaluates it knows.
+/// The laws of one body, which only what evaluates them knows.
 struct ElasticLaw {
     Hyperelastic<double> law;
+    Fracture<double> fracture{};
 };
 
 }  // namespace doseki

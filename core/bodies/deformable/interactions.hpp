@@ -35,13 +35,6 @@ struct ElasticTerm {
     DOSEKI_FN auto load_fixed(OneRow<T> j) const {
         return load(j);
     }
-    /// Factor of the gradient of the kernel, Eq. (25); zero between the parts of a body.
-    template <class T>
-    DOSEKI_FN static T gradient_factor(const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                                       const ElasticPoint<T, D>& j) {
-        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
-        return select(i.part == j.part, F, number<T>(0.0));
-    }
     template <class Sums, class T>
     DOSEKI_FN void add_fixed(Sums&, const Pair<T, D>&, const ElasticPoint<T, D>&,
                              const ElasticPoint<T, D>&) const {}
@@ -66,7 +59,7 @@ struct DeformationTerm : ElasticTerm<D> {
     template <class T>
     DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
                        const ElasticPoint<T, D>& j) const {
-        const T F = this->gradient_factor(pair, i, j);
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         add_velocity_gradient(sums.place, j.volume, i.x - j.x, F, pair.r_ij);
         add_velocity_gradient(sums.velocity, j.volume, i.v - j.v, F, pair.r_ij);
     }
@@ -81,7 +74,7 @@ struct MisfitTerm : ElasticTerm<D> {
     template <class T>
     DOSEKI_FN void add(MisfitMoments<T, D>& sums, const Pair<T, D>& pair,
                        const ElasticPoint<T, D>& i, const ElasticPoint<T, D>& j) const {
-        const T F = this->gradient_factor(pair, i, j);
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         sums.add(-(j.volume * F), i.x - j.x - i.F * pair.r_ij, i.v - j.v - i.F_rate * pair.r_ij);
     }
 };
@@ -95,7 +88,7 @@ struct InternalForceTerm : ElasticTerm<D> {
     template <class T>
     DOSEKI_FN void add(Vec<T, D>& force, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
                        const ElasticPoint<T, D>& j) const {
-        const T F = this->gradient_factor(pair, i, j);
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         const Vec<T, D> elastic =
             elastic_pair_force(i.Q, j.Q, i.kappa + j.kappa, pair.r_ij, i.x - j.x);
         const Vec<T, D> damping =

@@ -12,12 +12,11 @@ struct ElasticFields {
     Mat<T, D> Q;          // see less_springs
     Mat<T, D> F, F_rate;  // deformation gradient, and how fast it changes
     Mat<T, D> spin;       // of the misfits, Eq. (83a), times kappa_rate
-    T part;               // number of the body, below 0 of a point of none
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.x...), f(self.volume...), f(self.kappa...), f(self.kappa_rate...), f(self.Q...);
-        f(self.F...), f(self.F_rate...), f(self.spin...), f(self.part...);
+        f(self.F...), f(self.F_rate...), f(self.spin...);
     }
 };
 

@@ -58,7 +58,7 @@ public:
     Array<Vec<double, D>> places(const TotalLagrangian<D>& solids) const {
         Array<Vec<double, D>> places;
         for (const auto& [p, offset, crease, radius, key, curve] : vertices_)
-            places.push_back(solids.x[p] + solids.deformation(p) * offset);
+            places.push_back(solids.x[p] + solids.motion_around(p) * offset);
         return places;
     }
     /// Draws the surfaces of the parts of bodies, which the solids have become already; vertices
@@ -228,7 +228,7 @@ Array<PlacedVertex> DeformableSurfaces<D>::parts_of(const TotalLagrangian<D>& so
                 const std::uint32_t p = placed.vertex.point;
                 placed.vertex.curve = curve;
                 placed.vertex.offset =
-                    inverse(solids.deformation(p), 0.0) * (placed.place - solids.x[p]);
+                    inverse(solids.motion_around(p), 0.0) * (placed.place - solids.x[p]);
                 parts.push_back(placed);
             }
     }

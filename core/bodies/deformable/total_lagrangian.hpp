@@ -7,8 +7,11 @@
 #include "base/error.hpp"
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
+#include "bodies/fracture/bonds.hpp"
 #include "bodies/fragments/division.hpp"
+#include "bodies/rotation.hpp"
 #include "pairs/neighbour_lists.hpp"
+#include "physics/kernel/wendland_c2.hpp"
 
 namespace doseki {
 
@@ -16,6 +19,8 @@ template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
+template <class T, int D>
+struct SpringSums;
 
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
@@ -86,6 +91,7 @@ public:
         return bodies_[static_cast<std::size_t>(body_[p])];
     }
     std::int32_t body(std::size_t p) const { return body_[p]; }
+    bool breaks(std::size_t body) const { return bodies_[body].breaks(); }
     /// Whether the point has become dust: it stays where it is and does nothing.
     bool gone(std::size_t p) const { return gone_[p] != 0; }
     /// The body of each point, -1 of those that are gone.
@@ -101,16 +107,21 @@ public:
     Array<std::uint32_t> pairs_of(std::size_t p) const;
     /// Those of the same body.
     Array<std::uint32_t> neighbours_of(std::size_t p) const;
-    /// Points whose neighbours of the same part do not span the space, for a part of each point.
-    Array<std::uint8_t> flat_points(std::span<const std::int32_t> part);
-    /// Gives points to new bodies, which are like their parents, or to none. What they had in
-    /// common with points of other bodies ends.
-    void divide(const Division& division);
-    /// Finds deformation gradients for the places of now.
-    void update_deformations();
-    /// The place that goes with point p by its deformation gradient, from `offset` at rest: shares
-    /// of points, which add up to 1.
+    /// How the points of its body around point p have moved, as its deformation gradient says
+    /// where all bonds are whole.
+    Mat<double, D> motion_around(std::size_t p) const;
+    /// The place that goes with point p by this, from `offset` at rest: shares of points, which add
+    /// up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
+    /// Whether those of its neighbours to which point p holds span the space; holds(j).
+    template <class Holds>
+    bool is_spanned(std::size_t p, const Holds& holds) const {
+        constexpr double min_determinant = 1e-3;  // inside it is 1
+        return determinant(shape_around(p, holds)) > min_determinant;
+    }
+    /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
+    /// of different ones end.
+    void divide(const Division& division);
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
@@ -120,6 +131,19 @@ public:
     /// Of strain, without that of the springs [J], 2-D: [J/m].
     double strain_energy() const;
     double kinetic_energy() const;
+    /// Of bodies that may break: of their springs, that which went into cracks, and that which
+    /// damping took [J], 2-D: [J/m].
+    double spring_energy();
+    double fracture_work() const { return bonds_.work(); }
+    double damping_work() const { return damping_work_; }
+
+    /// Of bodies that may break: which pairs hold, how many do not, what the last step did.
+    const Bonds<D>& bonds() const { return bonds_; }
+    /// Ends for good the bonds between points a and b for which apart(a, b): those of two bodies.
+    template <class Apart>
+    void part_bonds(const Apart& apart) {
+        bonds_.part(apart);
+    }
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
     /// alone.
@@ -153,6 +177,9 @@ public:
             a = accelerations, deformation_ = deformations, slot_ = slots;
             stable_step_ = stable_step;
         }
+        bonds_.serialise(archive);
+        archive("elastic_damping_work", damping_work_);
+        expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
     }
 
     Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
@@ -176,10 +203,16 @@ private:
     /// Of the longest stable step.
     static constexpr double courant = 0.7;
 
+    /// Weight of the pair with a point j at R from another at rest, in sums over those of one body.
+    double pair_weight(std::size_t j, const Vec<double, D>& R) const {
+        return -volume(j) *
+               WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(j).support());
+    }
+    template <class Holds>
+    Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     Vec<double, D> room_for(const DeformableBody& body, std::span<const Vec<double, D>> position);
     void sort();
-    void set_parts(std::span<const std::int32_t> part);
-    Array<std::uint8_t> correct_gradients();
+    void correct_gradients();
     void limit_timestep();
     template <class F>
     void sum_internal_forces(double half_dt, const F& take);
@@ -194,6 +227,16 @@ private:
     void sum_over_pairs(const Term& term, const Epilogue& epilogue);
     ElasticTerm<D> records() const;
 
+    // Of bodies that may break: bodies/fracture/breaking.hpp.
+    void find_bonds();
+    template <class F>
+    void sum_bonded_forces(const F& take);
+    void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
+                       const Mat<double, D>& shape);
+    void damp_bonded_springs();
+    void update_deformations();
+    void advance_bonds(double dt);
+
     Array<DeformableBody> bodies_;
     Array<Vec<double, D>> apart_;  // by body: shift of its places at rest
     double reach_ = 0.0;           // how far along x places at rest are taken
@@ -205,6 +248,11 @@ private:
     Neighbours<D> neighbours_;
     Array<MotionRecord<double, D>> motion_;
     Array<ElasticRecord<D>> solid_;
+    Bonds<D> bonds_;
+    Array<Mat<double, D>> stress_;  // of breakable bodies, without damping
+    Array<std::uint8_t> spans_;     // whether the bonds of a point span the space
+    Array<double> damping_power_;   // of each point of a breakable body
+    double damping_work_ = 0.0;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
 };

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-ELASTIC_KEYS = ("clamped", "damping", "displacement", "elastic_law", "hourglass")
+ELASTIC_KEYS = (
+    "clamped", "damping", "displacement", "elastic_law", "flaw_seed", "hourglass"
+)  # fmt: skip
 OF_WHOLE_BODIES = ("kinematics", "spin", "settle")
 
 

@@ -32,8 +32,7 @@ class ElasticBody:
     spacing: float  # each particle has spacing^dim of its volume, m
     clamped: np.ndarray  # (n,) bool: does not move
     surface: ElasticSurface  # which touches other bodies
-    breaks: bool = False  # its parts are bodies, which the record follows
-    cells: Cells = field(default_factory=Cells)  # 2-D, of one that breaks
+    cells: Cells = field(default_factory=Cells)  # 2-D, of one that may break
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from .carried import (
 from .checks.groups import check_overlaps
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
+from .checks.fracture import fracture_warnings
 from .checks.resolution import resolution_warnings
 from .checks.terrain import terrain_findings
 from .contacts import contact_groups
@@ -89,6 +90,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     if moves:
         groups += walls
         warnings += resolution_warnings(bodies, groups)
+        warnings += fracture_warnings(bodies, made)
         check_overlaps(scenario, groups)
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)

@@ -6,10 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from ..scenario.materials import ELASTIC_DEFAULTS
+from ..scenario.materials import ELASTIC_DEFAULTS, FRACTURES, Material
 from ..scenario.model import Scenario
 from ..scene.bodies import ElasticBody
 from .protocol import CoreSimulation
+
+
+def fracture_table(material: Material) -> dict[str, Any]:
+    """How a material breaks: the law and its parameters."""
+    law = FRACTURES[material.fracture]
+    numbers = {p.name: material.of_laws[p.name] for p in law.parameters}
+    return {"fracture": law.name, **numbers}
 
 
 def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
@@ -19,7 +26,7 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
     modulus, ratio = material.elasticity
     given = {key: table.given(key) for key in ELASTIC_DEFAULTS}
     chosen = ELASTIC_DEFAULTS | {key: value for key, value in given.items() if value is not None}
-    return chosen | {
+    return chosen | fracture_table(material) | {
         "material": scenario.material_names.index(body.material),
         "rho0": material.rho0,
         "young_modulus": modulus,
@@ -33,7 +40,6 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
         "vertex": np.ascontiguousarray(body.surface.vertex),
         "carrier": np.ascontiguousarray(body.surface.carrier, np.int32),
         "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
-        "breaks": body.breaks,
         "cell_count": body.cells.count,
         "cell_node": body.cells.node,
     }

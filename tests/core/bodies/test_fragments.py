@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from doseki.scenario.load import load_scenario
-from doseki.scene.kinds.shaped import Shaped
 from doseki.solver.build import build_simulation
 
 TOP = """
@@ -28,6 +27,9 @@ rho0 = 1000
 speedsound = 90
 young_modulus = 1e7
 poisson_ratio = 0.3
+fracture = "cohesive"
+tensile_strength = 1e6
+fracture_energy = 1e4
 """
 DISC = """
 [body.a]
@@ -51,9 +53,8 @@ velocity = [{u}, {v}]
 
 
 @pytest.fixture
-def build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """Makes a simulation of a body "a" that may break."""
-    monkeypatch.setattr(Shaped, "breaks", True)
+def build(tmp_path: Path):
+    """Makes a simulation of a body "a" that may break, but is strong."""
 
     def make(tables: str, friction: float = 0.0, u: float = 0.0, v: float = 0.0, angle: float = 0):
         path = tmp_path / "case.toml"

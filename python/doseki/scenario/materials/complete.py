@@ -6,7 +6,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from .laws import EQUATIONS_OF_STATE, RHEOLOGIES, Law, owners, parameters_of
+from .laws import (
+    EQUATIONS_OF_STATE,
+    FRACTURES,
+    NO_FRACTURE,
+    RHEOLOGIES,
+    Law,
+    owners,
+    parameters_of,
+)
 from .material import BUILT_IN, DEFAULTS, MATERIAL_PARAMETERS, Material
 from .presets import without_preset
 
@@ -83,12 +91,15 @@ def _objections(material: Material, eos: str | None) -> Iterator[str]:
     """What is wrong with a material whose numbers are right by themselves."""
     if material.law == "solid" and material.rheology != "newtonian":
         yield f'rheology = "{material.rheology}" is for fluids; this material is a solid'
+    if material.law == "fluid" and material.fracture != NO_FRACTURE:
+        yield f'fracture = "{material.fracture}" is for solids; this material is a fluid'
     values = material.table()
     for parameter in MATERIAL_PARAMETERS:
         given = values[parameter.name] not in (parameter.default, None)
         if given and parameter.law not in (None, material.law):
             yield f"{parameter.name} is for {parameter.law}s; this material is a {material.law}"
     yield from _objections_of_law(material, "rheology", RHEOLOGIES, material.rheology)
+    yield from _objections_of_law(material, "fracture", FRACTURES, material.fracture)
     if eos is not None and material.law == "fluid":
         yield from _objections_of_law(material, "eos", EQUATIONS_OF_STATE, eos)
     if material.yield_strength > 0 and (material.cohesion > 0 or material.friction_angle > 0):

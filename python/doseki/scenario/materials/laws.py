@@ -1,7 +1,7 @@
 """The laws that a scenario chooses by name, with the parameters that only they have.
 
 The core knows each law under the same name, and its parameters under the same names: see
-core/physics/rheology.hpp, equation_of_state.hpp and hyperelastic.hpp.  A new law is declared here
+core/physics/rheology.hpp, equation_of_state.hpp, hyperelastic.hpp and fracture.hpp.  A new law is declared here
 and named there; what is not a parameter of every material stands with the law.
 """
 
@@ -126,7 +126,48 @@ HYPERELASTIC_LAWS = _table(
     Law("neo_hookean", "compressible rubber, eq. 81", schemes=(RESOLVED,)),
 )
 # Of deformable bodies that say nothing else.
-ELASTIC_DEFAULTS = {"elastic_law": "st_venant_kirchhoff", "damping": 0.02, "hourglass": 0.5}
+ELASTIC_DEFAULTS = {
+    "elastic_law": "st_venant_kirchhoff",
+    "damping": 0.02,
+    "hourglass": 0.5,
+    "flaw_seed": 1,
+}
+
+NO_FRACTURE = "none"
+
+
+def _breaking(
+    name: str, unit: str, doc: str, below: float = LIMIT
+) -> MaterialParameter:
+    return MaterialParameter(
+        name, unit, doc, above=0.0, below=below, default=0.0, law="solid", scheme=RESOLVED
+    )
+
+
+# How the material of a deformable body breaks: `fracture` of a material.
+FRACTURES = _table(
+    Law(NO_FRACTURE, "does not break", schemes=(RESOLVED,)),
+    Law(
+        "cohesive",
+        "stress across a crack falls as it opens, eq. 110",
+        parameters=(
+            _breaking("tensile_strength", "Pa", "tensile strength"),
+            _breaking("fracture_energy", "J/m2", "energy that a crack takes by its area"),
+        ),
+        needed=("tensile_strength", "fracture_energy"),
+        schemes=(RESOLVED,),
+    ),
+    Law(
+        "grady_kipp",
+        "damage that grows from flaws of a Weibull distribution, eqs. 112 to 114",
+        parameters=(
+            _breaking("weibull_k", "1/m3", "flaws of a volume below a strain of 1", below=1e99),
+            _breaking("weibull_m", "", "Weibull's exponent", below=100.0),
+        ),
+        needed=("weibull_k", "weibull_m"),
+        schemes=(RESOLVED,),
+    ),
+)
 
 
 def laws_of(family: Mapping[str, Law], scheme: str) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from ..schemes import RESOLVED, UETA2022
-from .laws import EQUATIONS_OF_STATE, RHEOLOGIES, owners, parameters_of
+from .laws import EQUATIONS_OF_STATE, FRACTURES, NO_FRACTURE, RHEOLOGIES, owners, parameters_of
 from .parameters import LIMIT, MaterialParameter
 
 LAWS = ("fluid", "solid")
@@ -108,11 +108,12 @@ _CONTACT = (
 
 
 def _with_owners(parameter: MaterialParameter) -> MaterialParameter:
-    names = owners(RHEOLOGIES, parameter) + owners(EQUATIONS_OF_STATE, parameter)
+    families = (RHEOLOGIES, EQUATIONS_OF_STATE, FRACTURES)
+    names = [name for family in families for name in owners(family, parameter)]
     return replace(parameter, doc=f"{parameter.doc} ({', '.join(names)})")
 
 
-_OF_LAWS = parameters_of((RHEOLOGIES, EQUATIONS_OF_STATE))
+_OF_LAWS = parameters_of((RHEOLOGIES, EQUATIONS_OF_STATE, FRACTURES))
 MATERIAL_PARAMETERS = (*_COMMON, *map(_with_owners, _OF_LAWS.values()), *_CONTACT)
 DEFAULTS = {parameter.name: parameter.default for parameter in MATERIAL_PARAMETERS}
 
@@ -130,8 +131,8 @@ class Material:
     """A material with the values of the laboratory, not yet scaled by xi.
 
     `law` says how stress follows from motion: "fluid" (viscous, eqs. 6-7) or "solid" (elastic,
-    eqs. 3-5, within a yield surface, eqs. 61-63).  `rheology` names one of RHEOLOGIES.  The numbers
-    are those of MATERIAL_PARAMETERS, in their units; `of_laws` has those of single laws.
+    eqs. 3-5, within a yield surface, eqs. 61-63).  `rheology` names one of RHEOLOGIES, `fracture` one of
+    FRACTURES.  The numbers are those of MATERIAL_PARAMETERS, in their units; `of_laws` has those of single laws.
     """
 
     name: str
@@ -151,6 +152,7 @@ class Material:
     cohesion: float = _default("cohesion")
     friction_angle: float = _default("friction_angle")
     rheology: str = "newtonian"
+    fracture: str = NO_FRACTURE  # of its deformable bodies
     has_sound: bool = True  # False: of a solid that was given no sound speed, and may be rigid
     of_laws: Mapping[str, float] = field(default_factory=_defaults_of_laws)
 

@@ -105,6 +105,49 @@ def _glass_beads(_: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+class Breaking(NamedTuple):
+    """A solid that breaks: density, kg/m3, Young's modulus, Pa, Poisson's ratio, and either
+    strength, Pa, with toughness, Pa m^0.5, or fracture energy, J/m2."""
+
+    density: float
+    young: float
+    poisson: float
+    strength: float
+    toughness: float = 0.0
+    energy: float = 0.0
+
+    def values(self, _: Mapping[str, Any]) -> dict[str, Any]:
+        """The numbers of a material; the fracture energy of a toughness is that of plane strain."""
+        energy = self.energy or self.toughness**2 * (1 - self.poisson**2) / self.young
+        return _rock(self.density, self.young, self.poisson) | {
+            "fracture": "cohesive",
+            "tensile_strength": self.strength,
+            "fracture_energy": energy,
+        }
+
+
+def _rock(density: float, young: float, poisson: float) -> dict[str, Any]:
+    return {"law": "solid", "rho0": density, "young_modulus": young, "poisson_ratio": poisson}
+
+
+def _basalt(_: Mapping[str, Any]) -> dict[str, Any]:
+    """Benz & Asphaug (Icarus 107, 1994): moduli of 26.7 GPa (bulk) and 22.7 GPa (shear), and the
+    flaws with which the impacts of Nakamura & Fujiwara came out as they were measured."""
+    return _rock(2700.0, 53.1e9, 0.169) | {
+        "fracture": "grady_kipp",
+        "weibull_k": 5e34,
+        "weibull_m": 8.5,
+    }
+
+
+# Toughness of Westerly granite and Berea sandstone: Atkinson & Meredith, in Fracture Mechanics of
+# Rock (1987); density, elasticity and strength are common values of such rock.  Concrete C30 by the
+# fib Model Code 2010: strength 0.3 * 30^(2/3) MPa (5.1-3a), fracture energy 73 * 38^0.18 J/m2
+# (5.1-9), Young's modulus 21.5 * 3.8^(1/3) GPa (5.1-21).
+_GRANITE = Breaking(2650.0, 60e9, 0.25, 10e6, toughness=1.6e6)
+_SANDSTONE = Breaking(2200.0, 14e9, 0.2, 4e6, toughness=0.28e6)
+_CONCRETE = Breaking(2400.0, 33.6e9, 0.2, 2.9e6, energy=140.5)
+
 PRESETS = {
     preset.name: preset
     for preset in (
@@ -122,10 +165,14 @@ PRESETS = {
             (),
             _glass_beads,
         ),
+        Preset("basalt", "basalt with flaws, Benz & Asphaug (1994), eq. 112", (), (), _basalt),
+        Preset("granite", "granite that breaks, eq. 110", (), (), _GRANITE.values),
+        Preset("sandstone", "sandstone that breaks, eq. 110", (), (), _SANDSTONE.values),
+        Preset("concrete", "concrete C30, fib Model Code 2010, eq. 110", (), (), _CONCRETE.values),
     )
 }
 KEYS = tuple(dict.fromkeys(k for p in PRESETS.values() for k in (*p.needed, *p.optional)))
-DECIDED = ("law", "rheology", "based_on")  # by a preset
+DECIDED = ("law", "rheology", "fracture", "based_on")  # by a preset
 
 
 def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:

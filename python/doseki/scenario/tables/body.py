@@ -123,6 +123,13 @@ class ShapedBody(WallKeys, BodyTable):
         description="elastic: springs over the shear modulus; default "
         f"{ELASTIC_DEFAULTS['hourglass']}",
     )
+    flaw_seed: int | None = Field(
+        None,
+        ge=0,
+        lt=2**53,
+        description='elastic, of a material with fracture = "grady_kipp": of its random flaws; '
+        f"default {ELASTIC_DEFAULTS['flaw_seed']}",
+    )
     spin: Spin | None = Field(
         None, description="free solids of the resolved scheme: initial rad/s; 3-D: a vector"
     )

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model
 
 from ..materials import (
+    FRACTURES,
     LAWS,
     MATERIAL_PARAMETERS,
     PRESETS,
@@ -14,6 +15,7 @@ from ..materials import (
     SOILS,
     MaterialParameter,
 )
+from ..schemes import RESOLVED
 from ..table import Only, Table
 from ..values.units import DENSITY, Measured, unit_named
 
@@ -40,6 +42,10 @@ _FIELDS: dict[str, Any] = {
     "rheology": (
         Literal[tuple(RHEOLOGIES)] | None,
         Field(None, description="how a fluid's viscosity follows"),
+    ),
+    "fracture": (
+        Annotated[Literal[tuple(FRACTURES)] | None, Only(scheme=RESOLVED)],
+        Field(None, description="how the bodies of a solid break that are elastic; default none"),
     ),
     "preset": (
         Literal[tuple(PRESETS)] | None,

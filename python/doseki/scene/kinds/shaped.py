@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...record.particles import BOUND, FIXED, FREE, ParticleSet
+from ...scenario.materials import NO_FRACTURE
 from ...scenario.tables.body import ShapedBody
 from ..bodies import ElasticBody, ElasticSurface
 from ..cells import Cells, cells_of
@@ -139,7 +140,6 @@ class Shaped(Body[S], Generic[S]):
                     spacing,
                     clamped[own],
                     surface,
-                    self.breaks,
                     self._cells(placed.position[own], surface, spacing),
                 )
             )
@@ -148,7 +148,7 @@ class Shaped(Body[S], Generic[S]):
     @property
     def breaks(self) -> bool:
         """Whether its bodies may come apart."""
-        return False
+        return self.scenario.materials[self.table.material].fracture != NO_FRACTURE
 
     def _cells(self, rest: np.ndarray, surface: ElasticSurface, spacing: float) -> Cells:
         """Those of a 2-D body that breaks, whose particles are at `rest`."""

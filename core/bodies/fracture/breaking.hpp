@@ -1,0 +1,114 @@
+#pragma once
+// Deformable bodies that may break: their sums over bonds, and the steps of those.
+
+#include "bodies/deformable/advance.hpp"
+#include "bodies/fracture/advance_bonds.hpp"
+
+namespace doseki {
+
+/// The bonds are numbered in the order of storage, which a restored state has too.
+template <int D>
+void TotalLagrangian<D>::find_bonds() {
+    bonds_.clear();
+    for (std::size_t p = 0; p < size(); ++p) {
+        if (!body_of(p).breaks()) continue;
+        Array<std::uint32_t> after;
+        for (const std::uint32_t j : pairs_of(p))
+            if (j > p) after.push_back(j);
+        std::sort(after.begin(), after.end());
+        for (const std::uint32_t j : after)
+            bonds_.add(static_cast<std::uint32_t>(p), j,
+                       -WendlandC2<D>::gradient_factor(norm(rest_[p] - rest_[j]),
+                                                       1.0 / body_of(p).support()));
+    }
+    if (!bonds_.any()) return;
+    bonds_.index(size());
+    for (std::size_t c = 0; c < neighbours_.clusters().size(); ++c) {
+        bonds_.begin_cluster();
+        neighbours_.clusters()[c].for_each_moving([&](std::uint32_t entry) {
+            for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes<double>); ++lane)
+                bonds_.add_code(c * static_cast<std::size_t>(lanes<double>) + lane, size(),
+                                entry & ListEntry::index_mask);
+        });
+    }
+    stress_.assign(size(), {}), spans_.assign(size(), 1), damping_power_.assign(size(), 0.0);
+}
+
+/// As update_point, with the matrix of the bonds that are left. Points whose bonds do not span the
+/// space have no stress: what holds them is that of their neighbours.
+template <int D>
+void TotalLagrangian<D>::update_bonded(std::size_t p,
+                                       const DeformationAccumulators<double, D>& sums,
+                                       const Mat<double, D>& shape) {
+    constexpr double min_determinant = 1e-3;  // inside it is 1
+    const DeformableBody& body = body_of(p);
+    spans_[p] = determinant(shape) > min_determinant;
+    if (!spans_[p]) {
+        correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
+        solid_[p].Q = solid_[p].F_rate = solid_[p].spin = {}, solid_[p].F = deformation_[p];
+        solid_[p].kappa = solid_[p].kappa_rate = damping_power_[p] = 0.0;
+        return;
+    }
+    correction_[p] = inverse(shape, min_determinant);
+    solid_[p].kappa = body.hourglass * body.shear_modulus();
+    solid_[p].kappa_rate = body.hourglass * body.viscosity();
+    update_point(p, sums);
+    stress_[p] = stress(p);
+    const Mat<double, D>& rate = solid_[p].F_rate;
+    const Mat<double, D> damping = kelvin_voigt(deformation_[p], rate, body.viscosity());
+    damping_power_[p] = volume(p) * trace(transposed(damping) * rate);
+}
+
+/// As damp_springs, with what that takes.
+template <int D>
+void TotalLagrangian<D>::damp_bonded_springs() {
+    auto turn = [this](std::size_t p, const SpringSums<double, D>& sums) {
+        ElasticRecord<D>& point = solid_[p];
+        const Mat<double, D> spin = misfit_spin(sums.moments);
+        point.Q = less_springs(point.Q, point.kappa_rate, point.F_rate - spin * point.F);
+        point.spin = point.kappa_rate * spin;
+        damping_power_[p] += volume(p) * point.kappa_rate * damped_square(sums, spin);
+    };
+    sum_over_pairs(Bonded<SpringTerm<D>>{{records()}, bonds_.rows()}, turn);
+}
+
+/// For the places and velocities in the records.
+template <int D>
+void TotalLagrangian<D>::update_deformations() {
+    auto update = [this](std::size_t p, const BondedDeformation<double, D>& sums) {
+        update_bonded(p, sums.now, sums.shape);
+    };
+    sum_over_pairs(BondedDeformationTerm<D>{{records()}, bonds_.rows()}, update);
+}
+
+template <int D>
+template <class F>
+void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
+    update_deformations();
+    if (springs_damp_) damp_bonded_springs();
+    sum_over_pairs(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
+}
+
+template <int D>
+double TotalLagrangian<D>::spring_energy() {
+    if (!bonds_.any()) return 0.0;
+    Array<double> energy(size());
+    auto add = [&](std::size_t p, const SpringSums<double, D>& sums) {
+        energy[p] = 0.5 * volume(p) * solid_[p].kappa * trace(sums.moments.square);
+    };
+    sum_over_pairs(Bonded<SpringTerm<D>>{{records()}, bonds_.rows()}, add);
+    return reduce(size(), 0.0, std::plus<>(), [&](std::size_t p) { return energy[p]; });
+}
+
+template <int D>
+void TotalLagrangian<D>::advance_bonds(double dt) {
+    damping_work_ += dt * reduce(size(), 0.0, std::plus<>(),
+                                 [this](std::size_t p) { return damping_power_[p]; });
+    auto point = [this](std::size_t p) {
+        return BondPoint<D>{rest_[p],   solid_[p].x, deformation_[p], correction_[p],
+                            stress_[p], volume(p),   solid_[p].kappa, spans_[p] != 0};
+    };
+    bonds_.advance(dt, point, [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
+}
+
+}  // namespace doseki
