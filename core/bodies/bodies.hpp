@@ -339,16 +339,12 @@ void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
         points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
     for (std::size_t s = 0; s < contact_.solids.size(); ++s)
         shapes.push_back(static_cast<std::int32_t>(s));
-    std::map<std::int32_t, std::int32_t> now;  // first curve of each body
-    for (std::size_t s = contact_.surfaces.size(); s-- > 0;)
+    std::map<std::int32_t, std::int32_t> now;  // the surface of each body
+    for (std::size_t s = 0; s < contact_.surfaces.size(); ++s)
         now[contact_.surfaces[s].body - static_cast<std::int32_t>(rigid.size())] =
             static_cast<std::int32_t>(contact_.solids.size() + s);
-    std::int32_t last = -1, nth = 0;
-    for (const std::int32_t body : fragments.curve_body) {
-        nth = body == last ? nth + 1 : 0, last = body;
-        const bool stays = !fragments.divided[static_cast<std::size_t>(body)];
-        shapes.push_back(stays ? now.at(body) + nth : -1);
-    }
+    for (const std::int32_t body : fragments.surface_body)
+        shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
     contacts_.renumber(points, shapes);
 }
 

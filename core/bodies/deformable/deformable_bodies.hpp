@@ -29,7 +29,7 @@ struct Fragments {
     Array<std::uint8_t> divided;       // each body that was there
     Array<std::int32_t> vertex;        // new numbers of vertices of surfaces
     std::size_t first_contact_point;   // of surfaces before
-    Array<std::int32_t> curve_body;    // of each curve of them
+    Array<std::int32_t> surface_body;  // of each of them
 
     bool any() const { return !parent.empty() || !dust.empty(); }
 };

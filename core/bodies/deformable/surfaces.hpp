@@ -33,11 +33,11 @@ public:
     /// A cell of a body in 2-D by the numbers of its points and vertices among all.
     void add_cell(std::span<const std::uint32_t> nodes) { cells_.add(nodes); }
     std::size_t size() const { return vertices_.size(); }
-    /// Body of each curve, as contacts number them.
-    Array<std::int32_t> curve_bodies(const TotalLagrangian<D>& solids) const {
+    /// Body of each surface, as contacts number them.
+    Array<std::int32_t> bodies(const TotalLagrangian<D>& solids) const {
         Array<std::int32_t> bodies;
         for (std::size_t v = 0; v < vertices_.size(); ++v)
-            if (v == 0 || !same_curve(v, v - 1, solids))
+            if (v == 0 || solids.body(point_of(v)) != bodies.back())
                 bodies.push_back(solids.body(point_of(v)));
         return bodies;
     }
@@ -162,13 +162,14 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const std::size_t k = point_of(v);
         const std::int32_t body = solids.body(k);
-        if (v == 0 || !same_curve(v, v - 1, solids)) {
+        if (v == 0 || body != solids.body(point_of(v - 1))) {
             first_vertex_.push_back(v);
             Surface<D>& surface = contact.surfaces.emplace_back();
             surface.body = first_body + body;
             surface.material = material[static_cast<std::size_t>(body)];
             surface.mass = solids.mass(k), surface.spacing = solids.body_of(k).spacing;
         }
+        if (v == 0 || !same_curve(v, v - 1, solids)) contact.surfaces.back().begin_curve();
         contact.surfaces.back().add(vertices_[v].crease != 0);
         carriers_.push_back(solids.carriers(k, vertices_[v].offset));
         patches_.emplace_back(solids.neighbours_of(k));

@@ -6,7 +6,23 @@
 
 namespace doseki {
 
-/// Points that those to which they hold do not span hold to nothing.
+/// Whether there is room for a ball around the middle of some points between those beside them.
+template <int D>
+bool has_room(const TotalLagrangian<D>& solids, const Array<std::uint32_t>& points) {
+    constexpr double near = 0.75;  // spacings: the diagonal of others' points passes the middle
+    Vec<double, D> middle{};
+    for (const std::uint32_t p : points) middle = middle + solids.rest_position(p);
+    middle = (1.0 / static_cast<double>(points.size())) * middle;
+    for (const std::uint32_t p : points)
+        for (const std::uint32_t j : solids.pairs_of(p))
+            if (std::ranges::find(points, j) == points.end() &&
+                norm(solids.rest_position(j) - middle) < near * solids.body_of(p).spacing)
+                return false;
+    return true;
+}
+
+/// Points that those to which they hold do not span hold to nothing, nor do points of dust that
+/// would be a ball in the way of others.
 template <int D>
 Division DeformableBodies<D>::division() const {
     const Array<std::int32_t> before = solids_.holders();
@@ -31,6 +47,11 @@ Division DeformableBodies<D>::division() const {
         bool more = false;
         for (std::uint32_t p = 0; found.any() && p < size(); ++p)
             if (found.body[p] >= 0 && !loose[p] && !is_spanned(p)) loose[p] = 1, more = true;
+        for (const Array<std::uint32_t>& points : found.dust)
+            if (points.size() > 1 && !has_room(solids_, points)) {
+                for (const std::uint32_t p : points) loose[p] = 1;
+                more = true;
+            }
         if (!more) return found;
     }
 }
@@ -49,7 +70,7 @@ Fragments<D> DeformableBodies<D>::divide() {
         for (const std::uint32_t p : points) normals.push_back(normal(p));
     }
     fragments.first_contact_point = surfaces_.first_contact_point();
-    fragments.curve_body = surfaces_.curve_bodies(solids_);
+    fragments.surface_body = surfaces_.bodies(solids_);
     solids_.divide(parts);
     fragments.vertex = surfaces_.divide(solids_, parts, before, crack, places);
     turn_to_cracks(solids_, crack, before, parts.body, normal_, depth_);

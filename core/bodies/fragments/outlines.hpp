@@ -42,7 +42,7 @@ public:
         : from_(sources) {
         for (std::size_t k = 0; k < known.size(); ++k) {
             const SurfaceVertex<2>& vertex = known[k].vertex;
-            if (k == 0 || !same_curve(known[k - 1], known[k])) curves_.emplace_back();
+            if (k == 0 || !same_curve(known[k - 1], known[k])) curves_.emplace_back().begin_curve();
             Surface<2>& curve = curves_.back();
             places_[vertex.key] = {curves_.size() - 1, curve.size()};
             curve.add(vertex.crease != 0);
