@@ -20,8 +20,8 @@ inline Principal<2> largest_principal(const Sym<double, 2>& s) {
     return {mean + radius, {{std::cos(angle), std::sin(angle)}}};
 }
 
-/// The eigenvalues are cosines of a third of an angle (Smith, Commun. ACM 4, 1961); the direction is
-/// normal to two columns of s - value.
+/// The eigenvalues are cosines of a third of an angle (Smith, Commun. ACM 4, 1961); the direction
+/// is normal to two columns of s - value.
 inline Principal<3> largest_principal(const Sym<double, 3>& s) {
     const double mean = (s(0, 0) + s(1, 1) + s(2, 2)) / 3.0;
     Mat<double, 3> rest = full(s);

@@ -38,7 +38,8 @@ public:
         NamedValues columns;
         columns["velocity"] = to_value(velocity);
         const auto by_number = ColumnReader(columns, "points").vectors<D>("velocity");
-        if (by_number.size() != bodies_.size()) throw nb::value_error("one velocity for each point");
+        if (by_number.size() != bodies_.size())
+            throw nb::value_error("one velocity for each point");
         for (std::size_t k = 0; k < by_number.size(); ++k)
             bodies_.v[bodies_.slot(k)] = by_number[k];
     }
@@ -108,7 +109,8 @@ void bind(nb::module_& m, const char* name) {
              nb::sig("def add(self, body: doseki.solver.protocol.Table, **points: numpy.ndarray) "
                      "-> None"),
              "Add a body (rho0, young_modulus, poisson_ratio, elastic_law, spacing, hourglass, "
-             "damping; fracture with the parameters of that law, flaw_seed) of points (rest, position, "
+             "damping; fracture with the parameters of that law, flaw_seed) of points (rest, "
+             "position, "
              "velocity, clamped).")
         .def("start", &B::start, unlocked)
         .def("advance", &B::advance, nb::arg("dt"), unlocked)

@@ -48,8 +48,17 @@ std::array<double, DeformableBody::count> DeformableBody::numbers() const {
         known.members([&](const char*, double& number) { of_fracture[k++] = number; });
     });
     const auto breaking = static_cast<double>(law->fracture.index());
-    return {rho0,     lambda,         mu,             index,   spacing, hourglass, damping,
-            breaking, of_fracture[0], of_fracture[1], static_cast<double>(seed)};
+    return {rho0,
+            lambda,
+            mu,
+            index,
+            spacing,
+            hourglass,
+            damping,
+            breaking,
+            of_fracture[0],
+            of_fracture[1],
+            static_cast<double>(seed)};
 }
 
 DeformableBody DeformableBody::of(const double* n) {

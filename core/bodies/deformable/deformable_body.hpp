@@ -13,9 +13,9 @@ struct ElasticLaw;  // deformable/elastic_law.hpp
 struct DeformableBody {
     double rho0;  // [kg/m^3]
     std::shared_ptr<const ElasticLaw> law;
-    double spacing;    // of its points at rest [m]
-    double hourglass;  // stiffness and damping of the springs over those of the body in shear
-    double damping;    // viscosity of Kelvin-Voigt's damper over rho0 c_P spacing, Eq. (82)
+    double spacing;          // of its points at rest [m]
+    double hourglass;        // stiffness and damping of the springs over those of the body in shear
+    double damping;          // viscosity of Kelvin-Voigt's damper over rho0 c_P spacing, Eq. (82)
     std::uint64_t seed = 0;  // of the random numbers of its flaws
 
     /// Of cracks over that of P waves (Lawn and Wilshaw, Fracture of Brittle Solids, 1975).

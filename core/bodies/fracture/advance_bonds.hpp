@@ -25,7 +25,7 @@ void Bonds<D>::add_code(std::size_t p, std::size_t points, std::uint32_t j) {
     std::uint32_t code = 0;
     if (p < points)
         for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-            const Ends& ends = pairs_[bond_[k]];
+            const BondEnds& ends = pairs_[bond_[k]];
             if (ends.a == p && ends.b == j) code = 2 * bond_[k];
             if (ends.b == p && ends.a == j) code = 2 * bond_[k] + 1;
         }
@@ -39,117 +39,167 @@ Sym<double, D> material_stress(const BondPoint<D>& point) {
     return symmetric_part(inverse(point.F, 0.0) * point.P);
 }
 
-/// Energy per weight that point i gives up when the vector R of a bond to it changes, Eq. (109).
+/// One bond, its points, and what happens to it in a step.
 template <int D>
-double Bonds<D>::released(const BondPoint<D>& i, const Vec<double, D>& R, const Vec<double, D>& r,
-                          const Vec<double, D>& change) {
-    if (!i.spans) return 0.0;
-    const Mat<double, D> S = i.P * transposed(i.B);
-    const Vec<double, D> misfit = r - i.F * R;
-    return dot(i.F * change, S * R + i.kappa * misfit) - dot(misfit, S * change);
-}
+class BondStep {
+public:
+    BondStep(const BondEnds& ends, const BondPoint<D>& a, const BondPoint<D>& b,
+             const DeformableBody& body, BondState<D>& state)
+        : ends_(ends),
+          a_(a),
+          b_(b),
+          body_(body),
+          state_(state),
+          rest_(a.rest - b.rest),
+          share_(ends.weight * a.volume * b.volume) {}
 
-/// The same when the bond stops to count.
-template <int D>
-double Bonds<D>::lost(const BondPoint<D>& i, const Vec<double, D>& R, const Vec<double, D>& r) {
-    if (!i.spans) return 0.0;
-    const Vec<double, D> misfit = r - i.F * R;
-    return dot(misfit, (i.P * transposed(i.B)) * R) + 0.5 * i.kappa * dot(misfit, misfit);
-}
-
-template <int D>
-CrackSite Bonds<D>::site(std::size_t n, const Vec<double, D>& normal, const Two& two,
-                         const DeformableBody& body) const {
-    const double c = body.wave_speed(), stiffness = body.rho0 * c * c / body.spacing;
-    const double along = dot(normal, two.R());
-    // Shares of bonds of the volume of a point: with these, all those across a direction have all.
-    const double volume = two.weight * 2.0 * two.a.volume * two.b.volume * along * along;
-    const double radius = (D == 2 ? 0.564 : 0.620) * body.spacing;  // of a ball of that volume
-    const std::uint64_t key = (std::uint64_t{pairs_[n].a} << 32) | pairs_[n].b;
-    return {stiffness, body.young_modulus(), volume, body.crack_speed * c / radius, key, body.seed};
-}
-
-template <int D>
-bool Bonds<D>::begin(BondState<D>& s, std::size_t n, const Two& two, const DeformableBody& body,
-                     const Sym<double, D>& stress) {
-    double square = 0.0;
-    for (const double element : full(stress).element) square += element * element;
-    if (!(square > 0.0)) return false;
-    const auto [tension, normal] = largest_principal(stress);
-    if (!(tension > 0.0)) return false;
-    const Vec<double, D> R = two.R();
-    const double along = dot(normal, R);
-    if (std::abs(along) < least_crossing * norm(R)) return false;
-    const CrackSite place = site(n, normal, two, body);
-    if (!with_value(body.law->fracture,
-                    [&](const auto& law) { return law.starts(tension, place); }))
-        return false;
-    s.normal = along > 0.0 ? normal : -1.0 * normal;
-    return true;
-}
-
-/// An open bond: its sides may have come back together, wherever along each other they are.
-template <int D>
-BondChange Bonds<D>::meet(BondState<D>& s, const Two& two) {
-    if (!two.a.spans || !two.b.spans) return {};
-    const Vec<double, D> R = two.R();
-    const Vec<double, D> gap = inverse(two.mean_deformation(), 0.0) * two.r() - R;
-    const double width = dot(gap, s.normal);
-    if (norm(gap) > reach * norm(R)) {
-        part(s);
-        return {};
+    /// `beside`: whether another bond of its points has a crack.
+    BondChange take(double dt, bool beside) {
+        if (!state_.cracked() && !begins(beside)) return {};
+        Crack crack{state_.opening, state_.max_opening, state_.damage};
+        const CrackSite place = site(state_.normal);
+        return with_value(body_.law->fracture, [&](const auto& law) {
+            return law.failed(crack) ? slide(dt, place) : widen(law, crack, dt, place);
+        });
     }
-    if (width > 0.0) return {};
-    s.jump = gap - width * s.normal, s.opening = 0.0, s.whole = 1.0;
-    return {0.0, 0, 1};
-}
 
-template <int D>
-BondChange Bonds<D>::step(std::size_t n, double dt, const Two& two, const DeformableBody& body) {
-    BondState<D>& s = state_[n];
-    if (s.parted != 0.0) return {};
-    if (s.whole == 0.0) return meet(s, two);
-    const Sym<double, D> stress = symmetric_part(
-        0.5 * (full(material_stress(two.a)) + full(material_stress(two.b))));
-    if (!s.cracked() && !begin(s, n, two, body, stress)) return {};
+private:
+    /// Of the length of a bond: below this part of it along the normal, a crack does not cross it.
+    static constexpr double least_crossing = 0.25;
+    /// Of what would take the stress of a bond away in one step of its crack, so that those of
+    /// neighbours do not overshoot together.
+    static constexpr double relaxation = 0.7;
+    /// Of the length of a bond: sides of a crack farther apart than this part for good.
+    static constexpr double reach = 0.1;
+    /// Of the sides of a crack: that of rock (Byerlee, Pure Appl. Geophys. 116, 1978).
+    static constexpr double friction = 0.6;
 
-    const CrackSite place = site(n, s.normal, two, body);
-    const double tension = dot(s.normal, stress * s.normal);
-    const Vec<double, D> R = two.R() + s.jump, r = two.r();
-    const double share = two.weight * two.a.volume * two.b.volume;
-    Crack crack{s.opening, s.max_opening, s.damage};
-    BondChange change;
-    with_value(body.law->fracture, [&](const auto& law) {
-        const bool had_failed = law.failed(crack);
-        if (had_failed && tension > 0.0) {
-            s.whole = 0.0;
-            change = {share * (lost(two.a, R, r) + lost(two.b, R, r)), 0, 1};
-            return;
-        }
+    Vec<double, D> at_rest() const { return rest_ + state_.jump; }
+    Vec<double, D> now() const { return a_.x - b_.x; }
+
+    /// Force over the weight with which point i resists a change of the jump, Eq. (109).
+    Vec<double, D> pull_of(const BondPoint<D>& i) const {
+        if (!i.spans) return {};
+        const Mat<double, D> S = i.P * transposed(i.B);
+        const Vec<double, D> misfit = now() - i.F * at_rest();
+        return transposed(i.F) * (S * at_rest() + i.kappa * misfit) - transposed(S) * misfit;
+    }
+    /// The same of both points.
+    Vec<double, D> pull() const { return pull_of(a_) + pull_of(b_); }
+    /// Its area over the weight, for a crack of this normal.
+    double area(const Vec<double, D>& normal) const { return 2.0 * std::abs(dot(normal, rest_)); }
+    /// Energy that point i loses with the bond.
+    double lost_by(const BondPoint<D>& i) const {
+        if (!i.spans) return 0.0;
+        const Vec<double, D> misfit = now() - i.F * at_rest();
+        return dot(misfit, i.P * (transposed(i.B) * at_rest())) +
+               0.5 * i.kappa * dot(misfit, misfit);
+    }
+
+    CrackSite site(const Vec<double, D>& normal) const {
+        const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
+        const double along = dot(normal, rest_);
+        // With these shares, all bonds across a direction have the volume of the body.
+        const double volume = 2.0 * share_ * along * along;
+        const double radius = (D == 2 ? 0.564 : 0.620) * body_.spacing;  // of a ball as large
+        const std::uint64_t key = (std::uint64_t{ends_.a} << 32) | ends_.b;
+        const double growth = DeformableBody::crack_speed * c / radius;
+        return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed};
+    }
+
+    /// A bond beside a crack is stretched by it though its points have little stress: there, what it
+    /// bears itself counts too.
+    bool begins(bool beside) {
+        const auto [stress, normal] = largest_principal(
+            symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))));
+        const double along = dot(normal, rest_);
+        if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
+        const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;
+        const double own = beside ? dot(pull(), outward) / area(outward) : 0.0,
+                     tension = max(stress, own);
+        const CrackSite place = site(outward);
+        if (!with_value(body_.law->fracture,
+                        [&](const auto& law) { return law.starts(tension, place); }))
+            return false;
+        state_.normal = outward;
+        return true;
+    }
+
+    /// Eq. (111): the crack of a bond that still bears tension.
+    template <class Law>
+    BondChange widen(const Law& law, Crack& crack, double dt, const CrackSite& place) {
+        const Vec<double, D> normal = state_.normal;
+        const double tension = dot(pull(), normal) / area(normal);
         law.grow(crack, tension, dt, place);
-        const double excess = had_failed ? tension : tension - law.traction(crack, place),
-                     slope = had_failed ? 0.0 : law.slope(crack, tension, place);
-        crack.opening = max(
-            0.0, crack.opening + relaxation * excess / (place.stiffness + slope));
+        const double excess = tension - law.traction(crack, place),
+                     stiffness = place.stiffness + law.slope(crack, tension, place);
+        crack.opening = max(0.0, crack.opening + relaxation * excess / stiffness);
         crack.max_opening = max(crack.max_opening, crack.opening);
         law.grow(crack, 0.0, 0.0, place);
-        const Vec<double, D> widening = (crack.opening - s.opening) * s.normal;
-        change.work = share * (released(two.a, R, r, widening) + released(two.b, R, r, widening));
-        change.broken = !had_failed && law.failed(crack);
-        s.jump = s.jump + widening;
-    });
-    s.opening = crack.opening, s.max_opening = crack.max_opening, s.damage = crack.damage;
-    return change;
-}
+        const double work = set_jump(state_.jump + (crack.opening - state_.opening) * normal);
+        state_.opening = crack.opening, state_.max_opening = crack.max_opening;
+        state_.damage = crack.damage;
+        return {work, law.failed(crack) ? 1u : 0u, 0};
+    }
+
+    /// A broken bond: its sides go apart without a force, press on each other where they meet, and
+    /// slide there when friction does not hold them.
+    BondChange slide(double dt, const CrackSite& place) {
+        const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
+        const double ease = relaxation / place.stiffness, pressed = -dot(traction, normal);
+        const Vec<double, D> along = traction + pressed * normal;
+        const Vec<double, D> going = dt * (inverse(mean_deformation(), 0.0) * (a_.v - b_.v));
+        Vec<double, D> jump = state_.jump;
+        double opening = state_.opening - ease * pressed + (opens() ? dot(going, normal) : 0.0);
+        if (opening > 0.0) {
+            jump = jump + going + ease * traction;
+        } else {
+            const double hold = friction * max(0.0, pressed), shear = norm(along);
+            if (shear > hold) jump = jump + (ease * (1.0 - hold / shear)) * along;
+        }
+        opening = max(0.0, opening);
+        jump = jump + (opening - state_.opening - dot(jump - state_.jump, normal)) * normal;
+        const double work = set_jump(jump);
+        state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
+        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
+        const double lost = share_ * (lost_by(a_) + lost_by(b_));
+        state_.whole = 0.0;
+        return {work + lost, 0, 1};
+    }
+    bool opens() const { return state_.opening > 0.0; }
+
+    Mat<double, D> mean_deformation() const {
+        if (!a_.spans) return b_.F;
+        return b_.spans ? 0.5 * (a_.F + b_.F) : a_.F;
+    }
+    /// Returns the energy that this takes.
+    double set_jump(const Vec<double, D>& jump) {
+        const double work = share_ * dot(pull(), jump - state_.jump);
+        state_.jump = jump;
+        return work;
+    }
+
+    const BondEnds& ends_;
+    BondPoint<D> a_, b_;
+    const DeformableBody& body_;
+    BondState<D>& state_;
+    Vec<double, D> rest_;
+    double share_;
+};
 
 template <int D>
 template <class Point, class Body>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
+    Array<std::uint8_t> at_crack(first_bond_.size() - 1, 0);
+    for (std::size_t n = 1; n < size(); ++n)
+        if (state_[n].opening > 0.0) at_crack[pairs_[n].a] = at_crack[pairs_[n].b] = 1;
     change_ = reduce(size() - 1, BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
-        const std::size_t n = k + 1;
-        const Ends& ends = pairs_[n];
-        if (state_[n].parted != 0.0) return BondChange{};
-        return step(n, dt, {point(ends.a), point(ends.b), ends.weight}, body(ends.a));
+        const BondEnds& ends = pairs_[k + 1];
+        BondState<D>& state = state_[k + 1];
+        if (state.whole == 0.0) return BondChange{};
+        const bool beside = at_crack[ends.a] != 0 || at_crack[ends.b] != 0;
+        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
+            .take(dt, beside);
     });
     work_ += change_.work, broken_ += change_.broken;
 }

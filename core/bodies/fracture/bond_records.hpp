@@ -21,9 +21,8 @@ template <int D>
 struct BondState {
     Vec<double, D> jump{};    // at rest: turns with the body
     Vec<double, D> normal{};  // of its crack at rest; zero before there is one
-    double whole = 1.0;
+    double whole = 1.0;       // 0: it is gone for good
     double opening = 0.0, max_opening = 0.0, damage = 0.0;  // see Crack
-    double parted = 0.0;                                    // 1: for good, also where pressed
 
     bool cracked() const { return dot(normal, normal) > 0.0; }
 };

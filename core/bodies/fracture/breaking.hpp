@@ -105,10 +105,12 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     damping_work_ += dt * reduce(size(), 0.0, std::plus<>(),
                                  [this](std::size_t p) { return damping_power_[p]; });
     auto point = [this](std::size_t p) {
-        return BondPoint<D>{rest_[p],   solid_[p].x, deformation_[p], correction_[p],
-                            stress_[p], volume(p),   solid_[p].kappa, spans_[p] != 0};
+        return BondPoint<D>{rest_[p],        solid_[p].x,     v[p],
+                            deformation_[p], correction_[p],  stress_[p],
+                            volume(p),       solid_[p].kappa, spans_[p] != 0};
     };
-    bonds_.advance(dt, point, [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
+    bonds_.advance(dt, point,
+                   [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
 }
 
 }  // namespace doseki

@@ -35,8 +35,7 @@ struct Cohesive {
     }
     /// Of the traction over the opening, where that makes a step of the opening smaller.
     T slope(const Crack& crack, T tension, const CrackSite& site) const {
-        const bool widens =
-            crack.opening >= crack.max_opening && tension >= traction(crack, site);
+        const bool widens = crack.opening >= crack.max_opening && tension >= traction(crack, site);
         return widens || !(crack.max_opening > T(0))
                    ? T(0)
                    : envelope(crack.max_opening) / crack.max_opening;

@@ -1,0 +1,169 @@
+"""Bars that are pulled and discs that are pressed until they break; 2-D."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from doseki.scenario.materials import ELASTIC_DEFAULTS
+
+from .conftest import lattice
+
+ROCK = {"rho0": 2600.0, "young_modulus": 50e9, "poisson_ratio": 0.2}
+GRANITE = {"fracture": "cohesive", "tensile_strength": 10e6, "fracture_energy": 100.0}
+WAVE = 4600.0  # m/s, of P waves in the rock
+LEDGER = ("kinetic_energy", "strain_energy", "spring_energy", "fracture_work", "damping_work")
+
+
+def bodies_of(
+    core: ModuleType, rest: np.ndarray, spacing: float, clamped: np.ndarray, **material: Any
+) -> Any:
+    """One started body of rock in 2-D, at rest."""
+    bodies = getattr(core, f"ElasticBodies{rest.shape[1]}")()
+    table = ELASTIC_DEFAULTS | ROCK | {"spacing": spacing} | material
+    if table.get("fracture", "none") != "cohesive":
+        for key in ("tensile_strength", "fracture_energy"):
+            table.pop(key, None)
+    bodies.add(
+        table,
+        rest=np.ascontiguousarray(rest),
+        position=np.ascontiguousarray(rest),
+        velocity=np.zeros_like(rest),
+        clamped=clamped.astype(np.uint8),
+    )
+    bodies.start()
+    return bodies
+
+
+def pieces(bodies: Any) -> list[int]:
+    """How many points each piece has whose bonds hold, the largest first; single ones left out."""
+    bonds, count = bodies.bonds(), len(bodies.state()["mass"])
+    holds = bonds["intactness"] > 0
+    pairs = (np.ones(holds.sum()), (bonds["a"][holds], bonds["b"][holds]))
+    _, label = connected_components(coo_matrix(pairs, shape=(count, count)), directed=False)
+    sizes = np.sort(np.bincount(label))[::-1]
+    return [int(size) for size in sizes if size > 1]
+
+
+def total(state: dict[str, Any]) -> float:
+    """All energy: of motion and strain, and what cracks and damping took, J/m."""
+    return float(sum(state[key] for key in LEDGER))
+
+
+class Bar:
+    """A bar of 5 by 2 cm, held at one end and pulled at the other; a notch decides where it breaks.
+
+    Its Poisson's ratio is 0, so that the clamps leave the stress even.
+    """
+
+    length, width = 0.05, 0.02
+
+    def __init__(self, core: ModuleType, across: int, notch: float = 0.0025, **material: Any):
+        self.material = GRANITE | {"poisson_ratio": 0.0} | material
+        spacing = self.width / across
+        points = lattice((2 * round(0.5 * self.length / spacing), across), spacing)
+        side = np.abs(points[:, 1]) > 0.5 * self.width - notch
+        points = points[~(side & (np.abs(points[:, 0]) < 0.75 * spacing))]
+        end = np.abs(points[:, 0]).max() - 1.5 * spacing
+        self.points, self.clamped = points, np.abs(points[:, 0]) > end
+        self.area = self.width - 2 * notch
+        self.bodies = bodies_of(core, points, spacing, self.clamped, **self.material)
+        self.rows: list[tuple[float, float, float]] = []
+
+    @property
+    def fracture_energy(self) -> float:
+        """Of the crack, J/m."""
+        return self.material["fracture_energy"] * self.area
+
+    def pull(self, by: float, slowness: float = 80.0, rows: int = 200) -> Bar:
+        """Lengthen it by so much, m, while waves go through it `slowness` times."""
+        time = slowness * self.length / WAVE
+        velocity = np.zeros_like(self.points)
+        share = np.clip(self.points[:, 0] / self.length + 0.5, 0, 1)
+        velocity[:, 0] = np.where(self.clamped, np.round(share), share) * by / time
+        self.bodies.set_velocity(velocity)
+        for _ in range(rows):
+            self.bodies.advance(time / rows)
+            state = self.bodies.state()
+            stress = state["stress"][~self.clamped, 0, 0].mean()
+            self.rows.append((stress, state["fracture_work"], total(state)))
+        return self
+
+    @property
+    def stress(self) -> np.ndarray:
+        """Mean stress along it, Pa."""
+        return np.array(self.rows)[:, 0]
+
+    @property
+    def taken(self) -> float:
+        """Energy that the crack took, J/m."""
+        return self.rows[-1][1]
+
+    def work_at(self, share: float) -> float:
+        """The same when it was pulled by that share, J/m."""
+        return self.rows[int(share * len(self.rows))][1]
+
+
+class Disc:
+    """A disc of 5 cm, pressed along y on two arcs of 16 degrees (the Brazilian test)."""
+
+    diameter, arc = 0.05, 8.0
+
+    def __init__(self, core: ModuleType, across: int, angle: float, **material: Any):
+        self.spacing = self.diameter / across
+        points = lattice((across + 4, across + 4), self.spacing)
+        points = points[np.linalg.norm(points, axis=1) < 0.5 * self.diameter]
+        turn = np.radians(angle)
+        matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+        self.points = points @ matrix.T
+        self.material = material
+        none = np.zeros(len(points), bool)
+        self.bodies = bodies_of(core, self.points, self.spacing, none, **material)
+
+    def press(self, slowness: float = 40.0) -> Disc:
+        """Load it ever more until it is split, at most by half more than it should bear."""
+        x, y = self.points.T
+        near = np.hypot(x, y) > 0.5 * self.diameter - 2 * self.spacing
+        arc = near & (np.abs(np.degrees(np.arctan2(x, np.abs(y)))) < self.arc)
+        expected = 0.5 * np.pi * self.diameter * self.material["tensile_strength"]
+        time, steps = slowness * self.diameter / WAVE, 400
+        self.load = 0.0
+        for step in range(steps):
+            self.load = 1.5 * expected * (step + 0.5) / steps
+            force = np.zeros_like(self.points)
+            for up in (y > 0, y < 0):
+                force[arc & up, 1] = -np.sign(y[up][0]) * self.load / (arc & up).sum()
+            self.bodies.set_load(force)
+            self.bodies.advance(1.5 * time / steps)
+            if self.split > 0.8:
+                break
+        return self
+
+    @property
+    def broken(self) -> np.ndarray:
+        """Middles of broken bonds at rest, m."""
+        bonds = self.bodies.bonds()
+        gone = bonds["intactness"] <= 0
+        return 0.5 * (self.points[bonds["a"]] + self.points[bonds["b"]])[gone]
+
+    @property
+    def split(self) -> float:
+        """Part of the loaded diameter, its ends left out, along which bonds are broken."""
+        x, y = self.broken.T
+        core = (np.abs(x) < 0.15 * self.diameter) & (np.abs(y) < 0.4 * self.diameter)
+        rows = np.unique(np.round(y[core] / (2 * self.spacing)))
+        return len(rows) * 2 * self.spacing / (0.8 * self.diameter)
+
+    @property
+    def strength(self) -> float:
+        """2P/(pi d t) when it split, Pa."""
+        return 2 * self.load / (np.pi * self.diameter)
+
+    @property
+    def off_the_diameter(self) -> float:
+        """Median distance of broken bonds from it, over the diameter."""
+        return float(np.median(np.abs(self.broken[:, 0])) / self.diameter)
