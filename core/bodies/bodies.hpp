@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <span>
 
 #include "base/array.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/fragments/dust_room.hpp"
+#include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "bodies/rigid_particles.hpp"
@@ -45,8 +48,33 @@ public:
     /// Call once after everything is in.
     void start(Particles<D>& particles) {
         deformable.start(particles, gravity_);
+        number_bodies();
         prepare_contacts();
         find_contacts();
+    }
+
+    /// Where bodies come from, by their index of a kind.
+    const Origins& rigid_origins() const { return rigid_origins_; }
+    const Origins& deformable_origins() const { return deformable_origins_; }
+    /// Number of the body of a particle, see Origin; -1: none.
+    std::int32_t number_of(const Particles<D>& particles, std::size_t p) const {
+        if (deformable.has(particles, p))
+            return deformable_origins_[static_cast<std::size_t>(
+                                           deformable.body_of_point(particles.point(p)))]
+                .number;
+        const std::int32_t k = rigid_body_of(particles, p);
+        return k < 0 ? -1 : rigid_origins_[static_cast<std::size_t>(k)].number;
+    }
+
+    /// Cuts deformable bodies at a time [s] between steps: points, in the order of adding, with
+    /// different labels do not hold together any more.
+    void cut(Particles<D>& particles, std::span<const std::int32_t> label, double time) {
+        if (label.size() != deformable.size())
+            throw std::invalid_argument("cut: one label for each point of deformable bodies");
+        deformable.cut(label);
+        part(time);
+        place(particles);
+        set_velocities(particles, 0.0);
     }
 
     /// Largest step that motion without a fluid may have.
@@ -70,8 +98,9 @@ public:
     BodyStep<D> advance(const MovingWalls<D>& walls, double t, double dt);
     /// Puts particles where their bodies are, with the velocity that they have when the fluid will
     /// have acted for `ahead` more; returns the largest distance that one went.
-    double place(Particles<D>& particles, double ahead) const {
+    double place(Particles<D>& particles, double ahead) {
         if (!any_moves()) return 0.0;
+        bind_dust(particles);
         const double bent = deformable.place(particles, contacts_.domain());
         deformable.set_velocities(particles, ahead);
         return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), ahead));
@@ -107,6 +136,17 @@ private:
     static constexpr double max_contact_steps = 50.0;
     /// More in one step come of speeds or strains that have gone wrong.
     static constexpr double most_contact_steps = 1e6;
+
+    void number_bodies();
+    /// Makes bodies of parts that do not hold together any more. Returns what their dust brings to
+    /// the rigid bodies.
+    BodySums<D> part(double time);
+    void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
+                  const Origin& origin);
+    void shrink_dust(std::size_t first);
+    void renumber_contacts(const Fragments<D>& fragments);
+    /// Particles of what has become dust are points of rigid bodies from now on.
+    void bind_dust(Particles<D>& particles);
 
     void prepare_contacts() {
         contact_ = {};
@@ -159,6 +199,9 @@ private:
     double memory_;
     Contacts<D> contacts_;
     RigidParticles<D> rigid_particles_;
+    Origins rigid_origins_, deformable_origins_;
+    std::int32_t numbers_ = 0;  // of bodies, given so far
+    std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     Array<std::int32_t> all_points_;
     double moved_ = 0.0;  // bound on the distance gone since contacts were looked for
@@ -174,18 +217,32 @@ void Bodies<D>::serialise(Archive& archive) {
     deformable.serialise(archive, gravity_);
     contacts_.serialise(archive);
     loads.serialise(archive);
+    archive.nested("rigid_origin_", rigid_origins_);
+    archive.nested("deformable_origin_", deformable_origins_);
+    archive("body_numbers", numbers_);
     if (archive.loads()) {
+        expect_fit(rigid_origins_.size() == rigid.size() &&
+                       deformable_origins_.size() == deformable.bodies(),
+                   "body_numbers");
         rigid_particles_.expect_points_of(rigid.size());
         prepare_contacts();
         contacts_.restore(contact_);
     }
 }
 
+template <int D>
+void Bodies<D>::number_bodies() {
+    for (std::size_t k = 0; k < rigid.size(); ++k)
+        rigid_origins_.add({rigid.body(k).fixed ? -1 : numbers_++, -1, 0.0});
+    for (std::size_t k = 0; k < deformable.bodies(); ++k)
+        deformable_origins_.add({deformable.breaks(k) ? numbers_++ : -1, -1, 0.0});
+}
+
 /// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
 template <int D>
 BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return {};
-    const BodySums<D> before = rigid.sums();
+    BodySums<D> before = rigid.sums();
     rigid.begin_step(), deformable.begin_step();
     deformable_step_ = deformable.timestep();
     for (double left = dt; left > 0.0;) {
@@ -204,6 +261,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
         if (!deformable.empty()) deformable.push(step, gravity_);
         rigid.push(gravity_, step);
+        if (deformable.has_cracked()) before = before + part(t + dt - left);
         drift(0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
@@ -223,6 +281,86 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
         const std::int32_t k = rigid_body_of(particles, p);
         if (k >= 0 && leaves[static_cast<std::size_t>(k)]) removed[p] = 1;
     }
+}
+
+template <int D>
+BodySums<D> Bodies<D>::part(double time) {
+    const Fragments<D> fragments = deformable.divide();
+    BodySums<D> born;
+    if (!fragments.any()) return born;
+    auto origin = [&](std::int32_t parent) -> Origin {
+        return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
+    };
+    for (const std::int32_t parent : fragments.parent) deformable_origins_.add(origin(parent));
+    const BodySums<D> before = rigid.sums();
+    const std::size_t first = rigid.size();
+    for (std::size_t k = 0; k < fragments.dust.size(); ++k)
+        add_dust(fragments.dust[k], fragments.dust_normals[k], origin(fragments.dust_parent[k]));
+    const BodySums<D> after = rigid.sums();
+    born.momentum = after.momentum - before.momentum, born.moment = after.moment - before.moment;
+    born.kinetic_energy = after.kinetic_energy - before.kinetic_energy;
+    prepare_contacts();
+    if (first < rigid.size()) shrink_dust(first), prepare_contacts();
+    renumber_contacts(fragments);
+    find_contacts();
+    return born;
+}
+
+template <int D>
+void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
+                         const Origin& origin) {
+    const auto of = static_cast<std::size_t>(deformable.body_of_point(grain.points.front()));
+    RigidBody<D> body = grain.body;
+    body.material = deformable.material(of), body.group = deformable.group(of);
+    const std::size_t k = rigid.size();
+    rigid.add_ball(body, grain.state, grain.largest);
+    rigid_origins_.add(origin);
+    for (std::size_t n = 0; n < grain.points.size(); ++n) {
+        const std::uint32_t p = grain.points[n];
+        dust_points_[p] = rigid_particles_.add(
+            k, deformable.solids().x[p] - grain.state.centre, normals[n]);
+    }
+}
+
+/// New grains of dust touch nothing yet.
+template <int D>
+void Bodies<D>::shrink_dust(std::size_t first) {
+    Array<double> room;
+    for (std::size_t k = first; k < rigid.size(); ++k)
+        room.push_back(room_for_dust(contact_, static_cast<std::int32_t>(k),
+                                     static_cast<std::int32_t>(first), contacts_.domain()));
+    for (std::size_t k = first; k < rigid.size(); ++k) rigid.resize_ball(k, room[k - first]);
+}
+
+template <int D>
+void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
+    Array<std::int32_t> points, shapes;
+    const std::size_t first = fragments.first_contact_point,
+                      end = first + DeformableSurfaces<D>::points_each * fragments.vertex.size();
+    for (std::size_t k = 0; k < end; ++k)
+        points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
+    for (std::size_t s = 0; s < contact_.solids.size(); ++s)
+        shapes.push_back(static_cast<std::int32_t>(s));
+    std::map<std::int32_t, std::int32_t> now;  // the surface of each body
+    for (std::size_t s = 0; s < contact_.surfaces.size(); ++s)
+        now[contact_.surfaces[s].body - static_cast<std::int32_t>(rigid.size())] =
+            static_cast<std::int32_t>(contact_.solids.size() + s);
+    for (const std::int32_t body : fragments.surface_body)
+        shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
+    contacts_.renumber(points, shapes);
+}
+
+template <int D>
+void Bodies<D>::bind_dust(Particles<D>& particles) {
+    if (dust_points_.empty()) return;
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        if (!deformable.has(particles, p)) continue;
+        const auto found = dust_points_.find(particles.point(p));
+        if (found == dust_points_.end()) continue;
+        particles.wall.depth[p] = 0.5 * deformable.solids().body_of(found->first).spacing;
+        particles.set_point(p, BodyKind::rigid, found->second);
+    }
+    dust_points_.clear();
 }
 
 // Compiled once: bodies.cpp.

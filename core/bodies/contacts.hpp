@@ -26,6 +26,10 @@ public:
     /// are found again go on.
     void find(const ContactBodies<D>& bodies, double margin);
 
+    /// Gives contact points and shapes other numbers, before bodies are looked for that touch; what
+    /// has -1 touches anew.
+    void renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape);
+
     /// Adds forces and torques of all pairs, whose springs stretch for dt.
     void apply(ContactBodies<D>& bodies, double dt);
 
@@ -125,6 +129,21 @@ private:
 // Compiled once: bodies.cpp.
 extern template class Contacts<2>;
 extern template class Contacts<3>;
+
+template <int D>
+void Contacts<D>::renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const std::int32_t a = point[pairs_[k].first()],
+                           b = pairs_[k].with_shape() ? shape[pairs_[k].shape()]
+                                                      : point[pairs_[k].second()];
+        if (a < 0 || b < 0) continue;
+        pairs_[kept] = {a, pairs_[k].with_shape() ? -1 - b : b};
+        springs_[kept] = springs_[k], normals_[kept] = normals_[k];
+        ++kept;
+    }
+    pairs_.resize(kept), springs_.resize(kept), normals_.resize(kept);
+}
 
 template <int D>
 template <class F>

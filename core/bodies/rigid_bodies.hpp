@@ -52,6 +52,12 @@ public:
     }
 
     void add(const RigidBody<D>& body, const RigidBodyState<D>& state, const Vec3& spin);
+    /// Gives a ball with a shape of its own another radius.
+    void resize_ball(std::size_t k, double radius) {
+        shapes[static_cast<std::size_t>(bodies_[k].shape)].radius = radius;
+    }
+    /// Adds a ball within a step, with the angular momentum of its state.
+    void add_ball(RigidBody<D> body, const RigidBodyState<D>& state, double radius);
 
     /// Adds the bodies to those that may touch; the first that are added.
     void add_to(ContactBodies<D>& contact);
@@ -162,6 +168,17 @@ void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& stat
     const Mat<double, 3> R = state.orientation.matrix();
     states_.back().angular_momentum = rotated(R, body.inertia * rotated_back(R, spin));
     moving_ += !body.fixed;
+}
+
+template <int D>
+void RigidBodies<D>::add_ball(RigidBody<D> body, const RigidBodyState<D>& state, double radius) {
+    body.shape = static_cast<std::int32_t>(shapes.size());
+    shapes.emplace_back();
+    shapes.back().radius = radius;
+    add(body, state, {});
+    states_.back().angular_momentum = state.angular_momentum;
+    velocity_before_.push_back(state.velocity), impulse_before_.push_back({});
+    spin_before_.push_back(spin(size() - 1)), ball_turn_.push_back({});
 }
 
 /// Makes the bodies of an archive, in whose state they are already.

@@ -29,6 +29,11 @@ public:
              rotated_back(R, nearest_image(domain, particles.position[p] - state.centre)),
              rotated_back(R, particles.wall.normal[p]), rotated_back(R, particles.wall.area[p])});
     }
+    /// Adds a point of a body that is not turned, and returns its number.
+    std::size_t add(std::size_t body, const Vec<double, D>& offset, const Vec<double, D>& normal) {
+        points_.push_back({static_cast<double>(body), offset, normal, {}});
+        return points_.size() - 1;
+    }
     bool has(const Particles<D>& particles, std::size_t p) const {
         return particles.is_point_of(p, BodyKind::rigid);
     }

@@ -23,14 +23,16 @@ struct SurfaceWeights {
     }
 };
 
-/// The surface of a deformable body: vertices that its points carry along. In 2-D they control a
-/// closed curve, anticlockwise, a uniform cubic B-spline that is twice continuously differentiable
-/// but for the creases, vertices in which smooth parts of it end. In 3-D they are contact points
-/// themselves.
+/// The surface of a deformable body: vertices that its points carry along. In 2-D they control
+/// closed curves, anticlockwise, and clockwise around holes: uniform cubic B-splines that are twice
+/// continuously differentiable but for the creases, vertices in which smooth parts of them end. In
+/// 3-D they are contact points themselves.
 template <int D>
 struct Surface {
     std::int32_t body = 0, material = 0;
     double mass = 0.0, spacing = 0.0;  // of its points
+    Array<std::uint32_t> first;  // vertex of each curve
+    Array<std::uint32_t> curve;  // of each vertex
     Array<std::uint8_t> crease;
     Array<Vec<double, D>> position, velocity;
     Array<Vec3> spin;
@@ -39,7 +41,10 @@ struct Surface {
     Array<Vec3> torque;
 
     std::size_t size() const { return crease.size(); }
+    /// Vertices added from now on are of another curve.
+    void begin_curve() { first.push_back(static_cast<std::uint32_t>(size())); }
     void add(bool is_crease) {
+        curve.push_back(static_cast<std::uint32_t>(first.size() - 1));
         crease.push_back(is_crease);
         position.push_back({}), velocity.push_back({}), spin.push_back({});
         force.push_back({}), torque.push_back({});
@@ -48,9 +53,14 @@ struct Surface {
     /// As that which a contact point of another body touches; each presses with half of the spring.
     ContactSide side() const { return {material, 0.0, mass, spacing, false, true, true, 0.5}; }
 
+    /// Along its curve.
     std::uint32_t after(std::uint32_t vertex, int steps) const {
-        const auto n = static_cast<std::int64_t>(size());
-        return static_cast<std::uint32_t>((static_cast<std::int64_t>(vertex) + steps + n) % n);
+        const std::size_t next = curve[vertex] + std::size_t{1};
+        const std::int64_t begin = first[curve[vertex]],
+                           end = next < first.size() ? first[next]
+                                                     : static_cast<std::int64_t>(size()),
+                           n = end - begin, along = vertex - begin + steps;
+        return static_cast<std::uint32_t>(begin + (along % n + n) % n);
     }
     /// Weights at t in [0, 1] of the part of the curve from a vertex to the next, and their
     /// `derivative` by t, once or twice. Beyond a crease the curve goes straight on.

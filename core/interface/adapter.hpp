@@ -120,7 +120,7 @@ public:
         if (const auto& wall = sim_.particles.wall; wall.in_use) {
             table["force"] = ParticleTables<D>::column(wall.force, order);
             table["normal"] = ParticleTables<D>::column(wall.normal, order);
-            table["grain"] = BodyTables<D>::rigid_body_of(sim_.bodies, sim_.particles, order);
+            table["grain"] = BodyTables<D>::body_number_of(sim_.bodies, sim_.particles, order);
         }
         const OwnFields<D> own = sim_.scheme().own_fields();
         if (own.surface) table["surface"] = ParticleTables<D>::column(*own.surface, order);
@@ -166,6 +166,13 @@ public:
     }
 
     NamedValues grains() const override { return BodyTables<D>::rigid(sim_.bodies); }
+    NamedValues fragments() const override { return BodyTables<D>::fragments(sim_.bodies); }
+    void cut_bodies(const NamedValues& columns) override {
+        ColumnReader column(columns, "cut");
+        const auto label = column.numbers<std::int32_t>("label");
+        column.finish();
+        sim_.bodies.cut(sim_.particles, label, sim_.time());
+    }
 
     NamedValues loads() const override { return BodyTables<D>::loads(sim_.bodies); }
     void forget_load_peak(std::size_t meter) override { sim_.bodies.loads.forget_peak(meter); }

@@ -74,6 +74,12 @@ public:
     virtual NamedValues rates() const = 0;
     virtual NamedValues totals() const = 0;
     virtual NamedValues grains() const = 0;
+    /// Deformable bodies that may break, and their parts, by `number`; `centre`, `radius` and what
+    /// else grains() has.
+    virtual NamedValues fragments() const = 0;
+    /// `label`: of each point of deformable bodies in the order of adding; those with different
+    /// ones do not hold together from now on.
+    virtual void cut_bodies(const NamedValues& columns) = 0;
     /// What load meters have summed, in the order of adding.
     virtual NamedValues loads() const = 0;
     /// The peak and hit of a meter are those from now on.

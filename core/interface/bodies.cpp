@@ -1,8 +1,12 @@
 #include "interface/bodies.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "bodies/deformable/elastic_law.hpp"
+#include "bodies/fragments/rigid_motion.hpp"
 #include "interface/reader.hpp"
 
 namespace doseki {
@@ -33,6 +37,21 @@ Array<SurfaceVertex<D>> surface_of(const NamedValues& table, const Array<Vec<dou
         vertices.push_back({static_cast<std::uint32_t>(carrier[v]), place[v] - point, crease[v]});
     }
     return vertices;
+}
+
+/// None where the table has none.
+BodyCells cells_of(const NamedValues& table) {
+    BodyCells cells;
+    if (!table.find("cell_count")) return cells;
+    ColumnReader column(table, "cells of an elastic body", ColumnReader::any_rows);
+    cells.count = column.numbers<std::uint32_t>("cell_count");
+    cells.node = column.numbers<std::uint32_t>("cell_node");
+    return cells;
+}
+
+template <class Vector>
+void put(NewArray<double>& array, std::size_t k, const Vector& vector) {
+    std::copy(vector.component.begin(), vector.component.end(), array.row(k));
 }
 
 }  // namespace
@@ -125,7 +144,8 @@ template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
     const Array<const char*> own{"material", "particles", "rest",    "position", "velocity",
-                                 "clamped",  "vertex",    "carrier", "crease"};
+                                 "clamped",  "vertex",    "carrier", "crease",
+                                 "cell_count", "cell_node"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
@@ -134,7 +154,7 @@ void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
     const auto members = column.numbers<std::int32_t>("particles");
     const SolidPoints<D> points = solid_points<D>(column);
     bodies.deformable.add(particles, body, material, members, points,
-                          surface_of<D>(table, points.rest));
+                          surface_of<D>(table, points.rest), cells_of(table));
 }
 
 template <int D>
@@ -144,11 +164,9 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
     NewArray<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}),
         flow_force({n, D}), contact_force({n, D}), flow_impulse({n, D}), contact_impulse({n, D}),
         mass({n}), radius({n}), overlap({n});
-    NewArray<std::int32_t> contacts({n}), named({n}), material({n});
+    NewArray<std::int32_t> contacts({n}), named({n}), material({n}), number({n}), parent({n});
+    NewArray<double> born({n});
     NewArray<bool> fixed({n}), removed({n});
-    auto put = [](NewArray<double>& array, std::size_t k, const auto& vector) {
-        std::copy(vector.component.begin(), vector.component.end(), array.row(k));
-    };
     for (std::size_t k = 0; k < n; ++k) {
         const RigidBody<D>& body = rigid.body(k);
         const RigidBodyState<D>& state = rigid.state(k);
@@ -161,6 +179,8 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
         mass[k] = body.mass, radius[k] = rigid.shape(k).radius;
         named[k] = body.group, material[k] = body.material, fixed[k] = body.fixed;
         removed[k] = state.is_removed();
+        const Origin& origin = bodies.rigid_origins()[k];
+        number[k] = origin.number, parent[k] = origin.parent, born[k] = origin.born;
     }
     bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
         for (const std::int32_t k : {a, b}) {
@@ -177,6 +197,7 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
     table["contact_force"] = contact_force, table["mass"] = mass, table["radius"] = radius;
     table["contacts"] = contacts, table["overlap"] = overlap, table["body"] = named;
     table["material"] = material, table["fixed"] = fixed, table["removed"] = removed;
+    table["number"] = number, table["parent"] = parent, table["born"] = born;
     table["worst_overlap"] = Value(bodies.contacts().max_overlap());
     return table;
 }
@@ -210,9 +231,6 @@ NamedValues BodyTables<D>::loads(const Bodies<D>& bodies) {
         peak_force({n, D}), peak_moment({n, 3}), peak_time({n}), hit_speed({n}), hit_radius({n}),
         panel_flow({panels}), panel_contact({panels});
     NewArray<std::int64_t> count({n});
-    auto put = [](NewArray<double>& array, std::size_t k, const auto& vector) {
-        std::copy(vector.component.begin(), vector.component.end(), array.row(k));
-    };
     std::size_t first = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const LoadMeter<D>& meter = meters[k];
@@ -238,11 +256,55 @@ NamedValues BodyTables<D>::loads(const Bodies<D>& bodies) {
 }
 
 template <int D>
-Value BodyTables<D>::rigid_body_of(const Bodies<D>& bodies, const Particles<D>& particles,
+NamedValues BodyTables<D>::fragments(const Bodies<D>& bodies) {
+    Array<std::size_t> rows;
+    std::map<std::int32_t, std::size_t> row_of;  // by the number of the body among those that touch
+    for (std::size_t b = 0; b < bodies.deformable_origins().size(); ++b) {
+        if (bodies.deformable_origins()[b].number < 0) continue;
+        row_of[static_cast<std::int32_t>(bodies.rigid.size() + b)] = rows.size();
+        rows.push_back(b);
+    }
+    const std::size_t n = rows.size();
+    NewArray<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}),
+        mass({n}), radius({n}), overlap({n}), born({n});
+    NewArray<std::int32_t> contacts({n}), named({n}), material({n}), number({n}), parent({n});
+    NewArray<bool> removed({n});
+    const Array<RigidMotion<D>> motions = rigid_motions(bodies.deformable.solids());
+    for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t b = rows[k];
+        const RigidMotion<D>& motion = motions[b];
+        const Quaternion& q = motion.orientation;
+        put(centre, k, motion.centre), put(velocity, k, motion.velocity);
+        put(spin, k, motion.spin), put(orientation, k, Vec<double, 4>{{q.w, q.x, q.y, q.z}});
+        mass[k] = motion.mass, radius[k] = motion.radius, removed[k] = motion.mass == 0.0;
+        named[k] = bodies.deformable.group(b), material[k] = bodies.deformable.material(b);
+        const Origin& origin = bodies.deformable_origins()[b];
+        number[k] = origin.number, parent[k] = origin.parent, born[k] = origin.born;
+    }
+    std::set<std::pair<std::int32_t, std::int32_t>> touching;
+    bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
+        for (const auto& [own, other] : {std::pair{a, b}, std::pair{b, a}}) {
+            const auto found = row_of.find(own);
+            if (found == row_of.end()) continue;
+            overlap[found->second] = std::max(overlap[found->second], share);
+            if (touching.emplace(own, other).second) ++contacts[found->second];
+        }
+    });
+    NamedValues table;
+    table["centre"] = centre, table["velocity"] = velocity, table["spin"] = spin;
+    table["orientation"] = orientation, table["mass"] = mass, table["radius"] = radius;
+    table["contacts"] = contacts, table["overlap"] = overlap, table["body"] = named;
+    table["material"] = material, table["removed"] = removed;
+    table["number"] = number, table["parent"] = parent, table["born"] = born;
+    return table;
+}
+
+template <int D>
+Value BodyTables<D>::body_number_of(const Bodies<D>& bodies, const Particles<D>& particles,
                                    const Array<std::size_t>& order) {
     NewArray<std::int32_t> grain({order.size()});
     for (std::size_t k = 0; k < order.size(); ++k)
-        grain[k] = bodies.rigid_body_of(particles, order[k]);
+        grain[k] = bodies.number_of(particles, order[k]);
     return grain;
 }
 

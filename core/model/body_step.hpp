@@ -16,6 +16,10 @@ struct BodySums {
     Vec<double, D> momentum{}, moment{};  // sum of m v, of m x
     double kinetic_energy = 0.0;
 
+    BodySums operator+(const BodySums& other) const {
+        return {momentum + other.momentum, moment + other.moment,
+                kinetic_energy + other.kinetic_energy};
+    }
     /// What came between an earlier moment and this one, in which nothing but gravity and contacts
     /// acted.
     BodyStep<D> since(const BodySums& before, const Vec<double, D>& gravity) const {

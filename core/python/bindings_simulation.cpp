@@ -69,6 +69,12 @@ public:
     nb::dict rates() const { return to_python(core_->rates()); }
     nb::dict totals() const { return to_python(core_->totals()); }
     nb::dict grains() const { return to_python(core_->grains()); }
+    nb::dict fragments() const { return to_python(core_->fragments()); }
+    void cut_bodies(const nb::object& label) {
+        NamedValues columns;
+        columns["label"] = to_value(label);
+        core_->cut_bodies(columns);
+    }
     nb::dict loads() const { return to_python(core_->loads()); }
     void forget_load_peak(std::size_t meter) { core_->forget_load_peak(meter); }
     nb::dict sample(const Corner& low, const Corner& high) const {
@@ -177,6 +183,10 @@ void bind_results(Class& c) {
         .def("rates", &P::rates, nb::sig("def rates(self) -> doseki.solver.protocol.Rates"))
         .def("totals", &P::totals, nb::sig("def totals(self) -> doseki.solver.protocol.Totals"))
         .def("grains", &P::grains, nb::sig("def grains(self) -> doseki.solver.protocol.Grains"))
+        .def("fragments", &P::fragments,
+             nb::sig("def fragments(self) -> doseki.solver.protocol.Fragments"))
+        .def("cut_bodies", &P::cut_bodies, nb::arg("label"),
+             nb::sig("def cut_bodies(self, label: numpy.ndarray) -> None"))
         .def("loads", &P::loads, nb::sig("def loads(self) -> doseki.solver.protocol.Loads"))
         .def("forget_load_peak", &P::forget_load_peak, nb::arg("meter"))
         .def("sample", &P::sample, nb::arg("low"), nb::arg("high"),

@@ -53,6 +53,7 @@ def grains(dim, position, speed):
         np.zeros(n, int),
         np.full(n, D),
         np.ones(n),
+        np.zeros(n, bool),
     )
 
 

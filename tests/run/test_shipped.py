@@ -17,9 +17,9 @@ MOST_PARTICLES = 20_000
 
 # Scenarios that are of the resolved scheme, which runs in double precision.
 RESOLVED = {
-    "channel", "dam-step", "drip", "drum", "elastic-gate", "flood-log", "flume-3d", "flume-strip",
-    "gate-release", "mud-slump", "saturated-slide", "segregation", "slide-wave", "slit-dam",
-    "valley", "voellmy-chute",
+    "channel", "dam-step", "drip", "drop-weight", "drum", "elastic-gate", "flood-log", "flume-3d",
+    "flume-strip", "gate-release", "mud-slump", "saturated-slide", "segregation", "slide-wave",
+    "slit-dam", "valley", "voellmy-chute",
 }  # fmt: skip
 # Coarser than shipped, where a 3-D run would have too many particles for a quick test.
 COARSE = {

@@ -72,7 +72,8 @@ void TotalLagrangian<D>::sort() {
         for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
         field.swap(sorted);
     };
-    reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(radii);
+    reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(gone_);
+    reorder(radii);
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;
     neighbours_.build(lanes<double>, rest_, radii, 0.0);
@@ -208,6 +209,14 @@ void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
 template <int D>
 Array<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
     Array<std::uint32_t> found;
+    for (const std::uint32_t j : pairs_of(p))
+        if (body_[j] == body_[p] && gone_[j] == gone_[p]) found.push_back(j);
+    return found;
+}
+
+template <int D>
+Array<std::uint32_t> TotalLagrangian<D>::pairs_of(std::size_t p) const {
+    Array<std::uint32_t> found;
     neighbours_.clusters()[p / lanes<double>].for_each_moving([&](std::uint32_t entry) {
         const std::uint32_t j = entry & ListEntry::index_mask;
         const Vec<double, D> apart = rest_[j] - rest_[p];
@@ -219,16 +228,65 @@ Array<std::uint32_t> TotalLagrangian<D>::neighbours_of(std::size_t p) const {
 template <int D>
 Array<PointShare> TotalLagrangian<D>::carriers(std::size_t p, const Vec<double, D>& offset) const {
     Array<PointShare> shares{{static_cast<std::uint32_t>(p), 1.0}};
-    const Vec<double, D> along = correction_[p] * offset;
+    const auto all = [](std::uint32_t) { return true; };
+    const Vec<double, D> along = inverse(shape_around(p, all), 0.0) * offset;
     for (const std::uint32_t j : neighbours_of(p)) {
         const Vec<double, D> R = rest_[p] - rest_[j];
-        const double F = WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(p).support()),
-                     share = -volume(j) * F * dot(R, along);
+        const double share = pair_weight(j, R) * dot(R, along);
         if (j == p || share == 0.0) continue;
         shares[0].share += share;
         shares.push_back({j, -share});
     }
     return shares;
+}
+
+/// Adds a multiple of u (x) v.
+template <int D>
+void add_outer(Mat<double, D>& sum, double factor, const Vec<double, D>& u,
+               const Vec<double, D>& v) {
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) sum(a, b) += factor * u[a] * v[b];
+}
+
+template <int D>
+template <class Holds>
+Mat<double, D> TotalLagrangian<D>::shape_around(std::size_t p, const Holds& holds) const {
+    Mat<double, D> shape{};
+    for (const std::uint32_t j : neighbours_of(p)) {
+        if (j == p || !holds(j)) continue;
+        const Vec<double, D> R = rest_[p] - rest_[j];
+        add_outer(shape, pair_weight(j, R), R, R);
+    }
+    return shape;
+}
+
+template <int D>
+Mat<double, D> TotalLagrangian<D>::motion_around(std::size_t p) const {
+    Mat<double, D> moved{};
+    for (const std::uint32_t j : neighbours_of(p)) {
+        if (j == p) continue;
+        const Vec<double, D> R = rest_[p] - rest_[j];
+        add_outer(moved, pair_weight(j, R), x[p] - x[j], R);
+    }
+    return moved * inverse(shape_around(p, [](std::uint32_t) { return true; }), 0.0);
+}
+
+template <int D>
+void TotalLagrangian<D>::divide(const Division& division) {
+    for (const std::int32_t parent : division.parent) {
+        const auto k = static_cast<std::size_t>(parent);
+        bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
+    }
+    for (std::size_t p = 0; p < size(); ++p) {
+        if (division.body[p] >= 0)
+            body_[p] = division.body[p];
+        else if (!gone(p))
+            gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
+    }
+    bonds_.part([this](std::uint32_t p, std::uint32_t j) {
+        return gone(p) || gone(j) || body_[p] != body_[j];
+    });
+    update_deformations();
 }
 
 template <int D>
@@ -242,9 +300,8 @@ double TotalLagrangian<D>::timestep() const {
 template <int D>
 double TotalLagrangian<D>::strain_energy() const {
     double sum = 0.0;
-    for (std::size_t p = 0; p < size(); ++p) {
-        sum += volume(p) * body_of(p).energy(deformation_[p]);
-    }
+    for (std::size_t p = 0; p < size(); ++p)
+        if (!gone(p)) sum += volume(p) * body_of(p).energy(deformation_[p]);
     return sum;
 }
 
@@ -264,7 +321,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
         for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
         return result;
     };
-    normal_ = sorted(normal_);
+    normal_ = sorted(normal_), depth_ = sorted(depth_);
     surfaces_.start(solids_);
     flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
     for (std::size_t p = 0; p < particles.size(); ++p)
@@ -285,15 +342,20 @@ void DeformableBodies<D>::end_step(double dt, double memory) {
 
 /// Normals turn as surfaces do, with F^-T.
 template <int D>
+Vec<double, D> DeformableBodies<D>::normal(std::size_t k) const {
+    const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
+    const double length = std::sqrt(dot(n, n));
+    return length > 0.0 ? (1.0 / length) * n : n;
+}
+
+template <int D>
 double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) const {
     Array<double> gone(particles.size(), 0.0);
     for_each_point(particles, [&](std::size_t p, std::size_t k) {
         const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
         gone[p] = dot(step, step);
         particles.position[p] = particles.position[p] + step;
-        const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
-        const double length = std::sqrt(dot(n, n));
-        particles.wall.normal[p] = length > 0.0 ? (1.0 / length) * n : n;
+        particles.wall.normal[p] = normal(k), particles.wall.depth[p] = depth_[k];
         particles.acceleration[p] = acceleration_[k];
     });
     return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));

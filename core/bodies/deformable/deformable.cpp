@@ -1,6 +1,7 @@
 // Deformable bodies, compiled once for all schemes.
 
 #include "bodies/deformable/advance.hpp"
+#include "bodies/fragments/dividing.hpp"
 #include "bodies/fracture/breaking.hpp"
 
 namespace doseki {

@@ -6,11 +6,33 @@
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/surfaces.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/fragments/dust.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
 
 namespace doseki {
+
+/// Cells of a 2-D body that may break, see Cells: how many corners each has, and these: points of
+/// the body, then vertices of its surface.
+struct BodyCells {
+    Array<std::uint32_t> count, node;
+};
+
+/// What a division made of bodies.
+template <int D>
+struct Fragments {
+    Array<std::int32_t> parent;    // deformable bodies that are new, by those they come from
+    Array<DustGrain<D>> dust;
+    Array<Array<Vec<double, D>>> dust_normals;  // of the points of each grain
+    Array<std::int32_t> dust_parent;
+    Array<std::uint8_t> divided;       // each body that was there
+    Array<std::int32_t> vertex;        // new numbers of vertices of surfaces
+    std::size_t first_contact_point;   // of surfaces before
+    Array<std::int32_t> surface_body;  // of each of them
+
+    bool any() const { return !parent.empty() || !dust.empty(); }
+};
 
 /// Deformable bodies among water and other bodies: each of their points is a bound particle, which
 /// the fluid meets as a wall, and their surfaces touch other bodies.
@@ -25,7 +47,15 @@ public:
     /// Vertices of its surface are carried by points numbered within the body.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
              std::span<const std::int32_t> members, const SolidPoints<D>& points,
-             std::span<const SurfaceVertex<D>> surface) {
+             std::span<const SurfaceVertex<D>> surface, const BodyCells& cells) {
+        const auto first = static_cast<std::uint32_t>(solids_.size()),
+                   first_vertex = CellNode::outline | static_cast<std::uint32_t>(surfaces_.size()),
+                   own = static_cast<std::uint32_t>(members.size());
+        Array<std::uint32_t> nodes;
+        for (const std::uint32_t node : cells.node)
+            nodes.push_back(node < own ? first + node : first_vertex + (node - own));
+        for (std::size_t cell = 0, at = 0; cell < cells.count.size(); at += cells.count[cell++])
+            surfaces_.add_cell(std::span(nodes).subspan(at, cells.count[cell]));
         for (SurfaceVertex<D> vertex : surface) {
             vertex.point += static_cast<std::uint32_t>(solids_.size());
             surfaces_.add(vertex);
@@ -34,10 +64,30 @@ public:
             const auto p = static_cast<std::size_t>(members[k]);
             particles.set_point(p, BodyKind::deformable, solids_.size() + k);
             normal_.push_back(particles.wall.normal[p]);
+            depth_.push_back(particles.wall.depth[p]);
         }
         solids_.add(body, points);
         material_.push_back(material);
+        group_.push_back(members.empty() ? 0
+                                         : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
+
+    std::size_t bodies() const { return solids_.bodies(); }
+    /// Whether a body may come apart.
+    bool breaks(std::size_t body) const { return solids_.breaks(body); }
+    std::int32_t material(std::size_t body) const { return material_[body]; }
+    /// The [body.NAME] of the scenario that a body belongs to.
+    std::int32_t group(std::size_t body) const { return group_[body]; }
+    const TotalLagrangian<D>& solids() const { return solids_; }
+    std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
+
+    /// Whether the last push has broken bonds.
+    bool has_cracked() const { return solids_.bonds().change().broken > 0; }
+    /// Makes bodies of the parts of those that do not hold together any more, where there are any.
+    Fragments<D> divide();
+    /// Ends the bonds between points with different labels, in the order of adding; only bodies
+    /// that may break have bonds.
+    void cut(std::span<const std::int32_t> label);
 
     /// Call once, after all bodies are in.
     void start(Particles<D>& particles, const Vec<double, D>& gravity);
@@ -97,15 +147,23 @@ public:
         solids_.serialise(archive, gravity);
         surfaces_.serialise(archive, solids_);
         archive("deformable_normal", normal_), archive("deformable_material", material_);
+        archive("deformable_depth", depth_), archive("deformable_group", group_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
         if (archive.loads()) {
             const std::size_t n = solids_.size();
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
-                           acceleration_.size() == n && material_.size() == solids_.bodies(),
+                           acceleration_.size() == n && depth_.size() == n &&
+                           material_.size() == solids_.bodies() &&
+                           group_.size() == solids_.bodies(),
                        "deformable_normal");
         }
     }
+
+    /// The normal of a point now.
+    Vec<double, D> normal(std::size_t k) const;
+    /// The surfaces as contacts have them.
+    const DeformableSurfaces<D>& surfaces() const { return surfaces_; }
 
 private:
     /// Calls f(particle, point) for the particles of deformable bodies.
@@ -118,8 +176,11 @@ private:
     }
 
     TotalLagrangian<D> solids_;
-    Array<Vec<double, D>> normal_;  // at rest
-    Array<std::int32_t> material_;  // by body
+    Division division() const;
+
+    Array<Vec<double, D>> normal_;            // at rest
+    Array<double> depth_;                     // below the surface [m]
+    Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;
 };

@@ -1,21 +1,20 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/patches.hpp"
+#include "bodies/deformable/surface_vertex.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/fragments/crack_faces.hpp"
+#include "bodies/fragments/outlines.hpp"
 
 namespace doseki {
-
-/// A vertex of a surface: which point carries it along, and its place at rest from there.
-template <int D>
-struct SurfaceVertex {
-    std::uint32_t point;
-    Vec<double, D> offset;
-    std::uint8_t crease;
-};
 
 /// The surfaces of deformable bodies: they show contacts where the points are and hand on what the
 /// contacts do. A vertex goes with its point by the point's deformation gradient, x + F (offset),
@@ -23,11 +22,63 @@ struct SurfaceVertex {
 /// momentum and angular momentum are kept.
 template <int D>
 class DeformableSurfaces {
+    /// Samples of the curve from one vertex to the next.
+    static constexpr int samples = 8;
+
 public:
+    /// Contact points of each vertex.
+    static constexpr std::size_t points_each = D == 2 ? samples : 1;
+
     void add(const SurfaceVertex<D>& vertex) { vertices_.push_back(vertex); }
+    /// A cell of a body in 2-D by the numbers of its points and vertices among all.
+    void add_cell(std::span<const std::uint32_t> nodes) { cells_.add(nodes); }
+    std::size_t size() const { return vertices_.size(); }
+    /// Body of each surface, as contacts number them.
+    Array<std::int32_t> bodies(const TotalLagrangian<D>& solids) const {
+        Array<std::int32_t> bodies;
+        for (std::size_t v = 0; v < vertices_.size(); ++v)
+            if (v == 0 || solids.body(point_of(v)) != bodies.back())
+                bodies.push_back(solids.body(point_of(v)));
+        return bodies;
+    }
     /// Finds the points, which had been numbers of adding, where they are stored.
     void start(const TotalLagrangian<D>& solids) {
-        for (SurfaceVertex<D>& vertex : vertices_) vertex.point = solids.slot(vertex.point);
+        for (std::size_t v = 0; v < vertices_.size(); ++v) {
+            SurfaceVertex<D>& vertex = vertices_[v];
+            vertex.point = solids.slot(vertex.point);
+            if (D == 2) carrier_at_rest_.push_back(vertex.point);
+            vertex.key = D == 3 ? vertex.point
+                                : VertexKey::of_outline(CellNode::outline |
+                                                        static_cast<std::uint32_t>(v));
+            vertex.radius = D == 3 ? 0.5 * solids.body_of(vertex.point).spacing : 0.0;
+        }
+        cells_.start([&](std::uint32_t number) { return solids.slot(number); });
+    }
+    /// Where the vertices are.
+    Array<Vec<double, D>> places(const TotalLagrangian<D>& solids) const {
+        Array<Vec<double, D>> places;
+        for (const auto& [p, offset, crease, radius, key, curve] : vertices_)
+            places.push_back(solids.x[p] + solids.motion_around(p) * offset);
+        return places;
+    }
+    /// Draws the surfaces of the parts of bodies, which the solids have become already; vertices
+    /// that there were stay in their `places`. Returns the new number of each, -1 of those that are
+    /// no more.
+    Array<std::int32_t> divide(const TotalLagrangian<D>& solids, const Division& division,
+                               std::span<const std::int32_t> before, const CrackPoints<D>& crack,
+                               const Array<Vec<double, D>>& places);
+    std::size_t first_contact_point() const { return first_contact_point_; }
+    /// The number of a contact point after a division, with new numbers of vertices; `first`: that
+    /// of the first point of these surfaces before. -1: none.
+    std::int32_t renumbered(std::size_t k, std::size_t first,
+                            std::span<const std::int32_t> vertex) const {
+        if (k < first) return static_cast<std::int32_t>(k);
+        const std::size_t sample = k - first;
+        const std::int32_t now = vertex[sample / points_each];
+        if (now < 0) return -1;
+        return static_cast<std::int32_t>(first_contact_point_ +
+                                         static_cast<std::size_t>(now) * points_each +
+                                         sample % points_each);
     }
     /// Adds surfaces to those that may touch, with the points at which they do; `first_body` is the
     /// number of the first of these bodies among all bodies that touch, `material` that of each.
@@ -39,23 +90,34 @@ public:
     void collect(ContactBodies<D>& contact, TotalLagrangian<D>& solids) const;
 
     void serialise(Archive& archive, const TotalLagrangian<D>& solids) {
-        Array<std::uint32_t> point;
+        Array<std::uint32_t> point, curve;
         Array<Vec<double, D>> offset;
         Array<std::uint8_t> crease;
+        Array<double> radius;
+        Array<std::uint64_t> key;
         for (const SurfaceVertex<D>& vertex : vertices_)
             point.push_back(vertex.point), offset.push_back(vertex.offset),
-                crease.push_back(vertex.crease);
+                crease.push_back(vertex.crease), radius.push_back(vertex.radius),
+                key.push_back(vertex.key), curve.push_back(vertex.curve);
         archive("surface_point", point), archive("surface_offset", offset),
-            archive("surface_crease", crease);
+            archive("surface_crease", crease), archive("surface_radius", radius),
+            archive("surface_key", key), archive("surface_curve", curve),
+            archive("surface_at_rest", carrier_at_rest_);
         if (archive.loads()) {
-            expect_fit(offset.size() == point.size() && crease.size() == point.size(),
+            const std::size_t n = point.size();
+            expect_fit(offset.size() == n && crease.size() == n && radius.size() == n &&
+                           key.size() == n && curve.size() == n,
                        "surface_point");
             vertices_.clear();
-            for (std::size_t v = 0; v < point.size(); ++v) {
+            for (std::size_t v = 0; v < n; ++v) {
                 expect_index(point[v], solids.size(), "surface_point");
-                vertices_.push_back({point[v], offset[v], crease[v]});
+                expect_fit(radius[v] >= 0.0, "surface_radius");
+                vertices_.push_back({point[v], offset[v], crease[v], radius[v], key[v], curve[v]});
             }
+            for (const std::uint32_t p : carrier_at_rest_)
+                expect_index(p, solids.size(), "surface_at_rest");
         }
+        cells_.serialise(archive, solids.size(), carrier_at_rest_.size());
     }
 
 private:
@@ -64,8 +126,6 @@ private:
         std::size_t surface;
         SurfaceWeights at;
     };
-    /// Samples of the curve from one vertex to the next.
-    static constexpr int samples = 8;
 
     std::size_t point_of(std::size_t v) const { return vertices_[v].point; }
     Vec<double, D> rest(std::size_t v, const TotalLagrangian<D>& solids) const {
@@ -75,7 +135,17 @@ private:
     void add_samples(ContactBodies<D>& contact, std::size_t surface,
                      const TotalLagrangian<D>& solids);
 
-    Array<SurfaceVertex<D>> vertices_;  // those of a body one after another
+    bool same_curve(std::size_t v, std::size_t w, const TotalLagrangian<D>& solids) const {
+        return solids.body(point_of(v)) == solids.body(point_of(w)) &&
+               vertices_[v].curve == vertices_[w].curve;
+    }
+    Array<PlacedVertex> parts_of(const TotalLagrangian<D>& solids, const Division& division,
+                                 std::span<const std::int32_t> before,
+                                 const Array<Vec<double, D>>& places) const;
+
+    Array<SurfaceVertex<D>> vertices_;  // those of a curve, and of a body, one after another
+    Array<std::uint32_t> carrier_at_rest_;  // 2-D: of each vertex that there was at the start
+    Cells cells_;
     Array<Array<PointShare>> carriers_;
     Array<Patch<D>> patches_;          // around the point of each
     Array<std::size_t> first_vertex_;  // of each surface, and the end
@@ -99,6 +169,7 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
             surface.material = material[static_cast<std::size_t>(body)];
             surface.mass = solids.mass(k), surface.spacing = solids.body_of(k).spacing;
         }
+        if (v == 0 || !same_curve(v, v - 1, solids)) contact.surfaces.back().begin_curve();
         contact.surfaces.back().add(vertices_[v].crease != 0);
         carriers_.push_back(solids.carriers(k, vertices_[v].offset));
         patches_.emplace_back(solids.neighbours_of(k));
@@ -117,7 +188,7 @@ void DeformableSurfaces<D>::add_samples(ContactBodies<D>& contact, std::size_t s
     side.flat = false;
     for (std::uint32_t v = 0; v < surface.size(); ++v) {
         if constexpr (D == 3) {
-            side.radius = 0.5 * surface.spacing, side.share = 1.0, side.fixed = clamped(v);
+            side.radius = vertices_[first + v].radius, side.share = 1.0, side.fixed = clamped(v);
             add_sample(contact, {s, {{v, v, v, v}, {1.0, 0.0, 0.0, 0.0}}}, side);
         } else {
             const auto part = rest(first + surface.after(v, 1), solids) - rest(first + v, solids);
@@ -132,6 +203,80 @@ void DeformableSurfaces<D>::add_samples(ContactBodies<D>& contact, std::size_t s
             }
         }
     }
+}
+
+/// Vertices of the parts of 2-D bodies that divide, in order.
+template <int D>
+Array<PlacedVertex> DeformableSurfaces<D>::parts_of(const TotalLagrangian<D>& solids,
+                                                    const Division& division,
+                                                    std::span<const std::int32_t> before,
+                                                    const Array<Vec<double, D>>& places) const {
+    Array<PlacedVertex> known, parts;
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        const std::int32_t body = before[point_of(v)];
+        if (body >= 0 && division.divides[static_cast<std::size_t>(body)])
+            known.push_back({vertices_[v], places[v], static_cast<std::int32_t>(v)});
+    }
+    OutlineTracer tracer({cells_, carrier_at_rest_, before, division.body, solids.x}, known);
+    std::set<std::int32_t> bodies;
+    for (std::size_t p = 0; p < before.size(); ++p)
+        if (division.body[p] >= 0 && division.divides[static_cast<std::size_t>(before[p])])
+            bodies.insert(division.body[p]);
+    for (const std::int32_t body : bodies) {
+        const auto curves = tracer.trace(body);
+        for (std::uint32_t curve = 0; curve < curves.size(); ++curve)
+            for (PlacedVertex placed : curves[curve]) {
+                const std::uint32_t p = placed.vertex.point;
+                placed.vertex.curve = curve;
+                placed.vertex.offset =
+                    inverse(solids.motion_around(p), 0.0) * (placed.place - solids.x[p]);
+                parts.push_back(placed);
+            }
+    }
+    return parts;
+}
+
+template <int D>
+Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& solids,
+                                                  const Division& division,
+                                                  std::span<const std::int32_t> before,
+                                                  const CrackPoints<D>& crack,
+                                                  const Array<Vec<double, D>>& places) {
+    Array<std::pair<SurfaceVertex<D>, std::int32_t>> kept;  // and their number before
+    auto divides = [&](std::uint32_t p) {
+        return before[p] < 0 || division.divides[static_cast<std::size_t>(before[p])];
+    };
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+        if (!divides(vertices_[v].point) || (D == 3 && division.body[vertices_[v].point] >= 0))
+            kept.push_back({vertices_[v], static_cast<std::int32_t>(v)});
+    if constexpr (D == 2)
+        for (const PlacedVertex& part : parts_of(solids, division, before, places))
+            kept.push_back({part.vertex, part.number});
+    else {
+        std::map<std::uint32_t, std::size_t> ball;
+        for (std::size_t v = 0; v < kept.size(); ++v) ball[kept[v].first.point] = v;
+        for (std::size_t k = 0; k < crack.point.size(); ++k) {
+            const std::uint32_t p = crack.point[k];
+            if (division.body[p] < 0) continue;
+            if (!ball.contains(p)) {
+                ball[p] = kept.size();
+                kept.push_back({{p, {}, 0, 0.5 * solids.body_of(p).spacing, p, 0}, -1});
+            }
+            double& radius = kept[ball[p]].first.radius;  // touches what is beyond, Eq. (122)
+            radius = std::min(radius, 0.5 * crack.apart[k]);
+        }
+    }
+    std::stable_sort(kept.begin(), kept.end(), [&](const auto& a, const auto& b) {
+        return solids.body(a.first.point) < solids.body(b.first.point);
+    });
+    Array<std::int32_t> number(vertices_.size(), -1);
+    vertices_.clear();
+    for (const auto& [vertex, old] : kept) {
+        if (old >= 0) number[static_cast<std::size_t>(old)] =
+            static_cast<std::int32_t>(vertices_.size());
+        vertices_.push_back(vertex);
+    }
+    return number;
 }
 
 template <int D>

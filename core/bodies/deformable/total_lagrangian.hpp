@@ -8,7 +8,10 @@
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
 #include "bodies/fracture/bonds.hpp"
+#include "bodies/fragments/division.hpp"
+#include "bodies/rotation.hpp"
 #include "pairs/neighbour_lists.hpp"
+#include "physics/kernel/wendland_c2.hpp"
 
 namespace doseki {
 
@@ -52,6 +55,7 @@ public:
             x.push_back(points.position[k]);
             v.push_back(points.clamped[k] ? Vec<double, D>{} : points.velocity[k]);
             body_.push_back(number), clamped_.push_back(points.clamped[k]);
+            gone_.push_back(0);
         }
         bodies_.push_back(body), apart_.push_back(apart);
     }
@@ -87,14 +91,37 @@ public:
         return bodies_[static_cast<std::size_t>(body_[p])];
     }
     std::int32_t body(std::size_t p) const { return body_[p]; }
+    bool breaks(std::size_t body) const { return bodies_[body].breaks(); }
+    /// Whether the point has become dust: it stays where it is and does nothing.
+    bool gone(std::size_t p) const { return gone_[p] != 0; }
+    /// The body of each point, -1 of those that are gone.
+    Array<std::int32_t> holders() const {
+        Array<std::int32_t> holder(size());
+        for (std::size_t p = 0; p < size(); ++p) holder[p] = gone(p) ? -1 : body_[p];
+        return holder;
+    }
     bool clamped(std::size_t p) const { return clamped_[p] != 0; }
     /// Where the point that was added as number k is stored.
     std::uint32_t slot(std::size_t k) const { return slot_[k]; }
     /// Points within the support of one at rest, itself among them.
+    Array<std::uint32_t> pairs_of(std::size_t p) const;
+    /// Those of the same body.
     Array<std::uint32_t> neighbours_of(std::size_t p) const;
-    /// The place that goes with point p by its deformation gradient, from `offset` at rest: shares
-    /// of points, which add up to 1.
+    /// How the points of its body around point p have moved, as its deformation gradient says
+    /// where all bonds are whole.
+    Mat<double, D> motion_around(std::size_t p) const;
+    /// The place that goes with point p by this, from `offset` at rest: shares of points, which add
+    /// up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
+    /// Whether those of its neighbours to which point p holds span the space; holds(j).
+    template <class Holds>
+    bool is_spanned(std::size_t p, const Holds& holds) const {
+        constexpr double min_determinant = 1e-3;  // inside it is 1
+        return determinant(shape_around(p, holds)) > min_determinant;
+    }
+    /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
+    /// of different ones end.
+    void divide(const Division& division);
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
@@ -132,11 +159,15 @@ public:
         archive("elastic_position", x), archive("elastic_velocity", v),
             archive("elastic_body", body_);
         archive("elastic_clamped", clamped_), archive("elastic_slot", slot_);
+        archive("elastic_gone", gone_);
+        double stable_step = stable_step_;
+        archive("elastic_stable_step", stable_step);
         Array<Vec<double, D>> accelerations = a;
         Array<Mat<double, D>> deformations = deformation_;
         archive("elastic_acceleration", accelerations),
             archive("elastic_deformation", deformations);
         if (archive.loads()) {
+            expect_fit(stable_step > 0.0, "elastic_stable_step");
             expect_whole(numbers.size(), accelerations.size(), deformations.size());
             const auto slots = slot_;
             bodies_.clear();
@@ -144,6 +175,7 @@ public:
                 bodies_.push_back(DeformableBody::of(&numbers[k]));
             start(gravity);
             a = accelerations, deformation_ = deformations, slot_ = slots;
+            stable_step_ = stable_step;
         }
         bonds_.serialise(archive);
         archive("elastic_damping_work", damping_work_);
@@ -160,7 +192,8 @@ private:
         const std::size_t n = x.size();
         expect_fit(numbers == apart_.size() * DeformableBody::count, "elastic_numbers");
         expect_fit(rest_.size() == n && v.size() == n && body_.size() == n &&
-                       clamped_.size() == n && slot_.size() == n && accelerations == n &&
+                       clamped_.size() == n && gone_.size() == n && slot_.size() == n &&
+                       accelerations == n &&
                        deformations == n,
                    "elastic_position");
         for (const std::int32_t body : body_) expect_index(body, apart_.size(), "elastic_body");
@@ -170,6 +203,13 @@ private:
     /// Of the longest stable step.
     static constexpr double courant = 0.7;
 
+    /// Weight of the pair with a point j at R from another at rest, in sums over those of one body.
+    double pair_weight(std::size_t j, const Vec<double, D>& R) const {
+        return -volume(j) *
+               WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(j).support());
+    }
+    template <class Holds>
+    Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     Vec<double, D> room_for(const DeformableBody& body, std::span<const Vec<double, D>> position);
     void sort();
     void correct_gradients();
@@ -194,6 +234,7 @@ private:
     void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
                        const Mat<double, D>& shape);
     void damp_bonded_springs();
+    void update_deformations();
     void advance_bonds(double dt);
 
     Array<DeformableBody> bodies_;
@@ -201,7 +242,7 @@ private:
     double reach_ = 0.0;           // how far along x places at rest are taken
     Array<Vec<double, D>> rest_;
     Array<std::int32_t> body_;
-    Array<std::uint8_t> clamped_;
+    Array<std::uint8_t> clamped_, gone_;
     Array<std::uint32_t> slot_;
     Array<Mat<double, D>> correction_, deformation_;
     Neighbours<D> neighbours_;

@@ -85,7 +85,10 @@ public:
     template <class Apart>
     void part(const Apart& apart) {
         for (std::size_t n = 1; n < size(); ++n)
-            if (apart(pairs_[n].a, pairs_[n].b)) state_[n].whole = 0.0, state_[n].damage = 1.0;
+            if (apart(pairs_[n].a, pairs_[n].b)) {
+                broken_ += intactness(n) > 0.0;
+                state_[n].whole = 0.0, state_[n].damage = 1.0;
+            }
     }
     /// Bonds that bear no tension.
     std::size_t broken() const { return broken_; }

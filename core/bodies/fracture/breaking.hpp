@@ -13,8 +13,8 @@ void TotalLagrangian<D>::find_bonds() {
     for (std::size_t p = 0; p < size(); ++p) {
         if (!body_of(p).breaks()) continue;
         Array<std::uint32_t> after;
-        for (const std::uint32_t j : neighbours_of(p))
-            if (j > p && body_[j] == body_[p]) after.push_back(j);
+        for (const std::uint32_t j : pairs_of(p))
+            if (j > p) after.push_back(j);
         std::sort(after.begin(), after.end());
         for (const std::uint32_t j : after)
             bonds_.add(static_cast<std::uint32_t>(p), j,
@@ -72,13 +72,19 @@ void TotalLagrangian<D>::damp_bonded_springs() {
     sum_over_pairs(Bonded<SpringTerm<D>>{{records()}, bonds_.rows()}, turn);
 }
 
+/// For the places and velocities in the records.
 template <int D>
-template <class F>
-void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
+void TotalLagrangian<D>::update_deformations() {
     auto update = [this](std::size_t p, const BondedDeformation<double, D>& sums) {
         update_bonded(p, sums.now, sums.shape);
     };
     sum_over_pairs(BondedDeformationTerm<D>{{records()}, bonds_.rows()}, update);
+}
+
+template <int D>
+template <class F>
+void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
+    update_deformations();
     if (springs_damp_) damp_bonded_springs();
     sum_over_pairs(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
 }

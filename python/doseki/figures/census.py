@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from ..measure.census import CLASSES, Census, SpeedDraws
+from ..measure.grading import Grading
 from ..record.units import unit_in
 from .kinds.histogram import draw_speed_row
 from .kinds.series import draw_curves
 from .layout import chart_grid, figure_legend
 
+MOST_CURVES = 6  # of a grading over time
 COLOURS = ("#bdbdbd", "#fdae61", "#3182bd", "#74c476", "#756bb1", "#636363")  # of CLASSES
 
 
@@ -57,4 +60,27 @@ def draw_deposit(outline: np.ndarray, dim: int) -> Figure:
     grid[0, 0].plot(closed[:, 0], closed[:, 1], color=COLOURS[-1])
     grid[0, 0].set(xlabel="x' (m)", ylabel="height (m)" if dim == 2 else "y' (m)")
     grid[0, 0].grid(alpha=0.3)
+    return figure
+
+
+def draw_grading(gradings: Mapping[float, Grading]) -> Figure:
+    """Shares of the mass that are finer than a size, at a few times."""
+    figure, grid = chart_grid(1, 1, (7.0, 3.4), "Grading of what has broken")
+    times = sorted(gradings)
+    axes = grid[0, 0]
+    shown = np.unique(np.linspace(0, len(times) - 1, MOST_CURVES).round().astype(int))
+    largest = max(float(grading.size.max()) for grading in gradings.values())
+    smallest = min(float(grading.size.min()) for grading in gradings.values())
+    for number, k in enumerate(shown):
+        grading = gradings[times[k]]
+        size = np.concatenate([[0.8 * smallest], grading.size, [1.25 * largest]])
+        finer = 100 * np.concatenate([[0.0], grading.finer, [1.0]])
+        colour = colormaps["viridis_r"](0.1 + 0.9 * number / max(len(shown) - 1, 1))
+        axes.step(size, finer, where="post", color=colour, label=f"{times[k]:.3g} s")
+    axes.set(
+        xscale="log", xlim=(0.8 * smallest, 1.25 * largest), ylim=(0, 102),
+        xlabel="size (m)", ylabel="mass finer (%)",
+    )  # fmt: skip
+    axes.grid(alpha=0.3, which="both")
+    figure_legend(figure, grid.flat)
     return figure

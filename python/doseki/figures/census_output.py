@@ -14,11 +14,18 @@ import numpy as np
 
 from ..errors import UserError
 from ..measure.census import CLASSES, Census, SpeedDraws, deposit_outline, draw_speeds, take_census
+from ..measure.grading import grading_table, gradings, has_parts
 from ..measure.views import View, named_window, windows
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..util.files import clear_errors, write_whole, write_whole_text
-from .census import draw_classes, draw_deposit, draw_passed, draw_speed_histogram
+from .census import (
+    draw_classes,
+    draw_deposit,
+    draw_grading,
+    draw_passed,
+    draw_speed_histogram,
+)
 from .text import plain_text
 
 OUTLET, DEPOSIT = "outlet", "deposit"  # windows that are used by default
@@ -68,10 +75,16 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
             "x": outline[:, 0],
             "height" if run.scenario["dim"] == 2 else "y": outline[:, 1],
         }
+    breaks = has_parts(run)
+    if breaks:
+        tables["grading"] = grading_table(run)
     write_tables(folder, tables)
     where = f"window {name}" if name else "everywhere"
     with plain_text() as complaints:
         _write_figures(folder, run, census, drawn, where, outline, options.sections)
+        if breaks:
+            figure = draw_grading(gradings(run))
+            write_whole(folder / "grading.png", partial(figure.savefig, format="png"))
     files = f"In {folder}: {', '.join(tables)} (.csv, census.h5), figures"
     return [*census_lines(census, drawn, where, options.sections), files, *complaints]
 

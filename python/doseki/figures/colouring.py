@@ -24,6 +24,7 @@ FLUID_COLOURS = ("#3182bd", "#41b6c4", "#54278f")  # water blue, debris red
 SOLID_COLOURS = ("#d7301f", "#fd8d3c", "#8c510a", "#dd3497")
 OTHER_COLOURS = ("#3182bd", "#d7301f", "#31a354", "#fd8d3c", "#756bb1", "#8c510a", "#41b6c4")
 SCALE = "viridis"
+FIRST_HUE, GOLDEN_RATIO = 0.07, 0.618034
 MAX_ENTRIES = 12
 FEW = 1000  # with more particles than this the colour scale leaves out the outermost 1 %
 
@@ -79,6 +80,34 @@ class CategoryColours:
         )  # fmt: skip
 
 
+class GrainColours(CategoryColours):
+    """A colour for each body that moves, which it keeps; other particles have that of their material.
+
+    Numbers that follow one another, as those of the parts of a body do, have colours far apart.
+    """
+
+    def __init__(self, run: Run, snapshots: Sequence[Snapshot]) -> None:
+        """Materials are named in the key, bodies are too many."""
+        super().__init__(run, snapshots, "material")
+        names = [snapshot["material"][snapshot["grain"] >= 0] for snapshot in snapshots]
+        self._of_grains = set(np.concatenate(names).tolist())
+
+    def rgba(self, snapshot: Snapshot) -> np.ndarray:
+        """Colours (N, 4) from 0 to 1."""
+        colours = super().rgba(snapshot)
+        grain = snapshot["grain"]
+        own = grain >= 0
+        hue = (FIRST_HUE + GOLDEN_RATIO * grain[own]) % 1.0
+        shade = 0.95 - 0.2 * (grain[own] % 3)
+        hsv = np.stack([hue, np.full(len(hue), 0.65), shade], axis=1)
+        colours[own, :3] = colors.hsv_to_rgb(hsv)
+        return colours
+
+    def legend_entries(self) -> list[tuple[str, str]]:
+        """(label, colour) of the materials that are not of such bodies."""
+        return [entry for entry in super().legend_entries() if entry[0] not in self._of_grains]
+
+
 class ScaleColours:
     """A colour scale for a number; fixed particles are grey."""
 
@@ -107,7 +136,7 @@ class ScaleColours:
         bar.set_label(self.heading, fontsize="small")
 
 
-Colouring = CategoryColours | ScaleColours
+Colouring = CategoryColours | GrainColours | ScaleColours
 
 
 def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) -> Colouring:
@@ -115,6 +144,8 @@ def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) ->
     check_quantity(name, run.scenario["dim"])
     if name in CATEGORIES:
         return CategoryColours(run, snapshots, name)
+    if name == "grain":
+        return GrainColours(run, snapshots)
     return ScaleColours(snapshots, name, view)
 
 

@@ -41,6 +41,7 @@ class Grains:
     contacts: np.ndarray  # (n,) number of bodies or grains it touches
     diameter: np.ndarray  # (n,)
     mass: np.ndarray  # (n,) kg, 2-D: kg/m
+    is_part: np.ndarray  # (n,) bool: has come off another one
 
     @property
     def speed(self) -> np.ndarray:
@@ -69,7 +70,8 @@ def grains_of(snapshot: Snapshot, fluids: set[str]) -> Grains:
     if table := snapshot.grains:
         kept = table["removed"] == 0
         names = "position velocity spin contacts diameter mass".split()
-        return Grains(np.flatnonzero(kept), *(table[name][kept] for name in names))
+        parts = (table["parent"] >= 0)[kept]
+        return Grains(np.flatnonzero(kept), *(table[name][kept] for name in names), parts)
     solid = (snapshot["motion"] == FREE) & ~np.isin(snapshot["material"], sorted(fluids))
     position, mass = snapshot["position"][solid], snapshot["mass"][solid]
     volume = mass / snapshot["density"][solid]
@@ -77,7 +79,21 @@ def grains_of(snapshot: Snapshot, fluids: set[str]) -> Grains:
     return Grains(
         snapshot["id"][solid], position, snapshot["velocity"][solid],
         np.full((len(mass), 3), np.nan), _near(position, diameter), diameter, mass,
+        np.zeros(len(mass), bool),
     )  # fmt: skip
+
+
+def keep_their_shape(run: Run, snapshot: Snapshot) -> np.ndarray:
+    """Which rows (n,) of the table of bodies are rigid and as the scenario made them.
+
+    The others bend, or have come off such as do.
+    """
+    tables = run.scenario.get("body", {})
+    elastic = {name for name, table in tables.items() if table.get("kinematics") == "elastic"}
+    table = snapshot.grains
+    if not table:
+        return np.zeros(0, bool)
+    return (table["parent"] < 0) & ~np.isin(table["body"], sorted(elastic))
 
 
 def _near(position: np.ndarray, diameter: np.ndarray) -> np.ndarray:
@@ -175,7 +191,7 @@ class Census:
     """The grains of all snapshots of a run, one row for each grain and time.
 
     `table` has time, id, position (N, dim), velocity (N, dim), spin (N, 3), contacts, diameter,
-    mass and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water, m.
+    mass, is_part and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water, m.
     `direction` is that of the flow along the first axis, +1 or -1; 0 where nothing says it.
     """
 
@@ -186,9 +202,9 @@ class Census:
 
     @cached_property
     def load_mass(self) -> float:
-        """Mass of all grains that ever were, kg (2-D: kg/m)."""
+        """Mass of all grains that ever were, each once, kg (2-D: kg/m)."""
         _, first = np.unique(self.table["id"], return_index=True)
-        return float(self.table["mass"][first].sum())
+        return float(self.table["mass"][first] @ ~self.table["is_part"][first])
 
     def rows(
         self, view: View | None = None, start: float = -math.inf, end: float = math.inf

@@ -14,6 +14,7 @@ from ..solver.protocol import (
     CoreFailure,
     CoreSimulation,
     ForceTerms,
+    Fragments,
     Grains,
     Loads,
     Rates,
@@ -96,6 +97,10 @@ class RankedSimulation:
     def grains(self) -> Grains:
         """See Simulation; every rank has all bodies."""
         return self.core.grains()
+
+    def fragments(self) -> Fragments:
+        """See Simulation; every rank has all bodies."""
+        return self.core.fragments()
 
     def loads(self) -> Loads:
         """See Simulation; every rank has all meters."""

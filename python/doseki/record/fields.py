@@ -103,4 +103,9 @@ GRAIN_FIELDS = (
     ParticleField("overlap", "Overlap", "", "", "scalar", "largest overlap over the diameter"),
     ParticleField("removed", "Removed", "", "", "scalar", "1: has left the run", "int32"),
     ParticleField("body", "Body", "", "", "scalar", "index of the named body", "int32"),
+    ParticleField(
+        "parent", "Parent", "", "", "scalar", "row of the body it was part of, or -1", "int32",
+        absent=-1,
+    ),
+    ParticleField("born", "Born", "", "s", "scalar", "when it came off", absent=0),
 )

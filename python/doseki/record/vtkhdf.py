@@ -50,11 +50,10 @@ def read_fields(path: Path, fields: Sequence[ParticleField], dim: int) -> dict[s
     """
     with open_hdf5(path) as file:
         count = len(file.dataset(f"{ROOT}/Points"))
-        return {field.key: _field(file, field, count, dim) for field in fields}
+        return {field.key: _field(file, field, location(field), count, dim) for field in fields}
 
 
-def _field(file: Hdf5File, field: ParticleField, count: int, dim: int) -> np.ndarray:
-    name = location(field)
+def _field(file: Hdf5File, field: ParticleField, name: str, count: int, dim: int) -> np.ndarray:
     if field.absent is not None and name not in file:
         return np.full(count, field.absent, field.dtype)
     return _decoded(file, name, field, count, dim)
@@ -68,7 +67,7 @@ def read_grains(
         if GRAINS not in file:
             return {}
         count = len(file.dataset(f"{GRAINS}/Position"))
-        return {f.key: _decoded(file, f"{GRAINS}/{f.file_name}", f, count, dim) for f in fields}
+        return {f.key: _field(file, f, f"{GRAINS}/{f.file_name}", count, dim) for f in fields}
 
 
 def _decoded(file: Hdf5File, name: str, field: ParticleField, count: int, dim: int) -> np.ndarray:

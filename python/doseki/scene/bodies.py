@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .cells import Cells
 from .groups import Group
 
 
@@ -31,6 +32,7 @@ class ElasticBody:
     spacing: float  # each particle has spacing^dim of its volume, m
     clamped: np.ndarray  # (n,) bool: does not move
     surface: ElasticSurface  # which touches other bodies
+    cells: Cells = field(default_factory=Cells)  # 2-D, of one that may break
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..scenario.model import Scenario
-from .protocol import Arrays, Columns, CoreSimulation, Grains, Table
+from .protocol import Arrays, Columns, CoreSimulation, Fragments, Grains, Table
 
 STEP = 1024.0  # m: a power of two, so that what is subtracted is added again without rounding
 
@@ -119,4 +119,9 @@ class Placed:
     def grains(self) -> Grains:
         """See Simulation."""
         found: Grains = self._on_map(self._core.grains(), "centre")
+        return found
+
+    def fragments(self) -> Fragments:
+        """See Simulation."""
+        found: Fragments = self._on_map(self._core.fragments(), "centre")
         return found

@@ -75,7 +75,29 @@ class Grains(TypedDict):
     material: NDArray[np.int32]  # (n,)
     fixed: NDArray[np.bool_]  # (n,)
     removed: NDArray[np.bool_]  # (n,) has left the run
+    number: NDArray[np.int32]  # (n,) stays with a body; -1: of one that is not followed
+    parent: NDArray[np.int32]  # (n,) number of the body it was part of; -1: of none
+    born: Floats  # (n,) time, s
     worst_overlap: float  # of any contact since the start, over the diameter
+
+
+class Fragments(TypedDict):
+    """Deformable bodies that may break, and their parts; see Grains for the columns."""
+
+    centre: Floats
+    velocity: Floats
+    spin: Floats  # that gives the angular momentum to a rigid body of this shape
+    orientation: Floats
+    mass: Floats
+    radius: Floats
+    contacts: NDArray[np.int32]
+    overlap: Floats
+    body: NDArray[np.int32]
+    material: NDArray[np.int32]
+    removed: NDArray[np.bool_]
+    number: NDArray[np.int32]
+    parent: NDArray[np.int32]
+    born: Floats
 
 
 class Loads(TypedDict):
@@ -190,6 +212,10 @@ class Simulation(SimulationView, Protocol):
 
     def grains(self) -> Grains:
         """The rigid bodies."""
+        ...
+
+    def fragments(self) -> Fragments:
+        """The deformable bodies that may break, and their parts."""
         ...
 
     def totals(self) -> Totals:

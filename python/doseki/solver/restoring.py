@@ -15,7 +15,7 @@ from .protocol import Arrays, CoreSimulation
 ALIKE = (
     (
         "bodies", "body_shape", "body_material", "body_named", "body_fixed", "body_mass",
-        "body_inertia",
+        "body_inertia", "rigid_origin_number", "rigid_origin_parent", "rigid_origin_born",
     ),
     ("shape_radius", "shape_facets", "shape_sample_count", "shape_kind", "shape_thickness"),
     ("lists_moving", "lists_fixed"),
@@ -23,20 +23,29 @@ ALIKE = (
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
-        "deformable_flow_force", "deformable_acceleration",
+        "deformable_flow_force", "deformable_acceleration", "elastic_gone", "deformable_depth",
     ),
-    ("surface_point", "surface_offset", "surface_crease"),
-    ("elastic_apart", "deformable_material"),
+    (
+        "surface_point", "surface_offset", "surface_crease", "surface_radius", "surface_key",
+        "surface_curve",
+    ),
+    (
+        "elastic_apart", "deformable_material", "deformable_group", "deformable_origin_number",
+        "deformable_origin_parent", "deformable_origin_born",
+    ),
 )  # fmt: skip
 # An entry of a list: a particle, and in the upper bits through which image of it.
 INDEX_BITS = 27
 INDEX_MASK = 2**INDEX_BITS - 1
-POSITIVE = {"mass", "smoothing_length", "density", "shape_radius", "body_mass"}
+POSITIVE = {
+    "mass", "smoothing_length", "density", "shape_radius", "body_mass", "elastic_stable_step",
+}  # fmt: skip
 NOT_NEGATIVE = {
     "wall_cut",
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
+    "surface_radius", "rigid_origin_born", "deformable_origin_born", "body_numbers",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
@@ -174,6 +183,7 @@ def _check_bodies(state: Arrays) -> None:
     owner = points[:, 0]
     _expect((owner >= 0) & (owner < len(state["bodies"])), "body_points", "is of no body")
     _check_contacts(state)
+    _check_origins(state)
     if "body_kind" not in state:  # of schemes without bodies
         return
     # By body_kind: none, a rigid one, a deformable one.
@@ -182,6 +192,18 @@ def _check_bodies(state: Arrays) -> None:
     _expect(
         ~bound | ((state["point"] >= 0) & (state["point"] < rows)), "point", "is none of a body"
     )
+
+
+def _check_origins(state: Arrays) -> None:
+    """Bodies that the record follows have the numbers from 0 on, each once."""
+    count = int(state["body_numbers"][0])
+    kinds = ("rigid_origin", "deformable_origin")
+    numbers = np.concatenate([state[f"{kind}_number"] for kind in kinds])
+    if not np.array_equal(np.sort(numbers[numbers >= 0]), np.arange(count)):
+        raise ValueError("the checkpoint's body_numbers are not those of its bodies")
+    for kind in kinds:
+        parent = state[f"{kind}_parent"]
+        _expect((parent >= -1) & (parent < count), f"{kind}_parent", "is no body")
 
 
 def _check_contacts(state: Arrays) -> None:
@@ -213,6 +235,8 @@ def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
         "elastic_slot": len(state["elastic_position"]),
         "surface_point": len(state["elastic_position"]),
         "deformable_material": materials,
+        "deformable_group": bodies,
+        "surface_at_rest": len(state["elastic_position"]),
         "moving_particles": len(state["id"]) + 1,
-        **dict.fromkeys(("body_fixed", "elastic_clamped", "surface_crease"), 2),
+        **dict.fromkeys(("body_fixed", "elastic_clamped", "elastic_gone", "surface_crease"), 2),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -82,10 +83,23 @@ def add_bodies(
 
 
 def grain_table(simulation: Simulation) -> dict[str, np.ndarray]:
-    """The bodies that move as fields.GRAIN_FIELDS has them; empty where there are none."""
-    table = {key: np.asarray(values) for key, values in simulation.grains().items()}
-    moves = ~table["fixed"]
-    if not moves.any():
+    """The bodies that move as fields.GRAIN_FIELDS has them, row k that of number k.
+
+    These are rigid bodies, and deformable ones that may break with their parts; empty where there
+    are none.
+    """
+    tables: list[Mapping[str, Any]] = [
+        {key: np.asarray(values) for key, values in table.items()}
+        for table in (simulation.grains(), simulation.fragments())
+    ]
+    number = np.concatenate([table["number"] for table in tables])
+    order = np.argsort(number, kind="stable")[np.count_nonzero(number < 0) :]
+    if not len(order):
         return {}
-    table |= {"position": table["centre"], "diameter": 2 * table["radius"]}
-    return {field.key: table[field.key][moves] for field in GRAIN_FIELDS}
+    renamed = {"position": "centre", "diameter": "radius"}
+    columns = {
+        field.key: np.concatenate([table[renamed.get(field.key, field.key)] for table in tables])
+        for field in GRAIN_FIELDS
+    }
+    columns["diameter"] = 2 * columns["diameter"]
+    return {key: values[order] for key, values in columns.items()}

@@ -22,6 +22,11 @@ class GrainShapes:
     """The shape of each row of a snapshot's table of bodies; None: a ball of its diameter."""
 
     shapes: list[Shape | None]
+    bends: frozenset[int] = frozenset()  # rows that have none: their particles show them
+
+    def is_ball(self, row: int) -> bool:
+        """Whether a row is one; what came off a body that broke has no shape of its own."""
+        return row < len(self.shapes) and self.shapes[row] is None and row not in self.bends
 
     @property
     def has_others(self) -> bool:
@@ -37,18 +42,22 @@ def grain_shapes(scenario: Scenario, snapshot: Snapshot) -> tuple[GrainShapes, l
     names = snapshot.grains.get("body", np.zeros(0, str))
     shapes: list[Shape | None] = [None] * len(names)
     unknown = set(names.tolist())
+    bends: set[int] = set()
     for name, body in bodies_of(scenario).items():
         rows = np.flatnonzero(names == name)
         if not len(rows) or not body.is_of_bodies:
             continue
         group = body.group()
-        if len(group) != len(rows):
+        if len(group) != len(rows) and not group.elastic:
             continue
         unknown.discard(name)
+        if group.elastic:
+            bends.update(rows.tolist())
+            continue
         for row, which in zip(rows, group.shape, strict=True):
             shape = group.shapes[which]
             shapes[row] = None if isinstance(shape, Ball) else shape
-    return GrainShapes(shapes), sorted(unknown)
+    return GrainShapes(shapes, frozenset(bends)), sorted(unknown)
 
 
 def grain_points(snapshot: Snapshot, known: GrainShapes) -> PolyData:
@@ -64,7 +73,7 @@ def grain_points(snapshot: Snapshot, known: GrainShapes) -> PolyData:
             values = indices(snapshot, values)
         fields[column.file_name] = in_space(values) if column.shape == "vector" else values
         units[column.file_name] = column.unit_in(snapshot.dim)
-    ball = np.array([known.shapes[k] is None for k in there], bool)
+    ball = np.array([known.is_ball(k) for k in there.tolist()], bool)
     fields[BALL_DIAMETER] = np.where(ball, table["diameter"][there], 0.0)
     fields["Grain"] = there
     return PolyData(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...measure.census import keep_their_shape
 from ...measure.views import View, fluid_names
 from ...record.reader import Run, Snapshot
 from ..colouring import Colouring
@@ -104,7 +105,7 @@ def is_round(run: Run, snapshot: Snapshot) -> np.ndarray:
     tables = run.scenario.get("body", {})
     names = snapshot.grains.get("body", np.zeros(0, str))
     round_ones = [tables.get(str(name), {}).get("shape") in ROUND for name in names]
-    return np.array([*round_ones, False])
+    return np.append(np.array(round_ones, bool) & keep_their_shape(run, snapshot), False)
 
 
 def _first_of_each(grain: np.ndarray, chosen: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from ...figures.space.box import is_round
+from ...measure.census import keep_their_shape
 from ...record.quantities import CATEGORIES
 from ...record.reader import Run, Snapshot
 from ...scene.groups import matrices
@@ -89,15 +90,17 @@ def rigid_shapes(run: Run, snapshot: Snapshot) -> RigidShapes | None:
     particles = _by_grain(snapshot["grain"], len(table["position"]))
     material = snapshot.stored("material")
     turns = matrices(table["orientation"], snapshot.dim)
+    rigid = keep_their_shape(run, snapshot)
     for k, is_ball in enumerate(is_round(run, snapshot)[:-1]):
         own = particles[k]
         hull = None
-        if not is_ball and len(shapes.hulls) < MOST_HULLS:
+        if rigid[k] and not is_ball and len(shapes.hulls) < MOST_HULLS:
             offset = (snapshot["position"][own] - table["position"][k]) @ turns[k]
             volume = (snapshot["mass"] / snapshot["density"])[own]
             hull = _hull(offset, volume)
         # A body of one particle has no other shape than its ball.
-        shapes.drawn.append(bool(is_ball or hull is not None or len(own) <= 1))
+        drawn = is_ball or hull is not None or len(own) <= 1
+        shapes.drawn.append(bool(drawn and rigid[k]))
         shapes.shape.append(BALL if hull is None else len(shapes.hulls))
         shapes.radius.append(0.5 * float(table["diameter"][k]))
         shapes.material.append(int(material[own[0]]) if len(own) else 0)

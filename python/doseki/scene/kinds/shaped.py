@@ -8,8 +8,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...record.particles import BOUND, FIXED, FREE, ParticleSet
+from ...scenario.materials import NO_FRACTURE
 from ...scenario.tables.body import ShapedBody
 from ..bodies import ElasticBody, ElasticSurface
+from ..cells import Cells, cells_of
 from ..groups import UPRIGHT, Group, matrices
 from ..periodic import wrapped
 from ..shapes import Particles, Shape
@@ -138,9 +140,25 @@ class Shaped(Body[S], Generic[S]):
                     spacing,
                     clamped[own],
                     surface,
+                    self._cells(placed.position[own], surface, spacing),
                 )
             )
         return made
+
+    @property
+    def breaks(self) -> bool:
+        """Whether its bodies may come apart."""
+        return self.scenario.materials[self.table.material].fracture != NO_FRACTURE
+
+    def _cells(self, rest: np.ndarray, surface: ElasticSurface, spacing: float) -> Cells:
+        """Those of a 2-D body that breaks, whose particles are at `rest`."""
+        if not self.breaks or self.dim == 3:
+            return Cells()
+        if (cells := cells_of(rest, surface.vertex, spacing)) is None:
+            raise self.error(
+                ": the particles of a body that breaks must resolve its outline: decrease dp"
+            )
+        return cells
 
     def _surface(
         self, group: Group, k: int, rest: np.ndarray, outermost: np.ndarray

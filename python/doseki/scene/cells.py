@@ -1,0 +1,88 @@
+"""The cells into which the points of a 2-D body and its outline divide it: cracks run through them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+ALIKE = 1e-6  # spacings between circumcentres of triangles that are parts of one cell
+FLAT = 1e-6  # square spacings: triangles of less area lie along a side
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Polygons; `node` holds the corners of one after another, anticlockwise.
+
+    Corners are the points of a body by their index, then the vertices of its outline.
+    """
+
+    count: np.ndarray = field(default_factory=lambda: np.zeros(0, np.uint32))  # corners of each
+    node: np.ndarray = field(default_factory=lambda: np.zeros(0, np.uint32))
+
+
+def cells_of(points: np.ndarray, outline: np.ndarray, spacing: float) -> Cells | None:
+    """Those of points (n, 2), m, in a convex outline (m, 2), anticlockwise, m.
+
+    Delaunay's triangles, those on one circle together: squares of a lattice are whole, and the
+    mirror image of a body has the mirror images of its cells.  None where the outline is not the
+    border of the triangles.
+    """
+    places = np.concatenate([points, outline]) / spacing
+    places -= places.mean(axis=0)
+    triangles = Delaunay(places).simplices
+    triangles = _anticlockwise(triangles, places)
+    cells = list(_merged(triangles, places))
+    sides = {side for cell in cells for side in zip(cell, np.roll(cell, -1), strict=True)}
+    border = {(int(a), int(b)) for a, b in sides if (b, a) not in sides}
+    vertices = len(points) + np.arange(len(outline))
+    if border != {(int(a), int(b)) for a, b in zip(vertices, np.roll(vertices, -1), strict=True)}:
+        return None
+    count = np.array([len(cell) for cell in cells], np.uint32)
+    return Cells(count, np.concatenate(cells).astype(np.uint32))
+
+
+def _anticlockwise(triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Triangles that have an area."""
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    area = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    turned = np.where((area < 0)[:, None], triangles[:, ::-1], triangles)
+    return turned[np.abs(area) > FLAT]
+
+
+def _merged(triangles: np.ndarray, places: np.ndarray) -> Iterator[np.ndarray]:
+    """Polygons (k,) of the triangles with the same circumcentre, each around its middle."""
+    centre = _circumcentres(places[triangles])
+    across: dict[tuple[int, int], int] = {}
+    group = np.arange(len(triangles))
+
+    def root(k: int) -> int:
+        while group[k] != k:
+            k = int(group[k])
+        return k
+
+    for k, corners in enumerate(triangles.tolist()):
+        for side in zip(corners, corners[1:] + corners[:1], strict=True):
+            other = across.get(side[::-1])
+            if other is not None and np.abs(centre[k] - centre[other]).max() < ALIKE:
+                group[root(k)] = root(other)
+            across[side] = k
+    members: dict[int, list[int]] = {}
+    for k in range(len(triangles)):
+        members.setdefault(root(k), []).append(k)
+    for own in members.values():
+        corners = np.unique(triangles[own])
+        x, y = (places[corners] - places[corners].mean(axis=0)).T
+        yield corners[np.argsort(np.arctan2(y, x))]
+
+
+def _circumcentres(corners: np.ndarray) -> np.ndarray:
+    """Of triangles (n, 3, 2)."""
+    b, c = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    double = 2 * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
+    bb, cc = (b**2).sum(axis=1), (c**2).sum(axis=1)
+    x = (c[:, 1] * bb - b[:, 1] * cc) / double
+    y = (b[:, 0] * cc - c[:, 0] * bb) / double
+    return corners[:, 0] + np.stack([x, y], axis=1)
