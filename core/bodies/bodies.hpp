@@ -73,8 +73,7 @@ public:
             throw std::invalid_argument("cut: one label for each point of deformable bodies");
         deformable.cut(label);
         part(time);
-        place(particles);
-        set_velocities(particles, 0.0);
+        place(particles, 0.0);
     }
 
     /// Largest step that motion without a fluid may have.
