@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+from tests.studies.small_study import STUDY, write_study
 
 from doseki.studies.plan.file import KINDS, read_plan
 
-from ..docs.markdown import blocks_of
-from .small_study import STUDY, write_study
+from .markdown import blocks_of
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "studies.md"
 
