@@ -220,8 +220,8 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }
 
-/// Each point takes what its pairs do to it in their order, so that sums do not depend on the number
-/// of threads.
+/// Each point takes what its pairs do to it in their order, so that sums do not depend on the
+/// number of threads.
 template <int D>
 void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
     pushes_.resize(pairs_.size());

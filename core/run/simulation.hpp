@@ -209,12 +209,15 @@ private:
     Ranks& ranks() { return lists_.halo().ranks; }
     Array<double> supports() { return support_radii(*scheme_, options_); }
 
+    template <class Work>
+    void timed(Phase phase, const Work& work) {
+        const auto timing = phases().measure(phase);
+        work();
+    }
     void step(double limit);
     void kick(double half_dt);
     double drift(double dt);
     double drift_bodies(double dt);
-    void set_body_velocities();
-    void gather_body_forces();
     double next_event() const;
     void update_lists(double before, double moved);
     void evaluate(double half_dt);
@@ -265,8 +268,7 @@ void Simulation<Lists>::step(double limit) {
     account_.add_forces(particles, scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_->end_step();
-    set_body_velocities();
-
+    timed(Phase::bodies, [&] { bodies.set_velocities(particles, 0.0); });
     dissipation_ += 0.5 * dt * (power + scheme_->dissipated_power());
     last_dt_ = dt;
     ++steps_;
@@ -275,12 +277,8 @@ void Simulation<Lists>::step(double limit) {
 
 template <class Lists>
 void Simulation<Lists>::kick(double half_dt) {
-    {
-        const auto timing = phases().measure(Phase::integrate);
-        scheme_->kick(half_dt);
-    }
-    const auto timing = phases().measure(Phase::bodies);
-    bodies.kick(half_dt);
+    timed(Phase::integrate, [&] { scheme_->kick(half_dt); });
+    timed(Phase::bodies, [&] { bodies.kick(half_dt); });
 }
 
 /// Returns the largest distance that a particle went.
@@ -297,21 +295,9 @@ double Simulation<Lists>::drift(double dt) {
 template <class Lists>
 double Simulation<Lists>::drift_bodies(double dt) {
     const auto timing = phases().measure(Phase::bodies);
-    const BodyStep<D> step = bodies.advance(moving_walls, time_, dt);
-    if (ranks().rank() == 0) account_.add(step);  // every rank has all bodies
+    const BodyStep<D> step = bodies.advance(moving_walls, time_, dt);  // the same on every rank
+    if (ranks().rank() == 0) account_.add(step);
     return bodies.place(particles, 0.5 * dt);
-}
-
-template <class Lists>
-void Simulation<Lists>::set_body_velocities() {
-    const auto timing = phases().measure(Phase::bodies);
-    bodies.set_velocities(particles, 0.0);
-}
-
-template <class Lists>
-void Simulation<Lists>::gather_body_forces() {
-    const auto timing = phases().measure(Phase::bodies);
-    bodies.gather(particles, ranks());
 }
 
 /// The next time that a step must meet exactly.
@@ -342,7 +328,7 @@ template <class Lists>
 void Simulation<Lists>::evaluate(double half_dt) {
     evaluated_at_ = time_;
     scheme_->evaluate(lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
-    gather_body_forces();
+    timed(Phase::bodies, [&] { bodies.gather(particles, ranks()); });
     if (const Fault& fault = scheme_->fault(); fault.rank != Fault::none)
         fail(fault.rank == Fault::density ? FailureKind::density : FailureKind::not_finite,
              fault.particle);

@@ -3,8 +3,8 @@
 //     case write NAME < particles     NAME.bi4; fixed particles first
 //     case read FOLDER PART           x of each fluid particle, on one line each
 //
-// Particles are text: numbers of all and of fixed ones, then dp, h, B, rho0, gamma and the mass of one,
-// then x y z vx vy vz of each.
+// Particles are text: numbers of all and of fixed ones, then dp, h, B, rho0, gamma and the mass of
+// one, then x y z vx vy vz of each.
 
 #include <cstdlib>
 #include <iostream>

@@ -1,5 +1,5 @@
-// A dam break in 2-D with SPHinXsys: its Riemann solver for weakly compressible water, in the two steps
-// of time (advection and sound) that it recommends.
+// A dam break in 2-D with SPHinXsys: its Riemann solver for weakly compressible water, in the two
+// steps of time (advection and sound) that it recommends.
 //
 //     dam_break WIDTH HEIGHT TANK_LENGTH TANK_HEIGHT DP C0 G END_TIME THREADS
 //
@@ -52,7 +52,8 @@ int main(int count, char** words) {
     SimpleDynamics<NormalDirectionFromBodyShape> normals(walls);
     Dynamics1Level<fluid_dynamics::Integration1stHalfWithWallRiemann> push(inner, contact);
     Dynamics1Level<fluid_dynamics::Integration2ndHalfWithWallRiemann> compress(inner, contact);
-    InteractionWithUpdate<fluid_dynamics::DensitySummationComplexFreeSurface> density(inner, contact);
+    InteractionWithUpdate<fluid_dynamics::DensitySummationComplexFreeSurface> density(inner,
+                                                                                      contact);
     ReduceDynamics<fluid_dynamics::AdvectionTimeStep> advection(water, sound / 10);
     ReduceDynamics<fluid_dynamics::AcousticTimeStep> acoustic(water);
     ParticleSorting sorting(water);
