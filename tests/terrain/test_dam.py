@@ -110,8 +110,7 @@ def test_with_the_ground_inside_the_dam_it_misses_a_part(tmp_path):
     assert record["force_x"][1:].mean() < 0.96 * exact
 
 
-# A basin on a map between walls that are turned about the foot of the
-# dam; the bed falls to the dam.
+# A basin on a map between walls that are turned about the foot of the dam; the bed falls to it.
 BASIN = """
 dim = 3
 dp = "= 0.4/particles"
@@ -128,23 +127,19 @@ file = "terrain.asc"
 material = "basalt"
 wall = "free_slip"
 [body.back]
-shape = "box"
-normal = [{out}, 0]
+{wall}normal = [{out}, 0]
 min = ["= 0.4 - 4*dp", "= 1 - 4*dp", "= -5*dp"]
 max = [0.4, "= 1.4 + 4*dp", "= 0.4 + 3*dp"]
 [body.right]
-shape = "box"
-normal = [{left}, 0]
+{wall}normal = [{left}, 0]
 min = [0.4, "= 1 - 4*dp", "= -5*dp"]
 max = [1.0, 1.0, "= 0.4 + 3*dp"]
 [body.left]
-shape = "box"
-normal = [{right}, 0]
+{wall}normal = [{right}, 0]
 min = [0.4, 1.4, "= -5*dp"]
 max = [1.0, "= 1.4 + 4*dp", "= 0.4 + 3*dp"]
 [body.dam]
-shape = "box"
-normal = [{back}, 0]
+{wall}normal = [{back}, 0]
 min = [1.0, "= 1 - 4*dp", "= -5*dp"]
 max = ["= 1 + 4*dp", "= 1.4 + 4*dp", "= 0.4 + 3*dp"]
 [body.lake]
@@ -186,9 +181,9 @@ def in_a_basin(folder, angle, slope, particles=16):
     sides = {"out": (c, s), "left": (-s, c), "right": (s, -c), "back": (-c, -s)}
     places = sides | {"middle": (1 - 0.3 * c, 1.2 - 0.3 * s)}
     text = {name: f"{x}, {y}" for name, (x, y) in places.items()}
-    lines = BASIN.format(angle=angle, particles=particles, **text).replace('shape = "box"\nnormal', "BOX\nnormal")
+    wall = WALL.format(angle=angle)
     path = folder / "case.toml"
-    path.write_text(lines.replace("BOX\n", WALL.format(angle=angle)))
+    path.write_text(BASIN.format(angle=angle, particles=particles, wall=wall, **text))
     run_scenario(load_scenario(path), folder / "run", RunOptions(threads=1))
     gauges = load(folder / "run").gauges
     level = 0.1 + float(gauges["level"]["height"][1:].mean())

@@ -138,7 +138,8 @@ def bodies(folder, angle, names):
 )
 def test_cells_are_cut_by_the_volume_of_bodies(tmp_path, name, angle, volume):
     """Three layers of cells below level ground lose what a box (also turned), a ball and a body
-    that its `where` carves take up; what is left of a cell has its middle outside."""
+    that its `where` carves take up; what is left of a cell has its middle outside.
+    """
     remainder = bodies(tmp_path, angle, [name])
     along = (np.arange(-10, 80) + 0.5) * 0.1
     x, y, z = np.meshgrid(along, along, [-0.05, -0.15, -0.25], indexing="ij")
