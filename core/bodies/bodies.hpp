@@ -199,7 +199,7 @@ private:
     Contacts<D> contacts_;
     RigidParticles<D> rigid_particles_;
     Origins rigid_origins_, deformable_origins_;
-    std::int32_t numbers_ = 0;  // of bodies, given so far
+    std::int32_t numbers_ = 0;                        // of bodies, given so far
     std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     Array<std::int32_t> all_points_;
@@ -316,8 +316,8 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     rigid_origins_.add(origin);
     for (std::size_t n = 0; n < grain.points.size(); ++n) {
         const std::uint32_t p = grain.points[n];
-        dust_points_[p] = rigid_particles_.add(
-            k, deformable.solids().x[p] - grain.state.centre, normals[n]);
+        dust_points_[p] =
+            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n]);
     }
 }
 

@@ -162,6 +162,17 @@ inline Array<std::int32_t> points_of(const Array<ContactPair>& pairs) {
     return points;
 }
 
+/// Whether a pair is that of a point of a deformable body and a ball that is not much heavier.
+template <int D>
+bool is_light_ball(const ContactPoints<D>& points, const ContactPair& pair) {
+    constexpr double light = 200.0;  // masses of a sample of the surface: some ten points
+    if (pair.with_shape()) return false;
+    const std::size_t a = pair.first(), b = pair.second();
+    if (points.deformable[a] == points.deformable[b]) return false;
+    const std::size_t ball = points.deformable[a] ? b : a, sample = points.deformable[a] ? a : b;
+    return !points.fixed[ball] && points.mass[ball] < light * points.mass[sample];
+}
+
 template <int D>
 void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
@@ -177,9 +188,12 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
         contacts_.push_back(contact_of(bodies, pair));
         at(contacts_.back()) += 1.0;
     }
-    for (const Contact& contact : contacts_) {
-        // Points of deformable bodies move each on its own.
-        const double together = contact.law.rigid ? at(contact) : 1.0;
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        const Contact& contact = contacts_[k];
+        // Points of deformable bodies move each on its own, but on a light ball press many.
+        const double together = contact.law.rigid                         ? at(contact)
+                                : is_light_ball(bodies.points, pairs_[k]) ? 4.0
+                                                                          : 1.0;
         timestep_ = std::min(timestep_, contact.law.timestep(laws_.speed(), together));
     }
 }

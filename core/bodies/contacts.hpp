@@ -134,9 +134,9 @@ template <int D>
 void Contacts<D>::renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        const std::int32_t a = point[pairs_[k].first()],
-                           b = pairs_[k].with_shape() ? shape[pairs_[k].shape()]
-                                                      : point[pairs_[k].second()];
+        const std::int32_t a = point[pairs_[k].first()], b = pairs_[k].with_shape()
+                                                                 ? shape[pairs_[k].shape()]
+                                                                 : point[pairs_[k].second()];
         if (a < 0 || b < 0) continue;
         pairs_[kept] = {a, pairs_[k].with_shape() ? -1 - b : b};
         springs_[kept] = springs_[k], normals_[kept] = normals_[k];

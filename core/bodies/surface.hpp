@@ -31,8 +31,8 @@ template <int D>
 struct Surface {
     std::int32_t body = 0, material = 0;
     double mass = 0.0, spacing = 0.0;  // of its points
-    Array<std::uint32_t> first;  // vertex of each curve
-    Array<std::uint32_t> curve;  // of each vertex
+    Array<std::uint32_t> first;        // vertex of each curve
+    Array<std::uint32_t> curve;        // of each vertex
     Array<std::uint8_t> crease;
     Array<Vec<double, D>> position, velocity;
     Array<Vec3> spin;

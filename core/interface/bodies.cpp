@@ -143,9 +143,9 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const Array<const char*> own{"material", "particles", "rest",    "position", "velocity",
-                                 "clamped",  "vertex",    "carrier", "crease",
-                                 "cell_count", "cell_node"};
+    const Array<const char*> own{"material", "particles",  "rest",     "position",
+                                 "velocity", "clamped",    "vertex",   "carrier",
+                                 "crease",   "cell_count", "cell_node"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
@@ -265,8 +265,8 @@ NamedValues BodyTables<D>::fragments(const Bodies<D>& bodies) {
         rows.push_back(b);
     }
     const std::size_t n = rows.size();
-    NewArray<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}),
-        mass({n}), radius({n}), overlap({n}), born({n});
+    NewArray<double> centre({n, D}), velocity({n, D}), spin({n, 3}), orientation({n, 4}), mass({n}),
+        radius({n}), overlap({n}), born({n});
     NewArray<std::int32_t> contacts({n}), named({n}), material({n}), number({n}), parent({n});
     NewArray<bool> removed({n});
     const Array<RigidMotion<D>> motions = rigid_motions(bodies.deformable.solids());
@@ -301,10 +301,9 @@ NamedValues BodyTables<D>::fragments(const Bodies<D>& bodies) {
 
 template <int D>
 Value BodyTables<D>::body_number_of(const Bodies<D>& bodies, const Particles<D>& particles,
-                                   const Array<std::size_t>& order) {
+                                    const Array<std::size_t>& order) {
     NewArray<std::int32_t> grain({order.size()});
-    for (std::size_t k = 0; k < order.size(); ++k)
-        grain[k] = bodies.number_of(particles, order[k]);
+    for (std::size_t k = 0; k < order.size(); ++k) grain[k] = bodies.number_of(particles, order[k]);
     return grain;
 }
 

@@ -31,9 +31,9 @@ struct BodyTables {
     static void bind(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& columns);
     /// The parameters of read_elastic_body, its `material`, for each of its `particles` the columns
     /// of solid_points, places not wrapped, and of its surface each `vertex` at rest, the number of
-    /// the particle that is its `carrier` and whether it is a `crease`. One that `breaks` is followed
-    /// in the record, and in 2-D has cells: `cell_count` corners each, and `cell_node`, the numbers
-    /// of points, then of vertices, that are corners, anticlockwise.
+    /// the particle that is its `carrier` and whether it is a `crease`. One that `breaks` is
+    /// followed in the record, and in 2-D has cells: `cell_count` corners each, and `cell_node`,
+    /// the numbers of points, then of vertices, that are corners, anticlockwise.
     static void add_elastic(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& table);
     static LoadMeter<D> load_meter(const NamedValues& table);
     /// Impulses, peaks and hits of all load meters, and the panels of one after those of another.
@@ -45,7 +45,7 @@ struct BodyTables {
     static NamedValues fragments(const Bodies<D>& bodies);
     /// Index of the body of each particle among those that the record follows, or -1.
     static Value body_number_of(const Bodies<D>& bodies, const Particles<D>& particles,
-                               const Array<std::size_t>& order);
+                                const Array<std::size_t>& order);
     /// Cauchy stress of particles, that of deformable bodies included.
     static Value stress(const Bodies<D>& bodies, const Particles<D>& particles,
                         const Array<std::size_t>& order, const PointStates<D>& states);

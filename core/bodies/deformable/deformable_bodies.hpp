@@ -22,7 +22,7 @@ struct BodyCells {
 /// What a division made of bodies.
 template <int D>
 struct Fragments {
-    Array<std::int32_t> parent;    // deformable bodies that are new, by those they come from
+    Array<std::int32_t> parent;  // deformable bodies that are new, by those they come from
     Array<DustGrain<D>> dust;
     Array<Array<Vec<double, D>>> dust_normals;  // of the points of each grain
     Array<std::int32_t> dust_parent;
@@ -68,8 +68,8 @@ public:
         }
         solids_.add(body, points);
         material_.push_back(material);
-        group_.push_back(members.empty() ? 0
-                                         : particles.tag[static_cast<std::size_t>(members[0])].body);
+        group_.push_back(
+            members.empty() ? 0 : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
 
     std::size_t bodies() const { return solids_.bodies(); }
@@ -178,8 +178,8 @@ private:
     TotalLagrangian<D> solids_;
     Division division() const;
 
-    Array<Vec<double, D>> normal_;            // at rest
-    Array<double> depth_;                     // below the surface [m]
+    Array<Vec<double, D>> normal_;          // at rest
+    Array<double> depth_;                   // below the surface [m]
     Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;

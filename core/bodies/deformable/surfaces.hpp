@@ -47,9 +47,9 @@ public:
             SurfaceVertex<D>& vertex = vertices_[v];
             vertex.point = solids.slot(vertex.point);
             if (D == 2) carrier_at_rest_.push_back(vertex.point);
-            vertex.key = D == 3 ? vertex.point
-                                : VertexKey::of_outline(CellNode::outline |
-                                                        static_cast<std::uint32_t>(v));
+            vertex.key =
+                D == 3 ? vertex.point
+                       : VertexKey::of_outline(CellNode::outline | static_cast<std::uint32_t>(v));
             vertex.radius = D == 3 ? 0.5 * solids.body_of(vertex.point).spacing : 0.0;
         }
         cells_.start([&](std::uint32_t number) { return solids.slot(number); });
@@ -143,7 +143,7 @@ private:
                                  std::span<const std::int32_t> before,
                                  const Array<Vec<double, D>>& places) const;
 
-    Array<SurfaceVertex<D>> vertices_;  // those of a curve, and of a body, one after another
+    Array<SurfaceVertex<D>> vertices_;      // those of a curve, and of a body, one after another
     Array<std::uint32_t> carrier_at_rest_;  // 2-D: of each vertex that there was at the start
     Cells cells_;
     Array<Array<PointShare>> carriers_;
@@ -272,8 +272,8 @@ Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& soli
     Array<std::int32_t> number(vertices_.size(), -1);
     vertices_.clear();
     for (const auto& [vertex, old] : kept) {
-        if (old >= 0) number[static_cast<std::size_t>(old)] =
-            static_cast<std::int32_t>(vertices_.size());
+        if (old >= 0)
+            number[static_cast<std::size_t>(old)] = static_cast<std::int32_t>(vertices_.size());
         vertices_.push_back(vertex);
     }
     return number;

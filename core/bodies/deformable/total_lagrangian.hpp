@@ -193,8 +193,7 @@ private:
         expect_fit(numbers == apart_.size() * DeformableBody::count, "elastic_numbers");
         expect_fit(rest_.size() == n && v.size() == n && body_.size() == n &&
                        clamped_.size() == n && gone_.size() == n && slot_.size() == n &&
-                       accelerations == n &&
-                       deformations == n,
+                       accelerations == n && deformations == n,
                    "elastic_position");
         for (const std::int32_t body : body_) expect_index(body, apart_.size(), "elastic_body");
         for (const std::uint32_t slot : slot_) expect_index(slot, n, "elastic_slot");
@@ -205,8 +204,7 @@ private:
 
     /// Weight of the pair with a point j at R from another at rest, in sums over those of one body.
     double pair_weight(std::size_t j, const Vec<double, D>& R) const {
-        return -volume(j) *
-               WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(j).support());
+        return -volume(j) * WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(j).support());
     }
     template <class Holds>
     Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;

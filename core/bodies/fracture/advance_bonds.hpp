@@ -113,8 +113,8 @@ private:
         return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed};
     }
 
-    /// A bond beside a crack is stretched by it though its points have little stress: there, what it
-    /// bears itself counts too.
+    /// A bond beside a crack is stretched by it though its points have little stress: there, what
+    /// it bears itself counts too.
     bool begins(bool beside) {
         const auto [stress, normal] = largest_principal(
             symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))));

@@ -34,7 +34,9 @@ public:
 
 private:
     static constexpr std::uint32_t middle = 3u << 30;
-    static std::uint64_t pair(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+    static std::uint64_t pair(std::uint32_t a, std::uint32_t b) {
+        return std::uint64_t{a} << 32 | b;
+    }
 };
 
 /// The corners of a cell, cyclic and anticlockwise, that follow one another in one body.

@@ -39,8 +39,8 @@ template <int D>
 void turn_to_cracks(const TotalLagrangian<D>& solids, const CrackPoints<D>& crack,
                     std::span<const std::int32_t> before, std::span<const std::int32_t> after,
                     Array<Vec<double, D>>& normal, Array<double>& depth) {
-    constexpr double reach = 4.0;       // spacings: deeper ones meet no fluid
-    constexpr double as_near = 0.25;    // spacings: two faces count as equally near
+    constexpr double reach = 4.0;     // spacings: deeper ones meet no fluid
+    constexpr double as_near = 0.25;  // spacings: two faces count as equally near
     Array<Box<D>> places;
     for (const std::uint32_t q : crack.point)
         places.push_back({solids.rest_position(q), solids.rest_position(q)});

@@ -42,8 +42,8 @@ Division DeformableBodies<D>::division() const {
             p, [&](std::uint32_t j) { return std::ranges::find(held, j) != held.end(); });
     };
     for (;;) {
-        Division found = divided(components(size(), for_each_bond), before, bodies(),
-                                 fewest_points<D>);
+        Division found =
+            divided(components(size(), for_each_bond), before, bodies(), fewest_points<D>);
         bool more = false;
         for (std::uint32_t p = 0; found.any() && p < size(); ++p)
             if (found.body[p] >= 0 && !loose[p] && !is_spanned(p)) loose[p] = 1, more = true;

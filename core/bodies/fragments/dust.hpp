@@ -10,8 +10,8 @@
 
 namespace doseki {
 
-/// A grain that a few points of a deformable body become, Eq. (123): a ball with their mass, momentum
-/// and angular momentum.
+/// A grain that a few points of a deformable body become, Eq. (123): a ball with their mass,
+/// momentum and angular momentum.
 template <int D>
 struct DustGrain {
     RigidBody<D> body;
@@ -45,8 +45,8 @@ DustGrain<D> dust_grain(const TotalLagrangian<D>& solids, std::span<const std::u
                 body.inertia(a, b) +=
                     m * ((a == b ? dot(r, r) + spacing * spacing / 6.0 : 0.0) - r[a] * r[b]);
     }
-    grain.largest = D == 2 ? std::sqrt(volume / std::numbers::pi)
-                           : std::cbrt(0.75 * volume / std::numbers::pi);
+    grain.largest =
+        D == 2 ? std::sqrt(volume / std::numbers::pi) : std::cbrt(0.75 * volume / std::numbers::pi);
     return grain;
 }
 

@@ -9,8 +9,8 @@
 
 namespace doseki {
 
-/// Where a body comes from. Numbers stay with bodies; -1: of one that the record does not follow, or
-/// of none.
+/// Where a body comes from. Numbers stay with bodies; -1: of one that the record does not follow,
+/// or of none.
 struct Origin {
     std::int32_t number = -1, parent = -1;
     double born = 0.0;  // time [s]; of bodies of the start: 0

@@ -81,7 +81,7 @@ class CategoryColours:
 
 
 class GrainColours(CategoryColours):
-    """A colour for each body that moves, which it keeps; other particles have that of their material.
+    """A colour for each body that moves, which it keeps; others have that of their material.
 
     Numbers that follow one another, as those of the parts of a body do, have colours far apart.
     """

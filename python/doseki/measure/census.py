@@ -191,7 +191,8 @@ class Census:
     """The grains of all snapshots of a run, one row for each grain and time.
 
     `table` has time, id, position (N, dim), velocity (N, dim), spin (N, 3), contacts, diameter,
-    mass, is_part and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water, m.
+    mass, is_part and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water,
+    m.
     `direction` is that of the flow along the first axis, +1 or -1; 0 where nothing says it.
     """
 

@@ -1,4 +1,4 @@
-"""The cells into which the points of a 2-D body and its outline divide it: cracks run through them."""
+"""The cells into which a 2-D body is divided by its points and outline: cracks run through them."""
 
 from __future__ import annotations
 

@@ -136,9 +136,7 @@ ELASTIC_DEFAULTS = {
 NO_FRACTURE = "none"
 
 
-def _breaking(
-    name: str, unit: str, doc: str, below: float = LIMIT
-) -> MaterialParameter:
+def _breaking(name: str, unit: str, doc: str, below: float = LIMIT) -> MaterialParameter:
     return MaterialParameter(
         name, unit, doc, above=0.0, below=below, default=0.0, law="solid", scheme=RESOLVED
     )
