@@ -71,7 +71,7 @@ def grains_of(snapshot: Snapshot, fluids: set[str]) -> Grains:
         kept = table["removed"] == 0
         names = "position velocity spin contacts diameter mass".split()
         parts = (table["parent"] >= 0)[kept]
-        return Grains(np.flatnonzero(kept), *(table[name][kept] for name in names), parts)
+        return Grains(np.flatnonzero(kept), *(table[name][kept] for name in names), is_part=parts)
     solid = (snapshot["motion"] == FREE) & ~np.isin(snapshot["material"], sorted(fluids))
     position, mass = snapshot["position"][solid], snapshot["mass"][solid]
     volume = mass / snapshot["density"][solid]
@@ -205,7 +205,8 @@ class Census:
     def load_mass(self) -> float:
         """Mass of all grains that ever were, each once, kg (2-D: kg/m)."""
         _, first = np.unique(self.table["id"], return_index=True)
-        return float(self.table["mass"][first] @ ~self.table["is_part"][first])
+        whole = ~self.table["is_part"][first] if "is_part" in self.table else 1.0
+        return float((self.table["mass"][first] * whole).sum())
 
     def rows(
         self, view: View | None = None, start: float = -math.inf, end: float = math.inf
