@@ -69,9 +69,11 @@ def grains_of(snapshot: Snapshot, fluids: set[str]) -> Grains:
     """The grains of a snapshot; those that have left the run are not among them."""
     if table := snapshot.grains:
         kept = table["removed"] == 0
-        names = "position velocity spin contacts diameter mass".split()
-        parts = (table["parent"] >= 0)[kept]
-        return Grains(np.flatnonzero(kept), *(table[name][kept] for name in names), parts)
+        t = {name: values[kept] for name, values in table.items()}
+        return Grains(
+            np.flatnonzero(kept), t["position"], t["velocity"], t["spin"], t["contacts"],
+            t["diameter"], t["mass"], t["parent"] >= 0,
+        )  # fmt: skip
     solid = (snapshot["motion"] == FREE) & ~np.isin(snapshot["material"], sorted(fluids))
     position, mass = snapshot["position"][solid], snapshot["mass"][solid]
     volume = mass / snapshot["density"][solid]
@@ -205,7 +207,8 @@ class Census:
     def load_mass(self) -> float:
         """Mass of all grains that ever were, each once, kg (2-D: kg/m)."""
         _, first = np.unique(self.table["id"], return_index=True)
-        return float(self.table["mass"][first] @ ~self.table["is_part"][first])
+        whole = ~self.table["is_part"][first] if "is_part" in self.table else 1.0
+        return float((self.table["mass"][first] * whole).sum())
 
     def rows(
         self, view: View | None = None, start: float = -math.inf, end: float = math.inf
