@@ -4,7 +4,7 @@
 
 #include "base/members.hpp"
 #include "base/vec.hpp"
-#include "pairs/pair_entry.hpp"
+#include "pairs/pair_term.hpp"
 
 namespace doseki {
 

@@ -20,10 +20,10 @@ from .carried import (
     placed_parts,
     present,
 )
+from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
-from .checks.fracture import fracture_warnings
 from .checks.resolution import resolution_warnings
 from .checks.terrain import terrain_findings
 from .contacts import contact_groups

@@ -26,21 +26,25 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
     modulus, ratio = material.elasticity
     given = {key: table.given(key) for key in ELASTIC_DEFAULTS}
     chosen = ELASTIC_DEFAULTS | {key: value for key, value in given.items() if value is not None}
-    return chosen | fracture_table(material) | {
-        "material": scenario.material_names.index(body.material),
-        "rho0": material.rho0,
-        "young_modulus": modulus,
-        "poisson_ratio": ratio,
-        "spacing": body.spacing,
-        "particles": np.ascontiguousarray(body.members, np.int32),
-        "rest": np.ascontiguousarray(body.rest),
-        "position": np.ascontiguousarray(body.position),
-        "velocity": np.ascontiguousarray(body.velocity),
-        "clamped": np.ascontiguousarray(body.clamped, np.uint8),
-        "vertex": np.ascontiguousarray(body.surface.vertex),
-        "carrier": np.ascontiguousarray(body.surface.carrier, np.int32),
-        "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
-    }
+    return (
+        chosen
+        | fracture_table(material)
+        | {
+            "material": scenario.material_names.index(body.material),
+            "rho0": material.rho0,
+            "young_modulus": modulus,
+            "poisson_ratio": ratio,
+            "spacing": body.spacing,
+            "particles": np.ascontiguousarray(body.members, np.int32),
+            "rest": np.ascontiguousarray(body.rest),
+            "position": np.ascontiguousarray(body.position),
+            "velocity": np.ascontiguousarray(body.velocity),
+            "clamped": np.ascontiguousarray(body.clamped, np.uint8),
+            "vertex": np.ascontiguousarray(body.surface.vertex),
+            "carrier": np.ascontiguousarray(body.surface.carrier, np.int32),
+            "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
+        }
+    )
 
 
 def add_elastic_bodies(

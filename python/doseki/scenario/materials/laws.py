@@ -1,8 +1,8 @@
 """The laws that a scenario chooses by name, with the parameters that only they have.
 
 The core knows each law under the same name, and its parameters under the same names: see
-core/physics/rheology.hpp, equation_of_state.hpp, hyperelastic.hpp and fracture.hpp.  A new law is declared here
-and named there; what is not a parameter of every material stands with the law.
+core/physics/rheology.hpp, equation_of_state.hpp, hyperelastic.hpp and fracture.hpp.  A new law is
+declared here and named there; what is not a parameter of every material stands with the law.
 """
 
 from __future__ import annotations
@@ -136,9 +136,7 @@ ELASTIC_DEFAULTS = {
 NO_FRACTURE = "none"
 
 
-def _breaking(
-    name: str, unit: str, doc: str, below: float = LIMIT
-) -> MaterialParameter:
+def _breaking(name: str, unit: str, doc: str, below: float = LIMIT) -> MaterialParameter:
     return MaterialParameter(
         name, unit, doc, above=0.0, below=below, default=0.0, law="solid", scheme=RESOLVED
     )

@@ -107,7 +107,8 @@ def _glass_beads(_: Mapping[str, Any]) -> dict[str, Any]:
 
 class Breaking(NamedTuple):
     """A solid that breaks: density, kg/m3, Young's modulus, Pa, Poisson's ratio, and either
-    strength, Pa, with toughness, Pa m^0.5, or fracture energy, J/m2."""
+    strength, Pa, with toughness, Pa m^0.5, or fracture energy, J/m2.
+    """
 
     density: float
     young: float
@@ -132,7 +133,8 @@ def _rock(density: float, young: float, poisson: float) -> dict[str, Any]:
 
 def _basalt(_: Mapping[str, Any]) -> dict[str, Any]:
     """Benz & Asphaug (Icarus 107, 1994): moduli of 26.7 GPa (bulk) and 22.7 GPa (shear), and the
-    flaws with which the impacts of Nakamura & Fujiwara came out as they were measured."""
+    flaws with which the impacts of Nakamura & Fujiwara came out as they were measured.
+    """
     return _rock(2700.0, 53.1e9, 0.169) | {
         "fracture": "grady_kipp",
         "weibull_k": 5e34,

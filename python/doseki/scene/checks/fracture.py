@@ -55,7 +55,7 @@ def fracture_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) -> I
         material = body.scenario.materials[name]
         if body.table.given("flaw_seed") is not None and material.fracture != "grady_kipp":
             raise body.error(
-                f'.flaw_seed: the material {name} has no random flaws; only those with fracture = '
+                f".flaw_seed: the material {name} has no random flaws; only those with fracture = "
                 '"grady_kipp" do'
             )
         if material.fracture == NO_FRACTURE:
