@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compiled import available_instruction_sets, load_core
 from ..scenario.gauges.loads.metered import Metered
-from ..scenario.materials import Material, equation_of_state
+from ..scenario.materials import Material, equation_of_state, fracture_keys
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
@@ -109,7 +109,7 @@ def core_material(material: Material, xi: float, eos: str) -> dict[str, Any]:
     """A material as the core reads it, scaled by xi but for what contacts have."""
     table = material.scaled(xi).table() | {"eos": eos}
     table["young_modulus"], table["poisson_ratio"] = material.elasticity
-    return table
+    return {key: value for key, value in table.items() if key not in fracture_keys()}
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:

@@ -168,6 +168,14 @@ FRACTURES = _table(
 )
 
 
+def fracture_keys(fracture: str | None = None) -> set[str]:
+    """The keys of a material that only say how it breaks; those that a law of fracture has not."""
+    names = {p.name for law in FRACTURES.values() for p in law.parameters} | {"fracture"}
+    if fracture in (None, NO_FRACTURE):
+        return names
+    return names - {p.name for p in FRACTURES[fracture].parameters} - {"fracture"}
+
+
 def laws_of(family: Mapping[str, Law], scheme: str) -> tuple[str, ...]:
     """The names of the laws of a family that a scheme obeys."""
     return tuple(name for name, law in family.items() if scheme in law.schemes)
