@@ -8,7 +8,6 @@
 #include "bodies/deformable/interactions.hpp"
 #include "bodies/deformable/power_iteration.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
-#include "bodies/fracture/bonded_terms.hpp"
 #include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
 

@@ -1,7 +1,7 @@
 // Deformable bodies, compiled once for all schemes.
 
 #include "bodies/deformable/advance.hpp"
-#include "bodies/fracture/breaking.hpp"
+#include "bodies/deformable/breaking.hpp"
 
 namespace doseki {
 

@@ -1,7 +1,7 @@
 #pragma once
 // How cracks begin, open, close and end.
 
-#include "bodies/fracture/bonds.hpp"
+#include "bodies/deformable/bonds.hpp"
 #include "physics/fracture.hpp"
 #include "physics/hyperelastic/strain.hpp"
 
