@@ -13,15 +13,24 @@
 //       void add(Accumulators<T>&, const Pair<T, D>&, const auto& i, const auto& j) const;
 //       void add_fixed(...) const;                       // the same for a fixed j
 //       void after_moving(Accumulators<T>&) const;       // between the two; may be left out
-//       using SeesEntries = void;                        // may be left out, see pair_entry.hpp
+//       using SeesEntries = void;                        // may be left out, see PairEntry
 //   };
 
 #include "base/members.hpp"
-#include "pairs/pair_entry.hpp"
 #include "pairs/records.hpp"
 #include "pairs/rows.hpp"
 
 namespace doseki {
+
+/// Where in the lists a pair stands: its cluster, by the first particle of that, and its number in
+/// the list. A term that declares `using SeesEntries = void` is given it, as the last argument of
+/// `add`, to find what it keeps for each pair.
+struct PairEntry {
+    std::uint32_t first, number;
+};
+
+template <class Term>
+concept SeesEntries = requires { typename Term::SeesEntries; };
 
 /// The accumulators of a term over packs, or over another number type.
 template <class Term, class T = Pack<typename Term::Real>>

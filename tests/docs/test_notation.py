@@ -10,6 +10,7 @@ from doseki.record.fields import FIELDS
 from doseki.scenario.materials import (
     BUILT_IN,
     EQUATIONS_OF_STATE,
+    FRACTURES,
     HYPERELASTIC_LAWS,
     MATERIAL_PARAMETERS,
     RHEOLOGIES,
@@ -41,7 +42,11 @@ def test_every_material_parameter_has_its_row(rows, parameter):
 
 @pytest.mark.parametrize(
     "law",
-    [*RHEOLOGIES.values(), *EQUATIONS_OF_STATE.values(), *HYPERELASTIC_LAWS.values()],
+    [
+        law
+        for family in (RHEOLOGIES, EQUATIONS_OF_STATE, HYPERELASTIC_LAWS, FRACTURES)
+        for law in family.values()
+    ],
     ids=lambda law: law.name,
 )
 def test_every_law_has_its_row(rows, law):

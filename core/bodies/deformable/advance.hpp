@@ -6,9 +6,8 @@
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/deformable/interactions.hpp"
-#include "bodies/deformable/power_iteration.hpp"
+#include "base/power_iteration.hpp"
 #include "bodies/deformable/total_lagrangian.hpp"
-#include "bodies/fracture/bonded_terms.hpp"
 #include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
 

@@ -1,8 +1,8 @@
 // Deformable bodies, compiled once for all schemes.
 
 #include "bodies/deformable/advance.hpp"
+#include "bodies/deformable/breaking.hpp"
 #include "bodies/fragments/dividing.hpp"
-#include "bodies/fracture/breaking.hpp"
 
 namespace doseki {
 

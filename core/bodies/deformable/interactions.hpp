@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "bodies/deformable/bonds.hpp"
 #include "bodies/deformable/records.hpp"
 #include "pairs/rows.hpp"
 #include "physics/hourglass.hpp"
@@ -96,5 +97,100 @@ struct InternalForceTerm : ElasticTerm<D> {
         force = force + (j.volume * F) * (elastic + damping);
     }
 };
+
+// Bodies whose bonds may crack: a crack lengthens the vector between two points at rest, and a bond
+// that bears nothing has no weight. Nothing else changes, Eq. (108).
+
+/// A pair as its bond has made it.
+template <class T, int D>
+struct BondedPair {
+    Pair<T, D> pair;
+    ElasticPoint<T, D> j;
+    BondedPair(const BondFields<T, D>& bond, const Pair<T, D>& pair, const ElasticPoint<T, D>& j)
+        : pair{pair.r_ij + bond.jump, pair.r}, j(j) {
+        this->j.volume *= bond.whole;
+    }
+};
+
+/// A term of solids that do not break, over bonds.
+template <class Term>
+struct Bonded : Term {
+    using SeesEntries = void;
+    static constexpr int D = Term::dim;
+
+    BondRows<D> bonds;
+
+    template <class Sums, class T>
+    DOSEKI_FN void add(Sums& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
+                       const ElasticPoint<T, D>& j, PairEntry at) const {
+        const BondedPair<T, D> bonded(bonds.template load<T>(at), pair, j);
+        Term::add(sums, bonded.pair, i, bonded.j);
+    }
+};
+
+template <class T, int D>
+struct BondedDeformation {
+    DeformationAccumulators<T, D> now;
+    Mat<T, D> shape{};  // what `now.place` is at rest: its inverse corrects, B of Eq. (80)
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.now...), f(self.shape...);
+    }
+};
+
+/// Eq. (80) with the matrix of the bonds that are left.
+template <int D>
+struct BondedDeformationTerm : DeformationTerm<D> {
+    using SeesEntries = void;
+    template <class T>
+    using Accumulators = BondedDeformation<T, D>;
+
+    BondRows<D> bonds;
+
+    template <class T>
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
+                       const ElasticPoint<T, D>& j, PairEntry at) const {
+        const BondedPair<T, D> bonded(bonds.template load<T>(at), pair, j);
+        DeformationTerm<D>::add(sums.now, bonded.pair, i, bonded.j);
+        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
+        add_velocity_gradient(sums.shape, bonded.j.volume, bonded.pair.r_ij, F, bonded.pair.r_ij);
+    }
+};
+
+template <class T, int D>
+struct SpringSums {
+    MisfitMoments<T, D> moments;
+    T square_rate{};  // of de/dt, with the weights of the fit
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.moments...), f(self.square_rate...);
+    }
+};
+
+/// What the energy of the springs of Eq. (83) and the power of their dampers need.
+template <int D>
+struct SpringTerm : ElasticTerm<D> {
+    template <class T>
+    using Accumulators = SpringSums<T, D>;
+
+    template <class T>
+    DOSEKI_FN void add(SpringSums<T, D>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
+                       const ElasticPoint<T, D>& j) const {
+        const T weight = -(j.volume * WendlandC2<D>::gradient_factor(pair.r, i.inverse_support));
+        const Vec<T, D> rate = i.v - j.v - i.F_rate * pair.r_ij;
+        sums.moments.add(weight, i.x - j.x - i.F * pair.r_ij, rate);
+        sums.square_rate += weight * dot(rate, rate);
+    }
+};
+
+/// sum w |de/dt - Omega e|^2 over the pairs of a point.
+template <int D>
+double damped_square(const SpringSums<double, D>& sums, const Mat<double, D>& spin) {
+    const Mat<double, D>&C = sums.moments.square, &N = sums.moments.rate;
+    return sums.square_rate - 2.0 * trace(spin * transposed(N)) +
+           trace(spin * C * transposed(spin));
+}
 
 }  // namespace doseki

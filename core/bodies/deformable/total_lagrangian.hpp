@@ -5,9 +5,9 @@
 
 #include "base/array.hpp"
 #include "base/error.hpp"
+#include "bodies/deformable/bonds.hpp"
 #include "bodies/deformable/deformable_body.hpp"
 #include "bodies/deformable/records.hpp"
-#include "bodies/fracture/bonds.hpp"
 #include "bodies/fragments/division.hpp"
 #include "bodies/rotation.hpp"
 #include "pairs/neighbour_lists.hpp"
@@ -225,7 +225,7 @@ private:
     void sum_over_pairs(const Term& term, const Epilogue& epilogue);
     ElasticTerm<D> records() const;
 
-    // Of bodies that may break: bodies/fracture/breaking.hpp.
+    // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
     template <class F>
     void sum_bonded_forces(const F& take);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/random.hpp"
 #include "physics/fracture/crack.hpp"
+#include "physics/fracture/random.hpp"
 
 namespace doseki {
 

@@ -20,7 +20,7 @@ from .earlier import Earlier
 from .gauges.gauge import Gauge, Setting
 from .gauges.loads.metered import Metered
 from .kinematics import Kinematics
-from .materials import MATERIAL_PARAMETERS, Material
+from .materials import MATERIAL_PARAMETERS, Material, fracture_keys
 from .particle_files.reader import ParticleTable
 from .schemes import KERNEL_SUPPORT, RESOLVED
 from .table import Table
@@ -304,6 +304,7 @@ class Scenario(ScenarioTable):
     def _material_table(self, name: str) -> dict[str, Any]:
         """What the scheme has of a material; to_toml leaves out what is None."""
         others = {p.name for p in MATERIAL_PARAMETERS if p.scheme not in (None, self.scheme)}
+        others |= fracture_keys(self.materials[name].fracture)
         if not self.materials[name].has_sound:
             others.add("speedsound")
         values = self.materials[name].table().items()

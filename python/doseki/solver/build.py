@@ -12,8 +12,7 @@ import numpy as np
 
 from ..compiled import available_instruction_sets, load_core
 from ..scenario.gauges.loads.metered import Metered
-from ..scenario.materials import FRACTURES, Material, equation_of_state
-from ..scenario.materials.laws import parameters_of
+from ..scenario.materials import Material, equation_of_state, fracture_keys
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
@@ -110,10 +109,8 @@ def _wall_condition(scenario: Scenario, body: BodyTable | Terrain | None) -> dic
 def core_material(material: Material, xi: float, eos: str) -> dict[str, Any]:
     """A material as the core reads it, scaled by xi but for what contacts have."""
     table = material.scaled(xi).table() | {"eos": eos}
-    for key in ("fracture", *parameters_of((FRACTURES,))):  # of bodies, not of particles
-        del table[key]
     table["young_modulus"], table["poisson_ratio"] = material.elasticity
-    return table
+    return {key: value for key, value in table.items() if key not in fracture_keys()}
 
 
 def core_materials(scenario: Scenario) -> list[dict[str, Any]]:

@@ -25,9 +25,8 @@ def bodies_of(
     """One started body of rock in 2-D, at rest."""
     bodies = getattr(core, f"ElasticBodies{rest.shape[1]}")()
     table = ELASTIC_DEFAULTS | ROCK | {"spacing": spacing} | material
-    if table.get("fracture", "none") != "cohesive":
-        for key in ("tensile_strength", "fracture_energy"):
-            table.pop(key, None)
+    if table["fracture"] != "cohesive":
+        del table["tensile_strength"], table["fracture_energy"]
     bodies.add(
         table,
         rest=np.ascontiguousarray(rest),
@@ -62,15 +61,15 @@ class Bar:
 
     length, width = 0.05, 0.02
 
-    def __init__(self, core: ModuleType, across: int, notch: float = 0.0025, **material: Any):
+    def __init__(self, core: ModuleType, across: int, rows_cut: int = 1, **material: Any) -> None:
         self.material = GRANITE | {"poisson_ratio": 0.0} | material
         spacing = self.width / across
         points = lattice((2 * round(0.5 * self.length / spacing), across), spacing)
-        side = np.abs(points[:, 1]) > 0.5 * self.width - notch
+        side = np.abs(points[:, 1]) > 0.5 * self.width - (rows_cut + 0.01) * spacing
         points = points[~(side & (np.abs(points[:, 0]) < 0.75 * spacing))]
         end = np.abs(points[:, 0]).max() - 1.5 * spacing
         self.points, self.clamped = points, np.abs(points[:, 0]) > end
-        self.area = self.width - 2 * notch
+        self.area = self.width - 2 * rows_cut * spacing
         self.bodies = bodies_of(core, points, spacing, self.clamped, **self.material)
         self.rows: list[tuple[float, float, float]] = []
 
@@ -79,7 +78,7 @@ class Bar:
         """Of the crack, J/m."""
         return self.material["fracture_energy"] * self.area
 
-    def pull(self, by: float, slowness: float = 80.0, rows: int = 200) -> Bar:
+    def pull(self, by: float, slowness: float = 320.0, rows: int = 200) -> Bar:
         """Lengthen it by so much, m, while waves go through it `slowness` times."""
         time = slowness * self.length / WAVE
         velocity = np.zeros_like(self.points)
@@ -113,7 +112,7 @@ class Disc:
 
     diameter, arc = 0.05, 8.0
 
-    def __init__(self, core: ModuleType, across: int, angle: float, **material: Any):
+    def __init__(self, core: ModuleType, across: int, angle: float, **material: Any) -> None:
         self.spacing = self.diameter / across
         points = lattice((across + 4, across + 4), self.spacing)
         points = points[np.linalg.norm(points, axis=1) < 0.5 * self.diameter]

@@ -48,6 +48,7 @@ BODY = {
     "elastic_law": ["neo_hookean"],
     "damping": ["0.5"],
     "hourglass": ["0.1"],
+    "flaw_seed": ["2"],
     "spin": ["{spin}"],
     "dp": ["0.05", "0.05 with body.subject.kinematics=single"],
     "rotate": ["20", "20 with body.subject.displacement=['= 0.02*x', {zeros}0]"],

@@ -106,6 +106,7 @@ def test_a_release(folder, dim):
         "elastic_law": ["neo_hookean"],
         "damping": ["0.1"],
         "hourglass": ["0.1"],
+        "flaw_seed": ["2"],
         "spin": ["[0, 0, 1]" if dim == 3 else "1"],
         "wall": ["free_slip"],
         "ks": ["0.01"],

@@ -10,6 +10,7 @@ from .laws import (
     RHEOLOGIES,
     Law,
     equation_of_state,
+    fracture_keys,
     laws_of,
 )
 from .material import BUILT_IN, LAWS, MATERIAL_PARAMETERS, Material
@@ -35,6 +36,7 @@ __all__ = [
     "MaterialParameter",
     "complete_materials",
     "equation_of_state",
+    "fracture_keys",
     "laws_of",
     "mud",
 ]

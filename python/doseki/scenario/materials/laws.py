@@ -1,8 +1,8 @@
 """The laws that a scenario chooses by name, with the parameters that only they have.
 
 The core knows each law under the same name, and its parameters under the same names: see
-core/physics/rheology.hpp, equation_of_state.hpp, hyperelastic.hpp and fracture.hpp.  A new law is declared here
-and named there; what is not a parameter of every material stands with the law.
+core/physics/rheology.hpp, equation_of_state.hpp, hyperelastic.hpp and fracture.hpp.  A new law is
+declared here and named there; what is not a parameter of every material stands with the law.
 """
 
 from __future__ import annotations
@@ -166,6 +166,14 @@ FRACTURES = _table(
         schemes=(RESOLVED,),
     ),
 )
+
+
+def fracture_keys(fracture: str | None = None) -> set[str]:
+    """The keys of a material that only say how it breaks; those that a law of fracture has not."""
+    names = {p.name for law in FRACTURES.values() for p in law.parameters} | {"fracture"}
+    if fracture in (None, NO_FRACTURE):
+        return names
+    return names - {p.name for p in FRACTURES[fracture].parameters} - {"fracture"}
 
 
 def laws_of(family: Mapping[str, Law], scheme: str) -> tuple[str, ...]:

@@ -131,8 +131,9 @@ class Material:
     """A material with the values of the laboratory, not yet scaled by xi.
 
     `law` says how stress follows from motion: "fluid" (viscous, eqs. 6-7) or "solid" (elastic,
-    eqs. 3-5, within a yield surface, eqs. 61-63).  `rheology` names one of RHEOLOGIES, `fracture` one of
-    FRACTURES.  The numbers are those of MATERIAL_PARAMETERS, in their units; `of_laws` has those of single laws.
+    eqs. 3-5, within a yield surface, eqs. 61-63).  `rheology` names one of RHEOLOGIES,
+    `fracture` one of FRACTURES.  The numbers are those of MATERIAL_PARAMETERS, in their units;
+    `of_laws` has those of single laws.
     """
 
     name: str

@@ -1,7 +1,7 @@
 #pragma once
 // How cracks begin, open, close and end.
 
-#include "bodies/fracture/bonds.hpp"
+#include "bodies/deformable/bonds.hpp"
 #include "physics/fracture.hpp"
 #include "physics/hyperelastic/strain.hpp"
 
@@ -95,6 +95,18 @@ private:
     Vec<double, D> corrected_rest(const BondPoint<D>& i) const {
         return i.spans ? i.B * rest_ : rest_;
     }
+    /// By how much the stress across falls while the crack opens [Pa/m]: its own part of that, and
+    /// never less than that of all bonds around.
+    double stiffness(const Vec<double, D>& normal, const CrackSite& place) const {
+        const double modulus = place.stiffness * body_.spacing;
+        double own = 0.0;
+        for (const BondPoint<D>* i : {&a_, &b_}) {
+            const Vec<double, D> corrected = corrected_rest(*i);
+            const double square = dot(corrected, corrected);
+            if (i->spans) own += modulus * ends_.weight * i->volume * square + i->kappa;
+        }
+        return max(place.stiffness, own / area(normal));
+    }
     /// Energy that point i loses with the bond.
     double lost_by(const BondPoint<D>& i) const {
         if (!i.spans) return 0.0;
@@ -138,8 +150,8 @@ private:
         const double tension = dot(pull(), normal) / area(normal);
         law.grow(crack, tension, dt, place);
         const double excess = tension - law.traction(crack, place),
-                     stiffness = place.stiffness + law.slope(crack, tension, place);
-        crack.opening = max(0.0, crack.opening + relaxation * excess / stiffness);
+                     resistance = stiffness(normal, place) + law.slope(crack, tension, place);
+        crack.opening = max(0.0, crack.opening + relaxation * excess / resistance);
         crack.max_opening = max(crack.max_opening, crack.opening);
         law.grow(crack, 0.0, 0.0, place);
         const double work = set_jump(state_.jump + (crack.opening - state_.opening) * normal);
@@ -152,7 +164,7 @@ private:
     /// slide there when friction does not hold them.
     BondChange slide(const CrackSite& place) {
         const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
-        const double ease = relaxation / place.stiffness, pressed = -dot(traction, normal);
+        const double ease = relaxation / stiffness(normal, place), pressed = -dot(traction, normal);
         const Vec<double, D> along = traction + pressed * normal;
         const double before = state_.opening;
         Vec<double, D> slip{};
