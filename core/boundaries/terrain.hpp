@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -50,6 +51,11 @@ public:
 
     /// This rank is to hold only the part of the map that it needs, which `source` gives it.
     void share(GroundSource<D> source) { source_ = std::move(source); }
+    /// For a place in the ground and the normal there, one after another, the share of a cell of
+    /// dp^D around it that no body takes up, and the middle of that.
+    using Remainder = std::function<Array<double>(const Array<double>&)>;
+    /// Has wall particles only where bodies have none: each would bear a part of the other's load.
+    void make_room(Remainder remainder) { remainder_ = std::move(remainder); }
     /// Gets the part of the map that is near particles of this rank and near all bodies. All ranks
     /// call it before they ask for the ground, `reach` [m] away from these at most.
     template <class Largest>
@@ -87,6 +93,7 @@ private:
     /// How much farther than it takes to make it a group may be from fluid [dp]: what trembles at
     /// an edge must not make and drop particles at each list.
     static constexpr double slack = 0.5;
+    static constexpr double min_share = 0.02;  // of a cell, that is worth a particle
 
     bool is_own(const Particles<D>& particles, std::size_t p) const {
         return particles.is_fixed(p) && particles.tag[p].body == wall_.body;
@@ -100,6 +107,7 @@ private:
 
     double highest(std::int64_t tile) const;
     void lay_out(const FluidColumns<D>& fluid, double reach);
+    void cut_at_bodies(std::span<WallTile<D>* const> tiles) const;
     WallGroups felt(const FluidColumns<D>& fluid, double reach) const;
     const WallTile<D>& layout(std::int64_t tile) const {
         return *std::lower_bound(
@@ -118,6 +126,7 @@ private:
 
     std::shared_ptr<HeightField<D>> field_;
     GroundSource<D> source_;  // of the map, where a rank holds a part of it
+    Remainder remainder_;     // none: no body stands in the ground
     TerrainWall wall_;
     TileGrid<D> grid_;
     WallGroups there_, wanted_;
@@ -176,7 +185,35 @@ void Terrain<D>::lay_out(const FluidColumns<D>& fluid, double reach) {
         else
             layouts[k] = WallTile<D>(*field_, grid_, near[k], wall_.layers);
     });
+    Array<WallTile<D>*> made;
+    for (WallTile<D>& tile : layouts)
+        if (!has_layout(tile.number)) made.push_back(&tile);
+    cut_at_bodies(made);
     layouts_.swap(layouts);
+}
+
+/// Leaves what bodies do not take up; of all tiles at once, for the answer may come from afar.
+template <int D>
+void Terrain<D>::cut_at_bodies(std::span<WallTile<D>* const> tiles) const {
+    if (!remainder_ || tiles.empty()) return;
+    Array<double> cells;
+    for (const WallTile<D>* tile : tiles)
+        for (const auto& slot : tile->slots)
+            for (const auto& vector : {slot.position, slot.normal})
+                for (const double each : vector.component) cells.push_back(each);
+    const Array<double> remainder = remainder_(cells);
+    const double* next = remainder.data();
+    for (WallTile<D>* tile : tiles) {
+        Array<typename WallTile<D>::Slot> left;
+        for (auto slot : tile->slots) {
+            slot.share = *next++;
+            Vec<double, D> middle;
+            for (int a = 0; a < D; ++a) middle[a] = *next++;
+            slot.depth -= dot(middle - slot.position, slot.normal), slot.position = middle;
+            if (slot.share > min_share) left.push_back(slot);
+        }
+        tile->slots.swap(left);
+    }
 }
 
 /// The groups that fluid of this rank may feel, or has felt and has hardly left.
@@ -257,12 +294,12 @@ void Terrain<D>::add_particle(Particles<D>& particles, std::int64_t tile,
     resize(particles, p + 1);
     particles.position[p] = slot.position;
     particles.density[p] = wall_.density;
-    particles.mass[p] = wall_.density * slot.area * wall_.dp;
+    particles.mass[p] = slot.share * wall_.density * slot.area * wall_.dp;
     particles.smoothing_length[p] = wall_.smoothing_length;
     particles.tag[p] = {id, wall_.body, wall_.material, Motion::fixed};
     particles.enter(p);
     particles.wall.normal[p] = slot.normal;
-    particles.wall.depth[p] = WallTile<D>::depth_of(slot.layer, wall_.dp);
+    particles.wall.depth[p] = slot.depth, particles.wall.cut[p] = 1.0 - slot.share;
     particles.wall.point[p] = static_cast<std::int32_t>(tile * TileGrid<D>::columns + slot.column);
 }
 

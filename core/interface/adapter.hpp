@@ -75,8 +75,11 @@ public:
         sim_.bodies.rigid.ground = std::make_shared<const GroundSurface<D>>(bed);
         sim_.terrain.set(std::move(bed), BoundaryTables<D>::terrain_wall(wall));
     }
-    void share_terrain(GroundReader read) override {
+    void share_terrain(NumberReader read) override {
         sim_.terrain.share(GroundSource<D>(std::move(read)));
+    }
+    void make_room_in_terrain(NumberReader remainder) override {
+        sim_.terrain.make_room(std::move(remainder));
     }
     void add_load_meter(const NamedValues& meter) override {
         sim_.bodies.loads.add(BodyTables<D>::load_meter(meter));

@@ -49,8 +49,10 @@ public:
     /// A bed that is a surface, and what its wall particles are like.
     virtual void set_terrain(const NamedValues& field, const NamedValues& wall) = 0;
     /// Where a rank that is to hold only a part of the terrain gets it from, see GroundSource.
-    using GroundReader = std::function<Array<double>(const Array<double>&)>;
-    virtual void share_terrain(GroundReader read) = 0;
+    using NumberReader = std::function<Array<double>(const Array<double>&)>;
+    virtual void share_terrain(NumberReader read) = 0;
+    /// Where bodies stand in the terrain, see Terrain::make_room.
+    virtual void make_room_in_terrain(NumberReader remainder) = 0;
     /// Sums what acts on the fixed bodies of these indices, about a point and, with `count`, on
     /// panels.
     virtual void add_load_meter(const NamedValues& meter) = 0;

@@ -37,6 +37,7 @@ struct WallState {
     bool in_use = false;           // of schemes that tell walls from particles; else all are empty
     Field<Vec<double, D>> normal;  // into the fluid
     Field<double> depth;           // below the surface of the wall [m]
+    Field<double> cut;             // share of its volume, of a terrain's, that a body takes up
     Field<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]
     Field<double> pressure;        // of the fluid at its place [Pa]
     // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
@@ -52,7 +53,7 @@ struct WallState {
     template <class F>
     void for_each_field(F&& f) {
         if (!in_use) return;
-        f("normal", normal), f("wall_depth", depth);
+        f("normal", normal), f("wall_depth", depth), f("wall_cut", cut);
         f("wall_force", force), f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_rows", rows);
         f("film_density", film_density), f("film_traction", film_traction);

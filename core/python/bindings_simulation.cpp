@@ -42,14 +42,9 @@ public:
     void set_terrain(const nb::dict& field, const nb::dict& wall) {
         core_->set_terrain(to_table(field), to_table(wall));
     }
-    void share_terrain(nb::object source) {
-        core_->share_terrain([source = std::move(source)](const Array<double>& part) {
-            const nb::gil_scoped_acquire locked;
-            using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-            const std::vector<double> request(part.begin(), part.end());
-            const auto found = nb::cast<Numbers>(source(request));
-            return Array<double>(found.data(), found.data() + found.size());
-        });
+    void share_terrain(nb::object source) { core_->share_terrain(asking(std::move(source))); }
+    void make_room_in_terrain(nb::object remainder) {
+        core_->make_room_in_terrain(asking(std::move(remainder)));
     }
     void add_load_meter(const nb::dict& meter) { core_->add_load_meter(to_table(meter)); }
     void set_stresses(const nb::object& deviatoric_stress) {
@@ -109,6 +104,17 @@ private:
 
     static Failure no_failure() { return {"", -1, {}}; }
 
+    /// A function of numbers to numbers that Python answers.
+    static AnySimulation::NumberReader asking(nb::object answer) {
+        return [answer = std::move(answer)](const Array<double>& question) {
+            const nb::gil_scoped_acquire locked;
+            using Numbers = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+            const std::vector<double> request(question.begin(), question.end());
+            const auto found = nb::cast<Numbers>(answer(request));
+            return Array<double>(found.data(), found.data() + found.size());
+        };
+    }
+
     std::unique_ptr<AnySimulation> core_;
     int dim_;
     Failure failure_ = no_failure();
@@ -154,6 +160,9 @@ void bind_setup(Class& c) {
         .def("share_terrain", &P::share_terrain, nb::arg("source"),
              nb::sig("def share_terrain(self, source: collections.abc.Callable[[list[float]], "
                      "numpy.ndarray]) -> None"))
+        .def("make_room_in_terrain", &P::make_room_in_terrain, nb::arg("remainder"),
+             nb::sig("def make_room_in_terrain(self, remainder: "
+                     "collections.abc.Callable[[list[float]], numpy.ndarray]) -> None"))
         .def("add_load_meter", &P::add_load_meter, nb::arg("meter"),
              nb::sig("def add_load_meter(self, meter: doseki.solver.protocol.Table) -> None"))
         .def("set_stresses", &P::set_stresses, nb::arg("deviatoric_stress"),

@@ -122,7 +122,8 @@ void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
     const Vec<double, D>& normal = state.wall.normal[p];
     record.normal = normal;
     record.traction = {};
-    record.volume = state.is_bound(p) ? state.mass[p] / state.density[p] : model_->spacing_power[D];
+    record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
+                                      : (1.0 - state.wall.cut[p]) * model_->spacing_power[D];
     record.depth = state.wall.depth[p];
     record.g_normal = std::max(0.0, dot(state.acceleration[p] - model_->options.gravity, normal));
     record.no_slip = model_->wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;

@@ -47,6 +47,44 @@ def test_a_slide_on_two_ranks(command, tmp_path):
         assert apart.max() == 0
 
 
+DAM = """
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+wall = "free_slip"
+normal = [-1, 0]
+min = [1.63, 0.5]
+max = [1.9, 1.6]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+interval = 0.01
+"""
+
+
+@pytest.mark.minutes
+def test_a_dam_in_the_ground_on_two_ranks(command, tmp_path):
+    """Each rank cuts the ground at the dam: the same walls and the same load."""
+    profile(tmp_path / "terrain.csv", lambda x: np.maximum(2 - 0.6 * x, 0), high=12.0)
+    file = tmp_path / "case.toml"
+    file.write_text(text(2, dp=0.05, time=0.1, speed=6.0, more=SLIDE + DAM))
+    for ranks in (1, 2):
+        arguments = ("-o", tmp_path / str(ranks), "--no-figures", "--threads", 1)
+        done = command(ranks, "run", file, *arguments)
+        assert done.returncode == 0, done.stderr
+    one, two = (doseki.load(tmp_path / name) for name in ("1", "2"))
+    assert one.gauges["dam"]["force_x"][-1] > 10
+    for axis in "xy":
+        force = one.gauges["dam"][f"force_{axis}"]
+        np.testing.assert_allclose(two.gauges["dam"][f"force_{axis}"], force, rtol=1e-7, atol=1e-6)
+    for run in (one, two):
+        ground = run[-1]["position"][run[-1]["body"] == "terrain"]
+        in_the_dam = (ground[:, 0] > 1.63) & (ground[:, 0] < 1.9) & (ground[:, 1] > 0.5)
+        assert len(ground)
+        assert not in_the_dam.any()
+
+
 SLAB = """
 [body.slide]
 shape = "release"

@@ -32,6 +32,7 @@ from .placed import Placed, origin_of
 from .protocol import CoreSimulation, Table
 from .relaxing import relaxed
 from .rigid_bodies import add_bodies
+from .room import make_room_for_bodies
 from .settling import CALM_STEPS, settled
 from .wall_motions import wall_motions
 
@@ -168,6 +169,7 @@ def _new_simulation(
     simulation = cast(CoreSimulation, Placed(core, origin)) if origin.any() else core
     if scenario.bed is not None:
         simulation.set_terrain(scenario.bed.table, _terrain_wall(scenario, body_names))
+        make_room_for_bodies(simulation, scenario)
     return simulation
 
 

@@ -92,6 +92,19 @@ class Placed:
 
         self._core.share_terrain(near)
 
+    def make_room_in_terrain(self, remainder: Callable[[list[float]], np.ndarray]) -> None:
+        """See CoreSimulation."""
+        to_map = np.concatenate([self._origin, np.zeros_like(self._origin)])
+        from_map = np.concatenate([np.zeros(1), self._origin])
+
+        def near(cells: list[float]) -> np.ndarray:
+            rows = np.reshape(cells, (-1, len(to_map))) + to_map
+            return np.asarray(
+                remainder(rows.ravel().tolist()) - np.resize(from_map, len(rows) * len(from_map))
+            )
+
+        self._core.make_room_in_terrain(near)
+
     def state(self) -> Columns:
         """See SimulationView."""
         found: Columns = self._on_map(self._core.state(), "position")

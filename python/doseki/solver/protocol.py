@@ -316,6 +316,14 @@ class CoreSimulation(Simulation, Protocol):
         """
         ...
 
+    def make_room_in_terrain(self, remainder: Callable[[list[float]], Floats]) -> None:
+        """Have wall particles of the terrain only where bodies that stand in it have none.
+
+        `remainder` is called with a place in the ground, m, and the normal there, for one cell
+        after another, and gives what no body takes up of each: its share and its middle, m.
+        """
+        ...
+
     def add_load_meter(self, meter: Table) -> None:
         """Sum what acts on fixed bodies (their indices) about a point; with `count` on panels."""
         ...

@@ -33,6 +33,7 @@ INDEX_BITS = 27
 INDEX_MASK = 2**INDEX_BITS - 1
 POSITIVE = {"mass", "smoothing_length", "density", "shape_radius", "body_mass"}
 NOT_NEGATIVE = {
+    "wall_cut",
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",

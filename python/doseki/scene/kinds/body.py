@@ -13,7 +13,7 @@ from ...scenario.tables.body import BodyTable
 from ...scenario.values.expressions import ExpressionError, evaluate_at, is_expression
 from ...util.finding import Finding
 from ..bodies import ElasticBody
-from ..groups import Group
+from ..groups import Group, inside_bodies
 from ..shapes import Particles
 
 T = TypeVar("T", bound=BodyTable)
@@ -114,6 +114,16 @@ class Body(Generic[T]):
     def contact_shape(self) -> Group | None:
         """The one body that those which touch it meet, where it is fixed and its shape is whole."""
         return None
+
+    def encloses(self, position: np.ndarray) -> np.ndarray:
+        """Mask (N,) of the positions (N, dim), m, that lie in it where it is fixed.
+
+        Nowhere in what is no whole shape: a file's particles, points, a box filled up to a number.
+        """
+        group = self.group() if self.is_of_bodies else self.contact_shape()
+        if group is None:
+            return np.zeros(len(position), bool)
+        return inside_bodies(self.scenario, group, position)
 
     def findings(self) -> list[Finding]:
         """What is doubtful about it."""

@@ -7,7 +7,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from ...scenario.tables.body import LatticeBody, TurnedBody
-from ..groups import quaternion_of
+from ..groups import inside_bodies, quaternion_of
 from ..lattices import rotated, rotation_matrix
 from .shaped import Shaped
 
@@ -63,6 +63,15 @@ class Lattice(Turned[L], Generic[L]):
             )
         kept = self._kept(self.turned(position, pivot))
         return kept, self.table.mass_per_particle or self.mass_of_one()
+
+    def encloses(self, position: np.ndarray) -> np.ndarray:
+        """See Body."""
+        where = self.table.where
+        if where is None or self.table.given("count"):
+            return super().encloses(position)
+        inside = inside_bodies(self.scenario, self.group(), position)
+        inside[inside] = self.values_at("where", where, position[inside]) > 0
+        return inside
 
     def _kept(self, position: np.ndarray) -> np.ndarray:
         """The positions where `where` is above zero."""
