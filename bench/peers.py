@@ -3,6 +3,7 @@
 
 ../.venv/bin/python peers.py                  doseki and PySPH
 ../.venv/bin/python peers.py --peer NAME N NEIGHBOURS "COMMAND with {steps}"
+../.venv/bin/python peers.py --sphinxsys DIR --dualsphysics DIR   time to solution
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from solution import Code, DamBreak, Doseki, DualSPHysics, SPHinXsys, measure
 
 from doseki.bench.report import machine, markdown_table
 from doseki.scenario.load import load_scenario
@@ -195,12 +197,36 @@ def arguments() -> argparse.Namespace:
         metavar=("NAME", "N", "NEIGHBOURS", "COMMAND"),
         help="an executable; {steps} and {threads} in COMMAND are filled in",
     )
+    sources = parser.add_argument_group(
+        "time to solution",
+        "With one of these, codes run a dam break in 2-D to the same time; they are compiled from"
+        "\ntheir source trees first, into .tools/peers.",
+    )
+    sources.add_argument("--sphinxsys", type=Path, metavar="DIR", help="sources of SPHinXsys")
+    sources.add_argument("--dualsphysics", type=Path, metavar="DIR", help="sources of DualSPHysics")
+    sources.add_argument("--rows", type=int, default=60, help="particles over the column [60]")
+    sources.add_argument("--until", type=float, default=0.4, help="s of flow [0.4]")
+    sources.add_argument("--repeats", type=int, default=3, help="in turns [3]")
     return parser.parse_args()
+
+
+def time_to_solution(options: argparse.Namespace) -> None:
+    """Prints one table for each number of threads."""
+    codes: list[Code] = [Doseki()]
+    for peer, source in ((DualSPHysics, options.dualsphysics), (SPHinXsys, options.sphinxsys)):
+        if source is not None:
+            codes.append(peer(source))
+    for threads in options.threads:
+        case = DamBreak(options.rows, options.until)
+        print(f"{machine()}; {measure(codes, case, threads, options.repeats)}\n")
 
 
 def main() -> None:
     """Times every code on every case and prints one table."""
     options = arguments()
+    if options.sphinxsys or options.dualsphysics:
+        time_to_solution(options)
+        return
     results = []
     for dim in options.dims:
         for threads in options.threads:

@@ -68,11 +68,13 @@ public:
     /// From t to t + dt, through as many contact steps as it takes. Tells what that gave to the
     /// rigid bodies.
     BodyStep<D> advance(const MovingWalls<D>& walls, double t, double dt);
-    /// Puts particles where their bodies are; returns the largest distance that one went.
-    double place(Particles<D>& particles) const {
+    /// Puts particles where their bodies are, with the velocity that they have when the fluid will
+    /// have acted for `ahead` more; returns the largest distance that one went.
+    double place(Particles<D>& particles, double ahead) const {
         if (!any_moves()) return 0.0;
         const double bent = deformable.place(particles, contacts_.domain());
-        return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain()));
+        deformable.set_velocities(particles, ahead);
+        return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), ahead));
     }
     /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
     void set_velocities(Particles<D>& particles, double ahead) const {

@@ -166,6 +166,7 @@ template <int D>
 void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
     points_ = points_of(pairs_);
+    list_pushes();
     contacts_.clear();
     timestep_ = std::numeric_limits<double>::infinity();
     std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch
@@ -219,22 +220,55 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }
 
-/// All threads find what the pairs do; it is handed out in the order of the pairs, so that sums do
-/// not depend on the number of threads.
+/// Each point takes what its pairs do to it in their order, so that sums do not depend on the
+/// number of threads.
 template <int D>
 void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
     pushes_.resize(pairs_.size());
     for_each_contact(pairs_.size(), [&](std::size_t k) { push_pair(bodies, k, dt); });
-    ContactPoints<D>& points = bodies.points;
+    hand_out(bodies.points);
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const Push& push = pushes_[k];
         if (!push.touches) continue;
         max_overlap_ = std::max(max_overlap_, push.overlap.depth / contacts_[k].law.diameter);
-        const std::size_t a = pairs_[k].first();
-        points.force[a] = points.force[a] + push.force;
-        points.torque[a] = points.torque[a] + push.torque_a;
-        push_second(bodies, pairs_[k], push.overlap, -1.0 * push.force, push.torque_b);
+        if (pairs_[k].with_shape())
+            push_second(bodies, pairs_[k], push.overlap, -1.0 * push.force, push.torque_b);
     }
+}
+
+template <int D>
+void Contacts<D>::list_pushes() {
+    first_push_.assign(points_.size() + 1, 0);
+    auto place = [this](std::size_t point) {
+        return static_cast<std::size_t>(
+            std::lower_bound(points_.begin(), points_.end(), static_cast<std::int32_t>(point)) -
+            points_.begin());
+    };
+    auto for_each_side = [this, &place](auto&& f) {
+        for (std::size_t k = 0; k < pairs_.size(); ++k) {
+            f(place(pairs_[k].first()), 2 * k);
+            if (!pairs_[k].with_shape()) f(place(pairs_[k].second()), 2 * k + 1);
+        }
+    };
+    for_each_side([this](std::size_t n, std::size_t) { ++first_push_[n + 1]; });
+    for (std::size_t n = 0; n < points_.size(); ++n) first_push_[n + 1] += first_push_[n];
+    pushes_on_.resize(first_push_.back());
+    Array<std::size_t> next = first_push_;
+    for_each_side([&](std::size_t n, std::size_t side) { pushes_on_[next[n]++] = side; });
+}
+
+template <int D>
+void Contacts<D>::hand_out(ContactPoints<D>& points) const {
+    for_each_contact(points_.size(), [&](std::size_t n) {
+        const auto c = static_cast<std::size_t>(points_[n]);
+        for (std::size_t m = first_push_[n]; m < first_push_[n + 1]; ++m) {
+            const Push& push = pushes_[pushes_on_[m] / 2];
+            if (!push.touches) continue;
+            const bool second = pushes_on_[m] % 2 == 1;
+            points.force[c] = points.force[c] + (second ? -1.0 : 1.0) * push.force;
+            points.torque[c] = points.torque[c] + (second ? push.torque_b : push.torque_a);
+        }
+    });
 }
 
 template <int D>
@@ -244,15 +278,14 @@ Overlaps<D> Contacts<D>::overlaps_of_pair(const ContactBodies<D>& bodies, std::s
     if constexpr (D == 2)
         if (const Surface<D>* surface = bodies.surface(pair))
             return overlap_of(points, pair.first(), *surface, contacts_[k].vertex, domain_);
-    if (pair.with_shape())
-        return overlaps_of(points, pair.first(), bodies.solids[pair.shape()], domain_);
-    return overlap_of(points, pair.first(), pair.second(), domain_);
+    return overlaps_of(points, pair.first(), bodies.solids[pair.shape()], domain_);
 }
 
 template <int D>
 void Contacts<D>::push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt) {
     const std::size_t rows = run_from(k);
     if (rows == 0) return;
+    if (!pairs_[k].with_shape()) return push_balls(bodies, k, dt);
     const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
     const auto share = shares_of(overlaps);
     const auto row = rows_of(overlaps, std::span<const Vec<double, D>>(normals_.data() + k, rows));
@@ -262,7 +295,20 @@ void Contacts<D>::push_pair(const ContactBodies<D>& bodies, std::size_t k, doubl
         pushes_[n] = push_at(bodies, n, overlaps[place], dt, share[place]);
     }
     for (std::size_t n = k; n < k + rows; ++n)
-        if (!pushes_[n].touches) springs_[n] = {}, normals_[n] = {};
+        if (!pushes_[n].touches) part(n);
+}
+
+template <int D>
+void Contacts<D>::push_balls(const ContactBodies<D>& bodies, std::size_t k, double dt) {
+    const auto overlap = overlap_of(bodies.points, pairs_[k].first(), pairs_[k].second(), domain_);
+    if (!overlap) return part(k);
+    pushes_[k] = push_at(bodies, k, *overlap, dt, 1.0);
+}
+
+template <int D>
+void Contacts<D>::part(std::size_t k) {
+    pushes_[k].touches = false, contacts_[k].overlap = 0.0;
+    springs_[k] = {}, normals_[k] = {};
 }
 
 template <int D>

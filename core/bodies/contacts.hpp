@@ -94,6 +94,13 @@ private:
     /// As many rows of the pair as it may have places.
     void add_rows(const ContactBodies<D>& bodies);
     Overlaps<D> overlaps_of_pair(const ContactBodies<D>& bodies, std::size_t k) const;
+    /// What two balls do, which touch at one place.
+    void push_balls(const ContactBodies<D>& bodies, std::size_t k, double dt);
+    /// The pair of row k does not touch there.
+    void part(std::size_t k);
+    /// Lists for each point, in rising order, the pairs that push it.
+    void list_pushes();
+    void hand_out(ContactPoints<D>& points) const;
     /// Finds what a pair does whose run of rows begins with k.
     void push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt);
     Push push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
@@ -107,6 +114,8 @@ private:
     Array<ContactSprings> springs_;
     Array<Vec<double, D>> normals_;  // of what touches; zero: nothing
     Array<std::int32_t> points_;
+    Array<std::size_t> first_push_;  // of each of points_ in pushes_on_, and their end
+    Array<std::size_t> pushes_on_;   // row of the pair, doubled, plus one for its second side
     Array<Contact> contacts_;
     Array<Push> pushes_;
     double timestep_ = std::numeric_limits<double>::infinity();

@@ -33,7 +33,11 @@ public:
     /// its contacts with it.
     const Vec<double, D>& contact_force(std::size_t k) const { return mean_contact_force_[k]; }
     Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
-    /// All spins when the fluid will have acted for `ahead` more.
+    /// Of the centre when the fluid will have acted for `ahead` more.
+    Vec<double, D> velocity(std::size_t k, double ahead) const {
+        return states_[k].velocity + (ahead / bodies_[k].mass) * states_[k].flow_force;
+    }
+    /// All spins then.
     Array<Vec3> spins(double ahead) const {
         Array<Vec3> w(size());
         for_each_particle(size(), [&](std::size_t k) {
@@ -129,10 +133,14 @@ private:
         return c - static_cast<std::size_t>(first_point_[k]);
     }
     Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
+    /// Whether a body turns about all axes alike, as balls do.
+    static bool turns_alike(const Mat<double, 3>& inertia);
     void restore(const RigidBodyColumns<D>& columns);
 
     Array<RigidBody<D>> bodies_;
     Array<RigidBodyState<D>> states_;
+    Array<Mat<double, 3>> inverse_inertia_;  // 3-D: of bodies that do not turn alike
+    Array<std::uint8_t> turns_alike_;
     Array<std::int32_t> first_point_;      // of each body among the contact points
     Array<Vec<double, D>> contact_force_;  // of the last contact step
     Array<Vec3> contact_torque_;
@@ -147,6 +155,9 @@ template <int D>
 void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& state,
                          const Vec3& spin) {
     bodies_.push_back(body), states_.push_back(state);
+    turns_alike_.push_back(D == 2 || turns_alike(body.inertia));
+    inverse_inertia_.push_back(turns_alike_.back() || body.fixed ? Mat<double, 3>{}
+                                                                 : inverse(body.inertia, 0.0));
     contact_force_.push_back({}), contact_torque_.push_back({}), mean_contact_force_.push_back({});
     const Mat<double, 3> R = state.orientation.matrix();
     states_.back().angular_momentum = rotated(R, body.inertia * rotated_back(R, spin));
@@ -160,6 +171,7 @@ void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
     columns.expect_fit_of(states.size());
     shapes = columns.shapes(ground);
     bodies_.clear(), states_.clear(), moving_ = 0;
+    inverse_inertia_.clear(), turns_alike_.clear();
     contact_force_.clear(), contact_torque_.clear(), mean_contact_force_.clear();
     for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});
     states_ = states;
@@ -169,15 +181,22 @@ void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
 template <int D>
 Vec3 RigidBodies<D>::spin_of(std::size_t k, const Vec3& L) const {
     if (bodies_[k].fixed) return L;
-    const Mat<double, 3>& I = bodies_[k].inertia;
-    Vec3 spin{};
-    if constexpr (D == 2)
-        spin[2] = L[2] / I(2, 2);
-    else {
-        const Mat<double, 3> R = states_[k].orientation.matrix();
-        spin = rotated(R, inverse(I, 0.0) * rotated_back(R, L));
+    if (turns_alike_[k]) {
+        const double I = bodies_[k].inertia(2, 2);
+        Vec3 spin;
+        for (int c = 0; c < 3; ++c) spin[c] = L[c] / I;
+        return spin;
     }
-    return spin;
+    const Mat<double, 3> R = states_[k].orientation.matrix();
+    return rotated(R, inverse_inertia_[k] * rotated_back(R, L));
+}
+
+template <int D>
+bool RigidBodies<D>::turns_alike(const Mat<double, 3>& I) {
+    bool alike = I(0, 0) == I(1, 1) && I(1, 1) == I(2, 2);
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) alike = alike && (a == b || I(a, b) == 0.0);
+    return alike;
 }
 
 template <int D>

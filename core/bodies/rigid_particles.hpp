@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
@@ -38,11 +39,12 @@ public:
 
     /// Hands the force of the fluid on to the bodies. All ranks have all bodies: each point is a
     /// particle of one of them, so that the sums are those of one rank, to the bit.
-    void gather(const Particles<D>& particles, RigidBodies<D>& bodies, const Ranks& ranks) const;
-    /// Puts particles where their bodies are (eq. 53); returns the largest distance that one went.
-    double place(Particles<D>& particles, const RigidBodies<D>& bodies,
-                 const Domain<D>& domain) const;
-    /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
+    void gather(const Particles<D>& particles, RigidBodies<D>& bodies, const Ranks& ranks);
+    /// Puts particles where their bodies are (eq. 53), with the velocity that they have when the
+    /// fluid will have acted for `ahead` more; returns the largest distance that one went.
+    double place(Particles<D>& particles, const RigidBodies<D>& bodies, const Domain<D>& domain,
+                 double ahead) const;
+    /// Velocities alone.
     void set_velocities(Particles<D>& particles, const RigidBodies<D>& bodies, double ahead) const;
 
     void serialise(Archive& archive) { archive("body_points", points_); }
@@ -58,35 +60,49 @@ private:
     const RigidBodyPoint<D>& point_of(const Particles<D>& particles, std::size_t p) const {
         return points_[particles.point(p)];
     }
+    void sort_by_body(std::size_t bodies);
 
     Array<RigidBodyPoint<D>> points_;
+    Array<std::size_t> of_body_, first_of_body_;  // points by body, in rising order
 };
 
 template <int D>
+void RigidParticles<D>::sort_by_body(std::size_t bodies) {
+    if (of_body_.size() == points_.size() && first_of_body_.size() == bodies + 1) return;
+    first_of_body_.assign(bodies + 1, 0), of_body_.resize(points_.size());
+    for (const RigidBodyPoint<D>& point : points_) ++first_of_body_[point.index() + 1];
+    std::partial_sum(first_of_body_.begin(), first_of_body_.end(), first_of_body_.begin());
+    Array<std::size_t> next = first_of_body_;
+    for (std::size_t q = 0; q < points_.size(); ++q) of_body_[next[points_[q].index()]++] = q;
+}
+
+template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
-                               const Ranks& ranks) const {
+                               const Ranks& ranks) {
     Array<Vec<double, D>> force(points_.size());
     for_each_particle(particles.size(), [&](std::size_t p) {
         if (has(particles, p)) force[particles.point(p)] = particles.wall.force[p];
     });
     ranks.sum(numbers_of(force));
-    for (std::size_t k = 0; k < bodies.size(); ++k)
-        bodies.state(k).flow_force = {}, bodies.state(k).flow_torque = {};
-    const auto R = bodies.rotations();
-    for (std::size_t q = 0; q < points_.size(); ++q) {
-        const std::size_t k = points_[q].index();
+    sort_by_body(bodies.size());
+    for_each_contact(bodies.size(), [&](std::size_t k) {
         RigidBodyState<D>& state = bodies.state(k);
-        state.flow_force = state.flow_force + force[q];
-        state.flow_torque = state.flow_torque +
-                            cross(in_space(rotated(R[k], points_[q].offset)), in_space(force[q]));
-    }
+        const Mat<double, 3> R = state.orientation.matrix();
+        state.flow_force = {}, state.flow_torque = {};
+        for (std::size_t n = first_of_body_[k]; n < first_of_body_[k + 1]; ++n) {
+            const Vec<double, D>& push = force[of_body_[n]];
+            const Vec<double, D> lever = rotated(R, points_[of_body_[n]].offset);
+            state.flow_force = state.flow_force + push;
+            state.flow_torque = state.flow_torque + cross(in_space(lever), in_space(push));
+        }
+    });
 }
 
 template <int D>
 double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& bodies,
-                                const Domain<D>& domain) const {
+                                const Domain<D>& domain, double ahead) const {
     const auto R = bodies.rotations();
-    const auto w = bodies.spins(0.0);
+    const auto w = bodies.spins(0.0), w_ahead = bodies.spins(ahead);
     auto move = [&](std::size_t p) {
         if (!has(particles, p)) return 0.0;
         const RigidBodyPoint<D>& point = point_of(particles, p);
@@ -100,6 +116,7 @@ double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& b
         particles.wall.area[p] = rotated(R[k], point.area);
         particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
                                     turning_velocity(w[k], turning_velocity(w[k], lever));
+        particles.velocity[p] = bodies.velocity(k, ahead) + turning_velocity(w_ahead[k], lever);
         return dot(step, step);
     };
     return std::sqrt(reduce(particles.size(), 0.0, maximum, move));
@@ -114,9 +131,8 @@ void RigidParticles<D>::set_velocities(Particles<D>& particles, const RigidBodie
         if (!has(particles, p)) return;
         const RigidBodyPoint<D>& point = point_of(particles, p);
         const std::size_t k = point.index();
-        const RigidBodyState<D>& state = bodies.state(k);
-        particles.velocity[p] = state.velocity + (ahead / bodies.body(k).mass) * state.flow_force +
-                                turning_velocity(w[k], rotated(R[k], point.offset));
+        particles.velocity[p] =
+            bodies.velocity(k, ahead) + turning_velocity(w[k], rotated(R[k], point.offset));
     });
 }
 

@@ -41,9 +41,9 @@ Array<double> particle_costs(std::span<const ClusterList> clusters, std::size_t 
     auto of = [&](Phase phase) { return seconds[static_cast<std::size_t>(phase)]; };
     const WordCosts word_costs =
         cost_model(words, PassSeconds{of(Phase::pass_1) + of(Phase::stress), of(Phase::pass_2)});
-    const double bare =
-        (of(Phase::sort) + of(Phase::list_build) + of(Phase::pack) + of(Phase::integrate)) /
-        static_cast<double>(clusters.size() * width);
+    const double bare = (of(Phase::sort) + of(Phase::list_build) + of(Phase::pack) +
+                         of(Phase::integrate) + of(Phase::bodies)) /
+                        static_cast<double>(clusters.size() * width);
     for (std::size_t p = 0; p < count; ++p) {
         const std::size_t c = std::min(p / width, clusters.size() - 1);
         const double word = c * width < moving ? word_costs.moving : word_costs.fixed;

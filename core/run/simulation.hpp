@@ -209,9 +209,15 @@ private:
     Ranks& ranks() { return lists_.halo().ranks; }
     Array<double> supports() { return support_radii(*scheme_, options_); }
 
+    template <class Work>
+    void timed(Phase phase, const Work& work) {
+        const auto timing = phases().measure(phase);
+        work();
+    }
     void step(double limit);
     void kick(double half_dt);
     double drift(double dt);
+    double drift_bodies(double dt);
     double next_event() const;
     void update_lists(double before, double moved);
     void evaluate(double half_dt);
@@ -255,7 +261,6 @@ void Simulation<Lists>::step(double limit) {
     if (moved > max_mach * sound_speed_ * dt)
         fail(FailureKind::speed, own_moved < moved ? -1 : fastest_particle(particles));
     moving_walls.set_velocities(particles, time_);
-    bodies.set_velocities(particles, 0.5 * dt);
     open_boundaries.impose_velocity(particles, time_);
     update_lists(before, moved);
     evaluate(0.5 * dt);
@@ -263,8 +268,7 @@ void Simulation<Lists>::step(double limit) {
     account_.add_forces(particles, scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_->end_step();
-    bodies.set_velocities(particles, 0.0);
-
+    timed(Phase::bodies, [&] { bodies.set_velocities(particles, 0.0); });
     dissipation_ += 0.5 * dt * (power + scheme_->dissipated_power());
     last_dt_ = dt;
     ++steps_;
@@ -273,21 +277,27 @@ void Simulation<Lists>::step(double limit) {
 
 template <class Lists>
 void Simulation<Lists>::kick(double half_dt) {
-    const auto timing = phases().measure(Phase::integrate);
-    scheme_->kick(half_dt);
-    bodies.kick(half_dt);
+    timed(Phase::integrate, [&] { scheme_->kick(half_dt); });
+    timed(Phase::bodies, [&] { bodies.kick(half_dt); });
 }
 
 /// Returns the largest distance that a particle went.
 template <class Lists>
 double Simulation<Lists>::drift(double dt) {
+    const double of_bodies = drift_bodies(dt);
     const auto timing = phases().measure(Phase::integrate);
     open_boundaries.impose_mean_velocity(particles, time_, dt);
-    const BodyStep<D> of_bodies = bodies.advance(moving_walls, time_, dt);
-    if (ranks().rank() == 0) account_.add(of_bodies);  // every rank has all bodies
     account_.add_weight(scheme_->weight(), options_.gravity, dt);
-    return max(max(scheme_->drift(dt), moving_walls.move(particles, time_, dt)),
-               bodies.place(particles));
+    return max(max(scheme_->drift(dt), moving_walls.move(particles, time_, dt)), of_bodies);
+}
+
+/// The same of the particles of bodies, which also get the velocities that evaluate() sees.
+template <class Lists>
+double Simulation<Lists>::drift_bodies(double dt) {
+    const auto timing = phases().measure(Phase::bodies);
+    const BodyStep<D> step = bodies.advance(moving_walls, time_, dt);  // the same on every rank
+    if (ranks().rank() == 0) account_.add(step);
+    return bodies.place(particles, 0.5 * dt);
 }
 
 /// The next time that a step must meet exactly.
@@ -318,7 +328,7 @@ template <class Lists>
 void Simulation<Lists>::evaluate(double half_dt) {
     evaluated_at_ = time_;
     scheme_->evaluate(lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
-    bodies.gather(particles, ranks());
+    timed(Phase::bodies, [&] { bodies.gather(particles, ranks()); });
     if (const Fault& fault = scheme_->fault(); fault.rank != Fault::none)
         fail(fault.rank == Fault::density ? FailureKind::density : FailureKind::not_finite,
              fault.particle);

@@ -2,15 +2,19 @@
 
 import numpy as np
 import pytest
-from tests.shipped import CASES, NAMES
+from tests.shipped import CASES, NAMES, PARTS
 
 from doseki.record.particles import FIXED
 from doseki.scenario.load import list_scenarios, load_scenario
 from doseki.scene.build import build_bodies, build_scene
 from doseki.scene.inflow_sections import build_inflows
 
-# What a scenario is told, and its page of the gallery explains.
-EXPECTED = {"elastic-gate": "3 particles across an elastic body"}
+# What a scenario is told, and its page of the gallery or its description explains.
+EXPECTED = {
+    "elastic-gate": "3 particles across an elastic body",
+    "flume-3d": "particles across its bodies",
+    "flume-strip": "4 particles across its bodies",
+}
 
 
 def test_the_list():
@@ -21,7 +25,7 @@ def test_the_list():
 
 @pytest.mark.parametrize(("name", "dim"), CASES)
 def test_loads_and_builds(name, dim):
-    scenario = load_scenario(name, [f"dim={dim}"])
+    scenario = load_scenario(name, [f"dim={dim}", *PARTS.get(name, [])])
     scene = build_scene(scenario)
     particles = scene.particles
     build_inflows(scenario, scene.names)
@@ -35,8 +39,9 @@ def test_loads_and_builds(name, dim):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_resolution_can_be_changed(name):
-    dp = load_scenario(name).dp
-    particles, _ = build_bodies(load_scenario(name, [f"dp={0.5 * dp}", "time_out=0.5", "eta=1.3"]))
+    part = PARTS.get(name, [])
+    finer = f"dp={0.5 * load_scenario(name, part).dp}"
+    particles, _ = build_bodies(load_scenario(name, [*part, finer, "time_out=0.5", "eta=1.3"]))
     assert len(particles) > 0
 
 
