@@ -272,8 +272,7 @@ void Simulation<Lists>::step(double limit) {
     scheme_->end_step();
     timed(Phase::bodies, [&] { bodies.set_velocities(particles, 0.0); });
     dissipation_ += 0.5 * dt * (power + scheme_->dissipated_power());
-    last_dt_ = dt;
-    ++steps_;
+    last_dt_ = dt, ++steps_;
     updates_ += static_cast<std::int64_t>(particles.size());
 }
 
@@ -313,16 +312,15 @@ double Simulation<Lists>::next_event() const {
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
     const bool worn = lists_.wear(particles, moved);
-    const bool injected = open_boundaries.inject(particles, time_);
-    bool changed = injected;
-    changed |= moving_walls.remove(particles, before, time_, open_boundaries.removed);
+    const bool added = open_boundaries.inject(particles, time_);
+    bool changed = moving_walls.remove(particles, before, time_, open_boundaries.removed) || added;
     moved_since_outflow_ += moved;
     if (moved_since_outflow_ >= outflow_distance * lists_.min_support()) {
         moved_since_outflow_ = 0.0;
         changed |= remove_outflow();
     }
     const bool looks = terrain_looks_.wear(moved, lists_.min_support());
-    if (injected || looks) changed |= look_at_terrain();
+    if (added || looks) changed |= look_at_terrain();
     if (changed || worn) rebuild_lists();
 }
 
