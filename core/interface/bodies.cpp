@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "bodies/deformable/elastic_law.hpp"
+#include "bodies/elastic/elastic_law.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
 #include "interface/reader.hpp"
 

@@ -3,7 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/vector.h>
 
-#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
 #include "interface/bodies.hpp"
 #include "interface/reader.hpp"
 #include "python/values.hpp"

@@ -5,9 +5,9 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
-#include "bodies/deformable/interactions.hpp"
-#include "base/power_iteration.hpp"
-#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/elastic/interactions.hpp"
+#include "bodies/elastic/power_iteration.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
 #include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
 

@@ -2,7 +2,7 @@
 // Deformable bodies that may break: their sums over bonds, and the steps of those.
 
 #include "bodies/deformable/advance.hpp"
-#include "bodies/deformable/advance_bonds.hpp"
+#include "bodies/elastic/advance_bonds.hpp"
 
 namespace doseki {
 

@@ -2,7 +2,7 @@
 
 #include "bodies/deformable/advance.hpp"
 #include "bodies/deformable/breaking.hpp"
-#include "bodies/fragments/dividing.hpp"
+#include "bodies/deformable/dividing.hpp"
 
 namespace doseki {
 

@@ -5,7 +5,7 @@
 #include "base/array.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/surfaces.hpp"
-#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/dust.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"

@@ -9,10 +9,10 @@
 #include "base/error.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/patches.hpp"
-#include "bodies/deformable/surface_vertex.hpp"
-#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/crack_faces.hpp"
 #include "bodies/fragments/outlines.hpp"
+#include "bodies/fragments/surface_vertex.hpp"
 
 namespace doseki {
 

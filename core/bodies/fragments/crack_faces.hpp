@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/array.hpp"
-#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/shapes/box_tree.hpp"
 
 namespace doseki {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/array.hpp"
-#include "bodies/deformable/surface_vertex.hpp"
 #include "bodies/fragments/cells.hpp"
+#include "bodies/fragments/surface_vertex.hpp"
 #include "bodies/surface.hpp"
 
 namespace doseki {

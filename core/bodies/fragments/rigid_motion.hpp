@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/array.hpp"
-#include "bodies/deformable/total_lagrangian.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/rotation.hpp"
 
 namespace doseki {

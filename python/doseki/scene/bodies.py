@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .cells import Cells
 from .groups import Group
+from .meshes.cells import Cells
 
 
 @dataclass(frozen=True)

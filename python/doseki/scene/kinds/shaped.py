@@ -11,8 +11,8 @@ from ...record.particles import BOUND, FIXED, FREE, ParticleSet
 from ...scenario.materials import NO_FRACTURE
 from ...scenario.tables.body import ShapedBody
 from ..bodies import ElasticBody, ElasticSurface
-from ..cells import Cells, cells_of
 from ..groups import UPRIGHT, Group, matrices
+from ..meshes.cells import Cells, cells_of
 from ..periodic import wrapped
 from ..shapes import Particles, Shape
 from .body import Body

@@ -8,9 +8,9 @@
 #include "base/error.hpp"
 #include "base/members.hpp"
 #include "base/parallel.hpp"
-#include "base/principal.hpp"
-#include "bodies/deformable/deformable_body.hpp"
-#include "bodies/deformable/elastic_law.hpp"
+#include "bodies/elastic/deformable_body.hpp"
+#include "bodies/elastic/elastic_law.hpp"
+#include "bodies/elastic/principal.hpp"
 #include "model/archive.hpp"
 #include "pairs/pair_term.hpp"
 

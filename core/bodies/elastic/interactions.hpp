@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "bodies/deformable/bonds.hpp"
-#include "bodies/deformable/records.hpp"
+#include "bodies/elastic/bonds.hpp"
+#include "bodies/elastic/records.hpp"
 #include "pairs/rows.hpp"
 #include "physics/hourglass.hpp"
 #include "physics/kernel/wendland_c2.hpp"

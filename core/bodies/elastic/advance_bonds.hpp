@@ -1,7 +1,7 @@
 #pragma once
 // How cracks begin, open, close and end.
 
-#include "bodies/deformable/bonds.hpp"
+#include "bodies/elastic/bonds.hpp"
 #include "physics/fracture.hpp"
 #include "physics/hyperelastic/strain.hpp"
 

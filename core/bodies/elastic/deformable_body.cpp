@@ -1,7 +1,7 @@
-#include "bodies/deformable/deformable_body.hpp"
+#include "bodies/elastic/deformable_body.hpp"
 
 #include "base/error.hpp"
-#include "bodies/deformable/elastic_law.hpp"
+#include "bodies/elastic/elastic_law.hpp"
 
 namespace doseki {
 namespace {
