@@ -40,16 +40,15 @@ template <int D>
 void TotalLagrangian<D>::update_bonded(std::size_t p,
                                        const DeformationAccumulators<double, D>& sums,
                                        const Mat<double, D>& shape) {
-    constexpr double min_determinant = 1e-3;  // inside it is 1
     const DeformableBody& body = body_of(p);
-    spans_[p] = determinant(shape) > min_determinant;
+    spans_[p] = spans_space(shape);
     if (!spans_[p]) {
         correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
         solid_[p].Q = solid_[p].F_rate = solid_[p].spin = {}, solid_[p].F = deformation_[p];
         solid_[p].kappa = solid_[p].kappa_rate = damping_power_[p] = 0.0;
         return;
     }
-    correction_[p] = inverse(shape, min_determinant);
+    correction_[p] = inverse(shape, 0.0);
     solid_[p].kappa = body.hourglass * body.shear_modulus();
     solid_[p].kappa_rate = body.hourglass * body.viscosity();
     update_point(p, sums);

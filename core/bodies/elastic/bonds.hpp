@@ -16,6 +16,18 @@
 
 namespace doseki {
 
+/// Whether bonds with this moment, 1 inside a body, tell of all strains. The inverse is 2 along an
+/// edge of a body; with few bonds it is so large that a point would be stiffer than the longest
+/// stable step allows.
+template <int D>
+bool spans_space(const Mat<double, D>& moment) {
+    constexpr double min_determinant = 1e-6, largest = 5.0;
+    if (!(determinant(moment) > min_determinant)) return false;
+    double square = 0.0;
+    for (const double element : inverse(moment, 0.0).element) square += element * element;
+    return square <= largest * largest;
+}
+
 /// What the sums over pairs need of a bond, for its first point: by how much a crack has lengthened
 /// the vector between the points at rest [m], and 1, or 0 while nothing is borne.
 template <class T, int D>

@@ -116,8 +116,7 @@ public:
     /// Whether those of its neighbours to which point p holds span the space; holds(j).
     template <class Holds>
     bool is_spanned(std::size_t p, const Holds& holds) const {
-        constexpr double min_determinant = 1e-3;  // inside it is 1
-        return determinant(shape_around(p, holds)) > min_determinant;
+        return spans_space(shape_around(p, holds));
     }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
     /// of different ones end.

@@ -281,3 +281,48 @@ def test_turned_and_mirrored_bodies_break_alike(build):
     for mass, centre in found[1:]:
         np.testing.assert_allclose(mass, found[0][0], rtol=1e-12)
         np.testing.assert_allclose(centre, found[0][1], atol=1e-12)
+
+
+PAIR = """
+[body.a]
+shape = "disc"
+material = "chalk"
+kinematics = "elastic"
+centre = [-0.0505, 0.01]
+radius = 0.05
+velocity = [{speed}, 0]
+
+[body.b]
+shape = "disc"
+material = "chalk"
+kinematics = "elastic"
+centre = [0.0505, -0.01]
+radius = 0.05
+velocity = [-{speed}, 0]
+
+[material.chalk]
+law = "solid"
+rho0 = 1000
+young_modulus = 1e8
+poisson_ratio = 0.2
+friction = 0.3
+fracture = "cohesive"
+tensile_strength = 1e5
+fracture_energy = 1
+"""
+
+
+@pytest.mark.parametrize("speed", [3.0, 10.0])
+def test_discs_that_shatter_keep_their_momenta_and_lose_energy(build, speed):
+    """Points that few bonds hold must not become stiffer than the step allows."""
+    simulation = build(PAIR.replace("{speed}", str(speed)))
+    before = energy = sums(simulation)
+    for end in (0.001, 0.002, 0.003):
+        simulation.advance(limit=end, pause=end, max_steps=10**9)
+        after = sums(simulation)
+        assert after["mass"] == pytest.approx(before["mass"], rel=1e-12)
+        assert after["turning"] == pytest.approx(before["turning"], rel=1e-12)
+        np.testing.assert_allclose(after["momentum"], before["momentum"], rtol=0, atol=1e-10)
+        assert after["energy"] < energy["energy"]
+        energy = after
+    assert len(simulation.fragments()["mass"]) > 2
