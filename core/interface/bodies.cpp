@@ -179,7 +179,7 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
         mass[k] = body.mass, radius[k] = rigid.shape(k).radius;
         named[k] = body.group, material[k] = body.material, fixed[k] = body.fixed;
         removed[k] = state.is_removed();
-        const Origin& origin = bodies.rigid_origins()[k];
+        const Origin origin = bodies.rigid_origins()[k];
         number[k] = origin.number, parent[k] = origin.parent, born[k] = origin.born;
     }
     bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
@@ -278,7 +278,7 @@ NamedValues BodyTables<D>::fragments(const Bodies<D>& bodies) {
         put(spin, k, motion.spin), put(orientation, k, Vec<double, 4>{{q.w, q.x, q.y, q.z}});
         mass[k] = motion.mass, radius[k] = motion.radius, removed[k] = motion.mass == 0.0;
         named[k] = bodies.deformable.group(b), material[k] = bodies.deformable.material(b);
-        const Origin& origin = bodies.deformable_origins()[b];
+        const Origin origin = bodies.deformable_origins()[b];
         number[k] = origin.number, parent[k] = origin.parent, born[k] = origin.born;
     }
     std::set<std::pair<std::int32_t, std::int32_t>> touching;

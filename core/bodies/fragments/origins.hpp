@@ -19,7 +19,8 @@ struct Origin {
 /// The origins of bodies of one kind, in their order.
 class Origins {
 public:
-    const Origin& operator[](std::size_t k) const { return origins_[k]; }
+    /// Of none before a run has started.
+    Origin operator[](std::size_t k) const { return k < size() ? origins_[k] : Origin{}; }
     std::size_t size() const { return origins_.size(); }
     void add(const Origin& origin) { origins_.push_back(origin); }
 
