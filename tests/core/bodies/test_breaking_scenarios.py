@@ -103,6 +103,23 @@ def test_what_cannot_break_so_is_refused(load, override, said):
         build_scene(load(CLAY + DISCS, override))
 
 
+BALL = """
+[body.left]
+shape = "sphere"
+material = "clay"
+kinematics = "elastic"
+centre = [0, 0, 0]
+radius = 0.2
+"""
+
+
+def test_in_space_nothing_breaks_yet(load):
+    clay = CLAY.replace("dim = 2", "dim = 3").replace("[0, 0]", "[0, 0, 0]")
+    with pytest.raises(UserError, match="break in 2-D only"):
+        build_scene(load(clay + BALL))
+    build_scene(load(clay.split("fracture =")[0] + BALL))
+
+
 def test_cracks_that_points_do_not_resolve_are_a_warning(load):
     assert not any("f_t^2" in str(doubt) for doubt in build_scene(load()).warnings)
     doubts = build_scene(load(CLAY + DISCS, "material.clay.fracture_energy=1.6")).warnings
