@@ -55,6 +55,8 @@ def grain_table(centre, angle):
         "contacts": np.array([0], np.int32),
         "overlap": np.zeros(1),
         "removed": np.array([0], np.int32),
+        "parent": np.array([-1], np.int32),
+        "born": np.zeros(1),
         "body": np.array([1], np.int32),
     }
 

@@ -75,6 +75,32 @@ def test_cracks_go_on_from_a_checkpoint_with_the_same_bits(core, load):
         assert np.array_equal(values, now[key]), key
 
 
+FLAWS = (
+    "material.clay.fracture=grady_kipp",
+    "material.clay.weibull_k=1e12",
+    "material.clay.weibull_m=5",
+)
+
+
+@pytest.mark.parametrize(
+    ("before", "override"),
+    [
+        ((), "material.clay.tensile_strength=1.5e4"),
+        ((), "material.clay.fracture_energy=12"),
+        (FLAWS, "material.clay.weibull_k=1e13"),
+        (FLAWS, "material.clay.weibull_m=6"),
+        (FLAWS, "body.left.flaw_seed=2"),
+    ],
+)
+def test_keys_of_fracture_change_a_run(core, load, before, override):
+    clay = CLAY.split("fracture =")[0] if before else CLAY
+    positions = []
+    for overrides in (before, (*before, override)):
+        simulation, _ = build_simulation(load(clay + DISCS, *overrides))
+        positions.append(run_to(simulation, 0.006)["position"])
+    assert not np.array_equal(*positions)
+
+
 @pytest.mark.parametrize("value", [np.nan, -1.0, 2.0])
 def test_bonds_of_a_checkpoint_are_looked_at(core, load, value):
     scenario = load()

@@ -51,6 +51,12 @@ MATERIAL = {
     "rolling_friction": ["0.3"],
     "young_modulus": ["1e6"],
     "poisson_ratio": ["0.4"],
+    # Of bodies that break: tests/core/bodies/test_breaking_scenarios.py.
+    "fracture": ["cohesive"],
+    "tensile_strength": ["1e6"],
+    "fracture_energy": ["5"],
+    "weibull_k": ["1e9"],
+    "weibull_m": ["9"],
 }
 # What softened contacts do not ask for, and elastic bodies and other contacts do.
 ELASTICITY = ("shear_modulus", "speedsound", "young_modulus", "poisson_ratio")
