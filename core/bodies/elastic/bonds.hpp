@@ -102,7 +102,7 @@ struct BondEnds {
 /// The bonds between points of breakable bodies: pairs at rest, each once. Cracks live on them,
 /// Eqs. (108) to (114): a crack opens across a bond, along the largest principal stress that there
 /// was when it began, until the bond is broken: then it bears compression with friction, and no
-/// tension. How they go on is in deformable/advance_bonds.hpp.
+/// tension. How they go on is in elastic/advance_bonds.hpp.
 template <int D>
 class Bonds {
 public:
