@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "base/vec.hpp"
@@ -13,6 +14,17 @@ template <class T, int D>
 DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, const T& g_normal,
                                  const Vec<T, D>& normal, const T& r_dot_n, const Vec<T, D>& r_iw) {
     return (rho_i * g_normal + dot(gradient_i, normal)) * r_dot_n - dot(gradient_i, r_iw);
+}
+
+/// Eq. (133): the rate over its density [1/s] at which fluid expands that slides past an edge of a
+/// wall. It is what the pressure force of wall particles along their faces takes as work. `rate` is
+/// the sum over wall particles; along a plane face it is nothing but the lattice of the wall and
+/// the noise of the fluid, which would brake what slides. `size` is the rate if all of them pulled
+/// the same way.
+inline double edge_rate(double rate, double size) {
+    constexpr double noise = 0.05, edge = 0.15;  // of the size
+    if (!(std::abs(rate) > noise * size)) return 0.0;
+    return rate * std::min((std::abs(rate) / size - noise) / (edge - noise), 1.0);
 }
 
 /// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is

@@ -79,6 +79,9 @@ void bind_flow_numbers(nb::module_& m) {
     define(m, "no_slip_factor", 1, [](const auto& in, auto& out) {  // d_w, d_i, least
         out[0] = no_slip_factor(in[0], in[1], in[2]);
     });
+    define_numbers(m, "edge_rate", 1, [](const auto& in, auto& out) {  // rate, size
+        out[0] = edge_rate(in[0], in[1]);
+    });
     define_numbers(m, "bed_friction", 1, [](const auto& in, auto& out) {  // rho, z, ks
         out[0] = bed_friction(in[0], in[1], in[2]);
     });

@@ -22,11 +22,12 @@ struct FlowConstants {
 /// Over the neighbours of a fluid particle i; gradients are those of the plain kernel.
 template <class T, int D>
 struct FluidAccumulators {
-    Vec<T, D> force;     // of viscosity, dissipation and shifting, over V_i/2
-    Vec<T, D> traction;  // of beds with friction, over V_i
-    T density_rate{};    // over rho_i
-    T power{};           // that pairs dissipate, over V_i
-    T made_power{};      // that shifting and walls make, over V_i
+    Vec<T, D> force;                   // of viscosity, dissipation and shifting, over V_i/2
+    Vec<T, D> traction;                // of beds with friction, over V_i
+    T density_rate{};                  // over rho_i
+    T sliding_rate{}, sliding_size{};  // see edge_rate
+    T power{};                         // that pairs dissipate, over V_i
+    T made_power{};                    // that shifting and walls make, over V_i
     Vec<T, D> pressure_gradient, concentration_gradient, surface_gradient;
     Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
     Mat<T, D> velocity_gradient;
@@ -39,7 +40,7 @@ struct FluidAccumulators {
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.traction...), f(self.density_rate...), f(self.power...);
-        f(self.made_power...);
+        f(self.sliding_rate...), f(self.sliding_size...), f(self.made_power...);
         f(self.pressure_gradient...), f(self.concentration_gradient...);
         f(self.surface_gradient...), f(self.corrected_gradient...), f(self.velocity_gradient...);
         f(self.moment...), f(self.concentration...), f(self.wall_share...);
@@ -76,6 +77,7 @@ struct WallContact {
     T excess;                                 // of the pressure at w over p_i
     T approach;                               // (v_i - v_w).(-n)
     T r_dot_n, corrected_r_dot_n;
+    T along;         // part of (v_i - v_w).B_i r_iw along the face
     Vec<T, D> jump;  // v_i - velocity extrapolated to w
     T power;         // dissipated, over V_i
     T made;          // by pressure beyond what it does to the density, over V_i
@@ -112,6 +114,7 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     const T p = i.p + number<T>(0.5) * contact.excess;
     const T no_slip = w.no_slip * no_slip_factor(w.depth, contact.r_dot_n - w.depth, min_distance);
     const Vec<T, D> sliding = v_iw + contact.approach * w.normal;
+    contact.along = dot(sliding, contact.corrected_r);
     contact.jump = no_slip * sliding - (T(2) * contact.approach) * w.normal;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
     contact.pressure_force = (scale * p) * contact.corrected_r;
@@ -200,6 +203,9 @@ DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& cons
     sums.power += contact.power;
     sums.made_power += contact.made;
     sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
+    const Vec<T, D> v_iw = i.v - w.v;
+    sums.sliding_rate += T(2) * VF * contact.along;
+    sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(v_iw, v_iw));
     add_gradients(sums, pair.r_ij, VF, -contact.excess, contact.jump);
     sums.wall_share += w.volume * W;
     sums.at_body = max(sums.at_body, select(F < T(0), w.bound, T(0)));

@@ -50,6 +50,7 @@ public:
 
         const Rates of_pairs = momentum_and_continuity(p, sums);
         Rates rates = of_pairs;
+        rates.density += records_[p].rho * edge_rate(sums.sliding_rate, sums.sliding_size);
         if (model_.options.flow.shifting && indicator.x < FreeSurfaceIndicator::surface)
             shift(p, sums, strain, rates);
         relax_density(p, indicator.normalised_density, strain, rates);

@@ -28,6 +28,7 @@ RELAXATION_PER_STRAIN = 10.0
 LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
+EDGE_NOISE, EDGE_WHOLE = 0.05, 0.15  # share of what slides past an edge, Eq. (133)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
 SHIFT_FASTEST = 0.05  # over the sound speed
@@ -269,6 +270,8 @@ class FlowReference:
             "excess": excess,
             "height": r_n - self.depth,
             "v_dot_r": -2 * approach * dot(corrected_r, n),
+            "sliding_dot_r": 2 * dot(sliding, corrected_r),
+            "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
             "jump": factor[..., None] * sliding - 2 * approach[..., None] * n,
             "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(pairs.r_ij, v)),
         }
@@ -308,6 +311,7 @@ class FlowReference:
         drag = (self.fw.W[..., None] * self.traction).sum(axis=1)
         force += contact["force"].sum(axis=1) + drag
         rate += (self.V_w * self.fw.F * contact["v_dot_r"]).sum(axis=1)
+        rate += self._edge_rate(contact)
         power += contact["power"].sum(axis=1) - dot(drag, self.v)
         self.power = (self.volume * power).sum() - self.power_to_rough_walls
         self.acceleration = force / self.rho[:, None] + self.gravity
@@ -401,6 +405,14 @@ class FlowReference:
         size = np.abs(excess).sum(axis=2).max(axis=1, initial=0)
         share = LARGEST_EXCESS / np.maximum(size, LARGEST_EXCESS)
         self.B[self.inside] += share[:, None, None] * excess
+
+    def _edge_rate(self, contact: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Expansion of what slides past edges of walls; smaller parts are noise."""
+        weight = self.V_w * self.fw.F
+        rate = (weight * contact["sliding_dot_r"]).sum(axis=1)
+        size = -(weight * contact["sliding_size"]).sum(axis=1)
+        share = np.abs(rate) / np.maximum(size, 1e-300)
+        return rate * np.clip((share - EDGE_NOISE) / (EDGE_WHOLE - EDGE_NOISE), 0, 1)
 
     def _add_shift(self) -> None:
         """What moving relative to the fluid does to velocity and density."""

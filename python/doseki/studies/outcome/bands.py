@@ -89,7 +89,7 @@ def map_percentiles(band: MapBand, table: Table) -> MapPercentiles:
     stack = np.array([raster.values for raster in rasters])
     of_times = band.map == ARRIVAL_TIME.name
     never = np.inf if of_times else 0.0
-    outside = ~of_times & np.isnan(stack).all(axis=0)
+    outside = np.isnan(stack).all(axis=0) & (not of_times)
     stack = np.where(np.isnan(stack), never, stack)
     # An order statistic for times: nothing lies between a time and never.
     method: Literal["inverted_cdf", "linear"] = "inverted_cdf" if of_times else "linear"
