@@ -15,6 +15,17 @@ DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, co
     return (rho_i * g_normal + dot(gradient_i, normal)) * r_dot_n - dot(gradient_i, r_iw);
 }
 
+/// Speed at which v comes nearer to a curved wall, Eq. (130): along the normal at the foot of the
+/// fluid particle, which leans by `turn` farther than that of the wall particle. Along the latter
+/// what slides in a hollow would run into the wall ahead, and on a ridge be driven. No farther than
+/// `most`: a kink is no curvature that particles resolve.
+template <class T, int D>
+DOSEKI_FN T approach_of_slide(const Vec<T, D>& normal, const Vec<T, D>& turn, const Vec<T, D>& v) {
+    const T most = number<T>(0.3);
+    const T square = dot(turn, turn), share = most / max(sqrt(square), most);
+    return -(dot(v, normal) + share * dot(v, turn)) / sqrt(T(1) + share * share * square);
+}
+
 /// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is
 /// (Morris et al. 1997): 1 + d_w/d_i for distances d_w below and d_i above the surface, the latter
 /// no less than `min_distance`.
