@@ -219,7 +219,7 @@ def lake(folder, sign=1, moved=0.0, shift=(0.0, 0.0), relax=2.0):
 
 
 def test_a_lake_on_a_bumpy_bed_stays_at_rest(tmp_path):
-    """In the mean of lakes: rows of particles slip along the bed now and then, in each elsewhere."""
+    """In the mean of lakes: now and then a row slips along the bed, in each elsewhere."""
     ways = [{}, {"sign": -1}, {"moved": 0.02}, {"shift": (460800.0, 2048.0)}]
     energy, fall, misfit = np.transpose([lake(tmp_path, **way) for way in ways])
     assert misfit.max() < 0.01
