@@ -54,9 +54,9 @@ kind = "load"
 bodies = ["dam"]
 interval = 0.01
 """
-OUTFLOWS = """
+OUTFLOW = """
 [outflow.above]
-min = [-9, 0.45]
+min = [-9, 0.6]
 max = [9, 9]
 """
 
@@ -89,9 +89,9 @@ def jet(folder, speed=SPEED, tilt=20.0, sign=1):
     scene = SCENE.format(
         dim=2, dp=0.01, time=0.9, gravity=[0, 0], section=f"section = {ends}", rate=THICK * speed,
         width=1, position=[foot - sign * 0.65 * cos, 0.65 * sin], direction=[sign * cos, -sin],
-        low=[low, -0.04], high=[high, 0.6], turn=-sign * tilt, axis="", foot=[foot, 0],
+        low=[low, -0.04], high=[high, 0.9], turn=-sign * tilt, axis="", foot=[foot, 0],
     )  # fmt: skip
-    x, y = force_on_dam(folder, scene + OUTFLOWS, 0.6) / (1000 * SPEED**2 * THICK)
+    x, y = force_on_dam(folder, scene + OUTFLOW, 0.6) / (1000 * SPEED**2 * THICK)
     return np.array([sign * x * cos - y * sin, sign * x * sin + y * cos])
 
 
