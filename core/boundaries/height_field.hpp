@@ -101,6 +101,29 @@ public:
 
     double height(const Horizontal<D>& place) const { return at(place).height; }
 
+    /// How the normal turns along the surface [1/m]: by `bend` r where one goes along a short r.
+    /// From normals that are 2 `step` [m] apart in plan.
+    Sym<double, D> bend(const Horizontal<D>& place, double step) const {
+        const Vec<double, D> n = at(place).normal;
+        Mat<double, D> turn{};  // of the normal, along each horizontal axis
+        for (int b = 0; b < axes; ++b) {
+            Horizontal<D> ahead = place, behind = place;
+            ahead[b] += step, behind[b] -= step;
+            const Vec<double, D> change = at(ahead).normal - at(behind).normal;
+            for (int a = 0; a < D; ++a) turn(a, b) = change[a] / (2.0 * step);
+        }
+        // Only what of r lies along the surface counts.
+        Mat<double, D> along{};
+        for (int a = 0; a < D; ++a)
+            for (int b = 0; b < D; ++b)
+                for (int c = 0; c < axes; ++c)
+                    along(a, b) += turn(a, c) * ((b == c ? 1.0 : 0.0) - n[c] * n[b]);
+        Sym<double, D> bend{};
+        for (int a = 0; a < D; ++a)
+            for (int b = a; b < D; ++b) bend(a, b) = 0.5 * (along(a, b) + along(b, a));
+        return bend;
+    }
+
     /// The signed distance of x from the surface, above 0 in the air, and the normal there. The
     /// foot of the perpendicular is found by iteration.
     struct Nearest {

@@ -298,7 +298,7 @@ void Terrain<D>::add_particle(Particles<D>& particles, std::int64_t tile,
     particles.smoothing_length[p] = wall_.smoothing_length;
     particles.tag[p] = {id, wall_.body, wall_.material, Motion::fixed};
     particles.enter(p);
-    particles.wall.normal[p] = slot.normal;
+    particles.wall.normal[p] = slot.normal, particles.wall.bend[p] = slot.bend;
     particles.wall.depth[p] = slot.depth, particles.wall.cut[p] = 1.0 - slot.share;
     particles.wall.point[p] = static_cast<std::int32_t>(tile * TileGrid<D>::columns + slot.column);
 }

@@ -127,8 +127,9 @@ template <int D>
 struct WallTile {
     struct Slot {
         Vec<double, D> position, normal;
-        double area;   // of the layer that it stands for [m^(D-1)]
-        double depth;  // below the surface [m]
+        Sym<double, D> bend;  // of the surface, see HeightField::bend
+        double area;          // of the layer that it stands for [m^(D-1)]
+        double depth;         // below the surface [m]
         int layer, column;
         double share = 1.0;  // of its cell that no body takes up
     };
@@ -148,8 +149,9 @@ struct WallTile {
                 Vec<double, D> x{};
                 for (int a = 0; a < D - 1; ++a) x[a] = foot.place[a];
                 x[D - 1] = surface.height;
-                slots.push_back({x - depth * surface.normal, surface.normal, foot.area, depth,
-                                 layer, column_of(foot.place, corner, grid.dp())});
+                slots.push_back({x - depth * surface.normal, surface.normal,
+                                 field.bend(foot.place, grid.dp()), foot.area, depth, layer,
+                                 column_of(foot.place, corner, grid.dp())});
             }
         }
     }

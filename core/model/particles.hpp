@@ -36,6 +36,7 @@ template <int D>
 struct WallState {
     bool in_use = false;           // of schemes that tell walls from particles; else all are empty
     Field<Vec<double, D>> normal;  // into the fluid
+    Field<Sym<double, D>> bend;    // of a terrain's: how the normal turns along the surface [1/m]
     Field<double> depth;           // below the surface of the wall [m]
     Field<double> cut;             // share of its volume, of a terrain's, that a body takes up
     Field<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]
@@ -53,7 +54,7 @@ struct WallState {
     template <class F>
     void for_each_field(F&& f) {
         if (!in_use) return;
-        f("normal", normal), f("wall_depth", depth), f("wall_cut", cut);
+        f("normal", normal), f("wall_bend", bend), f("wall_depth", depth), f("wall_cut", cut);
         f("wall_force", force), f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_rows", rows);
         f("film_density", film_density), f("film_traction", film_traction);

@@ -27,6 +27,17 @@ inline double edge_rate(double rate, double size) {
     return rate * std::min((std::abs(rate) / size - noise) / (edge - noise), 1.0);
 }
 
+/// Speed at which v comes nearer to a curved wall, Eq. (130): along the normal at the foot of the
+/// fluid particle, which leans by `turn` farther than that of the wall particle. Along the latter
+/// what slides in a hollow would run into the wall ahead, and on a ridge be driven. No farther than
+/// `most`: a kink is no curvature that particles resolve.
+template <class T, int D>
+DOSEKI_FN T approach_of_slide(const Vec<T, D>& normal, const Vec<T, D>& turn, const Vec<T, D>& v) {
+    const T most = number<T>(0.3);
+    const T square = dot(turn, turn), share = most / max(sqrt(square), most);
+    return -(dot(v, normal) + share * dot(v, turn)) / sqrt(T(1) + share * share * square);
+}
+
 /// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is
 /// (Morris et al. 1997): 1 + d_w/d_i for distances d_w below and d_i above the surface, the latter
 /// no less than `min_distance`.

@@ -93,6 +93,7 @@ DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw
     const T front = select(dot(r_iw, w.normal) > face, T(1), T(0)), beyond = (T(1) - front) / r;
     for (int a = 0; a < D; ++a) seen.normal[a] = front * w.normal[a] + beyond * r_iw[a];
     seen.g_normal = front * w.g_normal;
+    for (T& element : seen.bend.element) element = front * element;
     return seen;
 }
 
@@ -106,7 +107,8 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.r_dot_n = dot(r_iw, w.normal);
     contact.approach = -dot(v_iw, w.normal);
     const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
-    const T extra = approach_pressure(T(2) * contact.approach, i.rho, c);
+    const T slide = approach_of_slide(w.normal, w.bend * r_iw, v_iw);
+    const T extra = approach_pressure(T(2) * slide, i.rho, c);
     contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
                                           contact.r_dot_n, r_iw);
     contact.corrected_r = i.correction * r_iw;

@@ -120,7 +120,7 @@ template <int D, class Backend>
 void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
     WallRecord<D>& record = wall_[p - fluid_count_];
     const Vec<double, D>& normal = state.wall.normal[p];
-    record.normal = normal;
+    record.normal = normal, record.bend = state.wall.bend[p];
     record.traction = {};
     record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
                                       : (1.0 - state.wall.cut[p]) * model_->spacing_power[D];

@@ -86,7 +86,7 @@ private:
                 for (int b = 0; b < D; ++b) v[a] += B(a, b) * raw[b];
             return v;
         };
-        state_.pressure_gradient[p] = corrected(sums.pressure_gradient);
+        state_.pressure_gradient[p] = company(p, sums) * corrected(sums.pressure_gradient);
         Mat<double, D>& L = state_.velocity_gradient[p];
         for (int a = 0; a < D; ++a) {
             Vec<double, D> row;
@@ -94,6 +94,17 @@ private:
             row = corrected(row);
             for (int b = 0; b < D; ++b) L(a, b) = row[b];
         }
+    }
+
+    /// Eq. (131), 0 for a particle that sees no other fluid. What walls say of the pressure along
+    /// them is what it told them a step before: alone with a wall it would keep its gradient for
+    /// ever, on a ridge add to it, and be driven along by it.
+    double company(std::size_t p, const Sums& sums) const {
+        constexpr double enough = 0.05;  // of the sum on a lattice; one neighbour adds 0.07 or more
+        const double own =
+            records_[p].rest_volume / model_.spacing_power[D] * model_.own_concentration;
+        return std::clamp((sums.concentration - own) / (enough * model_.lattice_concentration), 0.0,
+                          1.0);
     }
 
     /// None near a free surface, where there is little pressure and the inverse is large. Bounded,

@@ -46,9 +46,9 @@ struct ResolvedModel {
     Array<MinDensity> min_density;  // of each material that is a fluid
     Options<D> options;
     FlowConstants constants{};
-    double lattice_concentration = 1.0;
-    double full_cover = 1.0;                       // see physics/wall.hpp
-    std::array<double, D + 1> spacing_power{1.0};  // dp^k
+    double lattice_concentration = 1.0, own_concentration = 0.0;  // of that, a particle's own
+    double full_cover = 1.0;                                      // see physics/wall.hpp
+    std::array<double, D + 1> spacing_power{1.0};                 // dp^k
 
     ResolvedModel(Array<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
@@ -65,6 +65,7 @@ struct ResolvedModel {
         const auto lattice = flow.wide_kernel ? lattice_sums<WendlandC6<D>, D>(flow.dp, support)
                                               : lattice_sums<WendlandC2<D>, D>(flow.dp, support);
         lattice_concentration = lattice.concentration;
+        own_concentration = lattice.own_share;
         full_cover = flow.wide_kernel ? doseki::full_cover<WendlandC6<D>, D>(flow.dp, support)
                                       : doseki::full_cover<WendlandC2<D>, D>(flow.dp, support);
         constants.gradient_scale = 1.0 / lattice.moment;

@@ -28,6 +28,7 @@ struct FluidFields {
 template <class T, int D>
 struct WallFields {
     Vec<T, D> normal;    // into the fluid
+    Sym<T, D> bend;      // of the surface, see WallState
     Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
     T volume;
     T depth;     // below the surface of the wall [m]
@@ -40,7 +41,8 @@ struct WallFields {
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.normal...), f(self.traction...), f(self.volume...), f(self.depth...);
+        f(self.normal...), f(self.bend...), f(self.traction...), f(self.volume...);
+        f(self.depth...);
         f(self.g_normal...), f(self.no_slip...), f(self.bound...), f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_traction...);
     }

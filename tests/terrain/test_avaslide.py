@@ -123,9 +123,6 @@ def test_mirrored_it_is_as_fast(tmp_path):
 
 
 @pytest.mark.validate
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="a curved bed brakes what slides on it: 3 % short"
-)
 def test_its_stop_is_that_of_the_closed_form(tmp_path):
     rows = slid(tmp_path, 60.0, MU)
     assert rows[-1, 2] < 0.05, "it has stopped"

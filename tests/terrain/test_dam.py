@@ -1,4 +1,4 @@
-"""Dams on maps: water at rest in a channel with banks, and a jet along a sloping bed."""
+"""Dams on maps: water at rest in a channel with banks, in a basin and in 2-D."""
 
 from __future__ import annotations
 
@@ -255,83 +255,3 @@ def test_water_at_rest_presses_on_a_dam_in_two_dimensions(tmp_path):
 def test_heavier_water_is_told_apart(tmp_path):
     """The control: 3 % heavier."""
     assert min(thrust(tmp_path, 1030)) > 1.015
-
-
-# A jet 0.1 m thick runs down a section of a map onto a dam; there is no gravity. Its inflow is
-# six thicknesses away: from nearer it would push against the pressure before the dam.
-JET = """
-dim = 2
-dp = 0.01
-time_max = 0.9
-time_out = 0.9
-scheme = "resolved"
-gravity = [0, 0]
-speed_max = 4.0
-[terrain]
-file = "terrain.asc"
-section = {section}
-material = "basalt"
-wall = "free_slip"
-[inflow.jet]
-material = "water"
-rate = {rate}
-duration = 100
-width = 1
-depth = 0.1
-position = {position}
-direction = {direction}
-[body.dam]
-shape = "box"
-material = "aluminium"
-fixed = true
-wall = "free_slip"
-min = [1.05, -0.04]
-max = [1.14, 0.6]
-rotate = -20
-pivot = [1.05, 0]
-[outflow.above]
-min = [-9, 0.45]
-max = [9, 9]
-[outflow.back]
-min = [-9, -9]
-max = [0.1, 9]
-[gauge.dam]
-kind = "load"
-bodies = ["dam"]
-interval = 0.01
-"""
-TILT, SPEED = math.radians(20), 2.0
-
-
-def jet(folder, speed):
-    """Force along the bed and across it, over rho v2 b at SPEED, after 0.6 s."""
-    cos, sin = math.cos(TILT), math.sin(TILT)
-    grid(folder / "terrain.asc", lambda x, y: -math.tan(TILT) * (x - 1.35), (2.4, 1.0), 0.05)
-    path = folder / "case.toml"
-    path.write_text(
-        JET.format(
-            section=[[0.3, 0.5], [2.2, 0.5]],
-            rate=0.1 * speed,
-            position=[1.05 - 0.65 * cos, 0.65 * sin],
-            direction=[cos, -sin],
-        )
-    )
-    run_scenario(load_scenario(path), folder / "run", RunOptions(threads=1))
-    record = load(folder / "run").gauges["dam"]
-    assert np.abs(rest_of(record)).max() < 1e-9 * 400
-    late = record["time"] > 0.6
-    x, y = (record[f"force_{axis}"][late].mean() for axis in "xy")
-    return np.array([x * cos - y * sin, x * sin + y * cos]) / (1000 * SPEED**2 * 0.1)
-
-
-@pytest.mark.validate
-def test_a_jet_along_the_bed_loses_its_momentum_at_a_dam(tmp_path):
-    along, across = jet(tmp_path, SPEED)
-    assert along == pytest.approx(1.0, rel=0.03)
-    assert abs(across) < 0.03
-
-
-@pytest.mark.validate
-def test_a_faster_jet_is_told_apart(tmp_path):
-    """The control: a twentieth more speed."""
-    assert jet(tmp_path, 1.05 * SPEED)[0] > 1.06

@@ -41,10 +41,43 @@ def exact(x, time, mu):
     return np.where(moved < -c * time, DEPTH, wave)
 
 
-def depths(path, sign):
-    """Middles of strips along the bed, m, and the depth in each."""
+# The wave as the solution has it after a time, its speed the same over the depth.
+WAVE = """
+[body.mass]
+shape = "box"
+material = "debris"
+min = [{low}, 0.0]
+max = [{high}, 1.0]
+rotate = {turn}
+pivot = [0, 0]
+where = "= {depth} - {across}"
+velocity = ["= {cos}*{sign}*{along} + {sin}*{sign}*{sinking}", "= -{sin}*{along} + {cos}*{sinking}"]
+pressure = "= {weight}*max(0, {depth} - {across})"
+"""
+
+
+def wave(time, sign):
+    """The mass as the solution has it at a time, as a table of a scenario."""
+    cos, sin = math.cos(TILT), math.sin(TILT)
+    pull = 9.81 * cos
+    c, gain = math.sqrt(pull * DEPTH), 9.81 * (sin - MU * cos)
+    gone = 0.5 * gain * time**2
+    place, across = f"({sign}*x*{cos} - y*{sin})", f"({sign}*x*{sin} + y*{cos})"
+    speed = f"min({2 * c}, max(-{c}, ({place} - {gone})/{time}))"
+    ends = sorted((sign * (gone - LENGTH), sign * (gone + 2 * c * time)))
+    return WAVE.format(
+        low=ends[0], high=ends[1], turn=-sign * math.degrees(TILT), cos=cos, sin=sin, sign=sign,
+        across=across, depth=f"((2*{c} - {speed})**2/{9 * pull})", weight=1000 * pull,
+        along=f"({gain * time} + 2/3*({c} + {speed}))",
+        # The wave becomes longer by 2/(3 t) of it a second, and so lower.
+        sinking=f"(-{2 / (3 * time)}*{across}*min(1, 1e6*({speed} + {c})))",
+    )  # fmt: skip
+
+
+def depths(path, sign, time=TIME):
+    """Middles of strips along the bed, m, and the depth in each after a time, s."""
     simulation, _ = simulation_of(path)
-    simulation.advance(limit=TIME, pause=TIME, max_steps=10**7)
+    simulation.advance(limit=time, pause=time, max_steps=10**7)
     state = simulation.state()
     own = fluid(state)
     position, volume = state["position"][own] * [sign, 1], (state["mass"] / state["density"])[own]
@@ -70,3 +103,18 @@ def test_the_profile_of_a_dam_break_on_an_incline(tmp_path, sign):
     assert off < 0.09
     frictionless = exact(x, TIME, 0.0)
     assert np.abs(depth - frictionless).sum() / frictionless.sum() > 2 * off  # the control
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_wave_goes_on_as_the_solution_does(tmp_path, sign):
+    """At 12 over the depth, from half of the time on: without the column that it begins as."""
+    ends = sorted((-sign * 20.0, sign * 30.0))
+    profile(tmp_path / "terrain.csv", lambda x: -math.tan(TILT) * sign * x, *ends)
+    path = tmp_path / "case.toml"
+    mass = MASS[: MASS.index("[body.mass]")].format(mu=MU) + wave(0.5 * TIME, sign)
+    path.write_text(text(2, dp=DEPTH / 12, speed=14.0, wall="voellmy", more=mass))
+    x, depth = depths(path, sign, 0.5 * TIME)
+    for mu, within in ((MU, True), (0.8 * MU, False)):  # the control: four fifths of the friction
+        profile_now = exact(x, TIME, mu)
+        assert (np.abs(depth - profile_now).sum() < 0.05 * profile_now.sum()) == within

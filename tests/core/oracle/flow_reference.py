@@ -22,6 +22,7 @@ KAPPA = 0.4
 SUPPORT = {"wendland_c2": 2.0, "wendland_c6": 2.5}
 SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surface
 LEAST_CONCENTRATION = 0.6
+ENOUGH_COMPANY = 0.05
 LEAST_BETA = 0.05  # of the Riemann dissipation
 RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
 RELAXATION_PER_STRAIN = 10.0
@@ -380,10 +381,17 @@ class FlowReference:
         L -= np.einsum("ij,ija,ijb->iab", VF_w, contact["jump"], r_w)
         self.moment, self.spans = moment, np.linalg.det(moment) > LEAST_DETERMINANT
         self.old_gradient, self.old_L = self.pressure_gradient, self.L
-        self.pressure_gradient = np.einsum("iab,ib->ia", inverse, plain)
+        self.pressure_gradient = np.einsum("iab,ib->ia", inverse, plain) * self._company()
         self.L = np.einsum("ibc,iac->iab", inverse, L)
         self.concentration_gradient = np.einsum("ij,ija->ia", VF_f, r_f)
         self.concentration_gradient += np.einsum("ij,ija->ia", VF_w, r_w)
+
+    def _company(self) -> np.ndarray:
+        """(n, 1): 0 for who sees no other fluid, so that walls tell it nothing but gravity."""
+        full, own = lattice_concentration(self.options, self.R, self.dim)
+        around = (self.rest_volume[None] * self.ff.W).sum(axis=1)
+        others = around - self.rest_volume * own / self.options.dp**self.dim
+        return np.clip(others / (ENOUGH_COMPANY * full), 0, 1)[:, None]
 
     def _measure_surface(self) -> None:
         """Measure of the free surface, and how full the fluid is regardless of it."""
