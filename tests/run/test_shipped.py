@@ -17,7 +17,8 @@ MOST_PARTICLES = 20_000
 
 # Scenarios that are of the resolved scheme, which runs in double precision.
 RESOLVED = {
-    "channel", "dam-step", "drip", "drum", "elastic-gate", "flood-log", "flume-3d",
+    "brazil-test", "breaking-flume", "channel", "dam-step", "drip", "drop-weight", "drum",
+    "elastic-gate", "flood-log", "flume-3d",
     "flume-strip", "gate-release", "mud-slump", "saturated-slide", "segregation", "slide-wave",
     "slit-dam", "valley", "voellmy-chute",
 }  # fmt: skip

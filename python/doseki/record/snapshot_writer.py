@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from .fields import FIELDS, GRAIN_FIELDS, ParticleField
+from .fields import FIELDS, GRAIN_FIELDS
 from .vtkhdf import GRAINS, ROOT, VERSION, Header, location
 
 # gzip, because VTK's own HDF5 library can undo it; level 1 costs 1-2 s for a million particles.
