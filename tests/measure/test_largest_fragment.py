@@ -10,7 +10,7 @@ from doseki.record.reader import load
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
-SPEEDS = (2.5, 4.0, 6.0, 12.0)  # m/s
+SPEEDS = (2.5, 4.0, 8.0)  # m/s
 
 pytestmark = pytest.mark.minutes
 
@@ -21,7 +21,7 @@ def gradings(tmp_path_factory):
     found = {}
     for speed in SPEEDS:
         folder = tmp_path_factory.mktemp("drop") / "run"
-        settings = [f"speed={speed}", "across=24", "time_max=0.0008", "time_out=0.0008"]
+        settings = [f"speed={speed}", "across=20", "time_max=0.0004", "time_out=0.0004"]
         run_scenario(load_scenario("drop-weight", settings), folder, RunOptions(threads=1))
         found[speed] = grading_of(load(folder)[-1])
     return found
@@ -32,7 +32,7 @@ def test_it_falls_with_the_speed(gradings):
     largest = [gradings[speed].mass.max() / gradings[speed].mass.sum() for speed in SPEEDS]
     assert largest[0] == 1
     assert (np.diff(largest) < 0).all()
-    assert largest[-1] < 0.2
+    assert largest[-1] < 0.3
 
 
 def test_gradings_become_finer(gradings):
