@@ -62,7 +62,7 @@ template <int D>
 void TotalLagrangian<D>::account_for(std::size_t p, const SpringSums<double, D>& sums) {
     const ElasticRecord<D>& point = solid_[p];
     const double before = energy_[p], strain = spans_[p] ? body_of(p).energy(point.F) : 0.0;
-    energy_[p] = volume(p) * (strain + 0.5 * point.kappa * trace(sums.moments.square));
+    energy_[p] = point.volume * (strain + 0.5 * point.kappa * trace(sums.moments.square));
     released_by_[p] = turned_[p] ? before - energy_[p] : 0.0;
 }
 
@@ -88,9 +88,10 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     released_ +=
         reduce(size(), 0.0, std::plus<>(), [this](std::size_t p) { return released_by_[p]; });
     auto point = [this](std::size_t p) {
-        return BondPoint<D>{rest_[p],       solid_[p].x,   v[p],      deformation_[p],
-                            correction_[p], stress_[p],    volume(p), solid_[p].kappa,
-                            number_[p],     spans_[p] != 0};
+        return BondPoint<D>{rest_[p],         solid_[p].x,     v[p],
+                            deformation_[p],  correction_[p],  stress_[p],
+                            solid_[p].volume, solid_[p].kappa, number_[p],
+                            spans_[p] != 0};
     };
     bonds_.advance(dt, point,
                    [this](std::size_t p) -> const DeformableBody& { return body_of(p); });

@@ -56,13 +56,14 @@ public:
 
     /// Of what the last change of the jump took, by the trapezoidal rule: half with the pull from
     /// which it followed, half with that of the step after it.
-    double half_work() const { return 0.5 * share_ * dot(pull(), state_.change); }
+    double half_work() const { return half_work(pull()); }
     /// `beside`: whether another bond of its points has a crack.
     BondChange take(double dt, bool beside) {
         if (!state_.cracked() && !begins(beside)) return {};
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
-        const double before = half_work();
+        pull_ = pull();
+        const double before = half_work(pull_);
         state_.change = {};
         BondChange change = with_value(body_.law->fracture, [&](const auto& law) {
             return law.failed(crack) ? slide(place) : widen(law, crack, dt, place);
@@ -165,7 +166,7 @@ private:
     template <class Law>
     BondChange widen(const Law& law, Crack& crack, double dt, const CrackSite& place) {
         const Vec<double, D> normal = state_.normal;
-        const double tension = dot(pull(), normal) / area(normal);
+        const double tension = dot(pull_, normal) / area(normal);
         law.grow(crack, tension, dt, place);
         const double excess = tension - law.traction(crack, place),
                      resistance = stiffness(normal, place) + law.slope(crack, tension, place);
@@ -181,7 +182,7 @@ private:
     /// A broken bond: its sides go apart without a force, press on each other where they meet, and
     /// slide there when friction does not hold them.
     BondChange slide(const CrackSite& place) {
-        const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
+        const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull_;
         const double ease = relaxation / stiffness(normal, place), pressed = -dot(traction, normal);
         const Vec<double, D> along = traction + pressed * normal;
         const double before = state_.opening;
@@ -204,10 +205,13 @@ private:
         if (!a_.spans) return b_.F;
         return b_.spans ? 0.5 * (a_.F + b_.F) : a_.F;
     }
+    double half_work(const Vec<double, D>& pull) const {
+        return 0.5 * share_ * dot(pull, state_.change);
+    }
     /// Returns the first half of the energy that this takes.
     double set_jump(const Vec<double, D>& jump) {
         state_.change = jump - state_.jump;
-        const double work = half_work();
+        const double work = half_work(pull_);
         state_.jump = jump;
         return work;
     }
@@ -218,6 +222,7 @@ private:
     BondState<D>& state_;
     Vec<double, D> rest_;
     double share_;
+    Vec<double, D> pull_{};  // before this step
 };
 
 template <int D>

@@ -58,7 +58,8 @@ class Ledger:
         counted = "all rows of the history, with what gravity, walls, inflows, contacts of bodies"
         counted += " and corrections of the scheme gave, and viscosity, friction, outflows, cracks"
         counted += " and dampers of deformable bodies took"
-        remedy = "lower dp: walls and bodies of few particles make or take energy; raise speed_max"
+        remedy = "lower dp: walls, bodies of few particles and bodies that shatter at once make or"
+        remedy += " take energy; raise speed_max"
         value = residual / largest if largest else residual
         return judged(name, value, limits, counted, remedy, residual=residual, **details)
 
