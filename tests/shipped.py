@@ -10,6 +10,7 @@ ONLY = {
     "valley": 3, "slit-dam": 3, "gate-release": 2, "drip": 2, "dam-step": 2, "drum": 2,
     "elastic-gate": 2, "flood-log": 2, "segregation": 2, "slide-wave": 2,
     "flume-3d": 3, "flume-strip": 3,
+    "brazil-test": 2, "breaking-flume": 2, "drop-weight": 2,
 }  # fmt: skip
 CASES = [(name, dim) for name in NAMES for dim in (2, 3) if ONLY.get(name, dim) == dim]
 FIRST = [(name, ONLY.get(name, 2)) for name in NAMES]

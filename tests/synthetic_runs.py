@@ -55,6 +55,7 @@ def random_state(n: int, dim: int, seed: int = 1) -> State:
         "deviatoric_stress": tensor[1],
         "id": np.arange(n) * 7,
         "grain": np.full(n, -1),
+        "damage": random.uniform(0, 1, n),
     }
 
 

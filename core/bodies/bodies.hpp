@@ -65,6 +65,13 @@ public:
         const std::int32_t k = rigid_body_of(particles, p);
         return k < 0 ? -1 : rigid_origins_[static_cast<std::size_t>(k)].number;
     }
+    /// Eq. (127); 1 of dust.
+    double damage(const Particles<D>& particles, std::size_t p) const {
+        if (deformable.has(particles, p))
+            return deformable.solids().bonds().damage(particles.point(p));
+        const std::int32_t k = rigid_body_of(particles, p);
+        return k >= 0 && rigid_origins_[static_cast<std::size_t>(k)].parent >= 0 ? 1.0 : 0.0;
+    }
 
     /// Cuts deformable bodies at a time [s] between steps: points, in the order of adding, with
     /// different labels do not hold together any more.
@@ -92,8 +99,7 @@ public:
         if (!deformable.empty()) deformable.kick(half_dt);
         rigid.kick(half_dt);
     }
-    /// From t to t + dt, through as many contact steps as it takes. Tells what that gave to the
-    /// rigid bodies.
+    /// From t to t + dt, through as many contact steps as it takes. Tells what that gave to bodies.
     BodyStep<D> advance(const MovingWalls<D>& walls, double t, double dt);
     /// Puts particles where their bodies are, with the velocity that they have when the fluid will
     /// have acted for `ahead` more; returns the largest distance that one went.
@@ -117,6 +123,8 @@ public:
     void drain(const Particles<D>& particles, const Region& region, Array<std::uint8_t>& removed);
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
+    /// Parts that came off bodies which broke: those that are deformable, and grains of dust.
+    PartCounts parts() const { return {deformable_origins_.parts(), rigid_origins_.parts()}; }
 
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored particles are points of these bodies.
@@ -137,9 +145,14 @@ private:
     static constexpr double most_contact_steps = 1e6;
 
     void number_bodies();
-    /// Makes bodies of parts that do not hold together any more. Returns what their dust brings to
-    /// the rigid bodies.
-    BodySums<D> part(double time);
+    /// What came of parts that are bodies now: what dust brings to the rigid bodies, and the energy
+    /// that was lost [J], 2-D: [J/m].
+    struct Parted {
+        BodySums<D> born;
+        double work = 0.0;
+    };
+    /// Makes bodies of parts that do not hold together any more.
+    Parted part(double time);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void shrink_dust(std::size_t first);
@@ -242,6 +255,7 @@ template <int D>
 BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return {};
     BodySums<D> before = rigid.sums();
+    BodyStep<D> given;  // to deformable bodies
     rigid.begin_step(), deformable.begin_step();
     deformable_step_ = deformable.timestep();
     for (double left = dt; left > 0.0;) {
@@ -258,15 +272,18 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         contacts_.apply(contact_, step);
         add_loads(step);
         rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
-        if (!deformable.empty()) deformable.push(step, gravity_);
+        if (!deformable.empty()) given = given + deformable.push(step, gravity_);
         rigid.push(gravity_, step);
-        if (deformable.has_cracked()) before = before + part(t + dt - left);
+        if (deformable.has_cracked()) {
+            const Parted parted = part(t + dt - left);
+            before = before + parted.born, given.parting_work += parted.work;
+        }
         drift(0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
     deformable.end_step(dt, memory_);
     rigid.end_step(dt, memory_);
-    return rigid.sums().since(before, gravity_);
+    return given + rigid.sums().since(before, gravity_);
 }
 
 template <int D>
@@ -283,10 +300,10 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
 }
 
 template <int D>
-BodySums<D> Bodies<D>::part(double time) {
+auto Bodies<D>::part(double time) -> Parted {
     const Fragments<D> fragments = deformable.divide();
+    if (!fragments.any()) return {};
     BodySums<D> born;
-    if (!fragments.any()) return born;
     auto origin = [&](std::int32_t parent) -> Origin {
         return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
     };
@@ -302,7 +319,7 @@ BodySums<D> Bodies<D>::part(double time) {
     if (first < rigid.size()) shrink_dust(first), prepare_contacts();
     renumber_contacts(fragments);
     find_contacts();
-    return born;
+    return {born, fragments.lost - born.kinetic_energy};
 }
 
 template <int D>

@@ -121,6 +121,8 @@ public:
             table["force"] = ParticleTables<D>::column(wall.force, order);
             table["normal"] = ParticleTables<D>::column(wall.normal, order);
             table["grain"] = BodyTables<D>::body_number_of(sim_.bodies, sim_.particles, order);
+            if (auto damage = BodyTables<D>::damage(sim_.bodies, sim_.particles, order))
+                table["damage"] = *damage;
         }
         const OwnFields<D> own = sim_.scheme().own_fields();
         if (own.surface) table["surface"] = ParticleTables<D>::column(*own.surface, order);
@@ -161,6 +163,13 @@ public:
         table["impulse"] = list_of(account.impulse);
         table["gravity_work"] = account.gravity_work, table["wall_work"] = account.wall_work;
         table["contact_work"] = account.contact_work, table["scheme_work"] = account.scheme_work;
+        table["parting_work"] = account.parting_work;
+        const DeformableTotals& of_bodies = sum.deformable;
+        table["elastic_energy"] = of_bodies.elastic_energy;
+        table["fracture_work"] = of_bodies.fracture_work;
+        table["damping_work"] = of_bodies.damping_work;
+        table["broken_bonds"] = of_bodies.broken_bonds;
+        table["parts"] = of_bodies.parts, table["dust_grains"] = of_bodies.dust;
         table["count"] = List(sum.count.begin(), sum.count.end());
         return table;
     }

@@ -308,6 +308,15 @@ Value BodyTables<D>::body_number_of(const Bodies<D>& bodies, const Particles<D>&
 }
 
 template <int D>
+std::optional<Value> BodyTables<D>::damage(const Bodies<D>& bodies, const Particles<D>& particles,
+                                           const Array<std::size_t>& order) {
+    if (!bodies.deformable.solids().bonds().any()) return std::nullopt;
+    NewArray<double> damage({order.size()});
+    for (std::size_t k = 0; k < order.size(); ++k) damage[k] = bodies.damage(particles, order[k]);
+    return damage;
+}
+
+template <int D>
 Value BodyTables<D>::stress(const Bodies<D>& bodies, const Particles<D>& particles,
                             const Array<std::size_t>& order, const PointStates<D>& states) {
     NewArray<double> stress({order.size(), 3, 3});

@@ -1,6 +1,8 @@
 #pragma once
 // Rigid and deformable bodies as tables, in and out.
 
+#include <optional>
+
 #include "base/array.hpp"
 #include "bodies/bodies.hpp"
 #include "interface/particles.hpp"
@@ -46,6 +48,9 @@ struct BodyTables {
     /// Index of the body of each particle among those that the record follows, or -1.
     static Value body_number_of(const Bodies<D>& bodies, const Particles<D>& particles,
                                 const Array<std::size_t>& order);
+    /// How much of the bonds of each particle is broken; nothing of runs in which none can be.
+    static std::optional<Value> damage(const Bodies<D>& bodies, const Particles<D>& particles,
+                                       const Array<std::size_t>& order);
     /// Cauchy stress of particles, that of deformable bodies included.
     static Value stress(const Bodies<D>& bodies, const Particles<D>& particles,
                         const Array<std::size_t>& order, const PointStates<D>& states);

@@ -3,11 +3,18 @@
 
 namespace doseki {
 
-/// What gravity and contacts gave to the rigid bodies in a step; 2-D: per metre.
+/// What gravity and contacts gave to bodies in a step, and what bodies lost when parts came off
+/// them; 2-D: per metre.
 template <int D>
 struct BodyStep {
     Vec<double, D> impulse{};                       // [N s]
     double gravity_work = 0.0, contact_work = 0.0;  // [J]
+    double parting_work = 0.0;                      // [J]
+
+    BodyStep operator+(const BodyStep& other) const {
+        return {impulse + other.impulse, gravity_work + other.gravity_work,
+                contact_work + other.contact_work, parting_work + other.parting_work};
+    }
 };
 
 /// Sums over the rigid bodies that move.

@@ -86,10 +86,10 @@ public:
         table["position"] = position, table["velocity"] = velocity, table["rest"] = rest;
         table["acceleration"] = acceleration, table["mass"] = mass;
         table["deformation"] = F, table["stress"] = P;
-        table["strain_energy"] = bodies_.strain_energy();
+        const ElasticEnergy energy = bodies_.elastic_energy();
+        table["strain_energy"] = energy.strain, table["spring_energy"] = energy.springs;
         table["kinetic_energy"] = bodies_.kinetic_energy();
-        table["spring_energy"] = bodies_.spring_energy();
-        table["fracture_work"] = bodies_.fracture_work();
+        table["fracture_work"] = bodies_.fracture_work() + energy.opening;
         table["damping_work"] = bodies_.damping_work();
         return to_python(table);
     }

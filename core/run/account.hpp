@@ -27,6 +27,7 @@ struct Account {
     double wall_work = 0.0;     // of walls that have a velocity and of those layers [J]
     double contact_work = 0.0;  // of contacts of bodies: less than nothing where they damp [J]
     double scheme_work = 0.0;   // see SchemeWork::power [J]
+    double parting_work = 0.0;  // that bodies lost when parts came off them [J]
 
     /// Half a step of the forces on walls and of `scheme`, before the step or after it.
     void add_forces(const Particles<D>& particles, const SchemeWork<D>& scheme, double half_dt) {
@@ -46,6 +47,7 @@ struct Account {
     void add(const BodyStep<D>& step) {
         impulse = impulse + step.impulse;
         gravity_work += step.gravity_work, contact_work += step.contact_work;
+        parting_work += step.parting_work;
     }
 
 private:

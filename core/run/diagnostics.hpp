@@ -1,22 +1,46 @@
 #pragma once
 
 #include "base/array.hpp"
+#include "bodies/bodies.hpp"
 #include "model/material.hpp"
 #include "model/particles.hpp"
 #include "run/any_scheme.hpp"
 
 namespace doseki {
 
+/// What deformable bodies have and have lost; energies [J], 2-D: [J/m].
+struct DeformableTotals {
+    double elastic_energy = 0.0;                     // of strain and springs
+    double fracture_work = 0.0, damping_work = 0.0;  // that cracks and that damping took
+    std::int64_t broken_bonds = 0, parts = 0, dust = 0;
+};
+
 /// Totals over the particles. Mass, momentum and kinetic energy count free particles; elastic
-/// energy counts fixed ones as well, since a bed is compressed too. The kinetic energy of bodies is
-/// theirs to tell. Driven particles have not entered yet.
+/// energy counts fixed ones as well, since a bed is compressed too. The energy of bodies is theirs
+/// to tell. Driven particles have not entered yet.
 template <int D>
 struct Totals {
     double mass = 0.0;
     Vec<double, D> momentum{};
     double kinetic_energy = 0.0, bulk_energy = 0.0, shear_energy = 0.0;
     Array<std::int64_t> count;  // free particles per material
+    DeformableTotals deformable;
 };
+
+template <int D>
+DeformableTotals deformable_totals(const Bodies<D>& bodies) {
+    const TotalLagrangian<D>& solids = bodies.deformable.solids();
+    const PartCounts parts = bodies.parts();
+    DeformableTotals sum;
+    const ElasticEnergy energy = bodies.deformable.elastic_energy();
+    sum.elastic_energy = energy.sum();
+    sum.fracture_work = solids.fracture_work() + energy.opening;
+    sum.damping_work = solids.damping_work();
+    sum.broken_bonds = static_cast<std::int64_t>(solids.bonds().broken());
+    sum.parts = static_cast<std::int64_t>(parts.bodies);
+    sum.dust = static_cast<std::int64_t>(parts.dust);
+    return sum;
+}
 
 template <class Lists>
 Totals<Lists::dim> totals(AnyScheme<Lists>& scheme) {

@@ -157,7 +157,7 @@ public:
         Totals<D> sum = doseki::totals(*scheme_);
         if (halo().ranks.rank() > 0) return sum;  // every rank has all bodies
         sum.kinetic_energy += bodies.kinetic_energy();
-        sum.shear_energy += bodies.deformable.strain_energy();
+        sum.deformable = deformable_totals(bodies);
         return sum;
     }
 

@@ -26,6 +26,7 @@ MENU = (
         (
             "how-to/dam-force",
             "how-to/own-grains",
+            "how-to/breaking",
             "how-to/hydrographs",
             "how-to/read-results",
             "how-to/python",

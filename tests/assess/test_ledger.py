@@ -218,6 +218,25 @@ def test_energy_and_momentum_close_with_a_body_in_water(tank):
     assert momentum_of(without(tank, "impulse_y")) > 0.005
 
 
+def test_energy_and_momentum_close_with_a_deformable_body_in_water(tmp_path):
+    """A disc of rubber sinks, bends and is pushed about."""
+    rubber = """
+[material.rubber]
+law = "solid"
+rho0 = 1500
+young_modulus = 2e5
+poisson_ratio = 0.3
+"""
+    text = TANK.replace('material = "basalt"\n', 'material = "rubber"\nkinematics = "elastic"\n')
+    text = text.replace("time_max = 0.4", "time_max = 0.2") + rubber
+    run = run_of(tmp_path, text)
+    assert run.history["elastic_energy"].max() > 0.01
+    assert checks_of(run)["energy balance"].value < 0.002
+    for name in ("elastic_energy", "gravity_work", "av_dissipation", "scheme_work"):
+        assert size(without(run, name)) > 0.02
+    assert checks_of(run)["momentum"].value < 1e-9
+
+
 def test_the_work_of_gravity_is_the_potential_that_was_released(tank):
     height = [snapshot["mass"] @ snapshot["position"][:, 1] for snapshot in tank]
     released = 9.8 * (height[0] - height[-1])

@@ -25,6 +25,7 @@ PAGES = {
     START: BASE,
     "how-to/dam-force.md": "dam.toml",
     "how-to/own-grains.md": "grains.toml",
+    "how-to/breaking.md": "stone.toml",
     "how-to/hydrographs.md": "flood.toml",
     "how-to/read-results.md": BASE,
     "how-to/python.md": BASE,

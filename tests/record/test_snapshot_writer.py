@@ -77,6 +77,16 @@ def test_names_that_change_are_no_longer_those_before(tmp_path):
         assert read_header(tmp_path / "file").body_names == names[1]
 
 
+def test_what_a_run_does_not_have_is_not_written(tmp_path):
+    """A field that has a value where it is absent takes no room, and is read as that."""
+    state = random_state(20, 2, 0)
+    del state["damage"]
+    SnapshotWriter().write(tmp_path / "none", state, header(1.0, 2))
+    with h5py.File(tmp_path / "none") as file:
+        assert "VTKHDF/PointData/Damage" not in file
+    assert_holds(tmp_path / "none", state | {"damage": np.zeros(20)}, header(1.0, 2), {})
+
+
 def test_large_files_are_packed_and_say_the_same(tmp_path, monkeypatch):
     state = random_state(300, 3) | {"density": np.ones(300)}
     SnapshotWriter().write(tmp_path / "small", state, header(1.0, 3))

@@ -11,6 +11,7 @@ from doseki.scene.inflow_sections import build_inflows
 
 # What a scenario is told, and its page of the gallery or its description explains.
 EXPECTED = {
+    "breaking-flume": "4 particles across its bodies",
     "elastic-gate": "3 particles across an elastic body",
     "flume-3d": "particles across its bodies",
     "flume-strip": "4 particles across its bodies",

@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/elastic/interactions.hpp"
+#include "bodies/elastic/outer.hpp"
 #include "bodies/elastic/power_iteration.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "pairs/loop.hpp"
@@ -15,7 +16,7 @@ namespace doseki {
 
 template <int D>
 template <class Term, class Epilogue>
-void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) {
+void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
     for_each_pair<false>(neighbours_, neighbours_.clusters(),
                          std::span<const MotionRecord<double, D>>(motion_),
                          CoordinateFrame<double, D>{}, term, epilogue);
@@ -45,7 +46,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     sort();
     a.assign(size(), {}), load.assign(size(), {});
     deformation_.assign(size(), identity<double, D>());
-    motion_.resize(size()), solid_.resize(size());
+    motion_.resize(size()), solid_.resize(size()), damping_power_.assign(size(), 0.0);
     for (std::size_t p = 0; p < size(); ++p) {
         const DeformableBody& body = body_of(p);
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
@@ -75,6 +76,7 @@ void TotalLagrangian<D>::sort() {
     reorder(radii);
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;
+    number_points();
     neighbours_.build(lanes<double>, rest_, radii, 0.0);
 }
 
@@ -140,22 +142,37 @@ void TotalLagrangian<D>::update_point(std::size_t p,
     const Mat<double, D>& B = correction_[p];
     deformation_[p] = sums.place * B;
     const Mat<double, D> rate = sums.velocity * B;
-    const Mat<double, D> P = stress(p) + kelvin_voigt(deformation_[p], rate, body.viscosity());
+    const Mat<double, D> damping = kelvin_voigt(deformation_[p], rate, body.viscosity());
+    const Mat<double, D> P = stress(p) + damping;
+    damping_power_[p] = solid_[p].volume * trace(transposed(damping) * rate);
     solid_[p].Q = less_springs(P * transposed(B), solid_[p].kappa, deformation_[p]);
     solid_[p].F = deformation_[p], solid_[p].F_rate = rate;
+}
+
+/// Over springs, those of bonds where there are any.
+template <int D>
+template <class Epilogue>
+void TotalLagrangian<D>::sum_springs(const ElasticTerm<D>& records,
+                                     const Epilogue& epilogue) const {
+    if (bonds_.any())
+        sum_over_pairs(Bonded<SpringTerm<D>>{{records}, bonds_.rows()}, epilogue);
+    else
+        sum_over_pairs(SpringTerm<D>{records}, epilogue);
 }
 
 /// The damper sees misfits from a frame that turns with them: rigid motions do no work in it, and
 /// its torque vanishes.
 template <int D>
 void TotalLagrangian<D>::damp_springs() {
-    auto turn = [this](std::size_t p, const MisfitMoments<double, D>& moments) {
+    auto turn = [this](std::size_t p, const SpringSums<double, D>& sums) {
         ElasticRecord<D>& point = solid_[p];
-        const Mat<double, D> spin = misfit_spin(moments);
+        const Mat<double, D> spin = misfit_spin(sums.moments);
         point.Q = less_springs(point.Q, point.kappa_rate, point.F_rate - spin * point.F);
         point.spin = point.kappa_rate * spin;
+        damping_power_[p] += point.volume * point.kappa_rate * damped_square(sums, spin);
+        if (!energy_.empty()) account_for(p, sums);
     };
-    sum_over_pairs(MisfitTerm<D>{records()}, turn);
+    sum_springs(records(), turn);
 }
 
 /// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead.
@@ -194,15 +211,21 @@ double TotalLagrangian<D>::drift(double dt) {
 
 /// Damping sees the velocities that the last accelerations predict for the middle of the step.
 template <int D>
-void TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
+BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     compute_accelerations(0.5 * dt, gravity);
-    const double sum = reduce(size(), 0.0, std::plus<>(), [&](std::size_t p) {
+    const BodyStep<D> given = reduce(size(), BodyStep<D>{}, std::plus<>(), [&](std::size_t p) {
+        const Vec<double, D> way = dt * v[p] + (0.5 * dt * dt) * a[p];
         v[p] = v[p] + dt * a[p];
-        return dot(v[p], v[p]);
+        if (clamped_[p]) return BodyStep<D>{};
+        const Vec<double, D> weight = (body_of(p).rho0 * solid_[p].volume) * gravity;
+        return BodyStep<D>{dt * (load[p] + weight), dot(weight, way), dot(load[p], way)};
     });
-    if (!std::isfinite(sum))
+    if (!std::isfinite(given.contact_work))  // no load times a way that is not finite is not
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
+    damping_work_ += dt * reduce(size(), 0.0, std::plus<>(),
+                                 [this](std::size_t p) { return damping_power_[p]; });
     if (bonds_.any()) advance_bonds(dt);
+    return given;
 }
 
 template <int D>
@@ -237,14 +260,6 @@ Array<PointShare> TotalLagrangian<D>::carriers(std::size_t p, const Vec<double, 
         shares.push_back({j, -share});
     }
     return shares;
-}
-
-/// Adds a multiple of u (x) v.
-template <int D>
-void add_outer(Mat<double, D>& sum, double factor, const Vec<double, D>& u,
-               const Vec<double, D>& v) {
-    for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) sum(a, b) += factor * u[a] * v[b];
 }
 
 template <int D>
@@ -294,21 +309,6 @@ double TotalLagrangian<D>::timestep() const {
     for (std::size_t p = 0; p < size(); ++p)
         stiffening = max(stiffening, body_of(p).stiffening(deformation_[p]));
     return courant * stable_step_ / stiffening;
-}
-
-template <int D>
-double TotalLagrangian<D>::strain_energy() const {
-    double sum = 0.0;
-    for (std::size_t p = 0; p < size(); ++p)
-        if (!gone(p)) sum += volume(p) * body_of(p).energy(deformation_[p]);
-    return sum;
-}
-
-template <int D>
-double TotalLagrangian<D>::kinetic_energy() const {
-    double sum = 0.0;
-    for (std::size_t p = 0; p < size(); ++p) sum += 0.5 * mass(p) * dot(v[p], v[p]);
-    return sum;
 }
 
 template <int D>

@@ -31,7 +31,8 @@ void TotalLagrangian<D>::find_bonds() {
                                 entry & ListEntry::index_mask);
         });
     }
-    stress_.assign(size(), {}), spans_.assign(size(), 1), damping_power_.assign(size(), 0.0);
+    stress_.assign(size(), {}), spans_.assign(size(), 1);
+    turned_.assign(size(), 0), energy_.assign(size(), 0.0), released_by_.assign(size(), 0.0);
 }
 
 /// As update_point, with the matrix of the bonds that are left. Points whose bonds do not span the
@@ -41,7 +42,9 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
                                        const DeformationAccumulators<double, D>& sums,
                                        const Mat<double, D>& shape) {
     const DeformableBody& body = body_of(p);
+    const bool spanned = spans_[p] != 0;
     spans_[p] = spans_space(shape);
+    turned_[p] = spanned != (spans_[p] != 0);
     if (!spans_[p]) {
         correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
         solid_[p].Q = solid_[p].F_rate = solid_[p].spin = {}, solid_[p].F = deformation_[p];
@@ -53,22 +56,14 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     solid_[p].kappa_rate = body.hourglass * body.viscosity();
     update_point(p, sums);
     stress_[p] = stress(p);
-    const Mat<double, D>& rate = solid_[p].F_rate;
-    const Mat<double, D> damping = kelvin_voigt(deformation_[p], rate, body.viscosity());
-    damping_power_[p] = volume(p) * trace(transposed(damping) * rate);
 }
 
-/// As damp_springs, with what that takes.
 template <int D>
-void TotalLagrangian<D>::damp_bonded_springs() {
-    auto turn = [this](std::size_t p, const SpringSums<double, D>& sums) {
-        ElasticRecord<D>& point = solid_[p];
-        const Mat<double, D> spin = misfit_spin(sums.moments);
-        point.Q = less_springs(point.Q, point.kappa_rate, point.F_rate - spin * point.F);
-        point.spin = point.kappa_rate * spin;
-        damping_power_[p] += volume(p) * point.kappa_rate * damped_square(sums, spin);
-    };
-    sum_over_pairs(Bonded<SpringTerm<D>>{{records()}, bonds_.rows()}, turn);
+void TotalLagrangian<D>::account_for(std::size_t p, const SpringSums<double, D>& sums) {
+    const ElasticRecord<D>& point = solid_[p];
+    const double before = energy_[p], strain = spans_[p] ? body_of(p).energy(point.F) : 0.0;
+    energy_[p] = point.volume * (strain + 0.5 * point.kappa * trace(sums.moments.square));
+    released_by_[p] = turned_[p] ? before - energy_[p] : 0.0;
 }
 
 /// For the places and velocities in the records.
@@ -84,29 +79,19 @@ template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
     update_deformations();
-    if (springs_damp_) damp_bonded_springs();
+    damp_springs();
     sum_over_pairs(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
 }
 
 template <int D>
-double TotalLagrangian<D>::spring_energy() {
-    if (!bonds_.any()) return 0.0;
-    Array<double> energy(size());
-    auto add = [&](std::size_t p, const SpringSums<double, D>& sums) {
-        energy[p] = 0.5 * volume(p) * solid_[p].kappa * trace(sums.moments.square);
-    };
-    sum_over_pairs(Bonded<SpringTerm<D>>{{records()}, bonds_.rows()}, add);
-    return reduce(size(), 0.0, std::plus<>(), [&](std::size_t p) { return energy[p]; });
-}
-
-template <int D>
 void TotalLagrangian<D>::advance_bonds(double dt) {
-    damping_work_ += dt * reduce(size(), 0.0, std::plus<>(),
-                                 [this](std::size_t p) { return damping_power_[p]; });
+    released_ +=
+        reduce(size(), 0.0, std::plus<>(), [this](std::size_t p) { return released_by_[p]; });
     auto point = [this](std::size_t p) {
-        return BondPoint<D>{rest_[p],        solid_[p].x,     v[p],
-                            deformation_[p], correction_[p],  stress_[p],
-                            volume(p),       solid_[p].kappa, spans_[p] != 0};
+        return BondPoint<D>{rest_[p],         solid_[p].x,     v[p],
+                            deformation_[p],  correction_[p],  stress_[p],
+                            solid_[p].volume, solid_[p].kappa, number_[p],
+                            spans_[p] != 0};
     };
     bonds_.advance(dt, point,
                    [this](std::size_t p) -> const DeformableBody& { return body_of(p); });

@@ -3,6 +3,7 @@
 #include "bodies/deformable/advance.hpp"
 #include "bodies/deformable/breaking.hpp"
 #include "bodies/deformable/dividing.hpp"
+#include "bodies/deformable/energy.hpp"
 
 namespace doseki {
 

@@ -30,6 +30,7 @@ struct Fragments {
     Array<std::int32_t> vertex;        // new numbers of vertices of surfaces
     std::size_t first_contact_point;   // of surfaces before
     Array<std::int32_t> surface_body;  // of each of them
+    double lost;  // energy of deformable bodies, that of dust among it [J], 2-D: [J/m]
 
     bool any() const { return !parent.empty() || !dust.empty(); }
 };
@@ -78,6 +79,7 @@ public:
     std::int32_t material(std::size_t body) const { return material_[body]; }
     /// The [body.NAME] of the scenario that a body belongs to.
     std::int32_t group(std::size_t body) const { return group_[body]; }
+    /// With what cracks and damping took of them, and how many bonds bear no tension.
     const TotalLagrangian<D>& solids() const { return solids_; }
     std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
 
@@ -123,13 +125,13 @@ public:
     void set_velocities(Particles<D>& particles, double ahead) const;
 
     double drift(double dt) { return solids_.drift(dt); }
-    void push(double dt, const Vec<double, D>& gravity) { solids_.push(dt, gravity); }
+    BodyStep<D> push(double dt, const Vec<double, D>& gravity) { return solids_.push(dt, gravity); }
     /// The longest stable step, infinite without bodies [s].
     double timestep() const {
         return empty() ? std::numeric_limits<double>::infinity() : solids_.timestep();
     }
     double kinetic_energy() const { return solids_.kinetic_energy(); }
-    double strain_energy() const { return solids_.strain_energy(); }
+    ElasticEnergy elastic_energy() const { return solids_.elastic_energy(); }
     double max_speed() const {
         double square = 0.0;
         for (const auto& v : solids_.v) square = std::max(square, dot(v, v));

@@ -64,6 +64,7 @@ Fragments<D> DeformableBodies<D>::divide() {
     const Array<std::int32_t> before = solids_.holders();
     const CrackPoints<D> crack = crack_points(solids_, before, parts.body);
     const Array<Vec<double, D>> places = surfaces_.places(solids_);
+    fragments.lost = kinetic_energy() + solids_.pushed_energy();
     for (const auto& points : parts.dust) {
         fragments.dust.push_back(dust_grain(solids_, points));
         auto& normals = fragments.dust_normals.emplace_back();
@@ -72,6 +73,7 @@ Fragments<D> DeformableBodies<D>::divide() {
     fragments.first_contact_point = surfaces_.first_contact_point();
     fragments.surface_body = surfaces_.bodies(solids_);
     solids_.divide(parts);
+    fragments.lost -= kinetic_energy() + elastic_energy().sum();
     fragments.vertex = surfaces_.divide(solids_, parts, before, crack, places);
     turn_to_cracks(solids_, crack, before, parts.body, normal_, depth_);
     for (const std::int32_t parent : parts.parent) {

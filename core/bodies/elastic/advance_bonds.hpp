@@ -2,6 +2,7 @@
 // How cracks begin, open, close and end.
 
 #include "bodies/elastic/bonds.hpp"
+#include "bodies/elastic/outer.hpp"
 #include "physics/fracture.hpp"
 #include "physics/hyperelastic/strain.hpp"
 
@@ -53,14 +54,22 @@ public:
           rest_(a.rest - b.rest),
           share_(ends.weight * a.volume * b.volume) {}
 
+    /// Of what the last change of the jump took, by the trapezoidal rule: half with the pull from
+    /// which it followed, half with that of the step after it.
+    double half_work() const { return half_work(pull()); }
     /// `beside`: whether another bond of its points has a crack.
     BondChange take(double dt, bool beside) {
         if (!state_.cracked() && !begins(beside)) return {};
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
-        return with_value(body_.law->fracture, [&](const auto& law) {
+        pull_ = pull();
+        const double before = half_work(pull_);
+        state_.change = {};
+        BondChange change = with_value(body_.law->fracture, [&](const auto& law) {
             return law.failed(crack) ? slide(place) : widen(law, crack, dt, place);
         });
+        change.before = before;
+        return change;
     }
 
 private:
@@ -107,12 +116,21 @@ private:
         }
         return max(place.stiffness, own / area(normal));
     }
-    /// Energy that point i loses with the bond.
-    double lost_by(const BondPoint<D>& i) const {
+    /// Eq. (128): energy that point i loses with the bond to j, whose fit goes on without it. What
+    /// a point that the others do not span loses is counted where that is found.
+    double lost_by(const BondPoint<D>& i, const BondPoint<D>& j) const {
         if (!i.spans) return 0.0;
-        const Vec<double, D> misfit = now() - i.F * at_rest();
-        return dot(misfit, i.P * (transposed(i.B) * at_rest())) +
-               0.5 * i.kappa * dot(misfit, misfit);
+        const double weight = ends_.weight * j.volume;
+        const Vec<double, D> R = at_rest(), misfit = now() - i.F * R;
+        Mat<double, D> moment = inverse(i.B, 0.0), F = i.F;
+        add_outer(moment, -weight, R, R);
+        if (!spans_space(moment)) return 0.0;
+        const Vec<double, D> corrected = inverse(moment, 0.0) * R;
+        add_outer(F, -weight, misfit, corrected);
+        // That of the springs falls by more than its own, since the fit comes nearer to the rest.
+        const double springs =
+            0.5 * i.kappa * weight * dot(misfit, misfit) * (1.0 + weight * dot(R, corrected));
+        return i.volume * (body_.energy(i.F) - body_.energy(F) + springs);
     }
 
     CrackSite site(const Vec<double, D>& normal) const {
@@ -120,7 +138,8 @@ private:
         // With these shares, all bonds across a direction have the volume of the body.
         const double volume = share_ * area(normal) * std::abs(dot(normal, rest_));
         const double radius = (D == 2 ? 0.564 : 0.620) * body_.spacing;  // of a ball as large
-        const std::uint64_t key = (std::uint64_t{ends_.a} << 32) | ends_.b;
+        const auto [low, high] = std::minmax(a_.number, b_.number);
+        const std::uint64_t key = (std::uint64_t{low} << 32) | high;
         const double growth = DeformableBody::crack_speed * c / radius;
         return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed};
     }
@@ -147,7 +166,7 @@ private:
     template <class Law>
     BondChange widen(const Law& law, Crack& crack, double dt, const CrackSite& place) {
         const Vec<double, D> normal = state_.normal;
-        const double tension = dot(pull(), normal) / area(normal);
+        const double tension = dot(pull_, normal) / area(normal);
         law.grow(crack, tension, dt, place);
         const double excess = tension - law.traction(crack, place),
                      resistance = stiffness(normal, place) + law.slope(crack, tension, place);
@@ -157,13 +176,13 @@ private:
         const double work = set_jump(state_.jump + (crack.opening - state_.opening) * normal);
         state_.opening = crack.opening, state_.max_opening = crack.max_opening;
         state_.damage = crack.damage;
-        return {work, law.failed(crack) ? 1u : 0u, 0};
+        return {0.0, work, law.failed(crack) ? 1u : 0u};
     }
 
     /// A broken bond: its sides go apart without a force, press on each other where they meet, and
     /// slide there when friction does not hold them.
     BondChange slide(const CrackSite& place) {
-        const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull();
+        const Vec<double, D> normal = state_.normal, traction = (1.0 / area(normal)) * pull_;
         const double ease = relaxation / stiffness(normal, place), pressed = -dot(traction, normal);
         const Vec<double, D> along = traction + pressed * normal;
         const double before = state_.opening;
@@ -177,18 +196,22 @@ private:
         const double opening = max(0.0, before - ease * pressed);
         const double work = set_jump(state_.jump + slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
-        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
-        const double lost = share_ * (lost_by(a_) + lost_by(b_));
+        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {0.0, work, 0};
+        const double lost = lost_by(a_, b_) + lost_by(b_, a_);
         state_.whole = 0.0;
-        return {work + lost, 0, 1};
+        return {0.0, work + half_work() + lost, 0};
     }
     Mat<double, D> mean_deformation() const {
         if (!a_.spans) return b_.F;
         return b_.spans ? 0.5 * (a_.F + b_.F) : a_.F;
     }
-    /// Returns the energy that this takes.
+    double half_work(const Vec<double, D>& pull) const {
+        return 0.5 * share_ * dot(pull, state_.change);
+    }
+    /// Returns the first half of the energy that this takes.
     double set_jump(const Vec<double, D>& jump) {
-        const double work = share_ * dot(pull(), jump - state_.jump);
+        state_.change = jump - state_.jump;
+        const double work = half_work(pull_);
         state_.jump = jump;
         return work;
     }
@@ -199,6 +222,7 @@ private:
     BondState<D>& state_;
     Vec<double, D> rest_;
     double share_;
+    Vec<double, D> pull_{};  // before this step
 };
 
 template <int D>
@@ -215,7 +239,18 @@ void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
             .take(dt, beside);
     });
-    work_ += change_.work, broken_ += change_.broken;
+    work_ += change_.before + change_.work, broken_ += change_.broken;
+}
+
+template <int D>
+template <class Point, class Body>
+double Bonds<D>::opening(const Point& point, const Body& body) const {
+    return reduce(size() - 1, 0.0, std::plus<>{}, [&](std::size_t k) {
+        const BondEnds& ends = pairs_[k + 1];
+        BondState<D> state = state_[k + 1];
+        if (state.whole == 0.0 || !state.cracked()) return 0.0;
+        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).half_work();
+    });
 }
 
 }  // namespace doseki

@@ -41,6 +41,7 @@ template <int D>
 struct BondState {
     Vec<double, D> jump{};    // at rest: turns with the body
     Vec<double, D> normal{};  // of its crack at rest; zero before there is one
+    Vec<double, D> change{};  // of the jump in the last step
     double whole = 1.0;       // 0: it is gone for good
     double opening = 0.0, max_opening = 0.0, damage = 0.0;  // see Crack
 
@@ -79,17 +80,18 @@ struct BondPoint {
     Mat<double, D> F, B;   // deformation gradient and correction, Eq. (80)
     Mat<double, D> P;      // first Piola-Kirchhoff stress without damping
     double volume, kappa;  // at rest; stiffness of the springs
+    std::uint32_t number;  // in the order in which points were added
     bool spans;            // whether its bonds span the space, so that it has a stress
 };
 
-/// What one step did to bonds: energy that went into them [J], 2-D: [J/m], how many ceased to bear
-/// tension, and how many are gone.
+/// What one step did to bonds: energy that went into them in it, by the step before that, and by
+/// this step [J], 2-D: [J/m], and how many ceased to bear tension.
 struct BondChange {
-    double work = 0.0;
-    std::size_t broken = 0, gone = 0;
+    double before = 0.0, work = 0.0;
+    std::size_t broken = 0;
 
     BondChange operator+(const BondChange& other) const {
-        return {work + other.work, broken + other.broken, gone + other.gone};
+        return {before + other.before, work + other.work, broken + other.broken};
     }
 };
 
@@ -137,8 +139,18 @@ public:
             f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]));
         }
     }
+    /// Eq. (127): the share of the bonds of point p that is broken, by the weights of the fit (80).
+    double damage(std::size_t p) const {
+        if (p + 1 >= first_bond_.size()) return 0.0;
+        double whole = 0.0, left = 0.0;
+        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
+            const double weight = pairs_[bond_[n]].weight;
+            whole += weight, left += weight * intactness(bond_[n]);
+        }
+        return whole > 0.0 ? 1.0 - left / whole : 0.0;
+    }
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
-    /// only as those of two bodies.
+    /// only as those of two bodies. What the last step did to any bond is in the energy then.
     template <class Apart>
     void part(const Apart& apart) {
         for (std::size_t n = 1; n < size(); ++n)
@@ -146,13 +158,17 @@ public:
                 broken_ += intactness(n) > 0.0;
                 state_[n].whole = 0.0, state_[n].damage = 1.0;
             }
+        for (BondState<D>& state : state_) state.change = {};
     }
     /// Bonds that bear no tension.
     std::size_t broken() const { return broken_; }
     /// What the last step did.
     const BondChange& change() const { return change_; }
-    /// Energy that all steps took [J], 2-D: [J/m].
+    /// Energy that all steps took, the last one by its beginning alone [J], 2-D: [J/m].
     double work() const { return work_; }
+    /// What the last step takes beside that, by the points of now; see advance.
+    template <class Point, class Body>
+    double opening(const Point& point, const Body& body) const;
 
     /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody.
     template <class Point, class Body>
@@ -177,7 +193,8 @@ private:
         bool good = (s.whole == 0.0 || s.whole == 1.0) && s.damage >= 0.0 && s.damage <= 1.0 &&
                     s.opening >= 0.0 && s.max_opening >= s.opening && std::isfinite(s.max_opening);
         for (int a = 0; a < D; ++a)
-            good = good && std::isfinite(s.jump[a]) && std::abs(s.normal[a]) <= 1.0 + 1e-9;
+            good = good && std::isfinite(s.jump[a]) && std::isfinite(s.change[a]) &&
+                   std::abs(s.normal[a]) <= 1.0 + 1e-9;
         expect_fit(good, "bond_state");
     }
 

@@ -66,19 +66,40 @@ struct DeformationTerm : ElasticTerm<D> {
     }
 };
 
-/// What Eq. (83a) needs of the pairs.
-template <int D>
-struct MisfitTerm : ElasticTerm<D> {
-    template <class T>
-    using Accumulators = MisfitMoments<T, D>;
+template <class T, int D>
+struct SpringSums {
+    MisfitMoments<T, D> moments;
+    T square_rate{};  // of de/dt, with the weights of the fit
 
-    template <class T>
-    DOSEKI_FN void add(MisfitMoments<T, D>& sums, const Pair<T, D>& pair,
-                       const ElasticPoint<T, D>& i, const ElasticPoint<T, D>& j) const {
-        const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
-        sums.add(-(j.volume * F), i.x - j.x - i.F * pair.r_ij, i.v - j.v - i.F_rate * pair.r_ij);
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.moments...), f(self.square_rate...);
     }
 };
+
+/// What Eq. (83a), the energy of the springs of Eq. (83) and the power of their dampers need.
+template <int D>
+struct SpringTerm : ElasticTerm<D> {
+    template <class T>
+    using Accumulators = SpringSums<T, D>;
+
+    template <class T>
+    DOSEKI_FN void add(SpringSums<T, D>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
+                       const ElasticPoint<T, D>& j) const {
+        const T weight = -(j.volume * WendlandC2<D>::gradient_factor(pair.r, i.inverse_support));
+        const Vec<T, D> rate = i.v - j.v - i.F_rate * pair.r_ij;
+        sums.moments.add(weight, i.x - j.x - i.F * pair.r_ij, rate);
+        sums.square_rate += weight * dot(rate, rate);
+    }
+};
+
+/// sum w |de/dt - Omega e|^2 over the pairs of a point.
+template <int D>
+double damped_square(const SpringSums<double, D>& sums, const Mat<double, D>& spin) {
+    const Mat<double, D>&C = sums.moments.square, &N = sums.moments.rate;
+    return sums.square_rate - 2.0 * trace(spin * transposed(N)) +
+           trace(spin * C * transposed(spin));
+}
 
 /// Eq. (83): force per volume at rest.
 template <int D>
@@ -157,40 +178,5 @@ struct BondedDeformationTerm : DeformationTerm<D> {
         add_velocity_gradient(sums.shape, bonded.j.volume, bonded.pair.r_ij, F, bonded.pair.r_ij);
     }
 };
-
-template <class T, int D>
-struct SpringSums {
-    MisfitMoments<T, D> moments;
-    T square_rate{};  // of de/dt, with the weights of the fit
-
-    template <class F, class... Self>
-    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.moments...), f(self.square_rate...);
-    }
-};
-
-/// What the energy of the springs of Eq. (83) and the power of their dampers need.
-template <int D>
-struct SpringTerm : ElasticTerm<D> {
-    template <class T>
-    using Accumulators = SpringSums<T, D>;
-
-    template <class T>
-    DOSEKI_FN void add(SpringSums<T, D>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                       const ElasticPoint<T, D>& j) const {
-        const T weight = -(j.volume * WendlandC2<D>::gradient_factor(pair.r, i.inverse_support));
-        const Vec<T, D> rate = i.v - j.v - i.F_rate * pair.r_ij;
-        sums.moments.add(weight, i.x - j.x - i.F * pair.r_ij, rate);
-        sums.square_rate += weight * dot(rate, rate);
-    }
-};
-
-/// sum w |de/dt - Omega e|^2 over the pairs of a point.
-template <int D>
-double damped_square(const SpringSums<double, D>& sums, const Mat<double, D>& spin) {
-    const Mat<double, D>&C = sums.moments.square, &N = sums.moments.rate;
-    return sums.square_rate - 2.0 * trace(spin * transposed(N)) +
-           trace(spin * C * transposed(spin));
-}
 
 }  // namespace doseki

@@ -10,6 +10,7 @@
 #include "bodies/elastic/division.hpp"
 #include "bodies/elastic/records.hpp"
 #include "bodies/rotation.hpp"
+#include "model/body_step.hpp"
 #include "pairs/neighbour_lists.hpp"
 #include "physics/kernel/wendland_c2.hpp"
 
@@ -27,6 +28,14 @@ template <int D>
 struct SolidPoints {
     Array<Vec<double, D>> rest, position, velocity;
     Array<std::uint8_t> clamped;
+};
+
+/// Of strain, and of the springs of Eq. (83); and what the last step of cracks takes beside what
+/// Bonds::work has of it [J], 2-D: [J/m].
+struct ElasticEnergy {
+    double strain = 0.0, springs = 0.0, opening = 0.0;
+
+    double sum() const { return strain + springs; }
 };
 
 /// Part of a point in a place that points carry along.
@@ -77,9 +86,9 @@ public:
             drift(0.5 * dt / steps), push(dt / steps, gravity), drift(0.5 * dt / steps);
     }
     /// The parts of such a step: positions, which returns the largest distance gone, and
-    /// velocities, before which `load` may be set.
+    /// velocities, before which `load` may be set; tells what that load and gravity gave.
     double drift(double dt);
-    void push(double dt, const Vec<double, D>& gravity);
+    BodyStep<D> push(double dt, const Vec<double, D>& gravity);
 
     /// The longest that is stable, for bodies strained as they are [s].
     double timestep() const;
@@ -127,13 +136,14 @@ public:
     const Mat<double, D>& deformation(std::size_t p) const { return deformation_[p]; }
     /// First Piola-Kirchhoff stress without damping.
     Mat<double, D> stress(std::size_t p) const { return body_of(p).stress(deformation_[p]); }
-    /// Of strain, without that of the springs [J], 2-D: [J/m].
-    double strain_energy() const;
+    /// Of where points are now; changes nothing.
+    ElasticEnergy elastic_energy() const;
+    /// Of breakable bodies where the last push found them, less what cracks took since.
+    double pushed_energy() const;
     double kinetic_energy() const;
-    /// Of bodies that may break: of their springs, that which went into cracks, and that which
-    /// damping took [J], 2-D: [J/m].
-    double spring_energy();
-    double fracture_work() const { return bonds_.work(); }
+    /// Energy that cracks, but for ElasticEnergy::opening, and that damping took so far [J], 2-D:
+    /// [J/m].
+    double fracture_work() const { return bonds_.work() + released_; }
     double damping_work() const { return damping_work_; }
 
     /// Of bodies that may break: which pairs hold, how many do not, what the last step did.
@@ -174,11 +184,15 @@ public:
                 bodies_.push_back(DeformableBody::of(&numbers[k]));
             start(gravity);
             a = accelerations, deformation_ = deformations, slot_ = slots;
+            number_points();
             stable_step_ = stable_step;
         }
         bonds_.serialise(archive);
-        archive("elastic_damping_work", damping_work_);
-        expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
+        archive("elastic_damping_work", damping_work_), archive("elastic_released", released_);
+        archive("elastic_energy", energy_);
+        expect_fit(std::isfinite(damping_work_) && std::isfinite(released_),
+                   "elastic_damping_work");
+        expect_fit(energy_.size() == (bonds_.any() ? size() : 0), "elastic_energy");
     }
 
     Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
@@ -209,6 +223,10 @@ private:
     Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     Vec<double, D> room_for(const DeformableBody& body, std::span<const Vec<double, D>> position);
     void sort();
+    void number_points() {
+        number_.resize(size());
+        for (std::uint32_t k = 0; k < size(); ++k) number_[slot_[k]] = k;
+    }
     void correct_gradients();
     void limit_timestep();
     template <class F>
@@ -219,9 +237,12 @@ private:
     void update_point(std::size_t p, const DeformationAccumulators<double, D>& sums);
 
     void damp_springs();
+    void account_for(std::size_t p, const SpringSums<double, D>& sums);
 
     template <class Term, class Epilogue>
-    void sum_over_pairs(const Term& term, const Epilogue& epilogue);
+    void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
+    template <class Epilogue>
+    void sum_springs(const ElasticTerm<D>& records, const Epilogue& epilogue) const;
     ElasticTerm<D> records() const;
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.
@@ -230,7 +251,6 @@ private:
     void sum_bonded_forces(const F& take);
     void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
                        const Mat<double, D>& shape);
-    void damp_bonded_springs();
     void update_deformations();
     void advance_bonds(double dt);
 
@@ -240,15 +260,20 @@ private:
     Array<Vec<double, D>> rest_;
     Array<std::int32_t> body_;
     Array<std::uint8_t> clamped_, gone_;
-    Array<std::uint32_t> slot_;
+    Array<std::uint32_t> slot_, number_;  // of the point of each number, and of each slot
     Array<Mat<double, D>> correction_, deformation_;
     Neighbours<D> neighbours_;
     Array<MotionRecord<double, D>> motion_;
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;  // of breakable bodies, without damping
-    Array<std::uint8_t> spans_;     // whether the bonds of a point span the space
-    Array<double> damping_power_;   // of each point of a breakable body
+    // Whether the bonds of a point span the space, and whether that has changed in this step.
+    Array<std::uint8_t> spans_, turned_;
+    Array<double> damping_power_;  // of each point
+    // Of breakable bodies: elastic energy of each point in the last step, and what points lost when
+    // the bonds that are left ceased to span them.
+    Array<double> energy_, released_by_;
+    double released_ = 0.0;
     double damping_work_ = 0.0;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]

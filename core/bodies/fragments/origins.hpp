@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -16,6 +17,11 @@ struct Origin {
     double born = 0.0;  // time [s]; of bodies of the start: 0
 };
 
+/// How many parts came off others: deformable bodies, and grains of dust.
+struct PartCounts {
+    std::size_t bodies = 0, dust = 0;
+};
+
 /// The origins of bodies of one kind, in their order.
 class Origins {
 public:
@@ -23,6 +29,11 @@ public:
     Origin operator[](std::size_t k) const { return k < size() ? origins_[k] : Origin{}; }
     std::size_t size() const { return origins_.size(); }
     void add(const Origin& origin) { origins_.push_back(origin); }
+    /// Those that came off others.
+    std::size_t parts() const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(origins_, [](const Origin& o) { return o.parent >= 0; }));
+    }
 
     /// Its arrays begin with `prefix`, see Archive::nested.
     void serialise(Archive& archive) {

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ..record.folder import RunFolder
+from ..record.history import BODY_ENERGIES, BROKEN
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
 from ..solver.protocol import Simulation
@@ -45,6 +46,7 @@ def history_row(simulation: Simulation, material_names: list[str]) -> dict[str, 
     row["av_dissipation"] = totals["av_dissipation"]
     row["gravity_work"], row["wall_work"] = totals["gravity_work"], totals["wall_work"]
     row["contact_work"], row["scheme_work"] = totals["contact_work"], totals["scheme_work"]
+    row |= {name: totals[name] for name in (*BODY_ENERGIES, *BROKEN)}  # type: ignore[literal-required]
     row["energy_entered"], row["energy_left"] = totals["energy_entered"], totals["energy_left"]
     carried = {name: totals[name] for name in ("impulse", "momentum_entered", "momentum_left")}
     for name, vector in carried.items():

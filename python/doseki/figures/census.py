@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from ..measure.census import CLASSES, Census, SpeedDraws
 from ..measure.grading import Grading
@@ -63,10 +64,20 @@ def draw_deposit(outline: np.ndarray, dim: int) -> Figure:
     return figure
 
 
+def _when_they_change(gradings: Mapping[float, Grading]) -> list[float]:
+    """The first time, and those at which the curve is another one than before."""
+    times = sorted(gradings)
+    found = times[:1]
+    for time in times[1:]:
+        if not np.array_equal(gradings[time].size, gradings[found[-1]].size):
+            found.append(time)
+    return found
+
+
 def draw_grading(gradings: Mapping[float, Grading]) -> Figure:
     """Shares of the mass that are finer than a size, at a few times."""
     figure, grid = chart_grid(1, 1, (7.0, 3.4), "Grading of what has broken")
-    times = sorted(gradings)
+    times = _when_they_change(gradings)
     axes = grid[0, 0]
     shown = np.unique(np.linspace(0, len(times) - 1, MOST_CURVES).round().astype(int))
     largest = max(float(grading.size.max()) for grading in gradings.values())
@@ -81,6 +92,9 @@ def draw_grading(gradings: Mapping[float, Grading]) -> Figure:
         xscale="log", xlim=(0.8 * smallest, 1.25 * largest), ylim=(0, 102),
         xlabel="size (m)", ylabel="mass finer (%)",
     )  # fmt: skip
-    axes.grid(alpha=0.3, which="both")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:g}"))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.grid(alpha=0.3)
     figure_legend(figure, grid.flat)
     return figure

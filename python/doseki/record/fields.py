@@ -85,6 +85,9 @@ FIELDS = (
     ParticleField(
         "grain", "Grain", "", "", "scalar", "index of its grain, or -1", "int32", absent=-1
     ),
+    ParticleField(
+        "damage", "Damage", "", "", "scalar", "share of its bonds that is broken", absent=0
+    ),
 )
 
 FIELD_BY_KEY = {field.key: field for field in FIELDS}

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from .units import unit_in
 
+BODY_ENERGIES = ("elastic_energy", "fracture_work", "parting_work", "damping_work")
+BROKEN = ("broken_bonds", "parts", "dust_grains")
 SHARES = ("balance", "migrate", "halo", "wait")  # of the wall time, beside the steps themselves
 
 
@@ -14,6 +16,7 @@ def history_columns(dim: int, material_names: Sequence[str]) -> list[str]:
     momentum = [f"momentum_{axis}" for axis in "xyz"[:dim]]
     energies = ["kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation"]
     work = ["gravity_work", "wall_work", "contact_work", "scheme_work"]
+    bodies = [*BODY_ENERGIES, *BROKEN]
     carried = ["energy_entered", "energy_left"]
     for name in ("impulse", "momentum_entered", "momentum_left"):
         carried += [f"{name}_{axis}" for axis in "xyz"[:dim]]
@@ -21,7 +24,7 @@ def history_columns(dim: int, material_names: Sequence[str]) -> list[str]:
     counts = ["n_particles", *(f"n_{name}" for name in material_names)]
     ranks = ["imbalance", *(f"share_{name}" for name in SHARES)]
     start = ["time", "step", "dt", "mass", *momentum, *energies]
-    return [*start, *work, *carried, *masses, *counts, *ranks]
+    return [*start, *work, *bodies, *carried, *masses, *counts, *ranks]
 
 
 # How names of columns begin or end, and the unit in 3-D of what they hold.

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from .fields import FIELDS, GRAIN_FIELDS, ParticleField
+from .fields import FIELDS, GRAIN_FIELDS
 from .vtkhdf import GRAINS, ROOT, VERSION, Header, location
 
 # gzip, because VTK's own HDF5 library can undo it; level 1 costs 1-2 s for a million particles.
@@ -76,17 +76,12 @@ def _parts(
     yield Part(f"{ROOT}/FieldData/Step", np.array([header.step]))
     yield Part(f"{ROOT}/FieldData/TimeStep", np.array([header.dt]), "s")
     for field in FIELDS:
-        values = field.encode(_values(state, field))
-        yield Part(location(field), values, field.unit_in(header.dim))
+        if field.absent is not None and field.key not in state:
+            continue  # readers know what it is then
+        yield Part(location(field), field.encode(state[field.key]), field.unit_in(header.dim))
     for field in GRAIN_FIELDS if grains else ():
         values = field.encode(grains[field.key]) if grains else np.zeros(0)
         yield Part(f"{GRAINS}/{field.file_name}", values, field.unit_in(header.dim))
-
-
-def _values(state: Mapping[str, np.ndarray], field: ParticleField) -> np.ndarray:
-    if field.absent is not None and field.key not in state:
-        return np.full(len(state["position"]), field.absent)
-    return state[field.key]
 
 
 def _image(

@@ -43,6 +43,14 @@ class Totals(TypedDict):
     wall_work: float  # J, of walls that have a velocity and of the layers behind inflows
     contact_work: float  # J, below 0 where contacts damp
     scheme_work: float  # J, by corrections and shifting
+    # Of deformable bodies: what they hold, and what they lost since the start.
+    elastic_energy: float  # J, of strain and springs
+    fracture_work: float  # J, by cracks
+    parting_work: float  # J, when parts came off
+    damping_work: float  # J, by their dampers
+    broken_bonds: int  # that bear no tension
+    parts: int  # deformable bodies that came off others
+    dust_grains: int  # rigid grains that came off
     momentum_entered: list[float]  # kg m/s
     momentum_left: list[float]  # kg m/s
     energy_entered: float  # J, kinetic

@@ -83,7 +83,7 @@ def works_on(run: Run, seen: Seen) -> str:
 def momentum_check(run: Run, seen: Seen) -> Check:
     """Momentum against that of the start and the impulse of gravity, m g t."""
     name = "momentum"
-    if (ledger := ledger_of(run)) is not None:
+    if (ledger := ledger_of(run)) is not None and not is_clamped(run):
         return ledger.momentum_check(name, RESOLVED_MOMENTUM)
     why = incomplete(run, seen, name)
     if not why and seen.motions - {FREE, BOUND}:

@@ -28,14 +28,15 @@ def _energy_check(run: Run, seen: Seen) -> Check:
     if why:
         return unknown(name, ENERGY, why)
     history = run.history
-    strain = np.interp(run.times, history["time"], history["shear_energy"])
+    elastic = history.get("elastic_energy", history["shear_energy"])  # the latter in older records
+    strain = np.interp(run.times, history["time"], elastic)
     total = np.array(seen.body_energy) + strain
     change = total - total[0]
-    motion = np.max(history["kinetic_energy"] + history["shear_energy"])
+    motion = np.max(history["kinetic_energy"] + elastic)
     largest = float(max(motion, np.ptp(seen.body_energy)))
     gained = float(change.max())
-    counted = f"motion, strain and weight in {len(total)} snapshots; springs are not recorded, and"
-    counted += " damping and friction only take"
+    counted = f"motion, strain and weight in {len(total)} snapshots; cracks, damping and friction"
+    counted += " only take"
     details = {"gained": gained, "taken": float(-change[-1]), "largest": largest}
     remedy = "this is a mistake in doseki, or a body is strained beyond its law: report it"
     return judged(name, gained / largest if largest else gained, ENERGY, counted, remedy, **details)

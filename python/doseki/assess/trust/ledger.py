@@ -11,9 +11,10 @@ from ...record.reader import Run
 from .snapshots import gravity_of, is_resolved
 from .verdicts import Check, judged, unknown
 
-HELD = ("kinetic_energy", "bulk_energy", "shear_energy")
+HELD = ("kinetic_energy", "bulk_energy", "shear_energy", "elastic_energy")
 GIVEN = ("gravity_work", "wall_work", "contact_work", "scheme_work", "energy_entered")
-TAKEN = ("av_dissipation", "energy_left")
+TAKEN = ("av_dissipation", "energy_left", "fracture_work", "parting_work", "damping_work")
+OF_BODIES = "elastic_energy"  # without it in the history, nothing of deformable bodies is
 NUMERICAL = (0.01, 0.05)  # work of corrections over the largest energy that took part
 
 
@@ -24,8 +25,12 @@ class Ledger:
     run: Run
     unknown: str  # what is not recorded of this run; empty where all is
 
+    def _values(self, name: str) -> np.ndarray:
+        history = self.run.history
+        return history[name] if name in history else np.zeros(len(history["time"]))
+
     def _column(self, name: str) -> np.ndarray:
-        values = self.run.history[name]
+        values = self._values(name)
         return values - values[0]
 
     def _vector(self, name: str) -> np.ndarray:
@@ -36,7 +41,7 @@ class Ledger:
     def largest(self) -> float:
         """The largest of the energies that took part."""
         moved = [self._column(name) for name in (*GIVEN, *TAKEN)]
-        held = [self.run.history[name] for name in HELD]
+        held = [self._values(name) for name in HELD]
         return max(float(np.max(np.abs(values))) for values in (*held, *moved))
 
     def energy_residual(self) -> np.ndarray:
@@ -51,8 +56,10 @@ class Ledger:
         residual, largest = float(np.max(np.abs(self.energy_residual()))), self.largest
         details = {what: float(self._column(what)[-1]) for what in (*GIVEN, *TAKEN)}
         counted = "all rows of the history, with what gravity, walls, inflows, contacts of bodies"
-        counted += " and corrections of the scheme gave, and viscosity, friction and outflows took"
-        remedy = "lower dp: walls and bodies of few particles make or take energy; raise speed_max"
+        counted += " and corrections of the scheme gave, and viscosity, friction, outflows, cracks"
+        counted += " and dampers of deformable bodies took"
+        remedy = "lower dp: walls, bodies of few particles and bodies that shatter at once make or"
+        remedy += " take energy; raise speed_max"
         value = residual / largest if largest else residual
         return judged(name, value, limits, counted, remedy, residual=residual, **details)
 
@@ -89,7 +96,8 @@ def ledger_of(run: Run) -> Ledger | None:
     if not is_resolved(scenario) or "gravity_work" not in history or len(history["time"]) < 2:
         return None
     bodies = [body for body in scenario.get("body", {}).values() if body.get("enabled", True)]
-    if any(body.get("kinematics") == "elastic" for body in bodies):
+    deforms = any(body.get("kinematics") == "elastic" for body in bodies)
+    if deforms and OF_BODIES not in history:
         return None
     why = "the work of the attraction is not recorded" if scenario.get("attraction", 0.0) else ""
     return Ledger(run, why)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from ...record.history import BODY_ENERGIES
 from ...record.reader import Run
 from ...record.units import unit_in
 from ..layout import chart_grid, figure_legend
@@ -23,7 +24,8 @@ def draw_energy(run: Run) -> Figure:
         raise NothingToDrawError("the history has no energies")
     figure, grid = chart_grid(1, 1, (7.0, 3.2), "Energy")
     axes, history = grid[0, 0], run.history
-    stored = {name: history[name] for name in ENERGIES if history[name].any()}
+    names = [*ENERGIES, *(name for name in BODY_ENERGIES if name in history)]
+    stored = {name: history[name] for name in names if history[name].any()}
     draw_curves(axes, history["time"], {name.replace("_", " "): e for name, e in stored.items()})
     potential = potential_energy(run)
     known = [np.interp(run.times, history["time"], energy) for energy in stored.values()]

@@ -19,6 +19,7 @@ MASSES = ("mass_asked", "mass_entered", "mass_inside", "mass_left")
 KINDS = {  # part of a column's name: what it measures, unit in 3-D
     "energy": ("energy", "J"),
     "dissipation": ("energy", "J"),
+    "work": ("energy", "J"),
     "mass": ("mass", "kg"),
     "momentum": ("momentum", "kg m/s"),
     "dt": ("time step", "s"),

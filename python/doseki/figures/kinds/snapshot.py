@@ -28,6 +28,7 @@ def draw_snapshots(run: Run, name: str, table: SnapshotFigure) -> Figure:
     view = named_window(run, table.window)
     moments = chosen(run, table, view)
     few = table.window is None and max(len(run[m.index]["id"]) for m in moments) <= FEW
+    few &= not any((run[m.index]["grain"] >= 0).any() for m in moments)  # bodies are drawn to scale
     sizes = ("support", "grain") if few else ("grain",)
     what = Panels(view, table.colour, table.title or view.title, sizes, table.material)
     return draw_panels(run, moments, what)

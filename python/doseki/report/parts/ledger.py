@@ -19,6 +19,7 @@ HELD = {
     "kinetic_energy": "kinetic",
     "bulk_energy": "elastic, bulk",
     "shear_energy": "elastic, shear",
+    "elastic_energy": "elastic, of deformable bodies",
 }
 FLOWS = {
     "av_dissipation": "dissipated (viscosity, eddies, walls)",
@@ -26,6 +27,9 @@ FLOWS = {
     "wall_work": "work of walls and inflow layers",
     "contact_work": "work of contacts",
     "scheme_work": "made by corrections of the scheme",
+    "fracture_work": "taken by cracks",
+    "parting_work": "lost when parts came off",
+    "damping_work": "taken by dampers of deformable bodies",
     "energy_entered": "carried in",
     "energy_left": "carried out",
 }

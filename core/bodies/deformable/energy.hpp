@@ -1,0 +1,67 @@
+#pragma once
+// The energy of deformable bodies.
+
+#include "bodies/elastic/advance_bonds.hpp"
+#include "bodies/elastic/interactions.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
+
+namespace doseki {
+
+/// Eqs. (80), (83) and (109) of the places of now, in records of their own: those of the last step
+/// are what the next one goes on from.
+template <int D>
+ElasticEnergy TotalLagrangian<D>::elastic_energy() const {
+    if (size() == 0) return {};
+    Array<ElasticRecord<D>> solid = solid_;
+    for (std::size_t p = 0; p < size(); ++p) solid[p].x = x[p];
+    const ElasticTerm<D> records{motion_, solid};
+    Array<ElasticEnergy> energy(size());
+    Array<BondPoint<D>> points(bonds_.any() ? size() : 0);
+    auto strain = [&](std::size_t p, const Mat<double, D>& F) {
+        const DeformableBody& body = body_of(p);
+        solid[p].F = F, solid[p].kappa = body.hourglass * body.shear_modulus();
+        energy[p].strain = volume(p) * body.energy(F);
+    };
+    if (bonds_.any()) {
+        auto bonded = [&](std::size_t p, const BondedDeformation<double, D>& sums) {
+            solid[p].F = identity<double, D>(), solid[p].kappa = 0.0;
+            const bool spans = spans_space(sums.shape);
+            const Mat<double, D> B = spans ? inverse(sums.shape, 0.0) : Mat<double, D>{};
+            if (spans) strain(p, sums.now.place * B);
+            const Mat<double, D>& F = solid[p].F;
+            points[p] = {rest_[p],  x[p],           v[p],       F,    B, body_of(p).stress(F),
+                         volume(p), solid[p].kappa, number_[p], spans};
+        };
+        sum_over_pairs(BondedDeformationTerm<D>{{records}, bonds_.rows()}, bonded);
+    } else {
+        auto whole = [&](std::size_t p, const DeformationAccumulators<double, D>& sums) {
+            strain(p, sums.place * correction_[p]);
+        };
+        sum_over_pairs(DeformationTerm<D>{records}, whole);
+    }
+    sum_springs(records, [&](std::size_t p, const SpringSums<double, D>& sums) {
+        energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.moments.square);
+    });
+    ElasticEnergy sum;
+    for (std::size_t p = 0; p < size(); ++p)
+        if (!gone(p)) sum.strain += energy[p].strain, sum.springs += energy[p].springs;
+    sum.opening = bonds_.opening([&points](std::size_t p) { return points[p]; },
+                                 [this](std::size_t p) -> const auto& { return body_of(p); });
+    return sum;
+}
+
+template <int D>
+double TotalLagrangian<D>::pushed_energy() const {
+    double sum = -bonds_.change().work;
+    for (std::size_t p = 0; p < size(); ++p)
+        if (!gone(p)) sum += energy_[p];
+    return sum;
+}
+
+template <int D>
+double TotalLagrangian<D>::kinetic_energy() const {
+    return reduce(size(), 0.0, std::plus<>(),
+                  [this](std::size_t p) { return 0.5 * mass(p) * dot(v[p], v[p]); });
+}
+
+}  // namespace doseki

@@ -1,0 +1,146 @@
+"""The account of energy closes where a body breaks, and a run says so."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from doseki.assess.summary import summary_text
+from doseki.assess.trust.ledger import ledger_of
+from doseki.assess.trust.report import trust_checks
+from doseki.record.history import BODY_ENERGIES, BROKEN
+from doseki.record.reader import load
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
+
+DROP = """
+schema = 1
+dim = 2
+dp = 0.005
+scheme = "resolved"
+speed_max = 6
+time_max = 0.0024
+time_out = 0.0012
+time_history = 0.00004
+gravity = [{sign}2, -9.81]
+
+[material.chalk]
+law = "solid"
+rho0 = 1000
+young_modulus = 1e8
+poisson_ratio = 0.2
+friction = 0.3
+fracture = "cohesive"
+tensile_strength = 1e5
+fracture_energy = 1
+
+[body.disc]
+shape = "disc"
+material = "chalk"
+kinematics = "elastic"
+centre = [0, 0.0505]
+radius = 0.05
+velocity = [{sign}1, -1.8]
+
+[body.plate]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [-0.1, -0.02]
+max = [0.1, 0]
+"""
+
+
+def drop(folder, sign="", threads=1, *settings):
+    """The record of a disc that strikes a plate at an angle and breaks."""
+    folder.mkdir(exist_ok=True)
+    (folder / "drop.toml").write_text(DROP.format(sign=sign))
+    scenario = load_scenario(str(folder / "drop.toml"), list(settings))
+    run_scenario(scenario, folder / "run", RunOptions(threads=threads))
+    return load(folder / "run")
+
+
+@pytest.fixture(scope="module")
+def dropped(tmp_path_factory):
+    return drop(tmp_path_factory.mktemp("drop"))
+
+
+def gap(ledger):
+    return np.max(np.abs(ledger.energy_residual())) / ledger.largest
+
+
+class WithColumns:
+    """A run with some columns of the history replaced."""
+
+    def __init__(self, run, **columns):
+        self.scenario, self.history = run.scenario, dict(run.history) | columns
+
+
+def without(run, name):
+    zeros = {name: np.zeros(len(run.history["time"]))}
+    return dataclasses.replace(ledger_of(run), run=WithColumns(run, **zeros))
+
+
+def test_energy_and_momentum_close(dropped):
+    ledger = ledger_of(dropped)
+    assert dropped.history["broken_bonds"][-1] > 50
+    assert gap(ledger) < 0.01
+    checks = {check.name: check for check in trust_checks(dropped)}
+    assert checks["energy balance"].verdict == "good"
+    assert checks["momentum"].value < 1e-9
+    assert "energy balance" in summary_text(dropped)
+
+
+@pytest.mark.parametrize("name", [*BODY_ENERGIES, "contact_work", "kinetic_energy"])
+def test_every_part_of_it_matters(dropped, name):
+    assert gap(without(dropped, name)) > 0.02
+
+
+def test_what_came_off_is_counted(dropped):
+    """As the table of bodies at the end has it; bonds of dust and of parts are broken."""
+    table, history = dropped[-1].grains, dropped.history
+    of_part = table["parent"] >= 0
+    assert history["parts"][-1] + history["dust_grains"][-1] == of_part.sum()
+    assert history["dust_grains"][-1] > 0
+    for name in ("broken_bonds", "parts", "dust_grains"):
+        assert (np.diff(history[name]) >= 0).all()
+
+
+def test_damage_is_where_bonds_are_broken(dropped):
+    first, last = dropped[0], dropped[-1]
+    assert not first["damage"].any()
+    assert not last["damage"][last["fixed"]].any()
+    parts, counts = np.unique(last["grain"][last["grain"] >= 0], return_counts=True)
+    single = np.isin(last["grain"], parts[counts == 1])
+    assert single.any()
+    assert (last["damage"][single] == 1).all()
+    assert ((last["damage"] >= 0) & (last["damage"] <= 1)).all()
+
+
+def test_a_mirrored_drop_has_the_same_account(tmp_path):
+    """Until it shatters, which tells the sides of the disc apart by rounding."""
+    short = ("time_max=0.001", "time_out=0.001")
+    left, right = (drop(tmp_path / sign, sign, 1, *short).history for sign in ("-", "+"))
+    assert right["fracture_work"][-1] > 0.01
+    for name in BODY_ENERGIES:
+        np.testing.assert_allclose(left[name], right[name], rtol=0.01, atol=1e-9)
+
+
+@pytest.mark.parametrize("threads", [2, 4])
+def test_threads_give_the_same_bits(dropped, tmp_path, threads):
+    again = drop(tmp_path, "", threads)
+    for key in ("position", "velocity", "damage", "grain"):
+        assert np.array_equal(again[-1][key], dropped[-1][key]), key
+    for name in (*BODY_ENERGIES, *BROKEN, "contact_work"):
+        assert np.array_equal(again.history[name], dropped.history[name]), name
+
+
+def test_the_account_goes_on_from_a_checkpoint(dropped, tmp_path):
+    drop(tmp_path, "", 1, "time_max=0.0012")
+    resume_run(tmp_path / "run", ["time_max=0.0024"], RunOptions(threads=1))
+    again = load(tmp_path / "run")
+    for name in (*BODY_ENERGIES, *BROKEN, "contact_work"):
+        assert again.history[name][-1] == dropped.history[name][-1], name
