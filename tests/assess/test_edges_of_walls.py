@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from doseki.record.reader import load
-from doseki.running.runner import RunOptions, run_scenario
-from doseki.scenario.load import load_scenario
+from ..loads.scenes import run_of
 
 # A column of water falls apart over a step in a tank; all turned by `angle` about the origin.
 STEP = """\
@@ -71,10 +69,7 @@ pivot = [0, 0]
 
 def made_and_released(folder, *overrides):
     """Largest energy that corrections made or took by a moment, and what gravity gave [J/m]."""
-    path = folder / "step.toml"
-    path.write_text(STEP)
-    run_scenario(load_scenario(path, overrides), folder / "run", RunOptions(threads=1))
-    history = load(folder / "run").history
+    history = run_of(folder, STEP, *overrides).history
     return abs(history["scheme_work"]).max(), history["gravity_work"].max()
 
 
