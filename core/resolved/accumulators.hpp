@@ -80,7 +80,7 @@ struct WallContact {
     T along;         // part of (v_i - v_w).B_i r_iw along the face
     Vec<T, D> jump;  // v_i - velocity extrapolated to w
     T power;         // dissipated, over V_i
-    T made;          // by pressure beyond what it does to the density, over V_i
+    T made;          // by pressure beyond what approach does to the density, over V_i
 };
 
 /// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle

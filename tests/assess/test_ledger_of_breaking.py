@@ -16,6 +16,8 @@ from doseki.running.resume import resume_run
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
+from ..small_scenarios import CHALK
+
 DROP = """
 schema = 1
 dim = 2
@@ -26,16 +28,6 @@ time_max = 0.0024
 time_out = 0.0012
 time_history = 0.00004
 gravity = [{sign}2, -9.81]
-
-[material.chalk]
-law = "solid"
-rho0 = 1000
-young_modulus = 1e8
-poisson_ratio = 0.2
-friction = 0.3
-fracture = "cohesive"
-tensile_strength = 1e5
-fracture_energy = 1
 
 [body.disc]
 shape = "disc"
@@ -57,7 +49,7 @@ max = [0.1, 0]
 def drop(folder, sign="", threads=1, *settings):
     """The record of a disc that strikes a plate at an angle and breaks."""
     folder.mkdir(exist_ok=True)
-    (folder / "drop.toml").write_text(DROP.format(sign=sign))
+    (folder / "drop.toml").write_text(DROP.format(sign=sign) + CHALK)
     scenario = load_scenario(str(folder / "drop.toml"), list(settings))
     run_scenario(scenario, folder / "run", RunOptions(threads=threads))
     return load(folder / "run")

@@ -9,6 +9,8 @@ import pytest
 
 import doseki
 
+from ..small_scenarios import CHALK
+
 PAIR = """
 schema = 1
 dim = 2
@@ -18,16 +20,6 @@ speed_max = 6
 time_max = 0.00136
 time_out = 0.00034
 gravity = [0, 0]
-
-[material.chalk]
-law = "solid"
-rho0 = 1000
-young_modulus = 1e8
-poisson_ratio = 0.2
-friction = 0.3
-fracture = "cohesive"
-tensile_strength = 1e5
-fracture_energy = 1
 
 [body.a]
 shape = "disc"
@@ -53,7 +45,7 @@ MIDDLE = 0.00068  # s
 def pairs(command, tmp_path_factory):
     """The run on one and two ranks, and both after a stop in the middle."""
     folder = tmp_path_factory.mktemp("pair")
-    (folder / "pair.toml").write_text(PAIR)
+    (folder / "pair.toml").write_text(PAIR + CHALK)
 
     def do(ranks, *words):
         done = command(ranks, *words, *WORDS)
