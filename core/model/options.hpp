@@ -59,6 +59,7 @@ struct FlowOptions {
     bool wide_kernel = false;  // Wendland C6 instead of C2
     bool monaghan_cleary = false;
     bool shifting = true;
+    double acoustic_damping = 0.05;
     Turbulence turbulence = Turbulence::none;
     double smagorinsky = 0.12;
     Array<WallCondition> walls;  // by body
@@ -74,7 +75,7 @@ struct FlowOptions {
         f("kernel", choice<bool>(wide_kernel, {{"wendland_c2", false}, {"wendland_c6", true}}));
         f("viscosity",
           choice<bool>(monaghan_cleary, {{"morris", false}, {"monaghan_cleary", true}}));
-        f("shifting", shifting);
+        f("shifting", shifting), f("acoustic_damping", acoustic_damping);
         f("turbulence",
           choice<Turbulence>(turbulence, {{"none", Turbulence::none},
                                           {"smagorinsky", Turbulence::smagorinsky},

@@ -29,6 +29,12 @@ DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
     return harmonic ? T(2) * mu_i * mu_j / max(sum, number<T>(1e-30)) : number<T>(0.5) * sum;
 }
 
+/// Eq. (136): pressure [Pa] of a bulk viscosity alpha rho c h, which damps sound (Sun, Pilloton,
+/// Antuono & Colagrossi, J. Comput. Phys. 483, 2023). `divergence` of the velocity [1/s].
+inline double damping_pressure(double alpha, double rho, double c, double h, double divergence) {
+    return -alpha * rho * c * h * divergence;
+}
+
 /// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress
 /// rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile. At least
 /// `min_length`; z: height over the bed, d: depth.

@@ -36,7 +36,8 @@ public:
         state_.shift[p] = {};
         summary(p).fault.note_density(records_[p].rho, rho0(p), p);
         summary(p).power +=
-            records_[p].volume * (sums.power - dot(sums.traction, state_.velocity[p]));
+            records_[p].volume * (sums.power - dot(sums.traction, state_.velocity[p]) +
+                                  damping_pressure(p) * sums.density_rate);
         summary(p).work.power += records_[p].volume * sums.made_power;
         if (!state_.is_free(p)) {
             state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
@@ -74,6 +75,11 @@ private:
     };
 
     double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
+    double damping_pressure(std::size_t p) const {
+        return model_.damping_pressure(records_[p], state_.smoothing_length[p]);
+    }
+    /// Without what damps sound.
+    double pressure(std::size_t p) const { return records_[p].p - damping_pressure(p); }
     FlowSummary<D>& summary(std::size_t p) const {
         return summaries_[p / static_cast<std::size_t>(lanes<double>)];
     }
@@ -147,7 +153,7 @@ private:
     /// What shifting and the relaxation of density give to energies of compression and height [W].
     double power_of_corrections(std::size_t p, double density_rate) const {
         const FluidRecord<D>& record = records_[p];
-        return record.volume * record.p / record.rho * density_rate -
+        return record.volume * pressure(p) / record.rho * density_rate -
                state_.mass[p] * dot(model_.options.gravity, state_.shift[p]);
     }
 
@@ -157,7 +163,7 @@ private:
         SchemeWork<D>& work = summary(p).work;
         work.layer_force = work.layer_force - force;
         work.layer_power -=
-            dot(force, state_.velocity[p]) + records_[p].volume * records_[p].p * sums.density_rate;
+            dot(force, state_.velocity[p]) + records_[p].volume * pressure(p) * sums.density_rate;
     }
 
     /// Moves the particle relative to the fluid, and its density with it. Pairs see to its

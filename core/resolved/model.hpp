@@ -91,6 +91,15 @@ struct ResolvedModel {
         return surface > FreeSurfaceIndicator::surface ? std::max(0.0, p) : p;
     }
 
+    /// Pressure of the acoustic damper, Eq. (136). None on a free surface, which takes no tension.
+    double damping_pressure(const FluidRecord<D>& record, double h) const {
+        if (record.surface > FreeSurfaceIndicator::surface) return 0.0;
+        double divergence = 0.0;
+        for (int a = 0; a < D; ++a) divergence += record.strain(a, a);
+        return doseki::damping_pressure(options.flow.acoustic_damping, record.rho, constants.c, h,
+                                        divergence);
+    }
+
     /// rho l^2 |D| of Smagorinsky, or of Prandtl's mixing length, over rho [m^2/s].
     double eddy_viscosity(const ResolvedState<D>& state, std::size_t p) const {
         const FlowOptions& flow = options.flow;

@@ -41,6 +41,7 @@ WALL = ROCK.replace("min = [0, 0]", "min = [0, -0.5]").replace("[1, 0.5]", "[1, 
         (FAST + '\nturbulence = "les"', BLOCK, ["turbulence = 'les'", "'smagorinsky'"]),
         (FAST + '\nviscosity = "x"', BLOCK, ["viscosity = 'x'", "'monaghan_cleary'"]),
         (FAST + "\nsmagorinsky = -1", BLOCK, ["smagorinsky = -1 is out of range", "at least 0"]),
+        (FAST + "\nacoustic_damping = 2", BLOCK, ["acoustic_damping = 2 is out of range"]),
         (FAST + "\nshifting = 1", BLOCK, ["shifting = 1 must be true or false"]),
     ],
 )
@@ -62,7 +63,7 @@ def test_speed_max_sets_the_sound_speed_of_the_fluid_alone(write):
 def test_defaults_are_those_of_the_scheme(write):
     scenario = load_scenario(write(top=FAST))
     assert (scenario.kernel, scenario.eta) == ("wendland_c2", 1.3)
-    assert (scenario.cflnumber, scenario.cfl_force) == (0.3, 0.25)
+    assert (scenario.cflnumber, scenario.cfl_force) == (0.5, 0.25)
     assert scenario.support == pytest.approx(0.26)
     wide = load_scenario(write(top=FAST + '\nkernel = "wendland_c6"'))
     assert (wide.eta, wide.support) == (1.2, pytest.approx(0.3))

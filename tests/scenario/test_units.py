@@ -19,7 +19,7 @@ from ..small_scenarios import BLOCK
 
 # Numbers of no unit, numbers whose unit depends on another number, and what is no number.
 PLAIN = {
-    "alpha", "cfl_force", "cflnumber", "consistency", "count", "damping",
+    "acoustic_damping", "alpha", "cfl_force", "cflnumber", "consistency", "count", "damping",
     "cv", "dim", "direction", "eta", "flaw_seed", "flow_index", "fracture_energy", "friction",
     "gamma", "grains", "hourglass",
     "inertial_number", "panels",

@@ -71,7 +71,7 @@ def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
 
 def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """What only the resolved scheme has."""
-    names = "dp kernel viscosity shifting turbulence smagorinsky".split()
+    names = "dp kernel viscosity shifting acoustic_damping turbulence smagorinsky".split()
     return {name: getattr(scenario, name) for name in names} | {
         "walls": [_wall_condition(scenario, _wall_of(scenario, name)) for name in body_names]
     }

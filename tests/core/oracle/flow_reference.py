@@ -47,7 +47,8 @@ class FlowOptions:
     turbulence: str = "none"
     smagorinsky: float = 0.12
     shifting: bool = True
-    cflnumber: float = 0.3
+    acoustic_damping: float = 0.05
+    cflnumber: float = 0.5
     cfl_force: float = 0.25
     walls: Sequence[Mapping[str, Any]] = ({"no_slip": True, "ks": 0.0},)
     period: np.ndarray = field(default_factory=lambda: np.full(3, np.inf))
@@ -179,6 +180,8 @@ class FlowReference:
         self.p = self._pressure(self.surface)
         if self.mean_pressure is None:
             self.mean_pressure = self.p
+        self.damping = self._damping_pressure()
+        self.p = self.p + self.damping
         self.mu = self._molecular_viscosity() + self.rho * self._eddy_viscosity()
         contact = self._contact()
         self._wall_pass(contact)
@@ -189,6 +192,12 @@ class FlowReference:
         e, stiffness = self.rho / self.rho0, self.rho0 * self.c0**2
         p = stiffness * (e - 1) if self.options.eos == "linear" else stiffness / 7 * (e**7 - 1)
         return np.where(surface > SURFACE, np.maximum(p, 0), p)
+
+    def _damping_pressure(self) -> np.ndarray:
+        """Of the acoustic damper: none on a free surface."""
+        divergence = np.trace(self.L, axis1=1, axis2=2)
+        scale = self.options.acoustic_damping * self.rho * self.c * self.h
+        return np.where(self.surface > SURFACE, 0.0, -scale * divergence)
 
     # Viscosity
 
@@ -312,8 +321,8 @@ class FlowReference:
         drag = (self.fw.W[..., None] * self.traction).sum(axis=1)
         force += contact["force"].sum(axis=1) + drag
         rate += (self.V_w * self.fw.F * contact["v_dot_r"]).sum(axis=1)
+        power += contact["power"].sum(axis=1) - dot(drag, self.v) + self.damping * rate
         rate += self._edge_rate(contact)
-        power += contact["power"].sum(axis=1) - dot(drag, self.v)
         self.power = (self.volume * power).sum() - self.power_to_rough_walls
         self.acceleration = force / self.rho[:, None] + self.gravity
         self.density_rate = self.rho * rate

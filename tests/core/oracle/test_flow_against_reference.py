@@ -71,6 +71,7 @@ CASES = {
     "viscosity limits the step": Case(thicker=1000),
     "hardly moving": Case(periodic="xyz", speed=0.008),
     "no shifting": Case({"shifting": False}),
+    "sound undamped": Case({"acoustic_damping": 0.0}),
     "wide kernel": Case({"kernel": "wendland_c6", "eta": 1.2}),
     "wide kernel, periodic": Case({"kernel": "wendland_c6", "eta": 1.2}, periodic="xyz"),
     "Monaghan and Cleary": Case({"viscosity": "monaghan_cleary"}),
@@ -132,7 +133,7 @@ def core_simulation(isa: str, dim: int, name: str) -> Any:
     """The core's simulation of a case, started."""
     case, particles = CASES[name], vars(cloud(dim, CASES[name]))
     ours = asdict(reference(dim, name).options)
-    flow = {key: ours[key] for key in "dp kernel viscosity turbulence smagorinsky".split()}
+    flow = {key: ours[key] for key in "dp kernel viscosity acoustic_damping turbulence smagorinsky".split()}
     flow |= {"shifting": ours["shifting"], "walls": list(case.walls)}
     options = {key: ours[key] for key in ("eta", "cflnumber", "cfl_force")}
     options |= {"alpha": 0.0, "skin": 0.05, "balsara": False, "sym_grad": False, "flow": flow}

@@ -22,6 +22,7 @@ ROOT = {
     "turbulence": ["smagorinsky", "mixing_length"],
     "smagorinsky": ["0.3", "0.3 with turbulence=smagorinsky"],
     "shifting": ["false"],
+    "acoustic_damping": ["0.3", "0"],
     "relax": ["0.01"],
     "uplift": ["false"],
     "speed_max": ["8"],

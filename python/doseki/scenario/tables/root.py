@@ -74,6 +74,9 @@ class ScenarioTable(Table):
     shifting: Annotated[bool, OF_RESOLVED] = Field(
         True, description="resolved: keep particles evenly spread"
     )
+    acoustic_damping: Annotated[float, Field(ge=0, le=1), OF_RESOLVED] = Field(
+        0.05, description="resolved: alpha_s of a bulk viscosity that damps sound"
+    )
     relax: Annotated[Duration | None, OF_RESOLVED] = Field(
         None, description="resolved: s for which fluid comes to rest before the run begins"
     )
