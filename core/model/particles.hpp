@@ -45,6 +45,7 @@ struct WallState {
     Field<std::int32_t> face;             // none, of a fixed body, or of rigid body `face - first`
     Field<Vec<double, D>> area;           // of a body that moves, outwards [m^2], 2-D: [m]
     Field<double> rows;                   // pressure force on all its rows over that on this one
+    Field<double> film_change;            // of its pressure in the last step [Pa]
     Field<double> film_density;           // of the fluid that presses on it [kg/m^3]; 0: dry
     Field<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
     Field<BodyKind> body_kind;            // of bound particles
@@ -57,7 +58,8 @@ struct WallState {
         f("normal", normal), f("wall_bend", bend), f("wall_depth", depth), f("wall_cut", cut);
         f("wall_force", force), f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_rows", rows);
-        f("film_density", film_density), f("film_traction", film_traction);
+        f("film_change", film_change), f("film_density", film_density),
+            f("film_traction", film_traction);
         f("body_kind", body_kind), f("point", point);
     }
 };

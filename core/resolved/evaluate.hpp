@@ -106,11 +106,11 @@ void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_d
     record.p = model_->without_surface_tension(thermodynamic_state(*material.laws, rho).pressure,
                                                record.surface);
     update_mean_pressure(state, p, 2.0 * half_dt);
+    record.p += state.damping_pressure[p];
     const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
     record.mu = viscosity(*material.laws, sheared) + rho * model_->eddy_viscosity(state, p);
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
-    record.p += model_->damping_pressure(record, state.smoothing_length[p]);
     record.pressure_gradient = state.pressure_gradient[p];
     record.correction = state.correction_excess[p];
     for (int a = 0; a < D; ++a) record.correction(a, a) += 1.0;

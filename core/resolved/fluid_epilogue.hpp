@@ -37,11 +37,12 @@ public:
         summary(p).fault.note_density(records_[p].rho, rho0(p), p);
         summary(p).power +=
             records_[p].volume * (sums.power - dot(sums.traction, state_.velocity[p]) +
-                                  damping_pressure(p) * sums.density_rate);
+                                  state_.damping_pressure[p] * sums.density_rate);
         summary(p).work.power += records_[p].volume * sums.made_power;
         if (!state_.is_free(p)) {
             state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
             push_of_layers(p, sums);
+            damp_sound(p, sums.at_body > 0.0);
             return;
         }
         const Mat<double, D>& L = state_.velocity_gradient[p];
@@ -60,6 +61,7 @@ public:
         state_.density_rate[p] = rates.density;
         summary(p).work.power += power_of_corrections(p, rates.density - of_pairs.density);
         limit_timestep(p);
+        damp_sound(p, sums.at_body > 0.0);
     }
 
 private:
@@ -75,11 +77,8 @@ private:
     };
 
     double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
-    double damping_pressure(std::size_t p) const {
-        return model_.damping_pressure(records_[p], state_.smoothing_length[p]);
-    }
     /// Without what damps sound.
-    double pressure(std::size_t p) const { return records_[p].p - damping_pressure(p); }
+    double pressure(std::size_t p) const { return records_[p].p - state_.damping_pressure[p]; }
     FlowSummary<D>& summary(std::size_t p) const {
         return summaries_[p / static_cast<std::size_t>(lanes<double>)];
     }
@@ -194,11 +193,28 @@ private:
 
     /// Below its least density a fluid does not expand any further.
     void bound_tension(std::size_t p, bool at_body, Rates& rates) const {
-        const MinDensity& bound = model_.min_density[state_.tag[p].material];
-        const double missing = (at_body ? bound.at_bodies : bound.in_flow) - records_[p].rho;
+        const double least = model_.min_density[state_.tag[p].material].at(at_body);
+        const double missing = least - records_[p].rho;
         if (missing <= 0.0) return;
         const double time = tension_release * state_.smoothing_length[p] / model_.constants.c;
         rates.density = std::max(at_body ? missing / time : 0.0, rates.density);
+    }
+
+    /// For the next evaluation. It brings no tension that the liquid does not bear, none on a free
+    /// surface.
+    void damp_sound(std::size_t p, bool at_body) const {
+        const Material& material = model_.material(state_.tag[p]);
+        const double rho = records_[p].rho, h = state_.smoothing_length[p],
+                     divergence = trace(state_.velocity_gradient[p]);
+        double added = damping_pressure(model_.options.flow.acoustic_damping, rho,
+                                        model_.constants.c, h, divergence);
+        if (added < 0.0) {
+            const double least = model_.min_density[state_.tag[p].material].at(at_body);
+            const double bound = thermodynamic_state(*material.laws, least).pressure;
+            added = std::max(added, std::min(0.0, bound - pressure(p)));
+        }
+        const bool on_surface = state_.surface[p] > FreeSurfaceIndicator::surface;
+        state_.damping_pressure[p] = on_surface ? 0.0 : added;
     }
 
     void limit_timestep(std::size_t p) const {

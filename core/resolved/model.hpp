@@ -30,13 +30,14 @@ struct MinDensity {
     double in_flow;
     double at_bodies;  // that move: where they part, air comes in or water from the third dimension
 
+    double at(bool body) const { return body ? at_bodies : in_flow; }
     static MinDensity of(const Material& fluid) {
-        auto at = [&fluid](double pressure) {
+        auto density_at = [&fluid](double pressure) {
             const double rho0 = fluid.rho0;
             return density_of(*fluid.laws, pressure, least_relative_density * rho0, rho0);
         };
-        return {at(fluid.cavitation_pressure),
-                at(std::max(fluid.cavitation_pressure, -fluid.air_entry_suction))};
+        return {density_at(fluid.cavitation_pressure),
+                density_at(std::max(fluid.cavitation_pressure, -fluid.air_entry_suction))};
     }
 };
 
@@ -89,15 +90,6 @@ struct ResolvedModel {
     /// Tension holds inside; a free surface takes none.
     static double without_surface_tension(double p, double surface) {
         return surface > FreeSurfaceIndicator::surface ? std::max(0.0, p) : p;
-    }
-
-    /// Pressure of the acoustic damper, Eq. (136). None on a free surface, which takes no tension.
-    double damping_pressure(const FluidRecord<D>& record, double h) const {
-        if (record.surface > FreeSurfaceIndicator::surface) return 0.0;
-        double divergence = 0.0;
-        for (int a = 0; a < D; ++a) divergence += record.strain(a, a);
-        return doseki::damping_pressure(options.flow.acoustic_damping, record.rho, constants.c, h,
-                                        divergence);
     }
 
     /// rho l^2 |D| of Smagorinsky, or of Prandtl's mixing length, over rho [m^2/s].

@@ -12,9 +12,9 @@ struct FluidFields {
     Sym<T, D> correction;   // of kernel gradients, see ResolvedState::correction_excess
     Vec<T, D> carried;      // L dv, what shifting makes of the velocity
     T volume, rest_volume;  // m/rho, m/rho0
-    T rho, p;   // p: with what damps sound
-    T mu;       // molecular and eddy viscosity [Pa s]
-    T surface;  // free-surface indicator of the last step
+    T rho, p;               // p: with what damps sound
+    T mu;                   // molecular and eddy viscosity [Pa s]
+    T surface;              // free-surface indicator of the last step
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {

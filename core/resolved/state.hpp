@@ -20,11 +20,12 @@ struct ResolvedState : Particles<D> {
     /// Inverse moment of kernel gradients less the identity: zero near a free surface, and before a
     /// particle has been summed over.
     Field<Sym<double, D>> correction_excess;
-    Field<Vec<double, D>> shift;  // velocity relative to the fluid [m/s]
-    Field<double> surface;        // free-surface indicator
-    Field<double> mixing_length;  // [m]
-    Field<double> mean_pressure;  // over a time, where friction depends on it [Pa]
-    bool has_voellmy_beds;        // without, the fields below stay empty
+    Field<Vec<double, D>> shift;     // velocity relative to the fluid [m/s]
+    Field<double> surface;           // free-surface indicator
+    Field<double> mixing_length;     // [m]
+    Field<double> mean_pressure;     // over a time, where friction depends on it [Pa]
+    Field<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
+    bool has_voellmy_beds;           // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
     Field<Vec<double, D>> bed_slip;  // [m]
     Field<double> bed_load;          // normal stress on them, over a time [Pa]
@@ -35,6 +36,7 @@ struct ResolvedState : Particles<D> {
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
         f("correction_excess", correction_excess), f("shift", shift), f("surface", surface);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
+        f("damping_pressure", damping_pressure);
         if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);
     }
 

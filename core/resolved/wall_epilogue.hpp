@@ -30,10 +30,11 @@ public:
         WallState<D>& wall = state_.wall;
         WallRecord<D>& record = records_[p - first_wall_];
         Vec<double, D> force = sums.force;
+        const double before = wall.pressure[p];
         wall.pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
         FlowSummary<D>& summary = summaries_[p / static_cast<std::size_t>(lanes<double>)];
         if (wall.face[p] != Face::none) {
-            const Vec<double, D> film = film_force(p, sums);
+            const Vec<double, D> film = film_force(p, sums, before);
             force = force + film;
             // The film has no particles whose energy could pay for this.
             summary.work.power += dot(film, state_.velocity[p]);
@@ -54,16 +55,27 @@ private:
     static constexpr double min_filled = 0.05;  // of the kernel, by fluid
     static constexpr double min_weight = 1e-9;  // the same; less presses with nothing
 
-    /// The film takes the pressure of the fluid and of the faces around it as they were a step
-    /// before: it spreads from the rim of a contact inwards. Air has none; where a face sees hardly
-    /// anything, that is what is there.
-    Vec<double, D> film_force(std::size_t p, const WallAccumulators<double, D>& sums) const {
+    /// Share of its last change with which the pressure of a film goes on: it runs in from the rim
+    /// like a wave. By the mean of its surroundings alone it would creep in, the more slowly the
+    /// longer the steps are.
+    static constexpr double film_inertia = 0.5;
+
+    /// The film goes towards the pressure of the fluid and of the faces around it as they were a
+    /// step `before`, Eq. (137). Air has none; where a face sees hardly anything, that is what is
+    /// there.
+    Vec<double, D> film_force(std::size_t p, const WallAccumulators<double, D>& sums,
+                              double before) const {
         WallState<D>& wall = state_.wall;
         wall.film_density[p] = sums.weight > 0.0 ? sums.density / sums.weight : 0.0;
         wall.film_traction[p] = {};
-        if (sums.cover == 0.0) return {};
+        if (sums.cover == 0.0) {
+            wall.film_change[p] = 0.0;
+            return {};
+        }
         const double weight = std::max(sums.weight + sums.cover, model_.full_cover);
-        wall.pressure[p] = (sums.pressure + sums.film_pressure) / weight;
+        const double mean = (sums.pressure + sums.film_pressure) / weight;
+        wall.film_change[p] = mean - before + film_inertia * wall.film_change[p];
+        wall.pressure[p] = before + wall.film_change[p];
         wall.film_density[p] = (sums.density + sums.film_density) / weight;
         wall.film_traction[p] = (-pressure_at_surface(p, opening_speed(p, sums)) /
                                  std::max(sums.cover, model_.full_cover)) *

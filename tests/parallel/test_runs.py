@@ -27,7 +27,14 @@ CASES = {
     ),
     "dambreak": ("dim=3", "dp=0.03", "time_max=0.006", "time_out=0.003"),
     "flume": ("dp=0.01", "load_mass=2", "time_max=0.01", "time_out=0.005"),
-    "channel": ("dp=0.01", "flume_length=0.2", "time_max=0.14", "time_out=0.07"),  # past its end
+    # Past its end. With longer steps what rounding changes grows there to 1e-6.
+    "channel": (
+        "dp=0.01",
+        "flume_length=0.2",
+        "time_max=0.14",
+        "time_out=0.07",
+        "cflnumber=0.3",
+    ),
     # Friction that springs of the bed hold, on both parts of it.
     "voellmy-chute": ("dp=0.2", "time_max=0.1", "time_out=0.05"),
 }

@@ -228,8 +228,8 @@ min = [0, 0.6]
 max = [0.2, 0.68]
 """
     settings = ["domain_max=[0.2, 1]", "skin=0.1"]
-    alone = advance(flows(FILM.format(dim=2), *settings), 100)
-    beside = advance(flows(FILM.format(dim=2) + above, *settings), 100)
+    alone = advance(flows(FILM.format(dim=2), *settings), 60)
+    beside = advance(flows(FILM.format(dim=2) + above, *settings), 60)
     assert beside.time == pytest.approx(alone.time, rel=1e-12)
     one, other = alone.state(), beside.state()
     here = other["body"] <= one["body"].max()

@@ -145,6 +145,7 @@ class FlowReference:
         self.surface = np.zeros(n)
         self.shift = np.zeros((n, self.dim))
         self.B = np.tile(np.eye(self.dim), (n, 1, 1))
+        self.damping = np.zeros(n)
 
     def _take_fluid(self, particles: Any, materials: Sequence[Mapping[str, Any]]) -> None:
         self.fluid = particles.motion != FIXED
@@ -180,24 +181,30 @@ class FlowReference:
         self.p = self._pressure(self.surface)
         if self.mean_pressure is None:
             self.mean_pressure = self.p
-        self.damping = self._damping_pressure()
         self.p = self.p + self.damping
         self.mu = self._molecular_viscosity() + self.rho * self._eddy_viscosity()
         contact = self._contact()
         self._wall_pass(contact)
         self._fluid_pass(contact)
+        self.damping = self._damping_pressure()
 
     def _pressure(self, surface: np.ndarray) -> np.ndarray:
         """Linear or Tait's law; no tension on a free surface."""
-        e, stiffness = self.rho / self.rho0, self.rho0 * self.c0**2
-        p = stiffness * (e - 1) if self.options.eos == "linear" else stiffness / 7 * (e**7 - 1)
+        p = self._of_density(self.rho / self.rho0)
         return np.where(surface > SURFACE, np.maximum(p, 0), p)
 
+    def _of_density(self, e: np.ndarray) -> np.ndarray:
+        """Pressure of a density over that at rest."""
+        stiffness = self.rho0 * self.c0**2
+        return stiffness * (e - 1) if self.options.eos == "linear" else stiffness / 7 * (e**7 - 1)
+
     def _damping_pressure(self) -> np.ndarray:
-        """Of the acoustic damper: none on a free surface."""
+        """Of the acoustic damper: none on a free surface, no tension that the liquid cannot bear."""
         divergence = np.trace(self.L, axis1=1, axis2=2)
-        scale = self.options.acoustic_damping * self.rho * self.c * self.h
-        return np.where(self.surface > SURFACE, 0.0, -scale * divergence)
+        added = -self.options.acoustic_damping * self.rho * self.c * self.h * divergence
+        least = self._of_density(np.full_like(self.rho, LEAST_DENSITY))
+        added = np.maximum(added, np.minimum(0, least - (self.p - self.damping)))
+        return np.where(self.surface > SURFACE, 0.0, added)
 
     # Viscosity
 

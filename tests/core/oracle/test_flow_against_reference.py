@@ -133,7 +133,10 @@ def core_simulation(isa: str, dim: int, name: str) -> Any:
     """The core's simulation of a case, started."""
     case, particles = CASES[name], vars(cloud(dim, CASES[name]))
     ours = asdict(reference(dim, name).options)
-    flow = {key: ours[key] for key in "dp kernel viscosity acoustic_damping turbulence smagorinsky".split()}
+    flow = {
+        key: ours[key]
+        for key in "dp kernel viscosity acoustic_damping turbulence smagorinsky".split()
+    }
     flow |= {"shifting": ours["shifting"], "walls": list(case.walls)}
     options = {key: ours[key] for key in ("eta", "cflnumber", "cfl_force")}
     options |= {"alpha": 0.0, "skin": 0.05, "balsara": False, "sym_grad": False, "flow": flow}

@@ -74,7 +74,8 @@ def rough(particles: float, *overrides: str) -> Outcome:
     for state in run.sampled(times):
         film = moving(state)
         speed.append(-mean_velocity(film))
-        thickness.append(2 * np.average(film["position"][:, 1], weights=film["mass"]))
+        # The median: a single particle that hops over 80 others would add a tenth to the mean.
+        thickness.append(2 * np.median(film["position"][:, 1]))
     late = times > STEADY
     return Outcome(
         {
