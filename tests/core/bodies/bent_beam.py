@@ -93,7 +93,7 @@ class Beam:
             share[on] += load * np.linalg.pinv(sums)[:, 0]
         return np.ascontiguousarray(np.outer(share, self.frame[:, 1]))
 
-    def bend(self, slowness: float = 40.0) -> Beam:
+    def bend(self, slowness: float = 46.0) -> Beam:
         """Push its middle down until the load falls, while waves go along the span so many times.
 
         A soft spring with a dashpot between the beam and a grip that moves evenly: the load goes
@@ -102,7 +102,7 @@ class Beam:
         young, ratio = self.material["young_modulus"], self.span / self.depth
         wave = np.sqrt(young / self.material["rho0"])
         elastic = 0.25 * self.published * ratio**3 / young  # deflection without notch and crack
-        way, time = 12.0 * elastic, slowness * self.span / wave
+        way, time = 14.0 * elastic, slowness * self.span / wave
         spring = young / ratio**3
         dashpot = 0.1 * np.sqrt(spring * 0.5 * self.material["rho0"] * self.depth * self.span)
         steps = int(time * wave / (1.5 * self.spacing)) + 1
@@ -116,7 +116,7 @@ class Beam:
             self.loads.append(spring * (grip - ahead) + dashpot * (pace - speed))
             self.bodies.set_load(self.loads[-1] * self.forces)
             self.bodies.advance(time / steps)
-            if self.loads[-1] < 0.9 * self.peak and part > 0.3:
+            if self.loads[-1] < 0.95 * self.peak and part > 0.3:
                 break
         return self
 

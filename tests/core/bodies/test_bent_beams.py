@@ -15,7 +15,7 @@ LATTICES = [(angle, shift) for angle in (10, 20, 30) for shift in ((0.0, 0.0), (
 def peaks(core, across, **material):
     """Highest load of beams on each lattice, over the published one."""
     beams = [Beam(core, across, angle, shift, **material).bend() for angle, shift in LATTICES]
-    assert all(beam.loads[-1] < 0.9 * beam.peak for beam in beams)  # all went through it
+    assert all(beam.loads[-1] < 0.95 * beam.peak for beam in beams)  # all went through it
     return np.array([beam.peak / beam.published for beam in beams])
 
 
@@ -42,7 +42,7 @@ def test_less_energy_of_the_crack_is_less_load(core):
 @pytest.fixture
 def peak(core):
     """Of a beam of 12 points across."""
-    return lambda slowness=40.0, **beam: Beam(core, 12, **beam).bend(slowness).peak
+    return lambda slowness=46.0, **beam: Beam(core, 12, **beam).bend(slowness).peak
 
 
 def test_a_turned_or_mirrored_beam_bears_the_same(peak):
@@ -52,7 +52,7 @@ def test_a_turned_or_mirrored_beam_bears_the_same(peak):
 
 
 def test_how_slowly_a_beam_is_bent_does_not_matter(peak):
-    assert peak(slowness=80.0) == pytest.approx(peak(), rel=0.03)
+    assert peak(slowness=92.0) == pytest.approx(peak(), rel=0.03)
 
 
 def test_without_a_notch_a_beam_bears_more(peak):
