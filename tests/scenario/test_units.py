@@ -20,13 +20,13 @@ from ..small_scenarios import BLOCK
 # Numbers of no unit, numbers whose unit depends on another number, and what is no number.
 PLAIN = {
     "acoustic_damping", "alpha", "cfl_force", "cflnumber", "consistency", "count", "damping",
-    "cv", "dim", "direction", "eta", "flaw_seed", "flow_index", "fracture_energy", "friction",
+    "cv", "dim", "direction", "eta", "flaw_seed", "flow_index", "friction",
     "gamma", "grains", "hourglass",
     "inertial_number", "panels",
     "jitter", "mu", "mu_2", "mu_s", "normal", "overlap", "packing", "poisson_ratio",
     "pore_pressure_ratio", "random_seed",
     "restitution", "rolling_friction", "rotate_axis", "sample", "scale", "schema_version",
-    "skin", "smagorinsky", "steps", "weibull_k", "weibull_m", "wetted", "where", "clamped", "xi",
+    "skin", "smagorinsky", "steps", "weibull_m", "wetted", "where", "clamped", "xi",
 }  # fmt: skip
 
 

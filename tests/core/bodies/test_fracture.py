@@ -31,18 +31,36 @@ def test_a_crack_takes_its_fracture_energy(core, across):
     assert bar.work_at(0.33) < 0.8 * bar.fracture_energy
 
 
-@pytest.mark.parametrize("angle", [0.0, 20.0, 45.0])
-def test_a_disc_splits_at_its_tensile_strength(core, angle):
-    """Along the loaded diameter, at 2P/(pi d t), whatever the direction of the lattice."""
-    disc = Disc(core, across=20, angle=angle, **BRITTLE).press()
-    assert disc.strength == pytest.approx(BRITTLE["tensile_strength"], rel=0.10)
-    assert disc.off_the_diameter < 0.1
+STRENGTH = BRITTLE["tensile_strength"]
 
 
-def test_a_disc_of_half_the_strength_splits_at_half_the_load(core):
-    weak = BRITTLE | {"tensile_strength": 5e6, "fracture_energy": 2.5}
-    disc = Disc(core, across=20, angle=0.0, **weak).press()
-    assert disc.strength == pytest.approx(5e6, rel=0.10)
+@pytest.mark.parametrize("across", [20, pytest.param(40, marks=pytest.mark.minutes)])
+def test_a_disc_splits_at_its_tensile_strength(core, across):
+    """Along the loaded diameter, at 2P/(pi d t), whatever the direction of its lattice."""
+    found = []
+    for angle in (0.0, 20.0, 45.0):
+        disc = Disc(core, across, angle, **BRITTLE).press()
+        assert disc.split > 0.8, angle
+        assert disc.strength == pytest.approx(STRENGTH, rel=2 / across), angle
+        assert disc.off_the_diameter < 0.05, angle
+        found.append(disc.strength)
+    assert np.ptp(found) < 0.05 * STRENGTH
+
+
+def test_a_load_on_wide_arcs_splits_a_disc_later(core):
+    """Pressure on 40 degrees leaves 0.84 of the tension in the middle (Hondros, 1959)."""
+    disc = Disc(core, across=20, angle=0.0, arc=20.0, **BRITTLE).press(most=1.5)
+    assert disc.split > 0.8
+    assert disc.strength > 1.1 * STRENGTH
+
+
+def test_a_disc_of_twice_the_strength_splits_at_twice_the_load(core):
+    """The energy as well, by its square, so that cracks open over as long a part of the disc."""
+    strong = BRITTLE | {
+        "tensile_strength": 2 * STRENGTH, "fracture_energy": 4 * BRITTLE["fracture_energy"]
+    }  # fmt: skip
+    disc = Disc(core, across=20, angle=0.0, **strong).press()
+    assert disc.strength == pytest.approx(2 * STRENGTH, rel=0.10)
 
 
 def test_flaws_decide_where_a_bar_breaks(core):

@@ -100,9 +100,18 @@ VISCOSITY = _of("a viscosity", "5 mPa s", {"Pa s": "1", "mPa s": "1e-3"})
 KINEMATIC_VISCOSITY = _of(
     "a kinematic viscosity", "1 mm2/s", {"m2/s": "1", "cm2/s": "1e-4", "mm2/s": "1e-6"}
 )
+ENERGY_OF_AREA = _of(
+    "an energy of an area",
+    "20 J/m2",
+    {"J/m2": "1", "N/m": "1", "kJ/m2": "1e3", "mJ/m2": "1e-3", "kN/m": "1e3", "N/mm": "1e3"},
+)
+NUMBER_OF_VOLUME = _of(
+    "a number in a volume", "1e20 1/cm3", {"1/m3": "1", "1/cm3": "1e6", "1/mm3": "1e9"}
+)
 UNITS = (
     LENGTH, AREA, TIME, FREQUENCY, SPEED, ACCELERATION, ANGLE, ANGULAR_SPEED, MASS, LINE_MASS,
     RATE, DENSITY, PRESSURE, VISCOSITY, KINEMATIC_VISCOSITY,
+    ENERGY_OF_AREA, NUMBER_OF_VOLUME,
 )  # fmt: skip
 _BY_WORD = {word: unit for unit in UNITS for word in unit.factors}
 
