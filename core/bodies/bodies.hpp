@@ -118,11 +118,10 @@ public:
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
 
-    /// As last evaluated.
+    /// Where the energy is: velocities are those of now, forces those last evaluated.
     BodyEnergy energy() {
-        TotalLagrangian<D>& solids = deformable.solids();
-        return {kinetic_energy(),         solids.strain_energy(), solids.spring_energy(),
-                contacts_.stored_energy(), solids.fracture_work(), solids.damping_work()};
+        return {kinetic_energy(), deformable.strain_energy(), deformable.spring_energy(),
+                contacts_.stored_energy()};
     }
 
     void serialise(Archive& archive);
@@ -263,28 +262,11 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         else if (contacts_.any())
             show_bodies(contacts_.points());
         contacts_.apply(contact_, step);
-        const double ke0 = getenv("TR") ? kinetic_energy() : 0;
         add_loads(step);
         rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
         if (!deformable.empty()) deformable.push(step, gravity_);
         rigid.push(gravity_, step);
-        const int nb = (int)deformable.bodies(), nr = (int)rigid.size();
-        BodyEnergy e; double ke1;
-        if (getenv("TR")) e = energy(), ke1 = kinetic_energy();
         if (deformable.has_cracked()) before = before + part(t + dt - left);
-        if (getenv("TR")) {
-            BodyEnergy f = energy();
-            double k = 0.5 * (ke0 + ke1);
-            printf("TR %.6e %.3e K %.6g S %.6g H %.6g C %.6g W %.6g D %.6g T %.6g bodies %d dust %d vmax %.3g %.3g",
-                   t + dt - left, step, k, e.strain, e.springs, e.contacts, e.cracks, e.damping,
-                   k + e.strain + e.springs + e.contacts + e.cracks + e.damping, nb, nr, deformable.max_speed(), rigid.max_speed());
-            if (nb != (int)deformable.bodies() || nr != (int)rigid.size()) {
-                contacts_.apply(contact_, 1e-30);
-                f = energy();
-                printf(" PART %d %d K %.6g S %.6g H %.6g C %.6g", (int)deformable.bodies() - nb, (int)rigid.size() - nr, f.kinetic - ke1, f.strain - e.strain, f.springs - e.springs, f.contacts - e.contacts);
-            }
-            printf("\n");
-        }
         drift(0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }

@@ -2,15 +2,17 @@
 
 namespace doseki {
 
-/// Where the energy of bodies is, and what breaking ones have given away since the start [J], 2-D:
-/// [J/m].
+/// Where the energy of bodies is [J], 2-D: [J/m].
 struct BodyEnergy {
-    double kinetic = 0.0;    // of all bodies
-    double strain = 0.0;     // of deformable ones
-    double springs = 0.0;    // of those that may break, Eq. (83)
-    double contacts = 0.0;   // of the springs between bodies
-    double cracks = 0.0;     // taken by cracks
-    double damping = 0.0;    // taken by damping in bodies that may break
+    double kinetic = 0.0;   // of all
+    double strain = 0.0;    // of deformable ones
+    double springs = 0.0;   // of those that may break, Eq. (83)
+    double contacts = 0.0;  // of the springs between bodies
+
+    template <class F>
+    void members(F&& f) const {
+        f("kinetic", kinetic), f("strain", strain), f("springs", springs), f("contacts", contacts);
+    }
 };
 
 }  // namespace doseki

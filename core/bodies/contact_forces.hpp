@@ -34,7 +34,8 @@ inline double ContactLaw::timestep(double speed, double points) const {
 }
 
 inline NormalSpring ContactLaw::normal_spring(double overlap) const {
-    return hertz ? hertz_spring(stiffness, curvature(), overlap) : linear_spring(stiffness, overlap);
+    return hertz ? hertz_spring(stiffness, curvature(), overlap)
+                 : linear_spring(stiffness, overlap);
 }
 
 inline double ContactLaw::stored(const ContactSprings& springs, double pressed) const {
@@ -259,6 +260,15 @@ void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
         if (pairs_[k].with_shape())
             push_second(bodies, pairs_[k], push.overlap, -1.0 * push.force, push.torque_b);
     }
+}
+
+template <int D>
+double Contacts<D>::stored_energy() const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < std::min(pushes_.size(), pairs_.size()); ++k)
+        if (pushes_[k].touches)
+            sum += pushes_[k].share * contacts_[k].law.stored(springs_[k], contacts_[k].overlap);
+    return sum;
 }
 
 template <int D>

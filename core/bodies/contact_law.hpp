@@ -19,8 +19,8 @@ struct ContactSide {
     double share = 1.0;  // of the spring of a point of a deformable body
 };
 
-/// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it does
-/// not press, Eq. (115); zero while apart.
+/// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it
+/// does not press, Eq. (115); zero while apart.
 using ContactSprings = Vec<double, 7>;
 inline constexpr int rest_overlap = 6;
 

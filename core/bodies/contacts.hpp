@@ -48,13 +48,7 @@ public:
     /// Largest overlap there ever was, over the diameter.
     double max_overlap() const { return max_overlap_; }
     /// Energy in the springs of all pairs when they were last applied [J], 2-D: [J/m].
-    double stored_energy() const {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < pushes_.size() && k < pairs_.size(); ++k)
-            if (pushes_[k].touches)
-                sum += pushes_[k].share * contacts_[k].law.stored(springs_[k], contacts_[k].overlap);
-        return sum;
-    }
+    double stored_energy() const;
     /// Bodies that touch, and by how much of their diameters.
     template <class F>
     void for_each_touching(F&& f) const {

@@ -108,24 +108,9 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
                             deformation_[p], correction_[p],  stress_[p],
                             volume(p),       solid_[p].kappa, spans_[p] != 0};
     };
-    const bool tr = getenv("TR") != nullptr;
-    double e0 = 0.0;
-    if (tr) {
-        e0 = strain_energy() + spring_energy();
-        int un = 0, fast = 0;
-        for (std::size_t p = 0; p < size(); ++p) if (!gone(p) && !spans_[p]) ++un;
-        printf("UN %d E %.6g ", un, e0);
-    }
     bonds_.advance(dt, point,
                    [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
     if (bonds_.change().gone > 0) update_deformations();
-    if (tr) {
-        static double exact = 0.0;
-        update_deformations();
-        const double e1 = strain_energy() + spring_energy();
-        exact += e0 - e1;
-        printf("gone %d broken %d work %.4g true %.4g X %.6g\n", (int)bonds_.change().gone, (int)bonds_.change().broken, bonds_.change().work, e0 - e1, exact);
-    }
 }
 
 }  // namespace doseki

@@ -79,7 +79,6 @@ public:
     /// The [body.NAME] of the scenario that a body belongs to.
     std::int32_t group(std::size_t body) const { return group_[body]; }
     const TotalLagrangian<D>& solids() const { return solids_; }
-    TotalLagrangian<D>& solids() { return solids_; }
     std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
 
     /// Whether the last push has broken bonds or ended broken ones.
@@ -133,6 +132,7 @@ public:
     }
     double kinetic_energy() const { return solids_.kinetic_energy(); }
     double strain_energy() const { return solids_.strain_energy(); }
+    double spring_energy() { return solids_.spring_energy(); }
     double max_speed() const {
         double square = 0.0;
         for (const auto& v : solids_.v) square = std::max(square, dot(v, v));

@@ -65,7 +65,8 @@ public:
     /// that there were stay in their `places`. Returns the new number of each, -1 of those that are
     /// no more.
     Array<std::int32_t> divide(const TotalLagrangian<D>& solids, const Division& division,
-                               std::span<const std::int32_t> before, const Array<std::uint32_t>& crack,
+                               std::span<const std::int32_t> before,
+                               const Array<std::uint32_t>& crack,
                                const Array<Vec<double, D>>& places);
     std::size_t first_contact_point() const { return first_contact_point_; }
     /// The number of a contact point after a division, with new numbers of vertices; `first`: that
