@@ -121,27 +121,36 @@ class Bar:
 
 
 class Disc:
-    """A disc of 5 cm, pressed along y on two arcs of 16 degrees (the Brazilian test)."""
+    """A disc of 5 cm, pressed along y on two arcs of 16 degrees (the Brazilian test).
+
+    Its lattice is turned by `angle`, degrees; with `layers` it is a cylinder of so many of them.
+    """
 
     diameter, arc = 0.05, 8.0
 
-    def __init__(self, core: ModuleType, across: int, angle: float, **material: Any) -> None:
+    def __init__(
+        self, core: ModuleType, across: int, angle: float, layers: int = 0, **material: Any
+    ) -> None:
         self.spacing = self.diameter / across
         points = lattice((across + 4, across + 4), self.spacing)
         points = points[np.linalg.norm(points, axis=1) < 0.5 * self.diameter]
         turn = np.radians(angle)
         matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         self.points = points @ matrix.T
+        self.depth = layers * self.spacing if layers else 1.0  # m
+        if layers:
+            along = np.repeat(lattice((layers,), self.spacing), len(points), axis=0)
+            self.points = np.hstack([np.tile(self.points, (layers, 1)), along])
         self.material = material
-        none = np.zeros(len(points), bool)
+        none = np.zeros(len(self.points), bool)
         self.bodies = bodies_of(core, self.points, self.spacing, none, **material)
 
     def press(self, slowness: float = 40.0) -> Disc:
         """Load it ever more until it is split, at most by half more than it should bear."""
-        x, y = self.points.T
+        x, y = self.points.T[:2]
         near = np.hypot(x, y) > 0.5 * self.diameter - 2 * self.spacing
         arc = near & (np.abs(np.degrees(np.arctan2(x, np.abs(y)))) < self.arc)
-        expected = 0.5 * np.pi * self.diameter * self.material["tensile_strength"]
+        expected = 0.5 * np.pi * self.diameter * self.depth * self.material["tensile_strength"]
         time, steps = slowness * self.diameter / WAVE, 400
         self.load = 0.0
         for step in range(steps):
@@ -165,7 +174,7 @@ class Disc:
     @property
     def split(self) -> float:
         """Part of the loaded diameter, its ends left out, along which bonds are broken."""
-        x, y = self.broken.T
+        x, y = self.broken.T[:2]
         core = (np.abs(x) < 0.15 * self.diameter) & (np.abs(y) < 0.4 * self.diameter)
         rows = np.unique(np.round(y[core] / (2 * self.spacing)))
         return len(rows) * 2 * self.spacing / (0.8 * self.diameter)
@@ -173,7 +182,7 @@ class Disc:
     @property
     def strength(self) -> float:
         """2P/(pi d t) when it split, Pa."""
-        return 2 * self.load / (np.pi * self.diameter)
+        return 2 * self.load / (np.pi * self.diameter * self.depth)
 
     @property
     def off_the_diameter(self) -> float:

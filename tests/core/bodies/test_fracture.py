@@ -53,7 +53,7 @@ def test_how_a_bar_lies_in_space_does_not_matter(core):
     assert turned.taken == pytest.approx(straight.taken, rel=1e-6)
 
 
-@pytest.mark.minutes
+@pytest.mark.full
 def test_a_crack_in_space_takes_its_fracture_energy(core):
     """Per area; pulled a third as far, it has not."""
     bar = Bar(core, across=8, **SPACE).pull(1.5 * OPENING)
@@ -68,6 +68,15 @@ def test_a_disc_splits_at_its_tensile_strength(core, angle):
     disc = Disc(core, across=20, angle=angle, **BRITTLE).press()
     assert disc.strength == pytest.approx(BRITTLE["tensile_strength"], rel=0.10)
     assert disc.off_the_diameter < 0.1
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("angle", [0.0, 20.0, 45.0])
+def test_a_cylinder_splits_at_its_tensile_strength(core, angle):
+    """The same in 3-D, four points thick."""
+    cylinder = Disc(core, across=20, angle=angle, layers=4, **BRITTLE).press()
+    assert cylinder.strength == pytest.approx(BRITTLE["tensile_strength"], rel=0.10)
+    assert cylinder.off_the_diameter < 0.1
 
 
 def test_a_disc_of_half_the_strength_splits_at_half_the_load(core):
