@@ -95,6 +95,7 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     };
     bonds_.advance(dt, point,
                    [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
+    if (bonds_.change().gone > 0) update_deformations();
 }
 
 }  // namespace doseki

@@ -16,13 +16,19 @@
 
 namespace doseki {
 
-/// Whether bonds with this moment, 1 inside a body, tell of all strains. The inverse is 2 along an
-/// edge of a body; with few bonds it is so large that a point would be stiffer than the longest
-/// stable step allows.
+/// Whether bonds with this moment, 1 inside a body, tell of all strains.
+template <int D>
+bool determines_strain(const Mat<double, D>& moment) {
+    constexpr double min_determinant = 1e-6;
+    return determinant(moment) > min_determinant;
+}
+
+/// Whether they also do so well enough. The inverse is 2 along an edge of a body; with few bonds it
+/// is so large that a point would be stiffer than the longest stable step allows.
 template <int D>
 bool spans_space(const Mat<double, D>& moment) {
-    constexpr double min_determinant = 1e-6, largest = 5.0;
-    if (!(determinant(moment) > min_determinant)) return false;
+    constexpr double largest = 5.0;
+    if (!determines_strain(moment)) return false;
     double square = 0.0;
     for (const double element : inverse(moment, 0.0).element) square += element * element;
     return square <= largest * largest;
