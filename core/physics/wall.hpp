@@ -22,7 +22,7 @@ DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, co
 /// the noise of the fluid, which would brake what slides. `size` is the rate if all of them pulled
 /// the same way.
 inline double edge_rate(double rate, double size) {
-    constexpr double noise = 0.05, edge = 0.15;  // of the size
+    constexpr double noise = 0.15, edge = 0.3;  // of the size
     if (!(std::abs(rate) > noise * size)) return 0.0;
     return rate * std::min((std::abs(rate) / size - noise) / (edge - noise), 1.0);
 }

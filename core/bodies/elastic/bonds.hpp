@@ -91,13 +91,14 @@ struct BondPoint {
 };
 
 /// What one step did to bonds: energy that went into them in it, by the step before that, and by
-/// this step [J], 2-D: [J/m], and how many ceased to bear tension.
+/// this step [J], 2-D: [J/m], how many ceased to bear tension, and how many are gone.
 struct BondChange {
     double before = 0.0, work = 0.0;
-    std::size_t broken = 0;
+    std::size_t broken = 0, gone = 0;
 
     BondChange operator+(const BondChange& other) const {
-        return {before + other.before, work + other.work, broken + other.broken};
+        return {before + other.before, work + other.work, broken + other.broken,
+                gone + other.gone};
     }
 };
 

