@@ -8,8 +8,8 @@
 
 #include "base/array.hpp"
 #include "bodies/contacts.hpp"
+#include "bodies/deformable/body_energy.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
-#include "bodies/fragments/dust_room.hpp"
 #include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -126,6 +126,11 @@ public:
     /// Parts that came off bodies which broke: those that are deformable, and grains of dust.
     PartCounts parts() const { return {deformable_origins_.parts(), rigid_origins_.parts()}; }
 
+    /// Where the energy is: velocities are those of now, forces those last evaluated.
+    BodyEnergy energy() const {
+        return {kinetic_energy(), deformable.elastic_energy().sum(), contacts_.stored_energy()};
+    }
+
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored particles are points of these bodies.
     void expect_points(const Particles<D>& particles) const {
@@ -155,8 +160,8 @@ private:
     Parted part(double time);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
-    void shrink_dust(std::size_t first);
-    void renumber_contacts(const Fragments<D>& fragments);
+    void renumber_contacts(const Fragments<D>& fragments, std::size_t first_dust);
+    Array<std::int32_t> bodies_before(const Fragments<D>& fragments, std::size_t first_dust) const;
     /// Particles of what has become dust are points of rigid bodies from now on.
     void bind_dust(Particles<D>& particles);
 
@@ -316,9 +321,7 @@ auto Bodies<D>::part(double time) -> Parted {
     born.momentum = after.momentum - before.momentum, born.moment = after.moment - before.moment;
     born.kinetic_energy = after.kinetic_energy - before.kinetic_energy;
     prepare_contacts();
-    if (first < rigid.size()) shrink_dust(first), prepare_contacts();
-    renumber_contacts(fragments);
-    find_contacts();
+    renumber_contacts(fragments, first);
     return {born, fragments.lost - born.kinetic_energy};
 }
 
@@ -338,23 +341,18 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     }
 }
 
-/// New grains of dust touch nothing yet.
+/// Pairs that could not touch before, since both sides were of one body or one is new, have the
+/// overlaps that they are born with at rest, Eq. (115).
 template <int D>
-void Bodies<D>::shrink_dust(std::size_t first) {
-    Array<double> room;
-    for (std::size_t k = first; k < rigid.size(); ++k)
-        room.push_back(room_for_dust(contact_, static_cast<std::int32_t>(k),
-                                     static_cast<std::int32_t>(first), contacts_.domain()));
-    for (std::size_t k = first; k < rigid.size(); ++k) rigid.resize_ball(k, room[k - first]);
-}
-
-template <int D>
-void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
+void Bodies<D>::renumber_contacts(const Fragments<D>& fragments, std::size_t first_dust) {
     Array<std::int32_t> points, shapes;
     const std::size_t first = fragments.first_contact_point,
                       end = first + DeformableSurfaces<D>::points_each * fragments.vertex.size();
-    for (std::size_t k = 0; k < end; ++k)
+    Array<std::uint8_t> is_old(contact_.points.size(), 0);
+    for (std::size_t k = 0; k < end; ++k) {
         points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
+        if (points.back() >= 0) is_old[static_cast<std::size_t>(points.back())] = 1;
+    }
     for (std::size_t s = 0; s < contact_.solids.size(); ++s)
         shapes.push_back(static_cast<std::int32_t>(s));
     std::map<std::int32_t, std::int32_t> now;  // the surface of each body
@@ -364,6 +362,27 @@ void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
     for (const std::int32_t body : fragments.surface_body)
         shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
     contacts_.renumber(points, shapes);
+    find_contacts();
+    const Array<std::int32_t> was = bodies_before(fragments, first_dust);
+    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+        if (!is_old[pair.first()] || (!pair.with_shape() && !is_old[pair.second()])) return true;
+        const auto [a, b] = contact_.bodies(pair);
+        return was[static_cast<std::size_t>(a)] == was[static_cast<std::size_t>(b)];
+    });
+}
+
+/// Of which body each one was a part, bodies as contacts number them now.
+template <int D>
+Array<std::int32_t> Bodies<D>::bodies_before(const Fragments<D>& fragments,
+                                             std::size_t first_dust) const {
+    Array<std::int32_t> was(rigid.size() + deformable.bodies());
+    std::iota(was.begin(), was.end(), 0);
+    const auto first = static_cast<std::int32_t>(rigid.size());
+    for (std::size_t k = 0; k < fragments.dust_parent.size(); ++k)
+        was[first_dust + k] = first + fragments.dust_parent[k];
+    for (std::size_t k = 0; k < fragments.parent.size(); ++k)
+        was[was.size() - fragments.parent.size() + k] = first + fragments.parent[k];
+    return was;
 }
 
 template <int D>

@@ -301,6 +301,7 @@ void TotalLagrangian<D>::divide(const Division& division) {
         return gone(p) || gone(j) || body_[p] != body_[j];
     });
     update_deformations();
+    std::fill(turned_.begin(), turned_.end(), 0);  // what that took is in the energy of parting
 }
 
 template <int D>

@@ -44,7 +44,7 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     const DeformableBody& body = body_of(p);
     const bool spanned = spans_[p] != 0;
     spans_[p] = spans_space(shape);
-    turned_[p] = spanned != (spans_[p] != 0);
+    turned_[p] |= spanned != (spans_[p] != 0);
     if (!spans_[p]) {
         correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
         solid_[p].Q = solid_[p].F_rate = solid_[p].spin = {}, solid_[p].F = deformation_[p];
@@ -64,6 +64,7 @@ void TotalLagrangian<D>::account_for(std::size_t p, const SpringSums<double, D>&
     const double before = energy_[p], strain = spans_[p] ? body_of(p).energy(point.F) : 0.0;
     energy_[p] = point.volume * (strain + 0.5 * point.kappa * trace(sums.moments.square));
     released_by_[p] = turned_[p] ? before - energy_[p] : 0.0;
+    turned_[p] = 0;
 }
 
 /// For the places and velocities in the records.
@@ -95,6 +96,7 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     };
     bonds_.advance(dt, point,
                    [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
+    if (bonds_.change().gone > 0) update_deformations();
 }
 
 }  // namespace doseki

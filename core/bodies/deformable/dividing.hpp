@@ -21,8 +21,9 @@ bool has_room(const TotalLagrangian<D>& solids, const Array<std::uint32_t>& poin
     return true;
 }
 
-/// Points that those to which they hold do not span hold to nothing, nor do points of dust that
-/// would be a ball in the way of others.
+/// A bond holds while it bears tension: it is intact and one of its points has a stress. Points of
+/// a part that the others of it do not span are none of its surface, and points of dust that would
+/// be a ball in the way of others none of one grain: they hold to nothing.
 template <int D>
 Division DeformableBodies<D>::division() const {
     const Array<std::int32_t> before = solids_.holders();
@@ -32,21 +33,18 @@ Division DeformableBodies<D>::division() const {
         if (!solids_.body_of(p).breaks())
             for (const std::uint32_t j : solids_.pairs_of(p)) f(j);
         solids_.bonds().for_each_bond(p, [&](std::uint32_t j, double intactness) {
-            if (intactness > 0.0 && !loose[j]) f(j);
+            if (intactness > 0.0 && !loose[j] && (solids_.spans(p) || solids_.spans(j))) f(j);
         });
-    };
-    auto is_spanned = [&](std::uint32_t p) {
-        Array<std::uint32_t> held;
-        for_each_bond(p, [&](std::uint32_t j) { held.push_back(j); });
-        return solids_.is_spanned(
-            p, [&](std::uint32_t j) { return std::ranges::find(held, j) != held.end(); });
     };
     for (;;) {
         Division found =
             divided(components(size(), for_each_bond), before, bodies(), fewest_points<D>);
         bool more = false;
         for (std::uint32_t p = 0; found.any() && p < size(); ++p)
-            if (found.body[p] >= 0 && !loose[p] && !is_spanned(p)) loose[p] = 1, more = true;
+            if (found.body[p] >= 0 && !solids_.is_spanned(p, [&](std::uint32_t j) {
+                    return found.body[j] == found.body[p];
+                }))
+                loose[p] = 1, more = true;
         for (const Array<std::uint32_t>& points : found.dust)
             if (points.size() > 1 && !has_room(solids_, points)) {
                 for (const std::uint32_t p : points) loose[p] = 1;
@@ -62,7 +60,7 @@ Fragments<D> DeformableBodies<D>::divide() {
     const Division parts = division();
     if (!parts.any()) return fragments;
     const Array<std::int32_t> before = solids_.holders();
-    const CrackPoints<D> crack = crack_points(solids_, before, parts.body);
+    const Array<std::uint32_t> crack = crack_points(solids_, before, parts.body);
     const Array<Vec<double, D>> places = surfaces_.places(solids_);
     fragments.lost = kinetic_energy() + solids_.pushed_energy();
     for (const auto& points : parts.dust) {

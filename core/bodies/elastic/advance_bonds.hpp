@@ -176,7 +176,7 @@ private:
         const double work = set_jump(state_.jump + (crack.opening - state_.opening) * normal);
         state_.opening = crack.opening, state_.max_opening = crack.max_opening;
         state_.damage = crack.damage;
-        return {0.0, work, law.failed(crack) ? 1u : 0u};
+        return {0.0, work, law.failed(crack) ? 1u : 0u, 0};
     }
 
     /// A broken bond: its sides go apart without a force, press on each other where they meet, and
@@ -196,10 +196,10 @@ private:
         const double opening = max(0.0, before - ease * pressed);
         const double work = set_jump(state_.jump + slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
-        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {0.0, work, 0};
+        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {0.0, work, 0, 0};
         const double lost = lost_by(a_, b_) + lost_by(b_, a_);
         state_.whole = 0.0;
-        return {0.0, work + half_work() + lost, 0};
+        return {0.0, work + half_work() + lost, 0, 1};
     }
     Mat<double, D> mean_deformation() const {
         if (!a_.spans) return b_.F;

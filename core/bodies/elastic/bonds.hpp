@@ -16,13 +16,19 @@
 
 namespace doseki {
 
-/// Whether bonds with this moment, 1 inside a body, tell of all strains. The inverse is 2 along an
-/// edge of a body; with few bonds it is so large that a point would be stiffer than the longest
-/// stable step allows.
+/// Whether bonds with this moment, 1 inside a body, tell of all strains.
+template <int D>
+bool determines_strain(const Mat<double, D>& moment) {
+    constexpr double min_determinant = 1e-6;
+    return determinant(moment) > min_determinant;
+}
+
+/// Whether they also do so well enough. The inverse is 2 along an edge of a body; with few bonds it
+/// is so large that a point would be stiffer than the longest stable step allows.
 template <int D>
 bool spans_space(const Mat<double, D>& moment) {
-    constexpr double min_determinant = 1e-6, largest = 5.0;
-    if (!(determinant(moment) > min_determinant)) return false;
+    constexpr double largest = 5.0;
+    if (!determines_strain(moment)) return false;
     double square = 0.0;
     for (const double element : inverse(moment, 0.0).element) square += element * element;
     return square <= largest * largest;
@@ -85,13 +91,14 @@ struct BondPoint {
 };
 
 /// What one step did to bonds: energy that went into them in it, by the step before that, and by
-/// this step [J], 2-D: [J/m], and how many ceased to bear tension.
+/// this step [J], 2-D: [J/m], how many ceased to bear tension, and how many are gone.
 struct BondChange {
     double before = 0.0, work = 0.0;
-    std::size_t broken = 0;
+    std::size_t broken = 0, gone = 0;
 
     BondChange operator+(const BondChange& other) const {
-        return {before + other.before, work + other.work, broken + other.broken};
+        return {before + other.before, work + other.work, broken + other.broken,
+                gone + other.gone};
     }
 };
 

@@ -122,11 +122,13 @@ public:
     /// The place that goes with point p by this, from `offset` at rest: shares of points, which add
     /// up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
-    /// Whether those of its neighbours to which point p holds span the space; holds(j).
+    /// Whether those of its neighbours for which holds(j) and point p span the space.
     template <class Holds>
     bool is_spanned(std::size_t p, const Holds& holds) const {
-        return spans_space(shape_around(p, holds));
+        return determines_strain(shape_around(p, holds));
     }
+    /// Whether the bonds of a point span the space, so that it has a stress.
+    bool spans(std::size_t p) const { return spans_[p] != 0; }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
     /// of different ones end.
     void divide(const Division& division);
@@ -152,6 +154,7 @@ public:
     template <class Apart>
     void part_bonds(const Apart& apart) {
         bonds_.part(apart);
+        update_deformations();
     }
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
