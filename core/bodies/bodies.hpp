@@ -79,7 +79,7 @@ public:
         if (label.size() != deformable.size())
             throw std::invalid_argument("cut: one label for each point of deformable bodies");
         deformable.cut(label);
-        part(time);
+        part(time, 0.0);
         place(particles, 0.0);
     }
 
@@ -156,8 +156,8 @@ private:
         BodySums<D> born;
         double work = 0.0;
     };
-    /// Makes bodies of parts that do not hold together any more.
-    Parted part(double time);
+    /// Makes bodies of parts that do not hold together any more, in a step that ends in `ahead`.
+    Parted part(double time, double ahead);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void renumber_contacts(const Fragments<D>& fragments, std::size_t first_dust);
@@ -280,7 +280,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         if (!deformable.empty()) given = given + deformable.push(step, gravity_);
         rigid.push(gravity_, step);
         if (deformable.has_cracked()) {
-            const Parted parted = part(t + dt - left);
+            const Parted parted = part(t + dt - left, 0.5 * step);
             before = before + parted.born, given.parting_work += parted.work;
         }
         drift(0.5 * step);
@@ -305,8 +305,8 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
 }
 
 template <int D>
-auto Bodies<D>::part(double time) -> Parted {
-    const Fragments<D> fragments = deformable.divide();
+auto Bodies<D>::part(double time, double ahead) -> Parted {
+    const Fragments<D> fragments = deformable.divide(ahead);
     if (!fragments.any()) return {};
     BodySums<D> born;
     auto origin = [&](std::int32_t parent) -> Origin {

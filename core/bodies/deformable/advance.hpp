@@ -170,7 +170,6 @@ void TotalLagrangian<D>::damp_springs() {
         point.Q = less_springs(point.Q, point.kappa_rate, point.F_rate - spin * point.F);
         point.spin = point.kappa_rate * spin;
         damping_power_[p] += point.volume * point.kappa_rate * damped_square(sums, spin);
-        if (!energy_.empty()) account_for(p, sums);
     };
     sum_springs(records(), turn);
 }
@@ -286,7 +285,7 @@ Mat<double, D> TotalLagrangian<D>::motion_around(std::size_t p) const {
 }
 
 template <int D>
-void TotalLagrangian<D>::divide(const Division& division) {
+void TotalLagrangian<D>::divide(const Division& division, double opening) {
     for (const std::int32_t parent : division.parent) {
         const auto k = static_cast<std::size_t>(parent);
         bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
@@ -297,11 +296,12 @@ void TotalLagrangian<D>::divide(const Division& division) {
         else if (!gone(p))
             gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
     }
-    bonds_.part([this](std::uint32_t p, std::uint32_t j) {
+    auto apart = [this](std::uint32_t p, std::uint32_t j) {
         return gone(p) || gone(j) || body_[p] != body_[j];
-    });
+    };
+    bonds_.part(apart, opening);
+    find_spans();
     update_deformations();
-    std::fill(turned_.begin(), turned_.end(), 0);  // what that took is in the energy of parting
 }
 
 template <int D>

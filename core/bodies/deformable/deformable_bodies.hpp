@@ -87,8 +87,9 @@ public:
     bool has_cracked() const {
         return solids_.bonds().change().broken > 0 || solids_.bonds().change().gone > 0;
     }
-    /// Makes bodies of the parts of those that do not hold together any more, where there are any.
-    Fragments<D> divide();
+    /// Makes bodies of the parts of those that do not hold together any more, where there are any,
+    /// in a step that ends in a time `ahead`.
+    Fragments<D> divide(double ahead);
     /// Ends the bonds between points with different labels, in the order of adding; only bodies
     /// that may break have bonds.
     void cut(std::span<const std::int32_t> label);

@@ -55,14 +55,15 @@ Division DeformableBodies<D>::division() const {
 }
 
 template <int D>
-Fragments<D> DeformableBodies<D>::divide() {
+Fragments<D> DeformableBodies<D>::divide(double ahead) {
     Fragments<D> fragments{};
     const Division parts = division();
     if (!parts.any()) return fragments;
     const Array<std::int32_t> before = solids_.holders();
     const Array<std::uint32_t> crack = crack_points(solids_, before, parts.body);
     const Array<Vec<double, D>> places = surfaces_.places(solids_);
-    fragments.lost = kinetic_energy() + solids_.pushed_energy();
+    const ElasticEnergy whole = solids_.elastic_energy(ahead);
+    fragments.lost = kinetic_energy() + whole.sum();
     for (const auto& points : parts.dust) {
         fragments.dust.push_back(dust_grain(solids_, points));
         auto& normals = fragments.dust_normals.emplace_back();
@@ -70,8 +71,8 @@ Fragments<D> DeformableBodies<D>::divide() {
     }
     fragments.first_contact_point = surfaces_.first_contact_point();
     fragments.surface_body = surfaces_.bodies(solids_);
-    solids_.divide(parts);
-    fragments.lost -= kinetic_energy() + elastic_energy().sum();
+    solids_.divide(parts, whole.opening);
+    fragments.lost -= kinetic_energy() + solids_.elastic_energy(ahead).sum();
     fragments.vertex = surfaces_.divide(solids_, parts, before, crack, places);
     turn_to_cracks(solids_, crack, before, parts.body, normal_, depth_);
     for (const std::int32_t parent : parts.parent) {

@@ -130,22 +130,20 @@ public:
     /// Whether the bonds of a point span the space, so that it has a stress.
     bool spans(std::size_t p) const { return spans_[p] != 0; }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
-    /// of different ones end.
-    void divide(const Division& division);
+    /// of different ones end; what cracks took in this step is counted: `opening`.
+    void divide(const Division& division, double opening);
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
     const Mat<double, D>& deformation(std::size_t p) const { return deformation_[p]; }
     /// First Piola-Kirchhoff stress without damping.
     Mat<double, D> stress(std::size_t p) const { return body_of(p).stress(deformation_[p]); }
-    /// Of where points are now; changes nothing.
-    ElasticEnergy elastic_energy() const;
-    /// Of breakable bodies where the last push found them, less what cracks took since.
-    double pushed_energy() const;
+    /// Of where points will be in a time `ahead`; changes nothing.
+    ElasticEnergy elastic_energy(double ahead = 0.0) const;
     double kinetic_energy() const;
     /// Energy that cracks, but for ElasticEnergy::opening, and that damping took so far [J], 2-D:
     /// [J/m].
-    double fracture_work() const { return bonds_.work() + released_; }
+    double fracture_work() const { return bonds_.work(); }
     double damping_work() const { return damping_work_; }
 
     /// Of bodies that may break: which pairs hold, how many do not, what the last step did.
@@ -153,8 +151,8 @@ public:
     /// Ends for good the bonds between points a and b for which apart(a, b): those of two bodies.
     template <class Apart>
     void part_bonds(const Apart& apart) {
-        bonds_.part(apart);
-        update_deformations();
+        bonds_.part(apart, elastic_energy().opening);
+        find_spans();
     }
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
@@ -191,11 +189,9 @@ public:
             stable_step_ = stable_step;
         }
         bonds_.serialise(archive);
-        archive("elastic_damping_work", damping_work_), archive("elastic_released", released_);
-        archive("elastic_energy", energy_);
-        expect_fit(std::isfinite(damping_work_) && std::isfinite(released_),
-                   "elastic_damping_work");
-        expect_fit(energy_.size() == (bonds_.any() ? size() : 0), "elastic_energy");
+        if (archive.loads()) find_spans();
+        archive("elastic_damping_work", damping_work_);
+        expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
     }
 
     Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
@@ -240,7 +236,6 @@ private:
     void update_point(std::size_t p, const DeformationAccumulators<double, D>& sums);
 
     void damp_springs();
-    void account_for(std::size_t p, const SpringSums<double, D>& sums);
 
     template <class Term, class Epilogue>
     void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
@@ -250,6 +245,8 @@ private:
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
+    void find_spans();
+    BondPoint<D> bond_point(std::size_t p) const;
     template <class F>
     void sum_bonded_forces(const F& take);
     void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
@@ -270,13 +267,8 @@ private:
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;  // of breakable bodies, without damping
-    // Whether the bonds of a point span the space, and whether that has changed in this step.
-    Array<std::uint8_t> spans_, turned_;
-    Array<double> damping_power_;  // of each point
-    // Of breakable bodies: elastic energy of each point in the last step, and what points lost when
-    // the bonds that are left ceased to span them.
-    Array<double> energy_, released_by_;
-    double released_ = 0.0;
+    Array<std::uint8_t> spans_;     // whether the bonds of a point span the space, Eq. (116)
+    Array<double> damping_power_;   // of each point
     double damping_work_ = 0.0;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
