@@ -1,6 +1,8 @@
 #pragma once
 // Deformable bodies that may break: their sums over bonds, and the steps of those.
 
+#include <set>
+
 #include "bodies/deformable/advance.hpp"
 #include "bodies/elastic/advance_bonds.hpp"
 #include "bodies/elastic/settle_bonds.hpp"
@@ -39,9 +41,31 @@ void TotalLagrangian<D>::find_bonds() {
 template <int D>
 void TotalLagrangian<D>::find_spans() {
     auto point = [this](std::size_t p) { return bond_point(p); };
+    auto all = [](std::uint32_t) { return true; };
     for_each_particle(spans_.size(), [&](std::size_t p) {
-        spans_[p] = !body_of(p).breaks() || spans_space(bonds_.moment(p, point));
+        spans_[p] = !body_of(p).breaks() || spans_space(bonds_.moment(p, point, all));
     });
+}
+
+template <int D>
+double TotalLagrangian<D>::lost_by_parting(std::span<const std::uint32_t> points,
+                                           std::span<const std::int32_t> part, bool dust,
+                                           double ahead) const {
+    const std::int32_t own = part[points[0]];
+    auto apart = [&](std::size_t p, std::size_t j) {
+        return (part[p] == own) != (part[j] == own) || (dust && part[p] == own);
+    };
+    std::set<std::uint32_t> ends(points.begin(), points.end());
+    for (const std::uint32_t p : points)
+        bonds_.for_each_bond(p, [&](std::uint32_t j, double, bool ended) {
+            if (!ended && apart(p, j)) ends.insert(j);
+        });
+    auto point = [this](std::size_t p) { return bond_point(p); };
+    auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
+    auto place = [this, ahead](std::size_t p) { return x[p] + ahead * v[p]; };
+    double sum = 0.0;
+    for (const std::uint32_t p : ends) sum += bonds_.lost(p, point, body, place, apart);
+    return sum;
 }
 
 /// Point p as its bonds see it in a step.

@@ -1,6 +1,8 @@
 #pragma once
 // How deformable bodies fall apart, which deformable.cpp compiles.
 
+#include <map>
+
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/fragments/components.hpp"
 
@@ -21,19 +23,44 @@ bool has_room(const TotalLagrangian<D>& solids, const Array<std::uint32_t>& poin
     return true;
 }
 
+/// Holds the points of parts, but loose ones, that would have energy made by coming off, which is
+/// that of the bonds still left: they wait. Tells whether there were any.
+template <int D>
+bool DeformableBodies<D>::hold_back(const Division& found, double ahead,
+                                    std::span<const std::uint8_t> loose,
+                                    Array<std::uint8_t>& held) const {
+    std::map<std::int32_t, Array<std::uint32_t>> parts;
+    for (std::uint32_t p = 0; p < size(); ++p) {
+        const std::int32_t part = found.body[p];
+        if (part < -1 || part >= static_cast<std::int32_t>(bodies())) parts[part].push_back(p);
+    }
+    bool any = false;
+    for (const auto& [part, points] : parts) {
+        if (loose[points[0]] || held[points[0]] ||
+            solids_.lost_by_parting(points, found.body, part < -1, ahead) >= 0.0)
+            continue;
+        for (const std::uint32_t p : points) held[p] = 1;
+        any = true;
+    }
+    return any;
+}
+
 /// A bond holds while it bears tension: it is intact and one of its points has a stress. Points of
 /// a part that the others of it do not span are none of its surface, and points of dust that would
-/// be a ball in the way of others none of one grain: they hold to nothing.
+/// be a ball in the way of others none of one grain: they hold to nothing. Points that are held
+/// back hold to all that they have not lost for good.
 template <int D>
-Division DeformableBodies<D>::division() const {
+Division DeformableBodies<D>::division(double ahead) {
     const Array<std::int32_t> before = solids_.holders();
-    Array<std::uint8_t> loose(size(), 0);
+    Array<std::uint8_t> loose(size(), 0), held(size(), 0);
+    waits_ = false;
     auto for_each_bond = [&](std::uint32_t p, auto&& f) {
         if (before[p] < 0 || loose[p]) return;
         if (!solids_.body_of(p).breaks())
             for (const std::uint32_t j : solids_.pairs_of(p)) f(j);
-        solids_.bonds().for_each_bond(p, [&](std::uint32_t j, double intactness) {
-            if (intactness > 0.0 && !loose[j] && (solids_.spans(p) || solids_.spans(j))) f(j);
+        solids_.bonds().for_each_bond(p, [&](std::uint32_t j, double intactness, bool ended) {
+            const bool bears = intactness > 0.0 && (solids_.spans(p) || solids_.spans(j));
+            if (!loose[j] && (bears || (!ended && (held[p] || held[j])))) f(j);
         });
     };
     for (;;) {
@@ -50,6 +77,7 @@ Division DeformableBodies<D>::division() const {
                 for (const std::uint32_t p : points) loose[p] = 1;
                 more = true;
             }
+        if (!more && hold_back(found, ahead, loose, held)) more = waits_ = true;
         if (!more) return found;
     }
 }
@@ -57,7 +85,7 @@ Division DeformableBodies<D>::division() const {
 template <int D>
 Fragments<D> DeformableBodies<D>::divide(double ahead) {
     Fragments<D> fragments{};
-    const Division parts = division();
+    const Division parts = division(ahead);
     if (!parts.any()) return fragments;
     const Array<std::int32_t> before = solids_.holders();
     const Array<std::uint32_t> crack = crack_points(solids_, before, parts.body);

@@ -137,13 +137,14 @@ public:
 
     BondRows<D> rows() const { return {code_, first_code_, state_}; }
 
-    /// Calls f(j, intactness) for the bonds of point p: 1 whole, 0 where it bears no tension.
+    /// Calls f(j, intactness, ended) for the bonds of point p: 1 whole, 0 where it bears no tension;
+    /// whether it is gone for good.
     template <class F>
     void for_each_bond(std::size_t p, const F& f) const {
         if (p + 1 >= first_bond_.size()) return;
         for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
             const BondEnds& ends = pairs_[bond_[n]];
-            f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]));
+            f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]), state_[bond_[n]].whole == 0.0);
         }
     }
     /// Eq. (127): the share of the bonds of point p that is broken, by the weights of the fit (80).
@@ -157,8 +158,14 @@ public:
         return whole > 0.0 ? 1.0 - left / whole : 0.0;
     }
     /// Moment of the bonds of point p that are left, as they were at rest, Eq. (116).
-    template <class Point>
-    Mat<double, D> moment(std::size_t p, const Point& point) const;
+    /// Of those to points j for which counts(j).
+    template <class Point, class Counts>
+    Mat<double, D> moment(std::size_t p, const Point& point, const Counts& counts) const;
+    /// Energy that point p loses [J], 2-D: [J/m], when bonds to points j for which apart(p, j) go,
+    /// at place(p).
+    template <class Point, class Body, class Place, class Apart>
+    double lost(std::size_t p, const Point& point, const Body& body, const Place& place,
+                const Apart& apart) const;
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
     /// only as those of two bodies. What the last step did to any bond is counted: `opening`.
     template <class Apart>
@@ -213,9 +220,9 @@ private:
     double intactness(std::size_t n) const {
         return state_[n].whole == 0.0 ? 0.0 : 1.0 - state_[n].damage;
     }
-    template <class Point, class Body, class Place>
+    template <class Point, class Body, class Place, class Counts>
     double energy(std::size_t p, Moment moment, const Point& point, const Body& body,
-                  const Place& place) const;
+                  const Place& place, const Counts& counts) const;
     template <class Point, class Body>
     double first_halves(std::size_t p, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {

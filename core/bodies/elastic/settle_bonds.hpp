@@ -6,14 +6,15 @@
 namespace doseki {
 
 template <int D>
-template <class Point>
-Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point) const {
+template <class Point, class Counts>
+Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point, const Counts& counts) const {
     Mat<double, D> sum{};
     const BondPoint<D> own = point(p);
     for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
         const BondEnds& ends = pairs_[bond_[k]];
-        if (state_[bond_[k]].whole <= 0.0) continue;
-        const BondPoint<D> other = point(ends.a == p ? ends.b : ends.a);
+        const std::uint32_t j = ends.a == p ? ends.b : ends.a;
+        if (state_[bond_[k]].whole <= 0.0 || !counts(j)) continue;
+        const BondPoint<D> other = point(j);
         const Vec<double, D> R = own.rest - other.rest;
         add_outer(sum, ends.weight * other.volume, R, R);
     }
@@ -22,9 +23,9 @@ Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point) const {
 
 /// Of strain and springs of a point, Eqs. (80) and (83) with the bonds that there are at a moment.
 template <int D>
-template <class Point, class Body, class Place>
+template <class Point, class Body, class Place, class Counts>
 double Bonds<D>::energy(std::size_t p, Moment moment, const Point& point, const Body& body,
-                        const Place& place) const {
+                        const Place& place, const Counts& counts) const {
     struct Side {
         double weight;
         Vec<double, D> R, r;
@@ -35,8 +36,9 @@ double Bonds<D>::energy(std::size_t p, Moment moment, const Point& point, const 
     for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
         const BondEnds& ends = pairs_[bond_[k]];
         const BondState<D>& state = state_[bond_[k]];
-        if (moment == Moment::before ? state.whole == 0.0 : state.whole <= 0.0) continue;
         const std::uint32_t j = ends.a == p ? ends.b : ends.a;
+        if ((moment == Moment::before ? state.whole == 0.0 : state.whole <= 0.0) || !counts(j))
+            continue;
         const BondPoint<D> other = point(j);
         const Vec<double, D> jump =
             moment == Moment::before ? state.jump - state.change : state.jump;
@@ -76,17 +78,33 @@ template <class Point, class Body, class Place, class TakeSpans>
 void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
                       const TakeSpans& take_spans) {
     if (change_.gone == 0) return;
+    const auto all = [](std::uint32_t) { return true; };
     for (std::size_t n = 1; n < size(); ++n)
         if (state_[n].whole < 0.0) settled_[pairs_[n].a] = settled_[pairs_[n].b] = 1;
     for (std::size_t p = 0; p < settled_.size(); ++p) {
         if (!settled_[p] || !point(p).spans) continue;
-        const bool spans = spans_space(moment(p, point));
-        work_ += energy(p, Moment::before, point, body, place) - first_halves(p, point, body);
-        if (spans) work_ -= energy(p, Moment::now, point, body, place);
+        const bool spans = spans_space(moment(p, point, all));
+        work_ += energy(p, Moment::before, point, body, place, all) - first_halves(p, point, body);
+        if (spans) work_ -= energy(p, Moment::now, point, body, place, all);
         take_spans(p, spans);
     }
     for (BondState<D>& state : state_)
         if (state.whole < 0.0) state.whole = 0.0, state.change = {};
+}
+
+template <int D>
+template <class Point, class Body, class Place, class Apart>
+double Bonds<D>::lost(std::size_t p, const Point& point, const Body& body, const Place& place,
+                      const Apart& apart) const {
+    if (!point(p).spans) return 0.0;
+    bool any = false;
+    for_each_bond(p, [&](std::uint32_t j, double, bool ended) { any |= !ended && apart(p, j); });
+    if (!any) return 0.0;
+    const auto all = [](std::uint32_t) { return true; };
+    const auto kept = [&](std::uint32_t j) { return !apart(p, j); };
+    const double before = energy(p, Moment::now, point, body, place, all);
+    if (!spans_space(moment(p, point, kept))) return before;
+    return before - energy(p, Moment::now, point, body, place, kept);
 }
 
 }  // namespace doseki

@@ -127,6 +127,10 @@ public:
     bool is_spanned(std::size_t p, const Holds& holds) const {
         return determines_strain(shape_around(p, holds));
     }
+    /// Energy that is lost [J], 2-D: [J/m], where `points`, which have the same number in `part`, come
+    /// off all others, dust off each other too, at the places in a time `ahead`.
+    double lost_by_parting(std::span<const std::uint32_t> points,
+                           std::span<const std::int32_t> part, bool dust, double ahead) const;
     /// Whether the bonds of a point span the space, so that it has a stress.
     bool spans(std::size_t p) const { return spans_[p] != 0; }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
