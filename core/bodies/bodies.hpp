@@ -156,8 +156,9 @@ private:
         BodySums<D> born;
         double work = 0.0;
     };
-    /// Makes bodies of parts that do not hold together any more, in a step that ends in `ahead`.
-    Parted part(double time, double ahead);
+    /// Makes bodies of parts that do not hold together any more, in a step `dt` whose forces
+    /// have acted.
+    Parted part(double time, double dt);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void renumber_contacts(const Fragments<D>& fragments, std::size_t first_dust);
@@ -280,7 +281,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         if (!deformable.empty()) given = given + deformable.push(step, gravity_);
         rigid.push(gravity_, step);
         if (deformable.has_cracked()) {
-            const Parted parted = part(t + dt - left, 0.5 * step);
+            const Parted parted = part(t + dt - left, step);
             before = before + parted.born, given.parting_work += parted.work;
         }
         drift(0.5 * step);
@@ -305,8 +306,8 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
 }
 
 template <int D>
-auto Bodies<D>::part(double time, double ahead) -> Parted {
-    const Fragments<D> fragments = deformable.divide(ahead);
+auto Bodies<D>::part(double time, double dt) -> Parted {
+    const Fragments<D> fragments = deformable.divide(dt);
     if (!fragments.any()) return {};
     BodySums<D> born;
     auto origin = [&](std::int32_t parent) -> Origin {

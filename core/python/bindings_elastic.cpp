@@ -51,7 +51,7 @@ public:
         Array<std::int64_t> a, b;
         Array<double> left;
         for (std::size_t p = 0; p < number.size(); ++p)
-            bodies_.bonds().for_each_bond(p, [&](std::uint32_t j, double intactness, bool) {
+            bodies_.bonds().for_each_bond(p, [&](std::uint32_t j, double intactness) {
                 if (j < p) return;
                 a.push_back(static_cast<std::int64_t>(number[p]));
                 b.push_back(static_cast<std::int64_t>(number[j]));

@@ -1,8 +1,6 @@
 #pragma once
 // Deformable bodies that may break: their sums over bonds, and the steps of those.
 
-#include <set>
-
 #include "bodies/deformable/advance.hpp"
 #include "bodies/elastic/advance_bonds.hpp"
 #include "bodies/elastic/settle_bonds.hpp"
@@ -47,41 +45,13 @@ void TotalLagrangian<D>::find_spans() {
     });
 }
 
-template <int D>
-double TotalLagrangian<D>::lost_by_parting(std::span<const std::uint32_t> points,
-                                           std::span<const std::int32_t> part, bool dust,
-                                           double ahead) const {
-    const std::int32_t own = part[points[0]];
-    auto apart = [&](std::size_t p, std::size_t j) {
-        return (part[p] == own) != (part[j] == own) || (dust && part[p] == own);
-    };
-    std::set<std::uint32_t> ends(points.begin(), points.end());
-    for (const std::uint32_t p : points)
-        bonds_.for_each_bond(p, [&](std::uint32_t j, double, bool ended) {
-            if (!ended && apart(p, j)) ends.insert(j);
-        });
-    auto point = [this](std::size_t p) { return bond_point(p); };
-    auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
-    auto place = [this, ahead](std::size_t p) { return x[p] + ahead * v[p]; };
-    double sum = 0.0;
-    for (const std::uint32_t p : ends) sum += bonds_.lost(p, point, body, place, apart);
-    return sum;
-}
-
 /// Point p as its bonds see it in a step.
 template <int D>
 BondPoint<D> TotalLagrangian<D>::bond_point(std::size_t p) const {
-    return {rest_[p],
-            solid_[p].x,
-            v[p],
-            deformation_[p],
-            correction_[p],
-            stress_[p],
-            solid_[p].volume,
-            solid_[p].kappa,
-            number_[p],
-            spans_[p] != 0,
-            bonds_.settled(p)};
+    return {rest_[p],         solid_[p].x,      v[p],
+            deformation_[p],  correction_[p],   stress_[p],
+            solid_[p].volume, solid_[p].kappa,  number_[p],
+            spans_[p] != 0,   bonds_.settled(p)};
 }
 
 /// As update_point, with the matrix of the bonds that are left. Points whose bonds do not span the
@@ -93,8 +63,9 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     const DeformableBody& body = body_of(p);
     if (!spans_[p] || !determines_strain(shape)) {
         correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
-        solid_[p].Q = solid_[p].F_rate = solid_[p].spin = {}, solid_[p].F = deformation_[p];
-        solid_[p].kappa = solid_[p].kappa_rate = damping_power_[p] = 0.0;
+        solid_[p].Q = solid_[p].Q_damping = solid_[p].F_rate = solid_[p].spin = {},
+        solid_[p].F = deformation_[p];
+        solid_[p].kappa = solid_[p].kappa_rate = 0.0;
         return;
     }
     correction_[p] = inverse(shape, 0.0);
@@ -127,7 +98,7 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
     bonds_.advance(dt, point, body);
     bonds_.settle(
-        point, body, [this, dt](std::size_t p) { return x[p] + (0.5 * dt) * v[p]; },
+        point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
         [this](std::size_t p, bool spans) { spans_[p] = spans; });
 }
 

@@ -83,14 +83,13 @@ public:
     const TotalLagrangian<D>& solids() const { return solids_; }
     std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
 
-    /// Whether parts may have come off: the last push has broken bonds or ended broken ones, or some
-    /// parts wait for the bonds that are left to let them go.
+    /// Whether parts may have come off: the last push has broken bonds or ended broken ones.
     bool has_cracked() const {
-        return solids_.bonds().change().broken > 0 || solids_.bonds().change().gone > 0 || waits_;
+        return solids_.bonds().change().broken > 0 || solids_.bonds().change().gone > 0;
     }
     /// Makes bodies of the parts of those that do not hold together any more, where there are any,
-    /// in a step that ends in a time `ahead`.
-    Fragments<D> divide(double ahead);
+    /// in a step `dt` whose forces have acted.
+    Fragments<D> divide(double dt);
     /// Ends the bonds between points with different labels, in the order of adding; only bodies
     /// that may break have bonds.
     void cut(std::span<const std::int32_t> label);
@@ -157,7 +156,6 @@ public:
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
         if (archive.loads()) {
-            waits_ = solids_.bonds().broken() > 0;  // where none does, a look changes nothing
             const std::size_t n = solids_.size();
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
@@ -183,15 +181,12 @@ private:
     }
 
     TotalLagrangian<D> solids_;
-    Division division(double ahead);
-    bool hold_back(const Division& found, double ahead, std::span<const std::uint8_t> loose,
-                   Array<std::uint8_t>& held) const;
+    Division division() const;
 
     Array<Vec<double, D>> normal_;          // at rest
     Array<double> depth_;                   // below the surface [m]
     Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
-    bool waits_ = false;  // whether a part is held back
     DeformableSurfaces<D> surfaces_;
 };
 

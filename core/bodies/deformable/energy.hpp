@@ -41,8 +41,8 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
         };
         sum_over_pairs(DeformationTerm<D>{records}, whole);
     }
-    sum_springs(records, [&](std::size_t p, const SpringSums<double, D>& sums) {
-        energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.moments.square);
+    sum_springs(records, [&](std::size_t p, const MisfitMoments<double, D>& sums) {
+        energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.square);
     });
     ElasticEnergy sum;
     for (std::size_t p = 0; p < size(); ++p)

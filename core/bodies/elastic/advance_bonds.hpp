@@ -123,23 +123,6 @@ private:
         }
         return max(place.stiffness, own / area(normal));
     }
-    /// Eq. (117): energy that point i loses with the bond to j alone, whose fit goes on without it;
-    /// all that it has where the others do not span the space.
-    double lost_by(const BondPoint<D>& i, const BondPoint<D>& j) const {
-        if (!i.spans) return 0.0;
-        const double weight = ends_.weight * j.volume;
-        const Vec<double, D> R = at_rest(), misfit = now() - i.F * R;
-        Mat<double, D> moment = inverse(i.B, 0.0), F = i.F;
-        add_outer(moment, -weight, R, R);
-        if (!spans_space(moment)) return i.volume * body_.energy(i.F);
-        const Vec<double, D> corrected = inverse(moment, 0.0) * R;
-        add_outer(F, -weight, misfit, corrected);
-        // That of the springs falls by more than its own, since the fit comes nearer to the rest.
-        const double springs =
-            0.5 * i.kappa * weight * dot(misfit, misfit) * (1.0 + weight * dot(R, corrected));
-        return i.volume * (body_.energy(i.F) - body_.energy(F) + springs);
-    }
-
     CrackSite site(const Vec<double, D>& normal) const {
         const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
         // With these shares, all bonds across a direction have the volume of the body.
@@ -203,9 +186,7 @@ private:
         const double opening = max(0.0, before - ease * pressed);
         const double work = set_jump(state_.jump + slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
-        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_) ||
-            lost_by(a_, b_) + lost_by(b_, a_) < 0.0)
-            return {work, 0, 0};
+        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
         state_.whole = -1.0;
         return {work, 0, 1};
     }

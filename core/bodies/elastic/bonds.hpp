@@ -34,6 +34,13 @@ bool spans_space(const Mat<double, D>& moment) {
     return square <= largest * largest;
 }
 
+/// Of a step, from an energy at the places where its forces act, halfway and where those of the
+/// next one act: what an energy that is square in the places has less half its rise, and plus half
+/// its rise before.
+inline double across_step(double first, double half, double last) {
+    return 2.0 * half - 0.5 * (first + last);
+}
+
 /// What the sums over pairs need of a bond, for its first point: by how much a crack has lengthened
 /// the vector between the points at rest [m], and 1, or 0 while nothing is borne.
 template <class T, int D>
@@ -137,14 +144,13 @@ public:
 
     BondRows<D> rows() const { return {code_, first_code_, state_}; }
 
-    /// Calls f(j, intactness, ended) for the bonds of point p: 1 whole, 0 where it bears no tension;
-    /// whether it is gone for good.
+    /// Calls f(j, intactness) for the bonds of point p: 1 whole, 0 where it bears no tension.
     template <class F>
     void for_each_bond(std::size_t p, const F& f) const {
         if (p + 1 >= first_bond_.size()) return;
         for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
             const BondEnds& ends = pairs_[bond_[n]];
-            f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]), state_[bond_[n]].whole == 0.0);
+            f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]));
         }
     }
     /// Eq. (127): the share of the bonds of point p that is broken, by the weights of the fit (80).
@@ -161,11 +167,6 @@ public:
     /// Of those to points j for which counts(j).
     template <class Point, class Counts>
     Mat<double, D> moment(std::size_t p, const Point& point, const Counts& counts) const;
-    /// Energy that point p loses [J], 2-D: [J/m], when bonds to points j for which apart(p, j) go,
-    /// at place(p).
-    template <class Point, class Body, class Place, class Apart>
-    double lost(std::size_t p, const Point& point, const Body& body, const Place& place,
-                const Apart& apart) const;
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
     /// only as those of two bodies. What the last step did to any bond is counted: `opening`.
     template <class Apart>
@@ -191,9 +192,9 @@ public:
     /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody.
     template <class Point, class Body>
     void advance(double dt, const Point& point, const Body& body);
-    /// Takes out the bonds that go in this step and counts what that took, Eq. (128), at place(p),
-    /// the places half a step ahead; tells of the points that lost some whether the space is
-    /// spanned still: take_spans(p, spans).
+    /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
+    /// share), the places after a share of a step; tells of the points that lost some whether the
+    /// space is spanned still: take_spans(p, spans).
     template <class Point, class Body, class Place, class TakeSpans>
     void settle(const Point& point, const Body& body, const Place& place,
                 const TakeSpans& take_spans);
@@ -223,6 +224,9 @@ private:
     template <class Point, class Body, class Place, class Counts>
     double energy(std::size_t p, Moment moment, const Point& point, const Body& body,
                   const Place& place, const Counts& counts) const;
+    template <class Point, class Body, class Place, class Counts>
+    double energy_across(std::size_t p, Moment moment, const Point& point, const Body& body,
+                         const Place& place, const Counts& counts) const;
     template <class Point, class Body>
     double first_halves(std::size_t p, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {

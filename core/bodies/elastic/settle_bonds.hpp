@@ -45,7 +45,8 @@ double Bonds<D>::energy(std::size_t p, Moment moment, const Point& point, const 
         const Side side{ends.weight * other.volume,
                         own.rest - other.rest + (ends.a == p ? 1.0 : -1.0) * jump,
                         place(p) - place(j)};
-        add_outer(moved, side.weight, side.r, side.R), add_outer(shape, side.weight, side.R, side.R);
+        add_outer(moved, side.weight, side.r, side.R),
+            add_outer(shape, side.weight, side.R, side.R);
         sides.push_back(side);
     }
     if (!determines_strain(shape)) return 0.0;
@@ -67,10 +68,23 @@ double Bonds<D>::first_halves(std::size_t p, const Point& point, const Body& bod
         const BondEnds& ends = pairs_[bond_[k]];
         BondState<D>& state = state_[bond_[k]];
         if (state.whole != 0.0 && state.cracked())
-            sum += BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
-                       .first_half(p);
+            sum +=
+                BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).first_half(p);
     }
     return sum;
+}
+
+/// What the forces of the step find of the energy of a point, Eq. (128): between the places at
+/// which they act they follow the trapezoidal rule, so that the curvature on the way is not in it.
+template <int D>
+template <class Point, class Body, class Place, class Counts>
+double Bonds<D>::energy_across(std::size_t p, Moment moment, const Point& point, const Body& body,
+                               const Place& place, const Counts& counts) const {
+    auto at = [&](double share) {
+        return energy(
+            p, moment, point, body, [&](std::size_t k) { return place(k, share); }, counts);
+    };
+    return across_step(at(0.0), at(0.5), at(1.0));
 }
 
 template <int D>
@@ -84,27 +98,13 @@ void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
     for (std::size_t p = 0; p < settled_.size(); ++p) {
         if (!settled_[p] || !point(p).spans) continue;
         const bool spans = spans_space(moment(p, point, all));
-        work_ += energy(p, Moment::before, point, body, place, all) - first_halves(p, point, body);
-        if (spans) work_ -= energy(p, Moment::now, point, body, place, all);
+        work_ += energy_across(p, Moment::before, point, body, place, all) -
+                 first_halves(p, point, body);
+        if (spans) work_ -= energy_across(p, Moment::now, point, body, place, all);
         take_spans(p, spans);
     }
     for (BondState<D>& state : state_)
         if (state.whole < 0.0) state.whole = 0.0, state.change = {};
-}
-
-template <int D>
-template <class Point, class Body, class Place, class Apart>
-double Bonds<D>::lost(std::size_t p, const Point& point, const Body& body, const Place& place,
-                      const Apart& apart) const {
-    if (!point(p).spans) return 0.0;
-    bool any = false;
-    for_each_bond(p, [&](std::uint32_t j, double, bool ended) { any |= !ended && apart(p, j); });
-    if (!any) return 0.0;
-    const auto all = [](std::uint32_t) { return true; };
-    const auto kept = [&](std::uint32_t j) { return !apart(p, j); };
-    const double before = energy(p, Moment::now, point, body, place, all);
-    if (!spans_space(moment(p, point, kept))) return before;
-    return before - energy(p, Moment::now, point, body, place, kept);
 }
 
 }  // namespace doseki

@@ -20,8 +20,6 @@ template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
-template <class T, int D>
-struct SpringSums;
 
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
@@ -122,15 +120,10 @@ public:
     /// The place that goes with point p by this, from `offset` at rest: shares of points, which add
     /// up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
-    /// Whether those of its neighbours for which holds(j) and point p span the space.
+    /// Moment of the pairs of point p with those neighbours for which holds(j), as they were at
+    /// rest.
     template <class Holds>
-    bool is_spanned(std::size_t p, const Holds& holds) const {
-        return determines_strain(shape_around(p, holds));
-    }
-    /// Energy that is lost [J], 2-D: [J/m], where `points`, which have the same number in `part`, come
-    /// off all others, dust off each other too, at the places in a time `ahead`.
-    double lost_by_parting(std::span<const std::uint32_t> points,
-                           std::span<const std::int32_t> part, bool dust, double ahead) const;
+    Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     /// Whether the bonds of a point span the space, so that it has a stress.
     bool spans(std::size_t p) const { return spans_[p] != 0; }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
@@ -144,6 +137,11 @@ public:
     Mat<double, D> stress(std::size_t p) const { return body_of(p).stress(deformation_[p]); }
     /// Of where points will be in a time `ahead`; changes nothing.
     ElasticEnergy elastic_energy(double ahead = 0.0) const;
+    /// Of the places on the way of a step `dt`, as forces find it: across_step.
+    double energy_across(double dt) const {
+        auto at = [&](double share) { return elastic_energy(share * dt).sum(); };
+        return across_step(at(0.0), at(0.5), at(1.0));
+    }
     double kinetic_energy() const;
     /// Energy that cracks, but for ElasticEnergy::opening, and that damping took so far [J], 2-D:
     /// [J/m].
@@ -222,8 +220,6 @@ private:
     double pair_weight(std::size_t j, const Vec<double, D>& R) const {
         return -volume(j) * WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(j).support());
     }
-    template <class Holds>
-    Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     Vec<double, D> room_for(const DeformableBody& body, std::span<const Vec<double, D>> position);
     void sort();
     void number_points() {
@@ -270,9 +266,9 @@ private:
     Array<MotionRecord<double, D>> motion_;
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
-    Array<Mat<double, D>> stress_;  // of breakable bodies, without damping
-    Array<std::uint8_t> spans_;     // whether the bonds of a point span the space, Eq. (116)
-    Array<double> damping_power_;   // of each point
+    Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
+    Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (116)
+    Array<Vec<double, D>> damping_force_;  // on each point, of both dampers [N], 2-D: [N/m]
     double damping_work_ = 0.0;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]
