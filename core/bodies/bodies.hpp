@@ -10,6 +10,7 @@
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/body_energy.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/fragments/dust_room.hpp"
 #include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -161,7 +162,9 @@ private:
     Parted part(double time, double dt);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
-    void renumber_contacts(const Fragments<D>& fragments, std::size_t first_dust);
+    void shrink_dust(std::size_t first);
+    void renumber_contacts(const Fragments<D>& fragments);
+    void accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust);
     Array<std::int32_t> bodies_before(const Fragments<D>& fragments, std::size_t first_dust) const;
     /// Particles of what has become dust are points of rigid bodies from now on.
     void bind_dust(Particles<D>& particles);
@@ -322,7 +325,12 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
     born.momentum = after.momentum - before.momentum, born.moment = after.moment - before.moment;
     born.kinetic_energy = after.kinetic_energy - before.kinetic_energy;
     prepare_contacts();
-    renumber_contacts(fragments, first);
+    if constexpr (D == 2) {
+        shrink_dust(first);
+        prepare_contacts();
+    }
+    renumber_contacts(fragments);
+    if constexpr (D == 3) accept_overlaps(fragments, first);
     return {born, fragments.lost - born.kinetic_energy};
 }
 
@@ -342,18 +350,23 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     }
 }
 
-/// Pairs that could not touch before, since both sides were of one body or one is new, have the
-/// overlaps that they are born with at rest, Eq. (115).
+/// Outlines touch and do not overlap: so does dust beside them that takes the room there is, Eq. (123).
 template <int D>
-void Bodies<D>::renumber_contacts(const Fragments<D>& fragments, std::size_t first_dust) {
+void Bodies<D>::shrink_dust(std::size_t first) {
+    Array<double> room;
+    for (std::size_t k = first; k < rigid.size(); ++k)
+        room.push_back(room_for_dust(contact_, static_cast<std::int32_t>(k),
+                                     static_cast<std::int32_t>(first), contacts_.domain()));
+    for (std::size_t k = first; k < rigid.size(); ++k) rigid.resize_ball(k, room[k - first]);
+}
+
+template <int D>
+void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
     Array<std::int32_t> points, shapes;
     const std::size_t first = fragments.first_contact_point,
                       end = first + DeformableSurfaces<D>::points_each * fragments.vertex.size();
-    Array<std::uint8_t> is_old(contact_.points.size(), 0);
-    for (std::size_t k = 0; k < end; ++k) {
+    for (std::size_t k = 0; k < end; ++k)
         points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
-        if (points.back() >= 0) is_old[static_cast<std::size_t>(points.back())] = 1;
-    }
     for (std::size_t s = 0; s < contact_.solids.size(); ++s)
         shapes.push_back(static_cast<std::int32_t>(s));
     std::map<std::int32_t, std::int32_t> now;  // the surface of each body
@@ -364,6 +377,18 @@ void Bodies<D>::renumber_contacts(const Fragments<D>& fragments, std::size_t fir
         shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
     contacts_.renumber(points, shapes);
     find_contacts();
+}
+
+/// Pairs of balls that could not touch before, since both were of one body or one is new, have the
+/// overlaps that they are born with at rest, Eq. (115).
+template <int D>
+void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust) {
+    Array<std::uint8_t> is_old(contact_.points.size(), 0);
+    for (std::size_t k = 0; k < fragments.first_contact_point + fragments.vertex.size(); ++k) {
+        const std::int32_t now =
+            deformable.surfaces().renumbered(k, fragments.first_contact_point, fragments.vertex);
+        if (now >= 0) is_old[static_cast<std::size_t>(now)] = 1;
+    }
     const Array<std::int32_t> was = bodies_before(fragments, first_dust);
     contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
         if (!is_old[pair.first()] || (!pair.with_shape() && !is_old[pair.second()])) return true;

@@ -52,6 +52,10 @@ public:
     }
 
     void add(const RigidBody<D>& body, const RigidBodyState<D>& state, const Vec3& spin);
+    /// Gives a ball with a shape of its own another radius.
+    void resize_ball(std::size_t k, double radius) {
+        shapes[static_cast<std::size_t>(bodies_[k].shape)].radius = radius;
+    }
     /// Adds a ball within a step, with the angular momentum of its state.
     void add_ball(RigidBody<D> body, const RigidBodyState<D>& state, double radius);
 
