@@ -163,7 +163,7 @@ public:
         }
         return whole > 0.0 ? 1.0 - left / whole : 0.0;
     }
-    /// Moment of the bonds of point p that are left, as they were at rest, Eq. (116).
+    /// Moment of the bonds of point p that are left, as they were at rest, Eq. (120).
     /// Of those to points j for which counts(j).
     template <class Point, class Counts>
     Mat<double, D> moment(std::size_t p, const Point& point, const Counts& counts) const;

@@ -267,7 +267,7 @@ private:
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
-    Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (116)
+    Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (120)
     Array<Vec<double, D>> damping_force_;  // on each point, of both dampers [N], 2-D: [N/m]
     double damping_work_ = 0.0;
     bool springs_damp_ = false;
