@@ -1,10 +1,115 @@
-// Bodies, compiled once for all schemes.
+// Bodies, compiled once for all schemes, and how they become parts and dust.
 
 #include "bodies/bodies.hpp"
 
 #include "bodies/contact_forces.hpp"
+#include "bodies/fragments/dust_room.hpp"
 
 namespace doseki {
+
+template <int D>
+auto Bodies<D>::part(double time, double dt) -> Parted {
+    const Fragments<D> fragments = deformable.divide(dt);
+    if (!fragments.any()) return {};
+    BodySums<D> born;
+    auto origin = [&](std::int32_t parent) -> Origin {
+        return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
+    };
+    for (const std::int32_t parent : fragments.parent) deformable_origins_.add(origin(parent));
+    const BodySums<D> before = rigid.sums();
+    const std::size_t first = rigid.size();
+    for (std::size_t k = 0; k < fragments.dust.size(); ++k)
+        add_dust(fragments.dust[k], fragments.dust_normals[k], origin(fragments.dust_parent[k]));
+    const BodySums<D> after = rigid.sums();
+    born.momentum = after.momentum - before.momentum, born.moment = after.moment - before.moment;
+    born.kinetic_energy = after.kinetic_energy - before.kinetic_energy;
+    prepare_contacts();
+    if constexpr (D == 2) {
+        shrink_dust(first);
+        prepare_contacts();
+    }
+    renumber_contacts(fragments);
+    if constexpr (D == 3) accept_overlaps(fragments, first);
+    return {born, fragments.lost - born.kinetic_energy};
+}
+
+template <int D>
+void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
+                         const Origin& origin) {
+    const auto of = static_cast<std::size_t>(deformable.body_of_point(grain.points.front()));
+    RigidBody<D> body = grain.body;
+    body.material = deformable.material(of), body.group = deformable.group(of);
+    const std::size_t k = rigid.size();
+    rigid.add_ball(body, grain.state, grain.largest);
+    rigid_origins_.add(origin);
+    for (std::size_t n = 0; n < grain.points.size(); ++n) {
+        const std::uint32_t p = grain.points[n];
+        dust_points_[p] =
+            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n]);
+    }
+}
+
+/// Outlines touch and do not overlap: so does dust beside them that takes the room there is, Eq.
+/// (123).
+template <int D>
+void Bodies<D>::shrink_dust(std::size_t first) {
+    Array<double> room;
+    for (std::size_t k = first; k < rigid.size(); ++k)
+        room.push_back(room_for_dust(contact_, static_cast<std::int32_t>(k),
+                                     static_cast<std::int32_t>(first), contacts_.domain()));
+    for (std::size_t k = first; k < rigid.size(); ++k) rigid.resize_ball(k, room[k - first]);
+}
+
+template <int D>
+void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
+    Array<std::int32_t> points, shapes;
+    const std::size_t first = fragments.first_contact_point,
+                      end = first + DeformableSurfaces<D>::points_each * fragments.vertex.size();
+    for (std::size_t k = 0; k < end; ++k)
+        points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
+    for (std::size_t s = 0; s < contact_.solids.size(); ++s)
+        shapes.push_back(static_cast<std::int32_t>(s));
+    std::map<std::int32_t, std::int32_t> now;  // the surface of each body
+    for (std::size_t s = 0; s < contact_.surfaces.size(); ++s)
+        now[contact_.surfaces[s].body - static_cast<std::int32_t>(rigid.size())] =
+            static_cast<std::int32_t>(contact_.solids.size() + s);
+    for (const std::int32_t body : fragments.surface_body)
+        shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
+    contacts_.renumber(points, shapes);
+    find_contacts();
+}
+
+/// Pairs of balls that could not touch before, since both were of one body or one is new, have the
+/// overlaps that they are born with at rest, Eq. (115).
+template <int D>
+void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust) {
+    Array<std::uint8_t> is_old(contact_.points.size(), 0);
+    for (std::size_t k = 0; k < fragments.first_contact_point + fragments.vertex.size(); ++k) {
+        const std::int32_t now =
+            deformable.surfaces().renumbered(k, fragments.first_contact_point, fragments.vertex);
+        if (now >= 0) is_old[static_cast<std::size_t>(now)] = 1;
+    }
+    const Array<std::int32_t> was = bodies_before(fragments, first_dust);
+    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+        if (!is_old[pair.first()] || (!pair.with_shape() && !is_old[pair.second()])) return true;
+        const auto [a, b] = contact_.bodies(pair);
+        return was[static_cast<std::size_t>(a)] == was[static_cast<std::size_t>(b)];
+    });
+}
+
+/// Of which body each one was a part, bodies as contacts number them now.
+template <int D>
+Array<std::int32_t> Bodies<D>::bodies_before(const Fragments<D>& fragments,
+                                             std::size_t first_dust) const {
+    Array<std::int32_t> was(rigid.size() + deformable.bodies());
+    std::iota(was.begin(), was.end(), 0);
+    const auto first = static_cast<std::int32_t>(rigid.size());
+    for (std::size_t k = 0; k < fragments.dust_parent.size(); ++k)
+        was[first_dust + k] = first + fragments.dust_parent[k];
+    for (std::size_t k = 0; k < fragments.parent.size(); ++k)
+        was[was.size() - fragments.parent.size() + k] = first + fragments.parent[k];
+    return was;
+}
 
 template class ContactLaws<2>;
 template class RigidBodies<2>;

@@ -8,8 +8,8 @@
 
 #include "base/array.hpp"
 #include "bodies/contacts.hpp"
+#include "bodies/deformable/body_energy.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
-#include "bodies/fragments/dust_room.hpp"
 #include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -79,7 +79,7 @@ public:
         if (label.size() != deformable.size())
             throw std::invalid_argument("cut: one label for each point of deformable bodies");
         deformable.cut(label);
-        part(time);
+        part(time, 0.0);
         place(particles, 0.0);
     }
 
@@ -126,6 +126,11 @@ public:
     /// Parts that came off bodies which broke: those that are deformable, and grains of dust.
     PartCounts parts() const { return {deformable_origins_.parts(), rigid_origins_.parts()}; }
 
+    /// Where the energy is: velocities are those of now, forces those last evaluated.
+    BodyEnergy energy() const {
+        return {kinetic_energy(), deformable.elastic_energy().sum(), contacts_.stored_energy()};
+    }
+
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored particles are points of these bodies.
     void expect_points(const Particles<D>& particles) const {
@@ -151,12 +156,15 @@ private:
         BodySums<D> born;
         double work = 0.0;
     };
-    /// Makes bodies of parts that do not hold together any more.
-    Parted part(double time);
+    /// Makes bodies of parts that do not hold together any more, in a step `dt` whose forces
+    /// have acted.
+    Parted part(double time, double dt);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void shrink_dust(std::size_t first);
     void renumber_contacts(const Fragments<D>& fragments);
+    void accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust);
+    Array<std::int32_t> bodies_before(const Fragments<D>& fragments, std::size_t first_dust) const;
     /// Particles of what has become dust are points of rigid bodies from now on.
     void bind_dust(Particles<D>& particles);
 
@@ -275,7 +283,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
         if (!deformable.empty()) given = given + deformable.push(step, gravity_);
         rigid.push(gravity_, step);
         if (deformable.has_cracked()) {
-            const Parted parted = part(t + dt - left);
+            const Parted parted = part(t + dt - left, step);
             before = before + parted.born, given.parting_work += parted.work;
         }
         drift(0.5 * step);
@@ -297,73 +305,6 @@ void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
         const std::int32_t k = rigid_body_of(particles, p);
         if (k >= 0 && leaves[static_cast<std::size_t>(k)]) removed[p] = 1;
     }
-}
-
-template <int D>
-auto Bodies<D>::part(double time) -> Parted {
-    const Fragments<D> fragments = deformable.divide();
-    if (!fragments.any()) return {};
-    BodySums<D> born;
-    auto origin = [&](std::int32_t parent) -> Origin {
-        return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
-    };
-    for (const std::int32_t parent : fragments.parent) deformable_origins_.add(origin(parent));
-    const BodySums<D> before = rigid.sums();
-    const std::size_t first = rigid.size();
-    for (std::size_t k = 0; k < fragments.dust.size(); ++k)
-        add_dust(fragments.dust[k], fragments.dust_normals[k], origin(fragments.dust_parent[k]));
-    const BodySums<D> after = rigid.sums();
-    born.momentum = after.momentum - before.momentum, born.moment = after.moment - before.moment;
-    born.kinetic_energy = after.kinetic_energy - before.kinetic_energy;
-    prepare_contacts();
-    if (first < rigid.size()) shrink_dust(first), prepare_contacts();
-    renumber_contacts(fragments);
-    find_contacts();
-    return {born, fragments.lost - born.kinetic_energy};
-}
-
-template <int D>
-void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
-                         const Origin& origin) {
-    const auto of = static_cast<std::size_t>(deformable.body_of_point(grain.points.front()));
-    RigidBody<D> body = grain.body;
-    body.material = deformable.material(of), body.group = deformable.group(of);
-    const std::size_t k = rigid.size();
-    rigid.add_ball(body, grain.state, grain.largest);
-    rigid_origins_.add(origin);
-    for (std::size_t n = 0; n < grain.points.size(); ++n) {
-        const std::uint32_t p = grain.points[n];
-        dust_points_[p] =
-            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n]);
-    }
-}
-
-/// New grains of dust touch nothing yet.
-template <int D>
-void Bodies<D>::shrink_dust(std::size_t first) {
-    Array<double> room;
-    for (std::size_t k = first; k < rigid.size(); ++k)
-        room.push_back(room_for_dust(contact_, static_cast<std::int32_t>(k),
-                                     static_cast<std::int32_t>(first), contacts_.domain()));
-    for (std::size_t k = first; k < rigid.size(); ++k) rigid.resize_ball(k, room[k - first]);
-}
-
-template <int D>
-void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
-    Array<std::int32_t> points, shapes;
-    const std::size_t first = fragments.first_contact_point,
-                      end = first + DeformableSurfaces<D>::points_each * fragments.vertex.size();
-    for (std::size_t k = 0; k < end; ++k)
-        points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
-    for (std::size_t s = 0; s < contact_.solids.size(); ++s)
-        shapes.push_back(static_cast<std::int32_t>(s));
-    std::map<std::int32_t, std::int32_t> now;  // the surface of each body
-    for (std::size_t s = 0; s < contact_.surfaces.size(); ++s)
-        now[contact_.surfaces[s].body - static_cast<std::int32_t>(rigid.size())] =
-            static_cast<std::int32_t>(contact_.solids.size() + s);
-    for (const std::int32_t body : fragments.surface_body)
-        shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
-    contacts_.renumber(points, shapes);
 }
 
 template <int D>

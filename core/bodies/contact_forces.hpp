@@ -12,7 +12,6 @@
 #include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "bodies/contacts.hpp"
-#include "physics/contact.hpp"
 
 namespace doseki {
 
@@ -34,11 +33,24 @@ inline double ContactLaw::timestep(double speed, double points) const {
     return collision.time / std::max(steps, fastest);
 }
 
+inline NormalSpring ContactLaw::normal_spring(double overlap) const {
+    return hertz ? hertz_spring(stiffness, curvature(), overlap)
+                 : linear_spring(stiffness, overlap);
+}
+
+inline double ContactLaw::stored(const ContactSprings& springs, double pressed) const {
+    const NormalSpring spring = normal_spring(pressed);
+    double square = 0.0;
+    for (int c = 0; c < 3; ++c) square += springs[c] * springs[c];
+    return (hertz ? 0.4 : 0.5) * spring.force * pressed +
+           0.5 * tangential * spring.stiffness * square;
+}
+
 inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, const Vec3& n,
                                      const RelativeMotion& motion, double dt) const {
     const double approach = dot(motion.velocity, n);
-    const NormalSpring spring =
-        hertz ? hertz_spring(stiffness, curvature(), overlap) : linear_spring(stiffness, overlap);
+    springs[rest_overlap] = min(springs[rest_overlap], overlap);
+    const NormalSpring spring = normal_spring(overlap - springs[rest_overlap]);
     const double damping = contact_damping(hertz, zeta, spring.stiffness, mass);
     const double normal = normal_force(spring, damping, approach);
     const double along = tangential * spring.stiffness, dashpot = tangential * damping;
@@ -244,10 +256,19 @@ void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const Push& push = pushes_[k];
         if (!push.touches) continue;
-        max_overlap_ = std::max(max_overlap_, push.overlap.depth / contacts_[k].law.diameter);
+        max_overlap_ = std::max(max_overlap_, contacts_[k].overlap / contacts_[k].law.diameter);
         if (pairs_[k].with_shape())
             push_second(bodies, pairs_[k], push.overlap, -1.0 * push.force, push.torque_b);
     }
+}
+
+template <int D>
+double Contacts<D>::stored_energy() const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < std::min(pushes_.size(), pairs_.size()); ++k)
+        if (pushes_[k].touches)
+            sum += pushes_[k].share * contacts_[k].law.stored(springs_[k], contacts_[k].overlap);
+    return sum;
 }
 
 template <int D>
@@ -292,7 +313,22 @@ Overlaps<D> Contacts<D>::overlaps_of_pair(const ContactBodies<D>& bodies, std::s
     if constexpr (D == 2)
         if (const Surface<D>* surface = bodies.surface(pair))
             return overlap_of(points, pair.first(), *surface, contacts_[k].vertex, domain_);
+    if (!pair.with_shape()) return overlap_of(points, pair.first(), pair.second(), domain_);
     return overlaps_of(points, pair.first(), bodies.solids[pair.shape()], domain_);
+}
+
+template <int D>
+template <class NewPair>
+void Contacts<D>::accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new) {
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        const std::size_t rows = run_from(k);
+        if (rows == 0 || !is_new(pairs_[k])) continue;
+        const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
+        for (std::size_t n = 0; n < std::min(overlaps.size(), rows); ++n) {
+            springs_[k + n] = {}, springs_[k + n][rest_overlap] = overlaps[n].depth;
+            normals_[k + n] = overlaps[n].normal;
+        }
+    }
 }
 
 template <int D>
@@ -330,7 +366,7 @@ auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const O
                           double dt, double share) -> Push {
     Contact& contact = contacts_[k];
     const bool begins = dot(normals_[k], normals_[k]) == 0.0;
-    contact.overlap = overlap.depth, normals_[k] = overlap.normal;
+    normals_[k] = overlap.normal;
     const ContactPoints<D>& points = bodies.points;
     const MotionAt<D> b = motion_of_second(bodies, pairs_[k], overlap);
     const std::size_t a = pairs_[k].first();
@@ -339,6 +375,7 @@ auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const O
                          v_b = b.velocity + turning_velocity(b.spin, overlap.lever_b);
     ContactAction on_a = contact.law.act(springs_[k], overlap.depth, in_space(overlap.normal),
                                          {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
+    contact.overlap = overlap.depth - springs_[k][rest_overlap];
     on_a.force = share * on_a.force, on_a.moment = share * on_a.moment;
     auto torque = [&](const Vec<double, D>& lever) {
         return cross(in_space(lever), on_a.force) + on_a.moment;
@@ -349,7 +386,8 @@ auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const O
             in_run<D>(on_a.force),
             torque(overlap.lever_a),
             -1.0 * torque(overlap.lever_b),
-            std::max(0.0, approach)};
+            std::max(0.0, approach),
+            share};
 }
 
 }  // namespace doseki

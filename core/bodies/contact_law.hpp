@@ -5,6 +5,7 @@
 #include "bodies/rotation.hpp"
 #include "model/contact_properties.hpp"
 #include "model/options.hpp"
+#include "physics/contact.hpp"
 
 namespace doseki {
 
@@ -18,8 +19,10 @@ struct ContactSide {
     double share = 1.0;  // of the spring of a point of a deformable body
 };
 
-/// Springs of one contact: stretch of friction, then of rolling; zero while apart.
-using ContactSprings = Vec<double, 6>;
+/// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it
+/// does not press, Eq. (115); zero while apart.
+using ContactSprings = Vec<double, 7>;
+inline constexpr int rest_overlap = 6;
 
 /// Force and moment on the first of two bodies that touch.
 struct ContactAction {
@@ -52,9 +55,17 @@ struct ContactLaw {
     /// points at once, whose springs and dashpots add up.
     double timestep(double speed, double points) const;
 
-    /// n points away from the first body.
+    /// Energy of the springs, without that of rolling, where the overlap beyond that of rest is
+    /// `pressed`.
+    double stored(const ContactSprings& springs, double pressed) const;
+
+    /// n points away from the first body. Overlaps below that of rest do not press, and take it
+    /// with them, Eq. (115).
     ContactAction act(ContactSprings& springs, double overlap, const Vec3& n,
                       const RelativeMotion& motion, double dt) const;
+
+private:
+    NormalSpring normal_spring(double overlap) const;
 };
 
 /// Makes the laws of pairs from the materials that touch.

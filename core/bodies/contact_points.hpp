@@ -82,6 +82,13 @@ struct ContactBodies {
     Array<ContactSolid<D>> solids;
     Array<Surface<D>> surfaces;
 
+    /// The two bodies of a pair.
+    std::pair<std::int32_t, std::int32_t> bodies(const ContactPair& pair) const {
+        const std::int32_t first = points.body[pair.first()];
+        if (!pair.with_shape()) return {first, points.body[pair.second()]};
+        const Surface<D>* of = surface(pair);
+        return {first, of ? of->body : solids[pair.shape()].body};
+    }
     ContactPair pair_with_surface(std::int32_t point, std::int32_t surface) const {
         return {point, -1 - static_cast<std::int32_t>(solids.size()) - surface};
     }

@@ -30,6 +30,11 @@ public:
     /// has -1 touches anew.
     void renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape);
 
+    /// Lets the overlaps that pairs have now press no more than before, Eq. (115), those for which
+    /// is_new(pair).
+    template <class NewPair>
+    void accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new);
+
     /// Adds forces and torques of all pairs, whose springs stretch for dt.
     void apply(ContactBodies<D>& bodies, double dt);
 
@@ -42,6 +47,8 @@ public:
     double timestep() const { return timestep_; }
     /// Largest overlap there ever was, over the diameter.
     double max_overlap() const { return max_overlap_; }
+    /// Energy in the springs of all pairs when they were last applied [J], 2-D: [J/m].
+    double stored_energy() const;
     /// Bodies that touch, and by how much of their diameters.
     template <class F>
     void for_each_touching(F&& f) const {
@@ -85,6 +92,7 @@ private:
         Vec<double, D> force;
         Vec3 torque_a, torque_b;  // on each body about its own centre or point
         double approach = 0.0;    // speed, where the contact begins
+        double share = 1.0;       // of the springs
     };
 
     static std::uint64_t key(const ContactPair& pair) {

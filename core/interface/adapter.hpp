@@ -176,6 +176,12 @@ public:
 
     NamedValues grains() const override { return BodyTables<D>::rigid(sim_.bodies); }
     NamedValues fragments() const override { return BodyTables<D>::fragments(sim_.bodies); }
+    NamedValues body_energy() override {
+        NamedValues table;
+        sim_.bodies.energy().members(
+            [&](const char* name, double joules) { table[name] = joules; });
+        return table;
+    }
     void cut_bodies(const NamedValues& columns) override {
         ColumnReader column(columns, "cut");
         const auto label = column.numbers<std::int32_t>("label");

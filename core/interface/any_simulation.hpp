@@ -77,6 +77,8 @@ public:
     /// Deformable bodies that may break, and their parts, by `number`; `centre`, `radius` and what
     /// else grains() has.
     virtual NamedValues fragments() const = 0;
+    /// Where the energy of bodies is, see BodyEnergy.
+    virtual NamedValues body_energy() = 0;
     /// `label`: of each point of deformable bodies in the order of adding; those with different
     /// ones do not hold together from now on.
     virtual void cut_bodies(const NamedValues& columns) = 0;

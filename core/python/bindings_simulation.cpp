@@ -70,6 +70,7 @@ public:
     nb::dict totals() const { return to_python(core_->totals()); }
     nb::dict grains() const { return to_python(core_->grains()); }
     nb::dict fragments() const { return to_python(core_->fragments()); }
+    nb::dict body_energy() { return to_python(core_->body_energy()); }
     void cut_bodies(const nb::object& label) {
         NamedValues columns;
         columns["label"] = to_value(label);
@@ -185,6 +186,8 @@ void bind_results(Class& c) {
         .def("grains", &P::grains, nb::sig("def grains(self) -> doseki.solver.protocol.Grains"))
         .def("fragments", &P::fragments,
              nb::sig("def fragments(self) -> doseki.solver.protocol.Fragments"))
+        .def("body_energy", &P::body_energy, nb::sig("def body_energy(self) -> dict[str, float]"),
+             "Energy of the bodies, J (2-D: J/m): kinetic, strain, springs inside, contacts.")
         .def("cut_bodies", &P::cut_bodies, nb::arg("label"),
              nb::sig("def cut_bodies(self, label: numpy.ndarray) -> None"))
         .def("loads", &P::loads, nb::sig("def loads(self) -> doseki.solver.protocol.Loads"))

@@ -46,13 +46,13 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     sort();
     a.assign(size(), {}), load.assign(size(), {});
     deformation_.assign(size(), identity<double, D>());
-    motion_.resize(size()), solid_.resize(size()), damping_power_.assign(size(), 0.0);
+    motion_.resize(size()), solid_.resize(size()), damping_force_.assign(size(), {});
     for (std::size_t p = 0; p < size(); ++p) {
         const DeformableBody& body = body_of(p);
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
         const double stiffness = body.hourglass * body.shear_modulus(),
                      viscosity = body.hourglass * body.viscosity();
-        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}};
+        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}, {}};
         springs_damp_ |= viscosity > 0.0;
     }
     find_bonds();
@@ -107,8 +107,8 @@ Array<Vec<double, D>> TotalLagrangian<D>::linear_response(const Array<Vec<double
                                                           const Array<Vec<double, D>>& velocity) {
     for (std::size_t p = 0; p < size(); ++p) x[p] = rest_[p] + displacement[p], v[p] = velocity[p];
     Array<Vec<double, D>> response(size());
-    sum_internal_forces(0.0, [&](std::size_t p, const Vec<double, D>& force) {
-        if (!clamped_[p]) response[p] = (1.0 / body_of(p).rho0) * force;
+    sum_internal_forces(0.0, [&](std::size_t p, const InternalForce<double, D>& force) {
+        if (!clamped_[p]) response[p] = (1.0 / body_of(p).rho0) * force.all;
     });
     return response;
 }
@@ -144,7 +144,7 @@ void TotalLagrangian<D>::update_point(std::size_t p,
     const Mat<double, D> rate = sums.velocity * B;
     const Mat<double, D> damping = kelvin_voigt(deformation_[p], rate, body.viscosity());
     const Mat<double, D> P = stress(p) + damping;
-    damping_power_[p] = solid_[p].volume * trace(transposed(damping) * rate);
+    solid_[p].Q_damping = damping * transposed(B);
     solid_[p].Q = less_springs(P * transposed(B), solid_[p].kappa, deformation_[p]);
     solid_[p].F = deformation_[p], solid_[p].F_rate = rate;
 }
@@ -164,13 +164,12 @@ void TotalLagrangian<D>::sum_springs(const ElasticTerm<D>& records,
 /// its torque vanishes.
 template <int D>
 void TotalLagrangian<D>::damp_springs() {
-    auto turn = [this](std::size_t p, const SpringSums<double, D>& sums) {
+    auto turn = [this](std::size_t p, const MisfitMoments<double, D>& sums) {
         ElasticRecord<D>& point = solid_[p];
-        const Mat<double, D> spin = misfit_spin(sums.moments);
-        point.Q = less_springs(point.Q, point.kappa_rate, point.F_rate - spin * point.F);
+        const Mat<double, D> spin = misfit_spin(sums), rate = point.F_rate - spin * point.F;
+        point.Q = less_springs(point.Q, point.kappa_rate, rate);
+        point.Q_damping = less_springs(point.Q_damping, point.kappa_rate, rate);
         point.spin = point.kappa_rate * spin;
-        damping_power_[p] += point.volume * point.kappa_rate * damped_square(sums, spin);
-        if (!energy_.empty()) account_for(p, sums);
     };
     sum_springs(records(), turn);
 }
@@ -194,9 +193,11 @@ void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
 
 template <int D>
 void TotalLagrangian<D>::compute_accelerations(double half_dt, const Vec<double, D>& gravity) {
-    sum_internal_forces(half_dt, [&](std::size_t p, const Vec<double, D>& force) {
-        a[p] = clamped_[p] ? Vec<double, D>{}
-                           : (1.0 / body_of(p).rho0) * force + (1.0 / mass(p)) * load[p] + gravity;
+    sum_internal_forces(half_dt, [&](std::size_t p, const InternalForce<double, D>& force) {
+        damping_force_[p] = solid_[p].volume * force.damping;
+        a[p] = clamped_[p]
+                   ? Vec<double, D>{}
+                   : (1.0 / body_of(p).rho0) * force.all + (1.0 / mass(p)) * load[p] + gravity;
     });
 }
 
@@ -209,10 +210,14 @@ double TotalLagrangian<D>::drift(double dt) {
     return dt * sqrt(fastest);
 }
 
-/// Damping sees the velocities that the last accelerations predict for the middle of the step.
+/// Damping sees the velocities that the last accelerations predict for the middle of the step; its
+/// work is that of its force on the way that is gone.
 template <int D>
 BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     compute_accelerations(0.5 * dt, gravity);
+    damping_work_ -= reduce(size(), 0.0, std::plus<>(), [&](std::size_t p) {
+        return dot(damping_force_[p], dt * v[p] + (0.5 * dt * dt) * a[p]);
+    });
     const BodyStep<D> given = reduce(size(), BodyStep<D>{}, std::plus<>(), [&](std::size_t p) {
         const Vec<double, D> way = dt * v[p] + (0.5 * dt * dt) * a[p];
         v[p] = v[p] + dt * a[p];
@@ -222,8 +227,6 @@ BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     });
     if (!std::isfinite(given.contact_work))  // no load times a way that is not finite is not
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
-    damping_work_ += dt * reduce(size(), 0.0, std::plus<>(),
-                                 [this](std::size_t p) { return damping_power_[p]; });
     if (bonds_.any()) advance_bonds(dt);
     return given;
 }
@@ -286,7 +289,7 @@ Mat<double, D> TotalLagrangian<D>::motion_around(std::size_t p) const {
 }
 
 template <int D>
-void TotalLagrangian<D>::divide(const Division& division) {
+void TotalLagrangian<D>::divide(const Division& division, double opening) {
     for (const std::int32_t parent : division.parent) {
         const auto k = static_cast<std::size_t>(parent);
         bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
@@ -297,9 +300,11 @@ void TotalLagrangian<D>::divide(const Division& division) {
         else if (!gone(p))
             gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
     }
-    bonds_.part([this](std::uint32_t p, std::uint32_t j) {
+    auto apart = [this](std::uint32_t p, std::uint32_t j) {
         return gone(p) || gone(j) || body_[p] != body_[j];
-    });
+    };
+    bonds_.part(apart, opening);
+    find_spans();
     update_deformations();
 }
 

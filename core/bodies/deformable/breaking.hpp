@@ -3,6 +3,7 @@
 
 #include "bodies/deformable/advance.hpp"
 #include "bodies/elastic/advance_bonds.hpp"
+#include "bodies/elastic/settle_bonds.hpp"
 
 namespace doseki {
 
@@ -32,7 +33,25 @@ void TotalLagrangian<D>::find_bonds() {
         });
     }
     stress_.assign(size(), {}), spans_.assign(size(), 1);
-    turned_.assign(size(), 0), energy_.assign(size(), 0.0), released_by_.assign(size(), 0.0);
+}
+
+/// After bonds were taken out.
+template <int D>
+void TotalLagrangian<D>::find_spans() {
+    auto point = [this](std::size_t p) { return bond_point(p); };
+    auto all = [](std::uint32_t) { return true; };
+    for_each_particle(spans_.size(), [&](std::size_t p) {
+        spans_[p] = !body_of(p).breaks() || spans_space(bonds_.moment(p, point, all));
+    });
+}
+
+/// Point p as its bonds see it in a step.
+template <int D>
+BondPoint<D> TotalLagrangian<D>::bond_point(std::size_t p) const {
+    return {rest_[p],         solid_[p].x,      v[p],
+            deformation_[p],  correction_[p],   stress_[p],
+            solid_[p].volume, solid_[p].kappa,  number_[p],
+            spans_[p] != 0,   bonds_.settled(p)};
 }
 
 /// As update_point, with the matrix of the bonds that are left. Points whose bonds do not span the
@@ -42,13 +61,11 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
                                        const DeformationAccumulators<double, D>& sums,
                                        const Mat<double, D>& shape) {
     const DeformableBody& body = body_of(p);
-    const bool spanned = spans_[p] != 0;
-    spans_[p] = spans_space(shape);
-    turned_[p] = spanned != (spans_[p] != 0);
-    if (!spans_[p]) {
+    if (!spans_[p] || !determines_strain(shape)) {
         correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
-        solid_[p].Q = solid_[p].F_rate = solid_[p].spin = {}, solid_[p].F = deformation_[p];
-        solid_[p].kappa = solid_[p].kappa_rate = damping_power_[p] = 0.0;
+        solid_[p].Q = solid_[p].Q_damping = solid_[p].F_rate = solid_[p].spin = {},
+        solid_[p].F = deformation_[p];
+        solid_[p].kappa = solid_[p].kappa_rate = 0.0;
         return;
     }
     correction_[p] = inverse(shape, 0.0);
@@ -56,14 +73,6 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     solid_[p].kappa_rate = body.hourglass * body.viscosity();
     update_point(p, sums);
     stress_[p] = stress(p);
-}
-
-template <int D>
-void TotalLagrangian<D>::account_for(std::size_t p, const SpringSums<double, D>& sums) {
-    const ElasticRecord<D>& point = solid_[p];
-    const double before = energy_[p], strain = spans_[p] ? body_of(p).energy(point.F) : 0.0;
-    energy_[p] = point.volume * (strain + 0.5 * point.kappa * trace(sums.moments.square));
-    released_by_[p] = turned_[p] ? before - energy_[p] : 0.0;
 }
 
 /// For the places and velocities in the records.
@@ -79,22 +88,18 @@ template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
     update_deformations();
-    damp_springs();
+    if (springs_damp_) damp_springs();
     sum_over_pairs(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
 }
 
 template <int D>
 void TotalLagrangian<D>::advance_bonds(double dt) {
-    released_ +=
-        reduce(size(), 0.0, std::plus<>(), [this](std::size_t p) { return released_by_[p]; });
-    auto point = [this](std::size_t p) {
-        return BondPoint<D>{rest_[p],         solid_[p].x,     v[p],
-                            deformation_[p],  correction_[p],  stress_[p],
-                            solid_[p].volume, solid_[p].kappa, number_[p],
-                            spans_[p] != 0};
-    };
-    bonds_.advance(dt, point,
-                   [this](std::size_t p) -> const DeformableBody& { return body_of(p); });
+    auto point = [this](std::size_t p) { return bond_point(p); };
+    auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
+    bonds_.advance(dt, point, body);
+    bonds_.settle(
+        point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
+        [this](std::size_t p, bool spans) { spans_[p] = spans; });
 }
 
 }  // namespace doseki

@@ -83,10 +83,13 @@ public:
     const TotalLagrangian<D>& solids() const { return solids_; }
     std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
 
-    /// Whether the last push has broken bonds.
-    bool has_cracked() const { return solids_.bonds().change().broken > 0; }
-    /// Makes bodies of the parts of those that do not hold together any more, where there are any.
-    Fragments<D> divide();
+    /// Whether parts may have come off: the last push has broken bonds or ended broken ones.
+    bool has_cracked() const {
+        return solids_.bonds().change().broken > 0 || solids_.bonds().change().gone > 0;
+    }
+    /// Makes bodies of the parts of those that do not hold together any more, where there are any,
+    /// in a step `dt` whose forces have acted.
+    Fragments<D> divide(double dt);
     /// Ends the bonds between points with different labels, in the order of adding; only bodies
     /// that may break have bonds.
     void cut(std::span<const std::int32_t> label);

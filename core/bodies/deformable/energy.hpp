@@ -7,13 +7,13 @@
 
 namespace doseki {
 
-/// Eqs. (80), (83) and (109) of the places of now, in records of their own: those of the last step
+/// Eqs. (80), (83) and (109), in records of their own: those of the last step
 /// are what the next one goes on from.
 template <int D>
-ElasticEnergy TotalLagrangian<D>::elastic_energy() const {
+ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
     if (size() == 0) return {};
     Array<ElasticRecord<D>> solid = solid_;
-    for (std::size_t p = 0; p < size(); ++p) solid[p].x = x[p];
+    for (std::size_t p = 0; p < size(); ++p) solid[p].x = x[p] + ahead * v[p];
     const ElasticTerm<D> records{motion_, solid};
     Array<ElasticEnergy> energy(size());
     Array<BondPoint<D>> points(bonds_.any() ? size() : 0);
@@ -25,12 +25,14 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy() const {
     if (bonds_.any()) {
         auto bonded = [&](std::size_t p, const BondedDeformation<double, D>& sums) {
             solid[p].F = identity<double, D>(), solid[p].kappa = 0.0;
-            const bool spans = spans_space(sums.shape);
+            const bool spans = spans_[p] && determines_strain(sums.shape);
             const Mat<double, D> B = spans ? inverse(sums.shape, 0.0) : Mat<double, D>{};
             if (spans) strain(p, sums.now.place * B);
             const Mat<double, D>& F = solid[p].F;
-            points[p] = {rest_[p],  x[p],           v[p],       F,    B, body_of(p).stress(F),
-                         volume(p), solid[p].kappa, number_[p], spans};
+            points[p] = bond_point(p);
+            points[p].x = solid[p].x, points[p].F = F, points[p].B = B;
+            points[p].P = body_of(p).stress(F), points[p].kappa = solid[p].kappa;
+            points[p].spans = spans;
         };
         sum_over_pairs(BondedDeformationTerm<D>{{records}, bonds_.rows()}, bonded);
     } else {
@@ -39,22 +41,14 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy() const {
         };
         sum_over_pairs(DeformationTerm<D>{records}, whole);
     }
-    sum_springs(records, [&](std::size_t p, const SpringSums<double, D>& sums) {
-        energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.moments.square);
+    sum_springs(records, [&](std::size_t p, const MisfitMoments<double, D>& sums) {
+        energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.square);
     });
     ElasticEnergy sum;
     for (std::size_t p = 0; p < size(); ++p)
         if (!gone(p)) sum.strain += energy[p].strain, sum.springs += energy[p].springs;
     sum.opening = bonds_.opening([&points](std::size_t p) { return points[p]; },
                                  [this](std::size_t p) -> const auto& { return body_of(p); });
-    return sum;
-}
-
-template <int D>
-double TotalLagrangian<D>::pushed_energy() const {
-    double sum = -bonds_.change().work;
-    for (std::size_t p = 0; p < size(); ++p)
-        if (!gone(p)) sum += energy_[p];
     return sum;
 }
 

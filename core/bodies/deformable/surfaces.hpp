@@ -65,7 +65,8 @@ public:
     /// that there were stay in their `places`. Returns the new number of each, -1 of those that are
     /// no more.
     Array<std::int32_t> divide(const TotalLagrangian<D>& solids, const Division& division,
-                               std::span<const std::int32_t> before, const CrackPoints<D>& crack,
+                               std::span<const std::int32_t> before,
+                               const Array<std::uint32_t>& crack,
                                const Array<Vec<double, D>>& places);
     std::size_t first_contact_point() const { return first_contact_point_; }
     /// The number of a contact point after a division, with new numbers of vertices; `first`: that
@@ -240,7 +241,7 @@ template <int D>
 Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& solids,
                                                   const Division& division,
                                                   std::span<const std::int32_t> before,
-                                                  const CrackPoints<D>& crack,
+                                                  const Array<std::uint32_t>& crack,
                                                   const Array<Vec<double, D>>& places) {
     Array<std::pair<SurfaceVertex<D>, std::int32_t>> kept;  // and their number before
     auto divides = [&](std::uint32_t p) {
@@ -253,18 +254,11 @@ Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& soli
         for (const PlacedVertex& part : parts_of(solids, division, before, places))
             kept.push_back({part.vertex, part.number});
     else {
-        std::map<std::uint32_t, std::size_t> ball;
-        for (std::size_t v = 0; v < kept.size(); ++v) ball[kept[v].first.point] = v;
-        for (std::size_t k = 0; k < crack.point.size(); ++k) {
-            const std::uint32_t p = crack.point[k];
-            if (division.body[p] < 0) continue;
-            if (!ball.contains(p)) {
-                ball[p] = kept.size();
+        std::set<std::uint32_t> ball;
+        for (const auto& [vertex, number] : kept) ball.insert(vertex.point);
+        for (const std::uint32_t p : crack)
+            if (division.body[p] >= 0 && !ball.contains(p))
                 kept.push_back({{p, {}, 0, 0.5 * solids.body_of(p).spacing, p, 0}, -1});
-            }
-            double& radius = kept[ball[p]].first.radius;  // touches what is beyond, Eq. (122)
-            radius = std::min(radius, 0.5 * crack.apart[k]);
-        }
     }
     std::stable_sort(kept.begin(), kept.end(), [&](const auto& a, const auto& b) {
         return solids.body(a.first.point) < solids.body(b.first.point);

@@ -10,7 +10,7 @@ namespace doseki {
 
 template <int D>
 void Bonds<D>::index(std::size_t points) {
-    first_bond_.assign(points + 1, 0);
+    first_bond_.assign(points + 1, 0), settled_.assign(points, 0);
     for (std::size_t n = 1; n < size(); ++n)
         ++first_bond_[pairs_[n].a + 1], ++first_bond_[pairs_[n].b + 1];
     for (std::size_t p = 0; p < points; ++p) first_bond_[p + 1] += first_bond_[p];
@@ -55,20 +55,27 @@ public:
           share_(ends.weight * a.volume * b.volume) {}
 
     /// Of what the last change of the jump took, by the trapezoidal rule: half with the pull from
-    /// which it followed, half with that of the step after it.
-    double half_work() const { return half_work(pull()); }
+    /// which it followed, half with that of the step after it, but for points that are settled.
+    double half_work() const {
+        return (a_.settled ? 0.0 : half_work(pull_of(a_, at_rest()))) +
+               (b_.settled ? 0.0 : half_work(pull_of(b_, at_rest())));
+    }
+    /// The first half of one of the points, which are still as they were then.
+    double first_half(std::size_t p) const {
+        return half_work(pull_of(p == ends_.a ? a_ : b_, at_rest() - state_.change));
+    }
     /// `beside`: whether another bond of its points has a crack.
     BondChange take(double dt, bool beside) {
         if (!state_.cracked() && !begins(beside)) return {};
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
         pull_ = pull();
-        const double before = half_work(pull_);
+        const double before = half_work();
         state_.change = {};
         BondChange change = with_value(body_.law->fracture, [&](const auto& law) {
             return law.failed(crack) ? slide(place) : widen(law, crack, dt, place);
         });
-        change.before = before;
+        change.work += before;
         return change;
     }
 
@@ -87,14 +94,14 @@ private:
     Vec<double, D> now() const { return a_.x - b_.x; }
 
     /// Force over the weight with which point i resists a change of the jump, Eq. (109).
-    Vec<double, D> pull_of(const BondPoint<D>& i) const {
+    Vec<double, D> pull_of(const BondPoint<D>& i, const Vec<double, D>& at_rest) const {
         if (!i.spans) return {};
         const Mat<double, D> S = i.P * transposed(i.B);
-        const Vec<double, D> misfit = now() - i.F * at_rest();
-        return transposed(i.F) * (S * at_rest() + i.kappa * misfit) - transposed(S) * misfit;
+        const Vec<double, D> misfit = now() - i.F * at_rest;
+        return transposed(i.F) * (S * at_rest + i.kappa * misfit) - transposed(S) * misfit;
     }
     /// The same of both points.
-    Vec<double, D> pull() const { return pull_of(a_) + pull_of(b_); }
+    Vec<double, D> pull() const { return pull_of(a_, at_rest()) + pull_of(b_, at_rest()); }
     /// Its area over the weight, for a crack of this normal: an even stress across a plane pulls on
     /// all bonds that the plane cuts with the area of that plane.
     double area(const Vec<double, D>& normal) const {
@@ -116,23 +123,6 @@ private:
         }
         return max(place.stiffness, own / area(normal));
     }
-    /// Eq. (128): energy that point i loses with the bond to j, whose fit goes on without it. What
-    /// a point that the others do not span loses is counted where that is found.
-    double lost_by(const BondPoint<D>& i, const BondPoint<D>& j) const {
-        if (!i.spans) return 0.0;
-        const double weight = ends_.weight * j.volume;
-        const Vec<double, D> R = at_rest(), misfit = now() - i.F * R;
-        Mat<double, D> moment = inverse(i.B, 0.0), F = i.F;
-        add_outer(moment, -weight, R, R);
-        if (!spans_space(moment)) return 0.0;
-        const Vec<double, D> corrected = inverse(moment, 0.0) * R;
-        add_outer(F, -weight, misfit, corrected);
-        // That of the springs falls by more than its own, since the fit comes nearer to the rest.
-        const double springs =
-            0.5 * i.kappa * weight * dot(misfit, misfit) * (1.0 + weight * dot(R, corrected));
-        return i.volume * (body_.energy(i.F) - body_.energy(F) + springs);
-    }
-
     CrackSite site(const Vec<double, D>& normal) const {
         const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
         // With these shares, all bonds across a direction have the volume of the body.
@@ -176,7 +166,7 @@ private:
         const double work = set_jump(state_.jump + (crack.opening - state_.opening) * normal);
         state_.opening = crack.opening, state_.max_opening = crack.max_opening;
         state_.damage = crack.damage;
-        return {0.0, work, law.failed(crack) ? 1u : 0u};
+        return {work, law.failed(crack) ? 1u : 0u, 0};
     }
 
     /// A broken bond: its sides go apart without a force, press on each other where they meet, and
@@ -196,10 +186,9 @@ private:
         const double opening = max(0.0, before - ease * pressed);
         const double work = set_jump(state_.jump + slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
-        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {0.0, work, 0};
-        const double lost = lost_by(a_, b_) + lost_by(b_, a_);
-        state_.whole = 0.0;
-        return {0.0, work + half_work() + lost, 0};
+        if (norm(now() - mean_deformation() * rest_) < reach * norm(rest_)) return {work, 0, 0};
+        state_.whole = -1.0;
+        return {work, 0, 1};
     }
     Mat<double, D> mean_deformation() const {
         if (!a_.spans) return b_.F;
@@ -239,7 +228,8 @@ void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
             .take(dt, beside);
     });
-    work_ += change_.before + change_.work, broken_ += change_.broken;
+    work_ += change_.work, broken_ += change_.broken;
+    std::fill(settled_.begin(), settled_.end(), 0);
 }
 
 template <int D>

@@ -16,16 +16,29 @@
 
 namespace doseki {
 
-/// Whether bonds with this moment, 1 inside a body, tell of all strains. The inverse is 2 along an
-/// edge of a body; with few bonds it is so large that a point would be stiffer than the longest
-/// stable step allows.
+/// Whether bonds with this moment, 1 inside a body, tell of all strains.
+template <int D>
+bool determines_strain(const Mat<double, D>& moment) {
+    constexpr double min_determinant = 1e-6;
+    return determinant(moment) > min_determinant;
+}
+
+/// Whether they also do so well enough. The inverse is 2 along an edge of a body; with few bonds it
+/// is so large that a point would be stiffer than the longest stable step allows.
 template <int D>
 bool spans_space(const Mat<double, D>& moment) {
-    constexpr double min_determinant = 1e-6, largest = 5.0;
-    if (!(determinant(moment) > min_determinant)) return false;
+    constexpr double largest = 5.0;
+    if (!determines_strain(moment)) return false;
     double square = 0.0;
     for (const double element : inverse(moment, 0.0).element) square += element * element;
     return square <= largest * largest;
+}
+
+/// Of a step, from an energy at the places where its forces act, halfway and where those of the
+/// next one act: what an energy that is square in the places has less half its rise, and plus half
+/// its rise before.
+inline double across_step(double first, double half, double last) {
+    return 2.0 * half - 0.5 * (first + last);
 }
 
 /// What the sums over pairs need of a bond, for its first point: by how much a crack has lengthened
@@ -42,7 +55,7 @@ struct BondState {
     Vec<double, D> jump{};    // at rest: turns with the body
     Vec<double, D> normal{};  // of its crack at rest; zero before there is one
     Vec<double, D> change{};  // of the jump in the last step
-    double whole = 1.0;       // 0: it is gone for good
+    double whole = 1.0;       // 0: it is gone for good; -1: it goes in this step
     double opening = 0.0, max_opening = 0.0, damage = 0.0;  // see Crack
 
     bool cracked() const { return dot(normal, normal) > 0.0; }
@@ -82,16 +95,17 @@ struct BondPoint {
     double volume, kappa;  // at rest; stiffness of the springs
     std::uint32_t number;  // in the order in which points were added
     bool spans;            // whether its bonds span the space, so that it has a stress
+    bool settled;          // whether all is counted that the last step of its bonds took from it
 };
 
-/// What one step did to bonds: energy that went into them in it, by the step before that, and by
-/// this step [J], 2-D: [J/m], and how many ceased to bear tension.
+/// What one step did to bonds: energy that went into them [J], 2-D: [J/m], how many ceased to bear
+/// tension, and how many are gone.
 struct BondChange {
-    double before = 0.0, work = 0.0;
-    std::size_t broken = 0;
+    double work = 0.0;
+    std::size_t broken = 0, gone = 0;
 
     BondChange operator+(const BondChange& other) const {
-        return {before + other.before, work + other.work, broken + other.broken};
+        return {work + other.work, broken + other.broken, gone + other.gone};
     }
 };
 
@@ -119,7 +133,7 @@ public:
     }
     void clear() {
         pairs_.assign(1, BondEnds{}), state_.assign(1, {}), code_.clear(), first_code_.clear();
-        work_ = 0.0, change_ = {}, broken_ = 0;
+        work_ = 0.0, change_ = {}, broken_ = 0, settled_.clear();
     }
     /// Finds the bonds of each of `points` points, which were added in the order of their first.
     void index(std::size_t points);
@@ -149,10 +163,15 @@ public:
         }
         return whole > 0.0 ? 1.0 - left / whole : 0.0;
     }
+    /// Moment of the bonds of point p that are left, as they were at rest, Eq. (120).
+    /// Of those to points j for which counts(j).
+    template <class Point, class Counts>
+    Mat<double, D> moment(std::size_t p, const Point& point, const Counts& counts) const;
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
-    /// only as those of two bodies. What the last step did to any bond is in the energy then.
+    /// only as those of two bodies. What the last step did to any bond is counted: `opening`.
     template <class Apart>
-    void part(const Apart& apart) {
+    void part(const Apart& apart, double opening) {
+        work_ += opening;
         for (std::size_t n = 1; n < size(); ++n)
             if (apart(pairs_[n].a, pairs_[n].b)) {
                 broken_ += intactness(n) > 0.0;
@@ -173,12 +192,23 @@ public:
     /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody.
     template <class Point, class Body>
     void advance(double dt, const Point& point, const Body& body);
+    /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
+    /// share), the places after a share of a step; tells of the points that lost some whether the
+    /// space is spanned still: take_spans(p, spans).
+    template <class Point, class Body, class Place, class TakeSpans>
+    void settle(const Point& point, const Body& body, const Place& place,
+                const TakeSpans& take_spans);
+    bool settled(std::size_t p) const { return settled_[p] != 0; }
 
     void serialise(Archive& archive) {
         Array<BondState<D>> states(state_.begin() + 1, state_.end());
+        Array<std::uint8_t> settled = settled_;
         archive("bond_state", states), archive("bond_work", work_);
+        archive("bond_settled", settled);
         if (!archive.loads()) return;
         expect_fit(states.size() + 1 == size() && std::isfinite(work_), "bond_state");
+        expect_fit(settled.size() == settled_.size(), "bond_settled");
+        settled_ = settled;
         for (const BondState<D>& s : states) expect_state(s);
         std::copy(states.begin(), states.end(), state_.begin() + 1);
         broken_ = 0;
@@ -186,9 +216,19 @@ public:
     }
 
 private:
+    enum class Moment { before, now };  // of a step in which bonds go
+
     double intactness(std::size_t n) const {
         return state_[n].whole == 0.0 ? 0.0 : 1.0 - state_[n].damage;
     }
+    template <class Point, class Body, class Place, class Counts>
+    double energy(std::size_t p, Moment moment, const Point& point, const Body& body,
+                  const Place& place, const Counts& counts) const;
+    template <class Point, class Body, class Place, class Counts>
+    double energy_across(std::size_t p, Moment moment, const Point& point, const Body& body,
+                         const Place& place, const Counts& counts) const;
+    template <class Point, class Body>
+    double first_halves(std::size_t p, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {
         bool good = (s.whole == 0.0 || s.whole == 1.0) && s.damage >= 0.0 && s.damage <= 1.0 &&
                     s.opening >= 0.0 && s.max_opening >= s.opening && std::isfinite(s.max_opening);
@@ -204,6 +244,7 @@ private:
     Array<std::uint32_t> bond_;
     Array<std::uint32_t> code_;
     Array<std::size_t> first_code_;
+    Array<std::uint8_t> settled_;  // see BondPoint
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;

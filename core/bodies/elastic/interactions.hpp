@@ -66,56 +66,50 @@ struct DeformationTerm : ElasticTerm<D> {
     }
 };
 
-template <class T, int D>
-struct SpringSums {
-    MisfitMoments<T, D> moments;
-    T square_rate{};  // of de/dt, with the weights of the fit
-
-    template <class F, class... Self>
-    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.moments...), f(self.square_rate...);
-    }
-};
-
-/// What Eq. (83a), the energy of the springs of Eq. (83) and the power of their dampers need.
+/// What Eq. (83a) and the energy of the springs of Eq. (83) need.
 template <int D>
 struct SpringTerm : ElasticTerm<D> {
     template <class T>
-    using Accumulators = SpringSums<T, D>;
+    using Accumulators = MisfitMoments<T, D>;
 
     template <class T>
-    DOSEKI_FN void add(SpringSums<T, D>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                       const ElasticPoint<T, D>& j) const {
+    DOSEKI_FN void add(MisfitMoments<T, D>& sums, const Pair<T, D>& pair,
+                       const ElasticPoint<T, D>& i, const ElasticPoint<T, D>& j) const {
         const T weight = -(j.volume * WendlandC2<D>::gradient_factor(pair.r, i.inverse_support));
         const Vec<T, D> rate = i.v - j.v - i.F_rate * pair.r_ij;
-        sums.moments.add(weight, i.x - j.x - i.F * pair.r_ij, rate);
-        sums.square_rate += weight * dot(rate, rate);
+        sums.add(weight, i.x - j.x - i.F * pair.r_ij, rate);
     }
 };
 
-/// sum w |de/dt - Omega e|^2 over the pairs of a point.
-template <int D>
-double damped_square(const SpringSums<double, D>& sums, const Mat<double, D>& spin) {
-    const Mat<double, D>&C = sums.moments.square, &N = sums.moments.rate;
-    return sums.square_rate - 2.0 * trace(spin * transposed(N)) +
-           trace(spin * C * transposed(spin));
-}
+/// Per volume at rest.
+template <class T, int D>
+struct InternalForce {
+    Vec<T, D> all{}, damping{};  // the share of both dampers in it
 
-/// Eq. (83): force per volume at rest.
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.all...), f(self.damping...);
+    }
+};
+
+/// Eqs. (83) and (83a).
 template <int D>
 struct InternalForceTerm : ElasticTerm<D> {
     template <class T>
-    using Accumulators = Vec<T, D>;
+    using Accumulators = InternalForce<T, D>;
 
     template <class T>
-    DOSEKI_FN void add(Vec<T, D>& force, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                       const ElasticPoint<T, D>& j) const {
+    DOSEKI_FN void add(InternalForce<T, D>& force, const Pair<T, D>& pair,
+                       const ElasticPoint<T, D>& i, const ElasticPoint<T, D>& j) const {
         const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         const Vec<T, D> elastic =
             elastic_pair_force(i.Q, j.Q, i.kappa + j.kappa, pair.r_ij, i.x - j.x);
         const Vec<T, D> damping =
             (i.kappa_rate + j.kappa_rate) * (i.v - j.v) - (i.spin + j.spin) * (i.x - j.x);
-        force = force + (j.volume * F) * (elastic + damping);
+        const T weight = j.volume * F;
+        force.all = force.all + weight * (elastic + damping);
+        force.damping =
+            force.damping + weight * ((i.Q_damping + j.Q_damping) * pair.r_ij + damping);
     }
 };
 

@@ -10,12 +10,14 @@ struct ElasticFields {
     T volume;             // at rest [m^D]
     T kappa, kappa_rate;  // stiffness [Pa] and damping [Pa s] of the springs
     Mat<T, D> Q;          // see less_springs
+    Mat<T, D> Q_damping;  // the share of both dampers in it
     Mat<T, D> F, F_rate;  // deformation gradient, and how fast it changes
     Mat<T, D> spin;       // of the misfits, Eq. (83a), times kappa_rate
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.x...), f(self.volume...), f(self.kappa...), f(self.kappa_rate...), f(self.Q...);
+        f(self.Q_damping...);
         f(self.F...), f(self.F_rate...), f(self.spin...);
     }
 };

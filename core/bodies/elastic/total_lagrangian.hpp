@@ -20,8 +20,6 @@ template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
-template <class T, int D>
-struct SpringSums;
 
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
@@ -122,28 +120,32 @@ public:
     /// The place that goes with point p by this, from `offset` at rest: shares of points, which add
     /// up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
-    /// Whether those of its neighbours to which point p holds span the space; holds(j).
+    /// Moment of the pairs of point p with those neighbours for which holds(j), as they were at
+    /// rest.
     template <class Holds>
-    bool is_spanned(std::size_t p, const Holds& holds) const {
-        return spans_space(shape_around(p, holds));
-    }
+    Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
+    /// Whether the bonds of a point span the space, so that it has a stress.
+    bool spans(std::size_t p) const { return spans_[p] != 0; }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
-    /// of different ones end.
-    void divide(const Division& division);
+    /// of different ones end; what cracks took in this step is counted: `opening`.
+    void divide(const Division& division, double opening);
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
     const Mat<double, D>& deformation(std::size_t p) const { return deformation_[p]; }
     /// First Piola-Kirchhoff stress without damping.
     Mat<double, D> stress(std::size_t p) const { return body_of(p).stress(deformation_[p]); }
-    /// Of where points are now; changes nothing.
-    ElasticEnergy elastic_energy() const;
-    /// Of breakable bodies where the last push found them, less what cracks took since.
-    double pushed_energy() const;
+    /// Of where points will be in a time `ahead`; changes nothing.
+    ElasticEnergy elastic_energy(double ahead = 0.0) const;
+    /// Of the places on the way of a step `dt`, as forces find it: across_step.
+    double energy_across(double dt) const {
+        auto at = [&](double share) { return elastic_energy(share * dt).sum(); };
+        return across_step(at(0.0), at(0.5), at(1.0));
+    }
     double kinetic_energy() const;
     /// Energy that cracks, but for ElasticEnergy::opening, and that damping took so far [J], 2-D:
     /// [J/m].
-    double fracture_work() const { return bonds_.work() + released_; }
+    double fracture_work() const { return bonds_.work(); }
     double damping_work() const { return damping_work_; }
 
     /// Of bodies that may break: which pairs hold, how many do not, what the last step did.
@@ -151,7 +153,8 @@ public:
     /// Ends for good the bonds between points a and b for which apart(a, b): those of two bodies.
     template <class Apart>
     void part_bonds(const Apart& apart) {
-        bonds_.part(apart);
+        bonds_.part(apart, elastic_energy().opening);
+        find_spans();
     }
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
@@ -188,11 +191,9 @@ public:
             stable_step_ = stable_step;
         }
         bonds_.serialise(archive);
-        archive("elastic_damping_work", damping_work_), archive("elastic_released", released_);
-        archive("elastic_energy", energy_);
-        expect_fit(std::isfinite(damping_work_) && std::isfinite(released_),
-                   "elastic_damping_work");
-        expect_fit(energy_.size() == (bonds_.any() ? size() : 0), "elastic_energy");
+        if (archive.loads()) find_spans();
+        archive("elastic_damping_work", damping_work_);
+        expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
     }
 
     Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
@@ -219,8 +220,6 @@ private:
     double pair_weight(std::size_t j, const Vec<double, D>& R) const {
         return -volume(j) * WendlandC2<D>::gradient_factor(norm(R), 1.0 / body_of(j).support());
     }
-    template <class Holds>
-    Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     Vec<double, D> room_for(const DeformableBody& body, std::span<const Vec<double, D>> position);
     void sort();
     void number_points() {
@@ -237,7 +236,6 @@ private:
     void update_point(std::size_t p, const DeformationAccumulators<double, D>& sums);
 
     void damp_springs();
-    void account_for(std::size_t p, const SpringSums<double, D>& sums);
 
     template <class Term, class Epilogue>
     void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
@@ -247,6 +245,8 @@ private:
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
+    void find_spans();
+    BondPoint<D> bond_point(std::size_t p) const;
     template <class F>
     void sum_bonded_forces(const F& take);
     void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
@@ -266,14 +266,9 @@ private:
     Array<MotionRecord<double, D>> motion_;
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
-    Array<Mat<double, D>> stress_;  // of breakable bodies, without damping
-    // Whether the bonds of a point span the space, and whether that has changed in this step.
-    Array<std::uint8_t> spans_, turned_;
-    Array<double> damping_power_;  // of each point
-    // Of breakable bodies: elastic energy of each point in the last step, and what points lost when
-    // the bonds that are left ceased to span them.
-    Array<double> energy_, released_by_;
-    double released_ = 0.0;
+    Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
+    Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (120)
+    Array<Vec<double, D>> damping_force_;  // on each point, of both dampers [N], 2-D: [N/m]
     double damping_work_ = 0.0;
     bool springs_damp_ = false;
     double stable_step_ = std::numeric_limits<double>::max();  // for bodies at rest [s]

@@ -10,25 +10,19 @@
 
 namespace doseki {
 
-/// Points that have lost neighbours to another part, and by how much the nearest of these is away
-/// now [m].
+/// Points that have lost neighbours to another part.
 template <int D>
-struct CrackPoints {
-    Array<std::uint32_t> point;
-    Array<double> apart;
-};
-
-template <int D>
-CrackPoints<D> crack_points(const TotalLagrangian<D>& solids, std::span<const std::int32_t> before,
-                            std::span<const std::int32_t> after) {
-    CrackPoints<D> crack;
+Array<std::uint32_t> crack_points(const TotalLagrangian<D>& solids,
+                                  std::span<const std::int32_t> before,
+                                  std::span<const std::int32_t> after) {
+    Array<std::uint32_t> crack;
     for (std::uint32_t p = 0; p < solids.size(); ++p) {
         if (before[p] < 0) continue;
-        double least = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t j : solids.pairs_of(p))
-            if (before[j] == before[p] && after[j] != after[p])
-                least = std::min(least, norm(solids.x[j] - solids.x[p]));
-        if (std::isfinite(least)) crack.point.push_back(p), crack.apart.push_back(least);
+        const Array<std::uint32_t> pairs = solids.pairs_of(p);
+        if (std::ranges::any_of(pairs, [&](std::uint32_t j) {
+                return before[j] == before[p] && after[j] != after[p];
+            }))
+            crack.push_back(p);
     }
     return crack;
 }
@@ -36,13 +30,13 @@ CrackPoints<D> crack_points(const TotalLagrangian<D>& solids, std::span<const st
 /// Normals at rest, outwards, and depths below the surface of all points, for which the faces of
 /// new cracks are surfaces too: halfway to the nearest points beyond.
 template <int D>
-void turn_to_cracks(const TotalLagrangian<D>& solids, const CrackPoints<D>& crack,
+void turn_to_cracks(const TotalLagrangian<D>& solids, const Array<std::uint32_t>& crack,
                     std::span<const std::int32_t> before, std::span<const std::int32_t> after,
                     Array<Vec<double, D>>& normal, Array<double>& depth) {
     constexpr double reach = 4.0;     // spacings: deeper ones meet no fluid
     constexpr double as_near = 0.25;  // spacings: two faces count as equally near
     Array<Box<D>> places;
-    for (const std::uint32_t q : crack.point)
+    for (const std::uint32_t q : crack)
         places.push_back({solids.rest_position(q), solids.rest_position(q)});
     const BoxTree<D> tree(places);
     for (std::size_t p = 0; p < solids.size(); ++p) {
@@ -51,7 +45,7 @@ void turn_to_cracks(const TotalLagrangian<D>& solids, const CrackPoints<D>& crac
         double square = reach * reach * spacing * spacing, nearest = reach * spacing;
         Vec<double, D> towards{};
         tree.visit_near(solids.rest_position(p), square, [&](std::uint32_t k) {
-            const std::uint32_t q = crack.point[k];
+            const std::uint32_t q = crack[k];
             const Vec<double, D> r = solids.rest_position(q) - solids.rest_position(p);
             const double distance = norm(r);
             if (before[q] != before[p] || after[q] == after[p] || distance >= reach * spacing)

@@ -1,4 +1,4 @@
-"""Bars that are pulled and discs that are pressed until they break; 2-D."""
+"""Bars that are pulled and discs that are pressed until they break."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEDGER = ("kinetic_energy", "strain_energy", "spring_energy", "fracture_work", "
 def bodies_of(
     core: ModuleType, rest: np.ndarray, spacing: float, clamped: np.ndarray, **material: Any
 ) -> Any:
-    """One started body of rock in 2-D, at rest."""
+    """One started body of rock, at rest."""
     bodies = getattr(core, f"ElasticBodies{rest.shape[1]}")()
     table = ELASTIC_DEFAULTS | ROCK | {"spacing": spacing} | material
     if table["fracture"] != "cohesive":
@@ -56,28 +56,41 @@ def total(state: dict[str, Any]) -> float:
 
 
 class Bar:
-    """A bar of 5 by 2 cm, held at one end and pulled at the other; a notch decides where it breaks.
+    """A bar 2 cm wide, held at one end and pulled at the other; a notch decides where it breaks.
 
-    Its Poisson's ratio is 0, so that the clamps leave the stress even.
+    Its Poisson's ratio is 0, so that the clamps leave the stress even. `length` in m; `turn` is a
+    rotation of the whole.
     """
 
-    length, width = 0.05, 0.02
+    width = 0.02
 
-    def __init__(self, core: ModuleType, across: int, rows_cut: int = 1, **material: Any) -> None:
+    def __init__(
+        self,
+        core: ModuleType,
+        across: int,
+        rows_cut: int = 1,
+        dim: int = 2,
+        length: float = 0.05,
+        turn: np.ndarray | None = None,
+        **material: Any,
+    ) -> None:
         self.material = GRANITE | {"poisson_ratio": 0.0} | material
+        self.length, self.turn = length, np.eye(dim) if turn is None else turn
         spacing = self.width / across
-        points = lattice((2 * round(0.5 * self.length / spacing), across), spacing)
-        side = np.abs(points[:, 1]) > 0.5 * self.width - (rows_cut + 0.01) * spacing
-        points = points[~(side & (np.abs(points[:, 0]) < 0.75 * spacing))]
+        along = 2 * round(0.5 * self.length / spacing)
+        points = lattice((along,) + (dim - 1) * (across,), spacing)
+        sides = np.abs(points[:, 1:]) > 0.5 * self.width - (rows_cut + 0.01) * spacing
+        points = points[~(sides.any(1) & (np.abs(points[:, 0]) < 0.75 * spacing))]
         end = np.abs(points[:, 0]).max() - 1.5 * spacing
         self.points, self.clamped = points, np.abs(points[:, 0]) > end
-        self.area = self.width - 2 * rows_cut * spacing
-        self.bodies = bodies_of(core, points, spacing, self.clamped, **self.material)
+        self.area = (self.width - 2 * rows_cut * spacing) ** (dim - 1)
+        placed = points @ self.turn.T
+        self.bodies = bodies_of(core, placed, spacing, self.clamped, **self.material)
         self.rows: list[tuple[float, float, float]] = []
 
     @property
     def fracture_energy(self) -> float:
-        """Of the crack, J/m."""
+        """Of the crack, J, in 2-D J/m."""
         return self.material["fracture_energy"] * self.area
 
     def pull(self, by: float, slowness: float = 320.0, rows: int = 200) -> Bar:
@@ -86,11 +99,11 @@ class Bar:
         velocity = np.zeros_like(self.points)
         share = np.clip(self.points[:, 0] / self.length + 0.5, 0, 1)
         velocity[:, 0] = np.where(self.clamped, np.round(share), share) * by / time
-        self.bodies.set_velocity(velocity)
+        self.bodies.set_velocity(velocity @ self.turn.T)
         for _ in range(rows):
             self.bodies.advance(time / rows)
             state = self.bodies.state()
-            stress = state["stress"][~self.clamped, 0, 0].mean()
+            stress = (self.turn.T @ state["stress"] @ self.turn)[~self.clamped, 0, 0].mean()
             self.rows.append((stress, state["fracture_work"], total(state)))
         return self
 
@@ -110,12 +123,21 @@ class Bar:
 
 
 class Disc:
-    """A disc of 5 cm, pressed along y on two arcs of twice `arc` degrees (the Brazilian test)."""
+    """A disc of 5 cm, pressed along y on two arcs of twice `arc` degrees (the Brazilian test).
+
+    Its lattice is turned by `angle`, degrees; with `layers` it is a cylinder of so many of them.
+    """
 
     diameter = 0.05
 
     def __init__(
-        self, core: ModuleType, across: int, angle: float, arc: float = 8.0, **material: Any
+        self,
+        core: ModuleType,
+        across: int,
+        angle: float,
+        arc: float = 8.0,
+        layers: int = 0,
+        **material: Any,
     ) -> None:
         self.arc, self.spacing = arc, self.diameter / across
         points = lattice((across + 4, across + 4), self.spacing)
@@ -123,8 +145,12 @@ class Disc:
         turn = np.radians(angle)
         matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         self.points = points @ matrix.T
+        self.depth = layers * self.spacing if layers else 1.0  # m
+        if layers:
+            along = np.repeat(lattice((layers,), self.spacing), len(points), axis=0)
+            self.points = np.hstack([np.tile(self.points, (layers, 1)), along])
         self.material = material
-        none = np.zeros(len(points), bool)
+        none = np.zeros(len(self.points), bool)
         self.bodies = bodies_of(core, self.points, self.spacing, none, **material)
 
     def press(self, slowness: float = 300.0, most: float = 1.2) -> Disc:
@@ -143,7 +169,8 @@ class Disc:
         self, start: float, end: float, time: float, course: Callable[[float], float]
     ) -> bool:
         """Whether it split while the load went between these parts of what it should bear."""
-        expected, steps = 0.5 * np.pi * self.diameter * self.material["tensile_strength"], 300
+        face = 0.5 * np.pi * self.diameter * self.depth
+        expected, steps = face * self.material["tensile_strength"], 300
         for step in range(steps):
             self.load = expected * (start + (end - start) * course((step + 0.5) / steps))
             self.bodies.set_load(self.load * self.pressed)
@@ -159,7 +186,7 @@ class Disc:
         Those of an arc go through the middle of the disc: where the lattice is turned, equal ones
         would be a couple, and the disc would roll between the arcs.
         """
-        x, y = self.points.T
+        x, y = self.points.T[:2]
         near = np.hypot(x, y) > 0.5 * self.diameter - 2 * self.spacing
         arc = near & (np.abs(np.degrees(np.arctan2(x, np.abs(y)))) < self.arc)
         force = np.zeros_like(self.points)
@@ -179,7 +206,7 @@ class Disc:
     @property
     def split(self) -> float:
         """Part of the loaded diameter, its ends left out, along which bonds are broken."""
-        x, y = self.broken.T
+        x, y = self.broken.T[:2]
         core = (np.abs(x) < 0.15 * self.diameter) & (np.abs(y) < 0.4 * self.diameter)
         rows = np.unique(np.round(y[core] / (2 * self.spacing)))
         return len(rows) * 2 * self.spacing / (0.8 * self.diameter)
@@ -187,7 +214,7 @@ class Disc:
     @property
     def strength(self) -> float:
         """2P/(pi d t) when it split, Pa."""
-        return 2 * self.load / (np.pi * self.diameter)
+        return 2 * self.load / (np.pi * self.diameter * self.depth)
 
     @property
     def off_the_diameter(self) -> float:

@@ -139,11 +139,14 @@ radius = 0.2
 """
 
 
-def test_in_space_nothing_breaks_yet(load):
+def test_bodies_in_space_need_eight_particles_across_too(load):
     clay = CLAY.replace("dim = 2", "dim = 3").replace("[0, 0]", "[0, 0, 0]")
-    with pytest.raises(UserError, match="break in 2-D only"):
-        build_scene(load(clay + BALL))
-    build_scene(load(clay.split("fracture =")[0] + BALL))
+    simulation, _ = build_simulation(load(clay + BALL))
+    assert len(simulation.fragments()["mass"]) == 1
+    with pytest.raises(UserError, match="needs at least 8"):
+        build_scene(load(clay + BALL, "body.left.radius=0.07"))
+    simulation, _ = build_simulation(load(clay.split("fracture =")[0] + BALL))
+    assert len(simulation.fragments()["mass"]) == 0
 
 
 def test_cracks_that_points_do_not_resolve_are_a_warning(load):

@@ -10,6 +10,7 @@ import pytest
 from .breaking import ROCK, Bar
 
 SEEDS = range(1, 31)
+LENGTH = 0.05  # m, of a small bar
 STRAIN = 2e-4  # below which a bar of 1e-3 m3 has one flaw
 
 
@@ -19,20 +20,21 @@ class Bars:
     def __init__(self, core, m, size=1.0, count=(1, 1), rows=8):
         """`count` times as many points along and across as a bar of `rows`; all `size` as large."""
         self.core, self.across, self.m = core, count[1] * rows, m
-        sizes = {"length": size * count[0] * Bar.length, "width": size * count[1] * Bar.width}
-        self.kind = type("SizedBar", (Bar,), sizes)
-        self.volume = sizes["length"] * sizes["width"]  # m3: in 2-D a body is 1 m across
+        self.length = size * count[0] * LENGTH
+        self.kind = type("SizedBar", (Bar,), {"width": size * count[1] * Bar.width})
+        self.volume = self.length * self.kind.width  # m3: in 2-D a body is 1 m across
         self.flaws = {
             "fracture": "grady_kipp", "weibull_m": m,
-            "weibull_k": 1 / (Bar.length * Bar.width * STRAIN**m),
+            "weibull_k": 1 / (LENGTH * Bar.width * STRAIN**m),
         }  # fmt: skip
 
     def strengths(self, seeds=SEEDS, slowness=40.0):
         """Highest mean stress of each, Pa."""
         found = []
         for seed in seeds:
-            bar = self.kind(self.core, self.across, rows_cut=0, **self.flaws, flaw_seed=seed)
-            bar.pull(2.5 * STRAIN * self.kind.length, slowness, rows=150)
+            flaws = self.flaws | {"flaw_seed": seed}
+            bar = self.kind(self.core, self.across, rows_cut=0, length=self.length, **flaws)
+            bar.pull(2.5 * STRAIN * self.length, slowness, rows=150)
             found.append(bar.stress.max())
             assert bar.stress[-1] < 0.97 * found[-1], "it did not break"
         return np.array(found)

@@ -1,13 +1,15 @@
-"""Bodies that break: strength, fracture energy, and the direction of the lattice; 2-D."""
+"""Bodies that break: strength, fracture energy, and the direction of the lattice."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from .breaking import GRANITE, Bar, Disc, pieces
 
 OPENING = 2e-5  # m, at which a crack of the granite bears nothing
+SPACE = {"dim": 3, "length": 0.03}  # of a bar that is as thick as wide
 BRITTLE = GRANITE | {"fracture_energy": 10.0}  # opens over 5 mm, a tenth of the disc
 
 
@@ -26,6 +28,35 @@ def test_a_bar_breaks_at_its_strength(core):
 def test_a_crack_takes_its_fracture_energy(core, across):
     """Whatever the spacing; pulled a third as far, it has not."""
     bar = Bar(core, across=across).pull(1.5 * OPENING)
+    assert len(pieces(bar.bodies)) == 2
+    assert bar.taken == pytest.approx(bar.fracture_energy, rel=0.05)
+    assert bar.work_at(0.33) < 0.8 * bar.fracture_energy
+
+
+def test_a_bar_in_space_breaks_at_its_strength(core):
+    """Without a notch; one that does not break bears more."""
+    bar = Bar(core, across=8, rows_cut=0, **SPACE).pull(1.2 * OPENING, slowness=40)
+    assert bar.stress.max() == pytest.approx(GRANITE["tensile_strength"], rel=0.05)
+    whole = Bar(core, across=8, rows_cut=0, fracture="none", **SPACE)
+    assert whole.pull(1.2 * OPENING, slowness=40).stress.max() > 2 * GRANITE["tensile_strength"]
+
+
+def test_how_a_bar_lies_in_space_does_not_matter(core):
+    turn = Rotation.from_euler("xyz", [30, 40, 50], degrees=True).as_matrix()
+    straight, turned = (
+        Bar(core, across=8, turn=matrix, **SPACE).pull(1.5 * OPENING, slowness=20, rows=50)
+        for matrix in (None, turn)
+    )
+    assert len(pieces(straight.bodies)) == 2
+    assert pieces(turned.bodies) == pieces(straight.bodies)
+    np.testing.assert_allclose(turned.stress, straight.stress, rtol=0, atol=1e-6 * 10e6)
+    assert turned.taken == pytest.approx(straight.taken, rel=1e-6)
+
+
+@pytest.mark.full
+def test_a_crack_in_space_takes_its_fracture_energy(core):
+    """Per area; pulled a third as far, it has not."""
+    bar = Bar(core, across=8, **SPACE).pull(1.5 * OPENING)
     assert len(pieces(bar.bodies)) == 2
     assert bar.taken == pytest.approx(bar.fracture_energy, rel=0.05)
     assert bar.work_at(0.33) < 0.8 * bar.fracture_energy
@@ -61,6 +92,15 @@ def test_a_disc_of_twice_the_strength_splits_at_twice_the_load(core):
     }  # fmt: skip
     disc = Disc(core, across=20, angle=0.0, **strong).press()
     assert disc.strength == pytest.approx(2 * STRENGTH, rel=0.10)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("angle", [0.0, 20.0, 45.0])
+def test_a_cylinder_splits_at_its_tensile_strength(core, angle):
+    """The same in 3-D, four points thick."""
+    cylinder = Disc(core, across=20, angle=angle, layers=4, **BRITTLE).press()
+    assert cylinder.strength == pytest.approx(BRITTLE["tensile_strength"], rel=0.10)
+    assert cylinder.off_the_diameter < 0.1
 
 
 def test_flaws_decide_where_a_bar_breaks(core):

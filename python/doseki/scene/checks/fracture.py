@@ -46,8 +46,8 @@ class CoarseCrack(Finding):
 def fracture_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) -> Iterator[Finding]:
     """What is doubtful about the bodies of materials that break.
 
-    Raises UserError for a breakable body in 3-D or with too few points across, and for a key of
-    fracture on a body that has no use for it.
+    Raises UserError for a breakable body with too few points across, and for a key of fracture on
+    a body that has no use for it.
     """
     for group in groups:
         body = bodies[group.name]
@@ -67,11 +67,6 @@ def fracture_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) -> I
 
 
 def _breakable(body: Body[Any], group: Group, material: Material) -> Iterator[Finding]:
-    if body.scenario.dim != 2:
-        raise body.error(
-            ": elastic bodies break in 2-D only; take a material with "
-            f'fracture = "{NO_FRACTURE}", or dim = 2'
-        )
     width = min(shape.width for shape in group.shapes)
     across = width / body.spacing
     if across < MIN_ACROSS_BREAKABLE - 1e-6:

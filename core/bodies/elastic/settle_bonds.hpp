@@ -1,0 +1,110 @@
+#pragma once
+// What it takes to end bonds.
+
+#include "bodies/elastic/advance_bonds.hpp"
+
+namespace doseki {
+
+template <int D>
+template <class Point, class Counts>
+Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point, const Counts& counts) const {
+    Mat<double, D> sum{};
+    const BondPoint<D> own = point(p);
+    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+        const BondEnds& ends = pairs_[bond_[k]];
+        const std::uint32_t j = ends.a == p ? ends.b : ends.a;
+        if (state_[bond_[k]].whole <= 0.0 || !counts(j)) continue;
+        const BondPoint<D> other = point(j);
+        const Vec<double, D> R = own.rest - other.rest;
+        add_outer(sum, ends.weight * other.volume, R, R);
+    }
+    return sum;
+}
+
+/// Of strain and springs of a point, Eqs. (80) and (83) with the bonds that there are at a moment.
+template <int D>
+template <class Point, class Body, class Place, class Counts>
+double Bonds<D>::energy(std::size_t p, Moment moment, const Point& point, const Body& body,
+                        const Place& place, const Counts& counts) const {
+    struct Side {
+        double weight;
+        Vec<double, D> R, r;
+    };
+    Array<Side> sides;
+    const BondPoint<D> own = point(p);
+    Mat<double, D> moved{}, shape{};
+    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+        const BondEnds& ends = pairs_[bond_[k]];
+        const BondState<D>& state = state_[bond_[k]];
+        const std::uint32_t j = ends.a == p ? ends.b : ends.a;
+        if ((moment == Moment::before ? state.whole == 0.0 : state.whole <= 0.0) || !counts(j))
+            continue;
+        const BondPoint<D> other = point(j);
+        const Vec<double, D> jump =
+            moment == Moment::before ? state.jump - state.change : state.jump;
+        const Side side{ends.weight * other.volume,
+                        own.rest - other.rest + (ends.a == p ? 1.0 : -1.0) * jump,
+                        place(p) - place(j)};
+        add_outer(moved, side.weight, side.r, side.R),
+            add_outer(shape, side.weight, side.R, side.R);
+        sides.push_back(side);
+    }
+    if (!determines_strain(shape)) return 0.0;
+    const Mat<double, D> F = moved * inverse(shape, 0.0);
+    double springs = 0.0;
+    for (const Side& side : sides) {
+        const Vec<double, D> misfit = side.r - F * side.R;
+        springs += side.weight * dot(misfit, misfit);
+    }
+    return own.volume * (body(p).energy(F) + 0.5 * own.kappa * springs);
+}
+
+/// What is counted already of what the step takes from point p alone.
+template <int D>
+template <class Point, class Body>
+double Bonds<D>::first_halves(std::size_t p, const Point& point, const Body& body) {
+    double sum = 0.0;
+    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+        const BondEnds& ends = pairs_[bond_[k]];
+        BondState<D>& state = state_[bond_[k]];
+        if (state.whole != 0.0 && state.cracked())
+            sum +=
+                BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).first_half(p);
+    }
+    return sum;
+}
+
+/// What the forces of the step find of the energy of a point, Eq. (128): between the places at
+/// which they act they follow the trapezoidal rule, so that the curvature on the way is not in it.
+template <int D>
+template <class Point, class Body, class Place, class Counts>
+double Bonds<D>::energy_across(std::size_t p, Moment moment, const Point& point, const Body& body,
+                               const Place& place, const Counts& counts) const {
+    auto at = [&](double share) {
+        return energy(
+            p, moment, point, body, [&](std::size_t k) { return place(k, share); }, counts);
+    };
+    return across_step(at(0.0), at(0.5), at(1.0));
+}
+
+template <int D>
+template <class Point, class Body, class Place, class TakeSpans>
+void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
+                      const TakeSpans& take_spans) {
+    if (change_.gone == 0) return;
+    const auto all = [](std::uint32_t) { return true; };
+    for (std::size_t n = 1; n < size(); ++n)
+        if (state_[n].whole < 0.0) settled_[pairs_[n].a] = settled_[pairs_[n].b] = 1;
+    for (std::size_t p = 0; p < settled_.size(); ++p) {
+        if (!settled_[p] || !point(p).spans) continue;
+        const bool spans = spans_space(moment(p, point, all));
+        work_ += energy_across(p, Moment::before, point, body, place, all) -
+                 first_halves(p, point, body);
+        if (spans) work_ -= energy_across(p, Moment::now, point, body, place, all);
+        take_spans(p, spans);
+    }
+    for (BondState<D>& state : state_)
+        if (state.whole < 0.0) state.whole = 0.0, state.change = {};
+}
+
+}  // namespace doseki

@@ -1,0 +1,85 @@
+"""The account of energy closes where a ball breaks in 3-D, whatever its lattice."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.assess.trust.ledger import ledger_of
+from doseki.record.history import BODY_ENERGIES
+from doseki.record.reader import load
+from doseki.running.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
+
+from ..small_scenarios import CHALK
+from .test_ledger_of_breaking import gap, without
+
+DROP = """
+schema = 1
+dim = 3
+dp = 0.01
+scheme = "resolved"
+speed_max = 9
+time_max = 0.0015
+time_out = 0.0015
+time_history = 0.00005
+gravity = {gravity}
+
+[body.ball]
+shape = "sphere"
+material = "chalk"
+kinematics = "elastic"
+centre = {centre}
+radius = 0.05
+velocity = {velocity}
+{turn}
+
+[body.plate]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = {low}
+max = {high}
+"""
+TURN = "rotate = 25\nrotate_axis = [1, 2, 0.5]"
+SPEED = 6.0  # m/s
+
+
+def drop(folder, axis, turn=""):
+    """The record of a ball that strikes a plate along an axis, its lattice turned or not."""
+    up = np.eye(3)[axis]
+    low, high = -0.1 + 0.07 * up, 0.1 * (1 - up)
+    values = {
+        "gravity": -9.81 * up,
+        "centre": 0.0505 * up,
+        "velocity": -SPEED * up,
+        "low": low,
+        "high": high,
+    }
+    text = DROP.format(turn=turn, **{name: value.tolist() for name, value in values.items()})
+    (folder / "drop.toml").write_text(text + CHALK)
+    run_scenario(load_scenario(str(folder / "drop.toml")), folder / "run", RunOptions(threads=1))
+    return load(folder / "run")
+
+
+@pytest.fixture(scope="module", params=[(2, ""), (0, ""), (2, TURN)], ids=["z", "x", "turned"])
+def dropped(request, tmp_path_factory):
+    return drop(tmp_path_factory.mktemp("drop"), *request.param)
+
+
+def test_it_closes(dropped):
+    assert dropped.history["dust_grains"][-1] > 50
+    assert gap(ledger_of(dropped)) < 0.003
+
+
+@pytest.mark.parametrize("name", [*BODY_ENERGIES, "contact_work", "kinetic_energy"])
+def test_every_part_of_it_matters(dropped, name):
+    assert gap(without(dropped, name)) > 0.01
+
+
+def test_contacts_and_cracks_make_no_energy(dropped):
+    """What cracks, parting and dampers took grows, and contacts with friction give none."""
+    history = dropped.history
+    taken = sum(history[name] for name in ("fracture_work", "parting_work", "damping_work"))
+    assert (np.diff(taken) > -0.002 * history["kinetic_energy"][0]).all()
+    assert history["contact_work"].max() < 0.002 * history["kinetic_energy"][0]
