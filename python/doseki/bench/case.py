@@ -100,7 +100,8 @@ def _options(case: Case) -> dict[str, Any]:
         "domain_min": zero, "domain_max": zero, "periodic": [False] * case.dim,
         "flow": {
             "dp": DP, "kernel": RESOLVED_KERNEL, "viscosity": "morris",
-            "shifting": True, "acoustic_damping": 0.05, "turbulence": "smagorinsky", "smagorinsky": 0.12,
+            "shifting": True, "acoustic_damping": 0.05,
+            "turbulence": "smagorinsky", "smagorinsky": 0.12,
             "walls": [{"no_slip": True, "ks": 0.0}],
         },
     }  # fmt: skip

@@ -199,7 +199,7 @@ class FlowReference:
         return stiffness * (e - 1) if self.options.eos == "linear" else stiffness / 7 * (e**7 - 1)
 
     def _damping_pressure(self) -> np.ndarray:
-        """Of the acoustic damper: none on a free surface, no tension that the liquid cannot bear."""
+        """Of the acoustic damper: none on a surface, no tension that the liquid cannot bear."""
         divergence = np.trace(self.L, axis1=1, axis2=2)
         added = -self.options.acoustic_damping * self.rho * self.c * self.h * divergence
         least = self._of_density(np.full_like(self.rho, LEAST_DENSITY))
