@@ -57,6 +57,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     }
     find_bonds();
     correct_gradients();
+    if (bonds_.any()) find_spans();
     limit_timestep();
     compute_accelerations(0.0, gravity);
 }
