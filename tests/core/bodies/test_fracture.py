@@ -65,7 +65,7 @@ def test_a_crack_in_space_takes_its_fracture_energy(core):
 STRENGTH = BRITTLE["tensile_strength"]
 
 
-@pytest.mark.parametrize("across", [20, pytest.param(40, marks=pytest.mark.minutes)])
+@pytest.mark.parametrize("across", [20, pytest.param(40, marks=pytest.mark.full)])
 def test_a_disc_splits_at_its_tensile_strength(core, across):
     """Along the loaded diameter, at 2P/(pi d t), whatever the direction of its lattice."""
     found = []
