@@ -9,6 +9,7 @@
 #include "bodies/rigid_bodies.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
+#include "physics/wall.hpp"
 #include "ranks/exchange.hpp"
 
 namespace doseki {
@@ -118,6 +119,7 @@ double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& b
             nearest_image(domain, state.centre + lever - particles.position[p]);
         particles.position[p] = particles.position[p] + step;
         particles.wall.normal[p] = rotated(R[k], point.normal);
+        particles.wall.bend[p] = turned_bend(particles.wall.bend[p], particles.wall.normal[p]);
         particles.wall.area[p] = rotated(R[k], point.area);
         particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
                                     turning_velocity(w[k], turning_velocity(w[k], lever));

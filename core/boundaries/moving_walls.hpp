@@ -7,6 +7,7 @@
 #include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "model/particles.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 
@@ -98,6 +99,7 @@ public:
             if (particles.wall.in_use) {
                 Vec<double, D>& normal = particles.wall.normal[p];
                 normal = normal + motion->turning(normal, dt);
+                particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal);
             }
             return dot(step, step);
         });

@@ -29,7 +29,7 @@ public:
     virtual ~AnySimulation() = default;
 
     virtual void add_particles(const NamedValues& columns) = 0;
-    /// Normals and depths of walls, for all particles in the order of adding.
+    /// Normals, depths and curvatures of walls, for all particles in the order of adding.
     virtual void set_walls(const NamedValues& columns) = 0;
     /// Faces between which fluid stands though no particle fits, for all particles; after
     /// set_walls and before bind_points.

@@ -58,13 +58,16 @@ template <int D>
 void ParticleTables<D>::set_walls(Particles<D>& particles, const NamedValues& columns) {
     ColumnReader column(columns, "walls");
     const auto normal = column.vectors<D>("normal");
-    const auto depth = column.numbers<double>("depth");
+    const auto depth = column.numbers<double>("depth"),
+               curvature = column.numbers<double>("curvature");
     column.finish();
     if (column.rows() != particles.size())
         throw std::invalid_argument("walls: one row for each particle");
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
     particles.wall.normal.assign(normal);
     particles.wall.depth.assign(depth);
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        particles.wall.bend[p] = bend_of_ball(particles.wall.normal[p], curvature[p]);
 }
 
 template <int D>

@@ -6,6 +6,7 @@
 #include "base/array.hpp"
 #include "interface/value.hpp"
 #include "model/particles.hpp"
+#include "physics/wall.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 
 namespace doseki {

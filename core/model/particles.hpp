@@ -36,7 +36,7 @@ template <int D>
 struct WallState {
     bool in_use = false;           // of schemes that tell walls from particles; else all are empty
     Field<Vec<double, D>> normal;  // into the fluid
-    Field<Sym<double, D>> bend;    // of a terrain's: how the normal turns along the surface [1/m]
+    Field<Sym<double, D>> bend;    // how the normal turns along the surface, where it curves [1/m]
     Field<double> depth;           // below the surface of the wall [m]
     Field<double> cut;             // share of its volume, of a terrain's, that a body takes up
     Field<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]

@@ -27,15 +27,35 @@ inline double edge_rate(double rate, double size) {
     return rate * std::min((std::abs(rate) / size - noise) / (edge - noise), 1.0);
 }
 
-/// Speed at which v comes nearer to a curved wall, Eq. (130): along the normal at the foot of the
-/// fluid particle, which leans by `turn` farther than that of the wall particle. Along the latter
-/// what slides in a hollow would run into the wall ahead, and on a ridge be driven. No farther than
-/// `most`: a kink is no curvature that particles resolve.
+/// How the normal of a surface turns that curves alike all ways, as that of a ball does: by `bend`
+/// r where one goes along r [1/m].
+template <int D>
+Sym<double, D> bend_of_ball(const Vec<double, D>& normal, double curvature) {
+    Sym<double, D> bend;
+    for (int a = 0; a < D; ++a)
+        for (int b = a; b < D; ++b)
+            bend(a, b) = curvature * ((a == b ? 1.0 : 0.0) - normal[a] * normal[b]);
+    return bend;
+}
+
+/// That of a ball, once its normal has turned.
+template <int D>
+Sym<double, D> turned_bend(const Sym<double, D>& bend, const Vec<double, D>& normal) {
+    double sum = 0.0;
+    for (int a = 0; a < D; ++a) sum += bend(a, a);
+    return bend_of_ball(normal, sum / (D - 1));
+}
+
+/// Normal of a curved wall at the foot of the fluid particle, Eq. (130), which leans by `turn`
+/// farther than that of the wall particle. Along the latter what slides in a hollow would run into
+/// the wall ahead and be held by the wall behind it, and so around a ball. No farther than `most`:
+/// a kink is no curvature that particles resolve.
 template <class T, int D>
-DOSEKI_FN T approach_of_slide(const Vec<T, D>& normal, const Vec<T, D>& turn, const Vec<T, D>& v) {
+DOSEKI_FN Vec<T, D> normal_at_foot(const Vec<T, D>& normal, const Vec<T, D>& turn) {
     const T most = number<T>(0.3);
     const T square = dot(turn, turn), share = most / max(sqrt(square), most);
-    return -(dot(v, normal) + share * dot(v, turn)) / sqrt(T(1) + share * share * square);
+    const T stretch = T(1) / sqrt(T(1) + share * share * square);
+    return stretch * (normal + share * turn);
 }
 
 /// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is
@@ -44,6 +64,16 @@ DOSEKI_FN T approach_of_slide(const Vec<T, D>& normal, const Vec<T, D>& turn, co
 template <class T>
 DOSEKI_FN T no_slip_factor(const T& d_w, const T& d_i, const T& min_distance) {
     return T(1) + d_w / max(d_i, min_distance);
+}
+
+/// Eq. (138): share of a no-slip wall's shear that the velocity gradient counts, for fluid that
+/// slides along it at a speed [m/s]. All of it where viscosity makes the layer at the wall thicker
+/// than the spacing; none where the layer is much thinner, for then fluid particles do not have
+/// that shear, and what is reconstructed with it is an anti-viscosity.
+template <class T>
+DOSEKI_FN T resolved_shear(const T& mu, const T& rho, const T& speed, const T& dp) {
+    const T tiny = number<T>(1e-30), inverse_reynolds = number<T>(0.1);
+    return mu / (mu + inverse_reynolds * rho * speed * dp + tiny);
 }
 
 /// Stress that a rough bed takes from water of velocity |u| at height z: tau = rho (u kappa/ln(1 +

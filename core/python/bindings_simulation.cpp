@@ -146,7 +146,8 @@ void bind_setup(Class& c) {
              nb::sig("def set_faces(self, *, face: numpy.ndarray, area: numpy.ndarray, "
                      "rows: numpy.ndarray) -> None"))
         .def("set_walls", &P::set_walls,
-             nb::sig("def set_walls(self, *, normal: numpy.ndarray, depth: numpy.ndarray) -> None"))
+             nb::sig("def set_walls(self, *, normal: numpy.ndarray, depth: numpy.ndarray, "
+                     "curvature: numpy.ndarray) -> None"))
         .def("add_shapes", &P::add_shapes, nb::arg("shapes"),
              nb::sig("def add_shapes(self, shapes: "
                      "collections.abc.Sequence[doseki.solver.protocol.Table]) -> None"))

@@ -107,8 +107,9 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.r_dot_n = dot(r_iw, w.normal);
     contact.approach = -dot(v_iw, w.normal);
     const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
-    const T slide = approach_of_slide(w.normal, w.bend * r_iw, v_iw);
-    const T extra = approach_pressure(T(2) * slide, i.rho, c);
+    const Vec<T, D> at_foot = normal_at_foot(w.normal, w.bend * r_iw);
+    const T extra = approach_pressure(T(-2) * dot(v_iw, at_foot), i.rho, c);
+    const Vec<T, D> across = contact.r_dot_n * at_foot;
     contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
                                           contact.r_dot_n, r_iw);
     contact.corrected_r = i.correction * r_iw;
@@ -117,11 +118,13 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     const T no_slip = w.no_slip * no_slip_factor(w.depth, contact.r_dot_n - w.depth, min_distance);
     const Vec<T, D> sliding = v_iw + contact.approach * w.normal;
     contact.along = dot(sliding, contact.corrected_r);
-    contact.jump = no_slip * sliding - (T(2) * contact.approach) * w.normal;
+    const T shear =
+        no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(sliding, sliding)), T(constants.dp));
+    contact.jump = shear * sliding - (T(2) * contact.approach) * w.normal;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
     contact.pressure_force = (scale * p) * contact.corrected_r;
-    contact.viscous_force = scale * (extra * r_iw - mu_wall * sliding);
-    contact.power = scale * (mu_wall * dot(sliding, v_iw) - extra * dot(r_iw, v_iw));
+    contact.viscous_force = scale * (extra * across - mu_wall * sliding);
+    contact.power = scale * (mu_wall * dot(sliding, v_iw) - extra * dot(across, v_iw));
     contact.made = dot(contact.pressure_force, v_iw) +
                    scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return contact;

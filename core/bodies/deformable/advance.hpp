@@ -11,6 +11,7 @@
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 
@@ -361,6 +362,7 @@ double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& doma
         gone[p] = dot(step, step);
         particles.position[p] = particles.position[p] + step;
         particles.wall.normal[p] = normal(k), particles.wall.depth[p] = depth_[k];
+        particles.wall.bend[p] = turned_bend(particles.wall.bend[p], particles.wall.normal[p]);
         particles.acceleration[p] = acceleration_[k];
     });
     return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));

@@ -40,7 +40,8 @@ class Bodies:
     """Bodies that move (first) and fixed ones that they touch; none where nothing moves.
 
     For each particle: `grain`, the index of its body or -1, and for those of bodies the outward
-    `normal` and the `depth` below the surface, m; `shaped` tells which particles have these.
+    `normal`, the `depth` below the surface, m, and its `curvature`, 1/m; `shaped` tells which
+    particles have these.
     """
 
     groups: list[Group]
@@ -50,6 +51,7 @@ class Bodies:
     shaped: np.ndarray  # (N,) bool
     normal: np.ndarray  # (N, dim)
     depth: np.ndarray  # (N,)
+    curvature: np.ndarray  # (N,)
     elastic: list[ElasticBody] = field(default_factory=list)  # deformable ones, not in `groups`
 
     def __len__(self) -> int:

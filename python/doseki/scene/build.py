@@ -172,7 +172,8 @@ def _joined(
         still = group.fixed or group.elastic
         grain = np.full(len(owner), -1) if still else first[name] + owner
         shaped = np.ones(len(owner), bool)
-        tables.append(_PointTable(grain.astype(np.int32), shaped, placed.normal, placed.depth))
+        surface = placed.normal, placed.depth, placed.curvature
+        tables.append(_PointTable(grain.astype(np.int32), shaped, *surface))
     particles = concatenate(sets, scenario.dim)
     table = _PointTable.joined(tables, scenario.dim)
     velocity, spin = _velocities(scenario, bodies, kept, carried)
@@ -196,13 +197,15 @@ class _PointTable(NamedTuple):
     shaped: np.ndarray
     normal: np.ndarray
     depth: np.ndarray
+    curvature: np.ndarray
 
     @classmethod
     def of_loose(cls, particles: ParticleSet) -> _PointTable:
         """Of particles that are no parts of bodies."""
         n = len(particles)
         none = np.full(n, -1, np.int32)
-        return cls(none, np.zeros(n, bool), np.zeros((n, particles.dim)), np.zeros(n))
+        plane = np.zeros(n)
+        return cls(none, np.zeros(n, bool), np.zeros((n, particles.dim)), plane, plane)
 
     @classmethod
     def joined(cls, tables: Iterable[_PointTable], dim: int) -> _PointTable:

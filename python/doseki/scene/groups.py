@@ -85,8 +85,8 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
         turned = np.einsum("nab,pb->npa", turns[which], own.position)
         normal = np.einsum("nab,pb->npa", turns[which], own.normal)
         position = (group.centre[which][:, None, :] + turned).reshape(-1, dim)
-        depth, share = np.tile(own.depth, len(which)), np.tile(own.share, len(which))
-        parts.append(Particles(position, normal.reshape(-1, dim), depth, share))
+        alike = [np.tile(column, len(which)) for column in (own.depth, own.curvature, own.share)]
+        parts.append(Particles(position, normal.reshape(-1, dim), *alike))
         owners.append(np.repeat(which, len(own.depth)))
     owner = np.concatenate(owners)
     order = np.argsort(owner, kind="stable")

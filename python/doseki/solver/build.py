@@ -272,7 +272,8 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     normal, depth = wall_geometry(scenario, particles, body_names)
     normal[bodies.shaped] = bodies.normal[bodies.shaped]
     depth[bodies.shaped] = bodies.depth[bodies.shaped]
-    simulation.set_walls(normal=np.ascontiguousarray(normal), depth=np.ascontiguousarray(depth))
+    surface = {"normal": normal, "depth": depth, "curvature": bodies.curvature}
+    simulation.set_walls(**{name: np.ascontiguousarray(v) for name, v in surface.items()})
     if scenario.uplift and len(bodies):
         faces = contact_faces(scenario, particles, bodies, depth)
         simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)

@@ -299,8 +299,9 @@ class CoreSimulation(Simulation, Protocol):
         """
         ...
 
-    def set_walls(self, *, normal: Floats, depth: Floats) -> None:
-        """Normals (N, dim) into the fluid and depths (N,), m, of wall particles."""
+    def set_walls(self, *, normal: Floats, depth: Floats, curvature: Floats) -> None:
+        """Of wall particles: normals (N, dim) into the fluid, depths (N,), m, below the surface, and
+        its curvature (N,), 1/m, as that of a ball; 0 where it is plane."""
         ...
 
     def set_faces(self, *, face: NDArray[np.int32], area: Floats, rows: Floats) -> None:

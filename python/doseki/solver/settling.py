@@ -207,9 +207,10 @@ def _fill(
         id=np.zeros(1, np.int64),
     )
     none = np.zeros((1, dim))
-    simulation.set_walls(normal=none, depth=np.array([first.shapes[first.shape[0]].reach]))
+    reach = np.array([first.shapes[first.shape[0]].reach])
+    simulation.set_walls(normal=none, depth=reach, curvature=np.zeros(1))
     still = Bodies(
-        groups, np.zeros((n, dim)), np.zeros((n, 3)), np.zeros(1, np.int32), none, none, none
+        groups, np.zeros((n, dim)), np.zeros((n, 3)), np.zeros(1, np.int32), *4 * [none]
     )
     add_bodies(simulation, scenario, still, names)
 

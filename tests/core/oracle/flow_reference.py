@@ -30,6 +30,7 @@ LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
 EDGE_NOISE, EDGE_WHOLE = 0.15, 0.3  # share of what slides past an edge, Eq. (133)
+LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
 SHIFT_FASTEST = 0.05  # over the sound speed
@@ -116,7 +117,7 @@ class Pairs:
 class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
-    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth` of its walls;
+    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth`, `curvature` of its walls;
     `materials` are mappings with law, rho0, speedsound, nu and, where they are not newtonian,
     rheology and its parameters. All smoothing lengths are eta dp, all
     fixed particles have no acceleration.
@@ -164,6 +165,7 @@ class FlowReference:
         walls = ~self.fluid
         self.x_w, self.v_w = particles.position[walls], particles.velocity[walls]
         self.normal, self.depth = particles.normal[walls], particles.depth[walls]
+        self.curvature = particles.curvature[walls]
         condition = [self.options.walls[k] for k in particles.body[walls]]
         self.stick = np.array([float(c["no_slip"]) for c in condition])
         self.ks = np.array([c["ks"] for c in condition])
@@ -274,24 +276,37 @@ class FlowReference:
         gradient = self.pressure_gradient[:, None]
         along = pairs.r_ij - r_n[..., None] * n
         excess = self.rho[:, None] * g_normal * r_n - dot(gradient, along)
-        extra = self._dissipation(2 * approach, self.rho[:, None])
+        foot = self._normal_at_foot(n, in_front)
+        extra = self._dissipation(-2 * dot(v, foot), self.rho[:, None])
+        across = r_n[..., None] * foot
         p = self.p[:, None] + 0.5 * excess
         corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
         factor = self.stick * (1 + self.depth / np.maximum(r_n - self.depth, dp / 4))
         sliding = v + approach[..., None] * n
         mu = (self.mu[:, None] * factor)[..., None]
+        layer = 0.1 * self.rho[:, None] * np.linalg.norm(sliding, axis=-1) * dp
+        shear = factor * self.mu[:, None] / (self.mu[:, None] + layer)
         scale = -2 * self.V_w * pairs.F
         return {
             "force": scale[..., None]
-            * (p[..., None] * corrected_r + extra[..., None] * pairs.r_ij - mu * sliding),
+            * (p[..., None] * corrected_r + extra[..., None] * across - mu * sliding),
             "excess": excess,
             "height": r_n - self.depth,
             "v_dot_r": -2 * approach * dot(corrected_r, n),
             "sliding_dot_r": 2 * dot(sliding, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
-            "jump": factor[..., None] * sliding - 2 * approach[..., None] * n,
-            "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(pairs.r_ij, v)),
+            "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
+            "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(across, v)),
         }
+
+    def _normal_at_foot(self, n: np.ndarray, in_front: np.ndarray) -> np.ndarray:
+        """The wall's normal where the fluid particle stands over it; balls turn it."""
+        r = self.fw.r_ij
+        turn = self.curvature[:, None] * (r - dot(r, n)[..., None] * n)
+        turn = np.where(in_front[..., None], turn, 0)
+        size = np.linalg.norm(turn, axis=-1, keepdims=True)
+        turned = n + turn * LARGEST_TURN / np.maximum(size, LARGEST_TURN)
+        return turned / np.linalg.norm(turned, axis=-1, keepdims=True)
 
     def _dissipation(self, approach: np.ndarray, rho: np.ndarray) -> np.ndarray:
         """What the Riemann solver adds to the mean pressure."""

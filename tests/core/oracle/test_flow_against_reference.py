@@ -87,7 +87,8 @@ CASES = {
 def cloud(dim: int, case: Case) -> SimpleNamespace:
     """A jittered lattice in the unit box: two rows of floor, two rows of a side wall, fluid.
 
-    Normals point anywhere around the true ones, so that pairs on both sides of a face occur.
+    Normals point anywhere around the true ones, so that pairs on both sides of a face occur, and
+    each particle has a curvature of its own.
     """
     random, n = np.random.default_rng(7), ACROSS[dim]
     dp = 1 / n
@@ -117,6 +118,7 @@ def cloud(dim: int, case: Case) -> SimpleNamespace:
         id=np.arange(len(x), dtype=np.int64),
         normal=toward / np.maximum(np.linalg.norm(toward, axis=1), 1e-9)[:, None],
         depth=np.where(fixed, depth, 0.0),
+        curvature=np.where(fixed, random.uniform(-0.2, 0.2, len(x)) / dp, 0.0),
     )
 
 
@@ -145,9 +147,9 @@ def core_simulation(isa: str, dim: int, name: str) -> Any:
     options["periodic"] = [axis in case.periodic for axis in "xyz"[:dim]]
     materials = [core_table(**m, eos=ours["eos"]) for m in case.materials]
     simulation = load_core(isa).Simulation("resolved", dim, "double", materials, options)
-    normal, depth = particles.pop("normal"), particles.pop("depth")
+    surface = {key: particles.pop(key) for key in ("normal", "depth", "curvature")}
     simulation.add_particles(**particles)
-    simulation.set_walls(normal=np.ascontiguousarray(normal), depth=depth)
+    simulation.set_walls(**{key: np.ascontiguousarray(v) for key, v in surface.items()})
     simulation.start()
     return simulation
 

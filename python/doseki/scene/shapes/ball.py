@@ -65,7 +65,7 @@ class Ball:
             unit, part = _directions(measure / dp**self.dim, self.dim, k % 2 == 1)
             position.append(r * unit)
             share.append(part * measure / measures.sum())
-        return from_centre(np.concatenate(position), radius, np.concatenate(share))
+        return from_centre(np.concatenate(position), radius, np.concatenate(share), self._curvature(dp))
 
     def elastic_particles(self, dp: float) -> Particles:
         """A disc as rings of 6, 12, 18 ... particles around one, a hexagonal lattice that is bent.
@@ -78,7 +78,7 @@ class Ball:
             ball = self.particles(dp)
             return ball._replace(share=alike(len(ball.share)))
         position = self.radius * _even_rings(max(1, round(self.radius / dp)))
-        return from_centre(position, self.radius, alike(len(position)))
+        return from_centre(position, self.radius, alike(len(position)), self._curvature(dp))
 
     def curve(self, dp: float) -> Curve:
         """The circle, with a vertex for each particle of the outermost ring; off by 1e-6."""
@@ -96,6 +96,10 @@ class Ball:
     def single(self) -> Particles:
         """One particle in the centre."""
         return from_centre(np.zeros((1, self.dim)), self.wetted * self.radius, np.ones(1))
+
+    def _curvature(self, dp: float) -> float:
+        """Of the circles on which the first row of fluid slides around it, 1/m."""
+        return 1 / (self.wetted * self.radius + 0.5 * dp)
 
     def table(self, dp: float) -> dict[str, Any]:
         """The shape as the core reads it."""

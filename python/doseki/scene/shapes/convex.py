@@ -78,7 +78,7 @@ class Convex:
         position, share = lattice[share > 0], share[share > 0] / share.sum()
         position = position - share @ position
         normal, depth = nearest_faces(self._gaps(position), self.planes[0], EDGE * dp)
-        return Particles(position, normal, depth, share)
+        return Particles(position, normal, depth, np.zeros(len(depth)), share)
 
     def elastic_particles(self, dp: float) -> Particles:
         """Those of a rigid body with equal shares."""
@@ -98,7 +98,7 @@ class Convex:
     def single(self) -> Particles:
         """One particle in the centre."""
         zero = np.zeros((1, self.dim))
-        return Particles(zero, zero.copy(), self._gaps(zero).min(axis=1), np.ones(1))
+        return Particles(zero, zero.copy(), self._gaps(zero).min(axis=1), np.zeros(1), np.ones(1))
 
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""

@@ -16,6 +16,7 @@ class Particles(NamedTuple):
     position: np.ndarray  # (N, dim), m
     normal: np.ndarray  # (N, dim) outwards
     depth: np.ndarray  # (N,) below the surface, m
+    curvature: np.ndarray  # (N,) of the surface, 1/m, alike all ways; 0 where it is plane
     share: np.ndarray  # (N,) of the mass
 
 
@@ -31,11 +32,14 @@ def alike(number: int) -> np.ndarray:
     return np.full(number, 1.0 / number)
 
 
-def from_centre(position: np.ndarray, radius: float, share: np.ndarray) -> Particles:
-    """Particles of a ball about the origin."""
+def from_centre(
+    position: np.ndarray, radius: float, share: np.ndarray, curvature: float = 0.0
+) -> Particles:
+    """Particles of a ball about the origin, whose surface has a curvature, 1/m."""
     distance = np.linalg.norm(position, axis=1)
     normal = position / np.maximum(distance, 1e-300)[:, None]
-    return Particles(position, normal, radius - distance, share)
+    alike = np.full(len(position), curvature)
+    return Particles(position, normal, radius - distance, alike, share)
 
 
 def nearest_faces(

@@ -121,7 +121,7 @@ CASES = (
         "Water at rest in a tank around a disc",
         Control(
             "no rest before the run",
-            "L2(p) / rho g H",
+            "dp/dz / rho g",
             lambda n: at_rest("hydrostatic-disc")(n, "relax=1e-9"),
         ),
     ),
