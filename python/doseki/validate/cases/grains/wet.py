@@ -7,17 +7,21 @@ import math
 import numpy as np
 
 from ....driver.gauges import build_gauges
-from ...case import Case, Control, Criterion, Curve, Outcome, Value, within
+from ...case import Case, Control, Criterion, Curve, Outcome, Value, between, within
 from ...running import Running
 
 G = 9.81
 FALL, LAG = "fall / (g t^2/2)", "difference between grains"
 SPEED, LIGHT = "terminal speed, steel", "terminal speed, stone"
+DEEP = "terminal speed, stone, twice the depth"
+RISE, SINK = "speed of a lighter disc", "speed of a heavier disc"
 STREAM = "mean speed"
 LIFT = "lift over Archimedes"
 LATE = 0.5  # share of the run after which the disc has its speed
 LIQUID, DIAMETER, WIDTH = 1000.0, 0.01, 0.04  # kg/m3, m, m between the walls
 STEEL, STONE = (8000.0, 2.6e-3), (2000.0, 1e-3)  # density of the disc, viscosity of the liquid
+WATER = 1e-6  # m2/s
+LET_GO = 0.6  # s
 
 
 def hang(across: float) -> Outcome:
@@ -64,8 +68,9 @@ def hold(across: float, *overrides: str) -> Outcome:
 def settle(across: float) -> Outcome:
     """Discs midway between two walls: their speeds, late."""
     values, found, exact = {}, [], []
-    for name, (density, nu) in {SPEED: STEEL, LIGHT: STONE}.items():
-        times, speed = _settled(across, density, nu)
+    deep = f"height={14 * DIAMETER:g}"
+    for name, (density, nu), *more in ((SPEED, STEEL), (LIGHT, STONE), (DEEP, STONE, deep)):
+        times, speed = _settled(across, density, nu, *more)
         values[name] = Value(_late(times, speed), faxen_speed(density, nu, WIDTH))
         found.append(Curve(name, times, speed))
         exact.append(Curve("Faxen", times, np.full(len(times), values[name].expected)))
@@ -79,10 +84,12 @@ def too_viscous(across: float) -> Outcome:
     return Outcome({SPEED: Value(speed, faxen_speed(density, nu, WIDTH))})
 
 
-def _settled(across: float, density: float, nu: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times, and the disc's speed at them."""
+def _settled(
+    across: float, density: float, nu: float, *overrides: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and the speed at which the disc falls."""
     disc = f"material.stone.rho0={density:g}", f"material.oil.nu={nu:g}", f"width={WIDTH:g}"
-    run = Running("settling-disc", f"across={across:g}", *disc)
+    run = Running("settling-disc", f"across={across:g}", *disc, *overrides)
     times = np.linspace(0, run.scenario.time_max, 61)[1:]
     speed = []
     for time in times:
@@ -94,6 +101,24 @@ def _settled(across: float, density: float, nu: float) -> tuple[np.ndarray, np.n
 def _late(times: np.ndarray, speed: np.ndarray) -> float:
     """Mean speed once it is steady."""
     return float(np.mean(speed[times > LATE * times[-1]]))
+
+
+def afloat(across: float, share: float = 0.01) -> Outcome:
+    """Discs a little lighter and heavier than the water that they are let go in."""
+    values, found, bounds = {}, [], []
+    for name, sign in {RISE: -1, SINK: 1}.items():
+        density = LIQUID * (1 + sign * share)
+        times, fall = _settled(across, density, WATER, f"time_max={LET_GO:g}")
+        speed, bound = sign * fall, free_acceleration(LIQUID * (1 + 0.01 * sign)) * times
+        values[name] = Value(float(np.sum(speed[-10:]) / np.sum(bound[-10:])))
+        found.append(Curve(name, times, speed))
+        bounds.append(Curve("without drag", times, bound))
+    return Outcome(values, found, bounds[:1])
+
+
+def free_acceleration(density: float) -> float:
+    """Acceleration, m/s2, of a disc that moves the water around it and has no drag."""
+    return abs(density - LIQUID) * G / (density + LIQUID)
 
 
 def faxen_speed(density: float, nu: float, width: float) -> float:
@@ -161,9 +186,32 @@ SETTLING = Case(
             "the same where the weight is small beside the pressure of the liquid",
             unit="m/s",
         ),
+        Criterion(
+            DEEP,
+            (within(0.1), within(0.05), within(0.05)),
+            "the same under twice the pressure",
+            unit="m/s",
+        ),
     ),
     axes=("time (s)", "speed (m/s)"),
     controls=(Control("an oil thrice as viscous", SPEED, too_viscous),),
+)
+FREE = Case(
+    name="grains-afloat",
+    title="Discs a hundredth lighter and heavier than water",
+    across="d/dp",
+    resolutions=(12, 16),
+    run=afloat,
+    criteria=(
+        Criterion(RISE, (between(0.2, 1.0),), "over the speed without drag: nothing drives it"),
+        Criterion(
+            SINK,
+            (between(0.2, 1.0),),
+            "the same; water that fills the gaps around the disc at the start lifts it at first",
+        ),
+    ),
+    axes=("time (s)", "speed (m/s)"),
+    controls=(Control("discs three times as light and as heavy", RISE, lambda n: afloat(n, 0.03)),),
 )
 DRAG = Case(
     name="grains-drag",
@@ -200,4 +248,4 @@ BUOYANCY = Case(
         Control("a lattice cut along the circle", LIFT, lambda n: hold(n, "body.disc.jitter=1e-9")),
     ),
 )
-CASES = (HANG, SETTLING, DRAG, BUOYANCY)
+CASES = (HANG, SETTLING, FREE, DRAG, BUOYANCY)
