@@ -42,6 +42,9 @@ void bind_flow(nb::module_& m) {
                out[0] = wall_excess_pressure(in[0], vector<D>(in, 3), in[1], vector<D>(in, 3 + D),
                                              in[2], vector<D>(in, 3 + 2 * D));
            });
+    define(m, "normal_at_foot", D, [](const auto& in, auto& out) {  // n, turn
+        put(normal_at_foot(vector<D>(in, 0), vector<D>(in, D)), out);
+    });
     define(m, "strain_rate", 1,
            [](const auto& in, auto& out) { out[0] = strain_rate(matrix<D>(in, 0)); });
     define_numbers(m, "lattice_sums_c2", 2,
@@ -78,6 +81,9 @@ void bind_flow_numbers(nb::module_& m) {
     });
     define(m, "no_slip_factor", 1, [](const auto& in, auto& out) {  // d_w, d_i, least
         out[0] = no_slip_factor(in[0], in[1], in[2]);
+    });
+    define(m, "resolved_shear", 1, [](const auto& in, auto& out) {  // mu, rho, speed, dp
+        out[0] = resolved_shear(in[0], in[1], in[2], in[3]);
     });
     define_numbers(m, "edge_rate", 1, [](const auto& in, auto& out) {  // rate, size
         out[0] = edge_rate(in[0], in[1]);

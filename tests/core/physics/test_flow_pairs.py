@@ -87,6 +87,26 @@ def test_no_slip_factor_extrapolates_to_the_far_side_of_the_surface(point):
     np.testing.assert_allclose(factor, 5, rtol=1e-15)
 
 
+def test_shear_counts_where_viscosity_resolves_it(point):
+    """Half of it at ten for the Reynolds number of a spacing; all in a liquid at rest."""
+    speed = np.array([0.0, 0.01, 1.0, 100.0])
+    (share,) = point("resolved_shear", 1.0, RHO, speed, 0.01)
+    np.testing.assert_allclose(share, [1, 1 / 1.01, 0.5, 1 / 101], rtol=1e-12)
+    assert point("resolved_shear", 0.0, RHO, 0.0, 0.01)[0] == 0.0
+
+
+def test_normal_at_the_foot_is_that_of_a_ball(point, dim, random):
+    """Where it leans by less than 0.3; farther round it leans by that and no more."""
+    normal, along = random.normal(size=(2, 50, dim))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    along -= (along * normal).sum(axis=1)[:, None] * normal
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    lean = random.uniform(0, 0.6, (50, 1))
+    foot = np.array(point("normal_at_foot", *rows(normal), *rows(lean * along), dim=dim)).T
+    exact = normal + np.minimum(lean, 0.3) * along
+    np.testing.assert_allclose(foot, exact / np.linalg.norm(exact, axis=1)[:, None], atol=1e-14)
+
+
 def test_an_edge_counts_and_the_noise_of_a_face_does_not(point):
     """Odd in the rate, nothing below 0.15 of the size, all of it from 0.3 on."""
     rate = np.array([0.0, 0.14, 0.2, 0.3, 0.6])
