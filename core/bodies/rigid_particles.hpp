@@ -118,8 +118,10 @@ double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& b
         const Vec<double, D> step =
             nearest_image(domain, state.centre + lever - particles.position[p]);
         particles.position[p] = particles.position[p] + step;
-        particles.wall.normal[p] = rotated(R[k], point.normal);
-        particles.wall.bend[p] = turned_bend(particles.wall.bend[p], particles.wall.normal[p]);
+        const Vec<double, D> normal = rotated(R[k], point.normal);
+        particles.wall.bend[p] =
+            turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal);
+        particles.wall.normal[p] = normal;
         particles.wall.area[p] = rotated(R[k], point.area);
         particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
                                     turning_velocity(w[k], turning_velocity(w[k], lever));

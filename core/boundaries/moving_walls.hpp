@@ -98,8 +98,9 @@ public:
             for (int a = 0; a < D; ++a) particles.position[p][a] += step[a];
             if (particles.wall.in_use) {
                 Vec<double, D>& normal = particles.wall.normal[p];
-                normal = normal + motion->turning(normal, dt);
-                particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal);
+                const Vec<double, D> turned = normal + motion->turning(normal, dt);
+                particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal, turned);
+                normal = turned;
             }
             return dot(step, step);
         });

@@ -6,8 +6,8 @@
 #include "base/array.hpp"
 #include "interface/value.hpp"
 #include "model/particles.hpp"
-#include "physics/wall.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 

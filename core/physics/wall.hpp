@@ -38,12 +38,14 @@ Sym<double, D> bend_of_ball(const Vec<double, D>& normal, double curvature) {
     return bend;
 }
 
-/// That of a ball, once its normal has turned.
+/// That of a ball, once its normal has turned from `before` to `normal`. Their lengths count:
+/// particles in the middle of a body have none.
 template <int D>
-Sym<double, D> turned_bend(const Sym<double, D>& bend, const Vec<double, D>& normal) {
+Sym<double, D> turned_bend(const Sym<double, D>& bend, const Vec<double, D>& before,
+                           const Vec<double, D>& normal) {
     double sum = 0.0;
     for (int a = 0; a < D; ++a) sum += bend(a, a);
-    return bend_of_ball(normal, sum / (D - 1));
+    return bend_of_ball(normal, sum / (D - dot(before, before)));
 }
 
 /// Normal of a curved wall at the foot of the fluid particle, Eq. (130), which leans by `turn`

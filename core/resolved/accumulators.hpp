@@ -16,6 +16,7 @@ struct FlowConstants {
     double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
     double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
     ViscousForm<double> form;
+    double suction = 0.0;   // that water at bodies bears, Eq. (85) [Pa]
     bool harmonic = false;  // see pair_viscosity
 };
 
@@ -108,7 +109,9 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.approach = -dot(v_iw, w.normal);
     const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
     const Vec<T, D> at_foot = normal_at_foot(w.normal, w.bend * r_iw);
-    const T extra = approach_pressure(T(-2) * dot(v_iw, at_foot), i.rho, c);
+    const T least =
+        select(w.bound > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
+    const T extra = max(approach_pressure(T(-2) * dot(v_iw, at_foot), i.rho, c), least);
     const Vec<T, D> across = contact.r_dot_n * at_foot;
     contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
                                           contact.r_dot_n, r_iw);

@@ -54,9 +54,12 @@ struct ResolvedModel {
     ResolvedModel(Array<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
         for (const Material& material : materials) {
-            if (material.law == Law::fluid) constants.c = std::max(constants.c, material.c0);
-            min_density.push_back(material.law == Law::fluid ? MinDensity::of(material)
-                                                             : MinDensity{});
+            const bool fluid = material.law == Law::fluid;
+            min_density.push_back(fluid ? MinDensity::of(material) : MinDensity{});
+            if (fluid) {
+                constants.c = std::max(constants.c, material.c0);
+                constants.suction = std::max(constants.suction, material.air_entry_suction);
+            }
             constants.harmonic |= has_yield_stress(*material.laws);
         }
         const FlowOptions& flow = options.flow;

@@ -361,8 +361,9 @@ double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& doma
         const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
         gone[p] = dot(step, step);
         particles.position[p] = particles.position[p] + step;
+        particles.wall.bend[p] =
+            turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal(k));
         particles.wall.normal[p] = normal(k), particles.wall.depth[p] = depth_[k];
-        particles.wall.bend[p] = turned_bend(particles.wall.bend[p], particles.wall.normal[p]);
         particles.acceleration[p] = acceleration_[k];
     });
     return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));

@@ -300,8 +300,9 @@ class CoreSimulation(Simulation, Protocol):
         ...
 
     def set_walls(self, *, normal: Floats, depth: Floats, curvature: Floats) -> None:
-        """Of wall particles: normals (N, dim) into the fluid, depths (N,), m, below the surface, and
-        its curvature (N,), 1/m, as that of a ball; 0 where it is plane."""
+        """Of wall particles: normals (N, dim) into the fluid, depths (N,) below the surface, m,
+        and its curvature (N,), 1/m, as that of a ball; 0 where it is plane.
+        """
         ...
 
     def set_faces(self, *, face: NDArray[np.int32], area: Floats, rows: Floats) -> None:

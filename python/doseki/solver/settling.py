@@ -210,7 +210,7 @@ def _fill(
     reach = np.array([first.shapes[first.shape[0]].reach])
     simulation.set_walls(normal=none, depth=reach, curvature=np.zeros(1))
     still = Bodies(
-        groups, np.zeros((n, dim)), np.zeros((n, 3)), np.zeros(1, np.int32), *4 * [none]
+        groups, np.zeros((n, dim)), np.zeros((n, 3)), np.zeros(1, np.int32), none, none, none, none
     )
     add_bodies(simulation, scenario, still, names)
 

@@ -69,8 +69,11 @@ max = [0.23, 0.15]
 
 
 def uplift(*overrides: str, depth: float = SUBMERGED, dim: int = 2, across: int = 10) -> float:
-    """Upward force on a block in water, late, over the weight of the water it displaces."""
-    times, force = standing(across, depth, f"dim={dim}", "time_max=0.2", *overrides)
+    """Upward force on a block in water over the weight of the water it displaces.
+
+    The mean over whole swings: the column breathes by 3 % at first, some five times in a second.
+    """
+    times, force = standing(across, depth, f"dim={dim}", "time_max=0.4", *overrides)
     return float(force[times > 0.1].mean())
 
 
@@ -100,7 +103,7 @@ def test_it_floats_once_the_water_is_as_deep_as_archimedes_says(density, floats)
 
 
 def test_friction_on_a_tilted_bed_is_that_of_the_submerged_weight():
-    assert sliding(12) == pytest.approx(1, abs=CLOSE)
+    assert sliding(16) == pytest.approx(1, abs=CLOSE)
 
 
 def test_the_bed_bears_the_opposite_of_what_lifts_the_block():

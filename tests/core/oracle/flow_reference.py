@@ -117,9 +117,9 @@ class Pairs:
 class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
-    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth`, `curvature` of its walls;
-    `materials` are mappings with law, rho0, speedsound, nu and, where they are not newtonian,
-    rheology and its parameters. All smoothing lengths are eta dp, all
+    `particles` has the arrays of doseki's ParticleSet and `normal`, `depth`, `curvature` of its
+    walls; `materials` are mappings with law, rho0, speedsound, nu and, where they are not
+    newtonian, rheology and its parameters. All smoothing lengths are eta dp, all
     fixed particles have no acceleration.
     """
 

@@ -65,7 +65,9 @@ class Ball:
             unit, part = _directions(measure / dp**self.dim, self.dim, k % 2 == 1)
             position.append(r * unit)
             share.append(part * measure / measures.sum())
-        return from_centre(np.concatenate(position), radius, np.concatenate(share), self._curvature(dp))
+        return from_centre(
+            np.concatenate(position), radius, np.concatenate(share), self._curvature(dp)
+        )
 
     def elastic_particles(self, dp: float) -> Particles:
         """A disc as rings of 6, 12, 18 ... particles around one, a hexagonal lattice that is bent.
