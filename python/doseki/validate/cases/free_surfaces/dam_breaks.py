@@ -70,6 +70,7 @@ BOX_SENSORS = {
 }
 FRONT_SENSORS, TOP_SENSORS = ("P1", "P2", "P3", "P4"), ("P5", "P6", "P7", "P8")
 LOW_BOX = "at 8 the box is two particles high, and the upper one is both sensors and the edge"
+LOWER_ROW = "at 8 the lower of two rows is both P1 and P2, 40 mm apart"
 AS_ROUNDING_HAS_IT = (
     "at 8, runs that differ in rounding alone have 0.094 to 0.102: spray and waves that fall back"
 )
@@ -285,7 +286,8 @@ OBSTACLE = Case(
                 f"{label}: {what}": LOW_BOX
                 for label in ("P3", "P4")
                 for what in ("impulse", "peak at 20 Hz")
-            },
+            }
+            | {"P2: peak at 20 Hz": LOWER_ROW},
         ),
         *criteria_of(TOP_SENSORS, {what: (None, more) for what, (_, more) in COARSER.items()}, {}),
         *(

@@ -200,7 +200,7 @@ FREE = Case(
     name="grains-afloat",
     title="Discs a hundredth lighter and heavier than water",
     across="d/dp",
-    resolutions=(12, 16),
+    resolutions=(12, 16, 20),
     run=afloat,
     criteria=(
         Criterion(RISE, (between(0.2, 1.0),), "over the speed without drag: nothing drives it"),
