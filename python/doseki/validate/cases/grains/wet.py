@@ -207,7 +207,9 @@ FREE = Case(
     criteria=(
         Criterion(RISE, (between(0.2, 1.5),), "over the speed without drag; 0.3 % of lift are 0.3"),
         Criterion(SINK, (between(0.2, 1.5),), "the same"),
-        Criterion(BOTH, (between(0.2, 1.0),), "nothing drives them; what is wrong with lift is out"),
+        Criterion(
+            BOTH, (between(0.2, 1.0),), "nothing drives them; what is wrong with lift is out"
+        ),
     ),
     axes=("time (s)", "speed (m/s)"),
     controls=(Control("discs three times as light and as heavy", BOTH, lambda n: afloat(n, 0.03)),),
