@@ -11,7 +11,6 @@
 #include "model/particles.hpp"
 #include "pairs/backend.hpp"
 #include "pairs/list_wear.hpp"
-#include "pairs/skin.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "ranks/migration.hpp"
@@ -176,7 +175,8 @@ double RunLists<Lists>::cheapest_skin(double min_support, std::int64_t steps) co
     const std::int64_t lasted = steps - rebuild_step_;
     if (!adapts_ || skin_ == 0.0) return given_skin_;
     if (lasted == 0) return skin_;
-    return CheapestSkin<D>::at(approach_ / (static_cast<double>(lasted) * min_support));
+    return scheme_.skin_costs().cheapest_skin(approach_ /
+                                              (static_cast<double>(lasted) * min_support));
 }
 
 template <class Lists>
