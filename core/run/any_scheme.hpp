@@ -28,8 +28,8 @@ namespace doseki {
 /// Fields that tables of particles show where a scheme keeps them; null where it does not.
 template <int D>
 struct OwnFields {
-    Field<double>* surface = nullptr;
-    Field<Mat<double, D>>* velocity_gradient = nullptr;
+    const FluidField<double>* surface = nullptr;
+    const FluidField<Mat<double, D>>* velocity_gradient = nullptr;
     Field<Deviator<double, D>>* deviatoric_stress = nullptr;
 };
 
