@@ -9,7 +9,8 @@
 namespace doseki {
 namespace {
 
-/// `from` is element `first`. Elements of a size that is known here are copied by a few instructions.
+/// `from` is element `first`. Elements of a size that is known here are copied by a few
+/// instructions.
 template <std::size_t size>
 void gather(std::byte* to, const std::byte* from, std::size_t first,
             std::span<const std::uint32_t> order) {

@@ -76,8 +76,7 @@ public:
     void operator()(const char* name, PartField<T, of>& values) {
         Array<T> all;
         if (!loads_)
-            for (std::size_t p = 0; p < values.size(); ++p)
-                all.push_back(std::as_const(values)[p]);
+            for (std::size_t p = 0; p < values.size(); ++p) all.push_back(std::as_const(values)[p]);
         column(name, all);
         if (loads_) values.assign(std::span<const T>(all));
     }

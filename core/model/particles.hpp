@@ -36,19 +36,20 @@ struct Face {
 /// What wall particles have: those of fixed bodies and the points of bodies that move.
 template <int D>
 struct WallState {
-    bool in_use = false;           // of schemes that tell walls from particles; else all are empty
+    bool in_use = false;  // of schemes that tell walls from particles; else all are empty
     WallField<Vec<double, D>> normal;  // into the fluid
-    WallField<Sym<double, D>> bend;    // how the normal turns along the surface, where it curves [1/m]
-    WallField<double> depth;           // below the surface of the wall [m]
-    WallField<double> cut;             // share of its volume, of a terrain's, that a body takes up
-    WallField<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]
-    WallField<double> pressure;        // of the fluid at its place [Pa]
+    WallField<Sym<double, D>>
+        bend;                 // how the normal turns along the surface, where it curves [1/m]
+    WallField<double> depth;  // below the surface of the wall [m]
+    WallField<double> cut;    // share of its volume, of a terrain's, that a body takes up
+    WallField<Vec<double, D>> force;  // of the fluid on it [N], 2-D: [N/m]
+    WallField<double> pressure;       // of the fluid at its place [Pa]
     // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
-    WallField<std::int32_t> face;             // none, of a fixed body, or of rigid body `face - first`
-    WallField<Vec<double, D>> area;           // of a body that moves, outwards [m^2], 2-D: [m]
-    WallField<double> rows;                   // pressure force on all its rows over that on this one
-    WallField<double> film_change;            // of its pressure in the last step [Pa]
-    WallField<double> film_density;           // of the fluid that presses on it [kg/m^3]; 0: dry
+    WallField<std::int32_t> face;    // none, of a fixed body, or of rigid body `face - first`
+    WallField<Vec<double, D>> area;  // of a body that moves, outwards [m^2], 2-D: [m]
+    WallField<double> rows;          // pressure force on all its rows over that on this one
+    WallField<double> film_change;   // of its pressure in the last step [Pa]
+    WallField<double> film_density;  // of the fluid that presses on it [kg/m^3]; 0: dry
     WallField<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
     WallField<BodyKind> body_kind;            // of bound particles
     // Index among the points of bodies of that kind; of a terrain's particle, its tile.

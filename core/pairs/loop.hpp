@@ -89,9 +89,9 @@ struct PairLoop {
 /// Entries of one list, kept by a thread from one cluster to the next.
 using EntryBuffer = Array<std::uint32_t>;
 
-/// Calls f(entry) for the entries that `each` goes through, in their order. Of a term that knows its
-/// reach, first those are picked out that are in reach of any particle i, without a branch: one for
-/// each pair would be guessed wrong too often.
+/// Calls f(entry) for the entries that `each` goes through, in their order. Of a term that knows
+/// its reach, first those are picked out that are in reach of any particle i, without a branch: one
+/// for each pair would be guessed wrong too often.
 template <bool periodic, class Term, class Each, class F>
 [[gnu::always_inline]] inline void for_each_in_reach(
     const PairLoop<Term>& loop, const LanePositions<typename Term::Real, Term::dim>& x,

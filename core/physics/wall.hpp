@@ -56,7 +56,7 @@ template <class T, int D>
 DOSEKI_FN Vec<T, D> normal_at_foot(const Vec<T, D>& normal, const Vec<T, D>& turn) {
     const T most = number<T>(0.3);
     const T square = dot(turn, turn);
-    if (!any(square > T(0))) return normal;
+    if (!any(square != T(0))) return normal;
     const T size = max(sqrt(square), most), length = sqrt(T(1) + min(square, most * most));
     const T inverse = T(1) / (size * length);  // one division for both
     return (size * inverse) * normal + (most * inverse) * turn;

@@ -39,7 +39,8 @@ public:
     static constexpr int dim = D;
     /// The second one reads the gradients that the first one has left.
     static constexpr int first_evaluations = 2;
-    /// The sums leave out what is not in reach (KnowsItsReach), so a skin costs its distances alone.
+    /// The sums leave out what is not in reach (KnowsItsReach), so a skin costs its distances
+    /// alone.
     static constexpr SkinCosts skin_costs =
         D == 2 ? SkinCosts{1.25, 0.15, 0.4} : SkinCosts{1.0, 0.25, 0.3};
 

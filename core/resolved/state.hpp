@@ -25,7 +25,7 @@ struct ResolvedState : Particles<D> {
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
     FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
-    bool has_voellmy_beds;           // without, the fields below stay empty
+    bool has_voellmy_beds;                // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
     WallField<Vec<double, D>> bed_slip;  // [m]
     WallField<double> bed_load;          // normal stress on them, over a time [Pa]
