@@ -11,27 +11,43 @@
 
 namespace doseki {
 
-/// The elements of a field, of any type, as bytes.
+/// Which particles a quantity is of: all, walls alone, or all but walls. Storage has those that are
+/// no walls first, so the elements of either lie in a row.
+enum class FieldOf { all, walls, others };
+
+/// Places of a row of elements: from `first` up to `last`, which is not one of them.
+struct Places {
+    std::size_t first, last;
+};
+
+/// The elements of a field, of any type, as bytes. Those that are stored lie in a row; the others
+/// are zero.
 class FieldMemory {
 public:
-    explicit FieldMemory(std::size_t element_size) : element_size_(element_size) {}
+    FieldMemory(std::size_t element_size, FieldOf of) : element_size_(element_size), of_(of) {}
 
-    std::size_t size() const { return bytes_.size() / element_size_; }
+    std::size_t size() const { return size_; }
     std::size_t element_size() const { return element_size_; }
-    std::byte* element(std::size_t p) { return bytes_.data() + p * element_size_; }
+    FieldOf of() const { return of_; }
+    /// Null where the element is not stored.
+    std::byte* element(std::size_t p) {
+        return p - first_ < stored_ ? bytes_.data() + (p - first_) * element_size_ : nullptr;
+    }
     /// That the field occupies, room to grow included.
     std::size_t bytes_held() const { return bytes_.capacity(); }
 
-    /// New elements are zero.
-    void resize(std::size_t n) { bytes_.resize(n * element_size_); }
-    /// New element k is old element order[k].
-    void reorder(std::span<const std::uint32_t> order);
+    /// New elements are zero, and stored.
+    void resize(std::size_t n);
+    /// New element k is old element order[k]. Those of `kept` are stored, as all of them were.
+    void reorder(std::span<const std::uint32_t> order, Places kept);
 
 protected:
     std::vector<std::byte> bytes_;
+    std::size_t size_ = 0, first_ = 0, stored_ = 0;
 
 private:
     std::size_t element_size_;
+    FieldOf of_;
 };
 
 /// One quantity of all particles, in the order of storage.
@@ -43,10 +59,9 @@ class Field : public FieldMemory {
 public:
     using value_type = T;
 
-    Field() : FieldMemory(sizeof(T)) {}
+    Field() : FieldMemory(sizeof(T), FieldOf::all) {}
 
-    std::size_t size() const { return bytes_.size() / sizeof(T); }
-    bool empty() const { return bytes_.empty(); }
+    bool empty() const { return size() == 0; }
     T* data() { return reinterpret_cast<T*>(bytes_.data()); }
     const T* data() const { return reinterpret_cast<const T*>(bytes_.data()); }
     T& operator[](std::size_t p) { return data()[p]; }
@@ -65,6 +80,46 @@ public:
         std::copy(values.begin(), values.end(), begin());
     }
 };
+
+[[noreturn]] void fail_on_missing_element();
+
+/// One quantity of some of the particles. Whoever reads it may ask for all: it is zero elsewhere.
+template <class T, FieldOf kind>
+class PartField : public FieldMemory {
+    static_assert(std::is_trivially_copyable_v<T> && kind != FieldOf::all);
+
+public:
+    using value_type = T;
+
+    PartField() : FieldMemory(sizeof(T), kind) {}
+
+    /// Throws std::logic_error where the particle is not of those that have it.
+    T& operator[](std::size_t p) {
+        if (!(p - first_ < stored_)) fail_on_missing_element();
+        return data()[p - first_];
+    }
+    const T& operator[](std::size_t p) const {
+        return p - first_ < stored_ ? data()[p - first_] : zero;
+    }
+    std::span<T> stored() { return {data(), stored_}; }
+    std::span<const T> stored() const { return {data(), stored_}; }
+
+    void assign(std::span<const T> values) {
+        resize(0), resize(values.size());
+        std::copy(values.begin(), values.end(), data());
+    }
+
+private:
+    static constexpr T zero{};
+    T* data() { return reinterpret_cast<T*>(bytes_.data()); }
+    const T* data() const { return reinterpret_cast<const T*>(bytes_.data()); }
+};
+
+template <class T>
+using WallField = PartField<T, FieldOf::walls>;
+/// Of all particles but walls.
+template <class T>
+using FluidField = PartField<T, FieldOf::others>;
 
 /// A field of a list of them.
 struct NamedField {

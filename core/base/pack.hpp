@@ -50,7 +50,15 @@ DOSEKI_FN T number(double literal) {
 DOSEKI_FN double select(bool mask, double yes, double no) { return mask ? yes : no; }
 DOSEKI_FN float select(bool mask, float yes, float no) { return mask ? yes : no; }
 
+/// Whether a condition holds in any lane.
+DOSEKI_FN bool any(bool mask) { return mask; }
+
 #if !defined(__CUDACC__)
+template <class real, class Abi>
+DOSEKI_FN bool any(const stdx::simd_mask<real, Abi>& mask) {
+    return stdx::any_of(mask);
+}
+
 template <class real, class Abi>
 DOSEKI_FN stdx::simd<real, Abi> select(const stdx::simd_mask<real, Abi>& mask,
                                        const stdx::simd<real, Abi>& yes, stdx::simd<real, Abi> no) {

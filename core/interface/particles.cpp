@@ -155,32 +155,6 @@ NamedValues ParticleTables<D>::rates(const Particles<D>& particles,
 }
 
 template <int D>
-Value ParticleTables<D>::column(const Field<double>& field, const Array<std::size_t>& order) {
-    NewArray<double> column({order.size()});
-    for (std::size_t k = 0; k < order.size(); ++k) column[k] = field[order[k]];
-    return column;
-}
-
-template <int D>
-Value ParticleTables<D>::column(const Field<Vec<double, D>>& field,
-                                const Array<std::size_t>& order) {
-    NewArray<double> column({order.size(), D});
-    for (std::size_t k = 0; k < order.size(); ++k) put_row(column, k, field[order[k]].component);
-    return column;
-}
-
-template <int D>
-Value ParticleTables<D>::column(const Field<Mat<double, D>>& field,
-                                const Array<std::size_t>& order) {
-    NewArray<double> column({order.size(), D, D});
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const auto& element = field[order[k]].element;
-        std::copy(element.begin(), element.end(), column.data() + k * D * D);
-    }
-    return column;
-}
-
-template <int D>
 Value ParticleTables<D>::stresses(const Array<std::size_t>& order,
                                   const std::function<Deviator<double, D>(std::size_t)>& deviator) {
     NewArray<double> column({order.size(), 3, 3});

@@ -1,7 +1,10 @@
 #pragma once
 // Particles as tables of columns, in and out.
 
+#include <cstring>
 #include <functional>
+#include <type_traits>
+#include <vector>
 
 #include "base/array.hpp"
 #include "interface/value.hpp"
@@ -42,10 +45,19 @@ struct ParticleTables {
                               const PointStates<D>& states);
     static NamedValues rates(const Particles<D>& particles, const Array<std::size_t>& order);
 
-    /// One field of the particles in `order`.
-    static Value column(const Field<double>& field, const Array<std::size_t>& order);
-    static Value column(const Field<Vec<double, D>>& field, const Array<std::size_t>& order);
-    static Value column(const Field<Mat<double, D>>& field, const Array<std::size_t>& order);
+    /// One field of the particles in `order`: of numbers, vectors or matrices.
+    template <class FieldType>
+    static Value column(const FieldType& field, const Array<std::size_t>& order) {
+        using T = typename FieldType::value_type;
+        std::vector<std::size_t> shape{order.size()};
+        if constexpr (std::is_same_v<T, Vec<double, D>>) shape = {order.size(), D};
+        if constexpr (std::is_same_v<T, Mat<double, D>>) shape = {order.size(), D, D};
+        constexpr std::size_t numbers = sizeof(T) / sizeof(double);
+        NewArray<double> column(shape);
+        for (std::size_t k = 0; k < order.size(); ++k)
+            std::memcpy(column.data() + numbers * k, &field[order[k]], sizeof(T));
+        return column;
+    }
     /// Stresses, all nine components of each.
     static Value stresses(const Array<std::size_t>& order,
                           const std::function<Deviator<double, D>(std::size_t)>& deviator);

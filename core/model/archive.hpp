@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "base/array.hpp"
@@ -69,6 +70,15 @@ public:
     template <class T>
     void operator()(const char* name, Field<T>& values) {
         column(name, values);
+    }
+    /// As long as a field of all particles: what is stored is no business of an archive's.
+    template <class T, FieldOf of>
+    void operator()(const char* name, PartField<T, of>& values) {
+        Array<T> all;
+        if (!loads_)
+            for (std::size_t p = 0; p < values.size(); ++p) all.push_back(std::as_const(values)[p]);
+        column(name, all);
+        if (loads_) values.assign(std::span<const T>(all));
     }
     void operator()(const char* name, bool& value);
     /// One array for each member: a Tag has padding, which is not state.

@@ -95,7 +95,7 @@ struct Options {
     double cflnumber = 0.1;
     double cfl_force = 0.1;
     double skin = 0.05;           // of the smallest support radius
-    bool auto_skin = false;       // from the first lists on, see CheapestSkin
+    bool auto_skin = false;       // from the first lists on, see SkinCosts
     bool fixed_limits_dt = true;  // the sound speed of fixed particles counts in Eq. (18)
     bool balsara = true;
     bool sym_grad = false;

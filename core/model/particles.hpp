@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <span>
 
 #include "base/array.hpp"
@@ -34,23 +36,24 @@ struct Face {
 /// What wall particles have: those of fixed bodies and the points of bodies that move.
 template <int D>
 struct WallState {
-    bool in_use = false;           // of schemes that tell walls from particles; else all are empty
-    Field<Vec<double, D>> normal;  // into the fluid
-    Field<Sym<double, D>> bend;    // how the normal turns along the surface, where it curves [1/m]
-    Field<double> depth;           // below the surface of the wall [m]
-    Field<double> cut;             // share of its volume, of a terrain's, that a body takes up
-    Field<Vec<double, D>> force;   // of the fluid on it [N], 2-D: [N/m]
-    Field<double> pressure;        // of the fluid at its place [Pa]
+    bool in_use = false;  // of schemes that tell walls from particles; else all are empty
+    WallField<Vec<double, D>> normal;  // into the fluid
+    WallField<Sym<double, D>>
+        bend;                 // how the normal turns along the surface, where it curves [1/m]
+    WallField<double> depth;  // below the surface of the wall [m]
+    WallField<double> cut;    // share of its volume, of a terrain's, that a body takes up
+    WallField<Vec<double, D>> force;  // of the fluid on it [N], 2-D: [N/m]
+    WallField<double> pressure;       // of the fluid at its place [Pa]
     // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
-    Field<std::int32_t> face;             // none, of a fixed body, or of rigid body `face - first`
-    Field<Vec<double, D>> area;           // of a body that moves, outwards [m^2], 2-D: [m]
-    Field<double> rows;                   // pressure force on all its rows over that on this one
-    Field<double> film_change;            // of its pressure in the last step [Pa]
-    Field<double> film_density;           // of the fluid that presses on it [kg/m^3]; 0: dry
-    Field<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
-    Field<BodyKind> body_kind;            // of bound particles
+    WallField<std::int32_t> face;    // none, of a fixed body, or of rigid body `face - first`
+    WallField<Vec<double, D>> area;  // of a body that moves, outwards [m^2], 2-D: [m]
+    WallField<double> rows;          // pressure force on all its rows over that on this one
+    WallField<double> film_change;   // of its pressure in the last step [Pa]
+    WallField<double> film_density;  // of the fluid that presses on it [kg/m^3]; 0: dry
+    WallField<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
+    WallField<BodyKind> body_kind;            // of bound particles
     // Index among the points of bodies of that kind; of a terrain's particle, its tile.
-    Field<std::int32_t> point;
+    WallField<std::int32_t> point;
 
     template <class F>
     void for_each_field(F&& f) {
@@ -149,10 +152,26 @@ void resize(Particles<D>& particles, std::size_t n) {
     for (const NamedField& field : particles.fields()) field.memory->resize(n);
 }
 
+/// From the first to the last place that has a particle of which `is_one` holds.
+template <class F>
+Places places_of(std::span<const std::uint32_t> order, const F& is_one) {
+    const auto first = std::find_if(order.begin(), order.end(), is_one);
+    const auto last = std::find_if(order.rbegin(), std::make_reverse_iterator(first), is_one);
+    return {static_cast<std::size_t>(first - order.begin()),
+            static_cast<std::size_t>(last.base() - order.begin())};
+}
+
 /// New particle k is old particle order[k]; particles not named are gone.
 template <int D>
 void reorder(Particles<D>& particles, std::span<const std::uint32_t> order) {
-    for (const NamedField& field : particles.fields()) field.memory->reorder(order);
+    const Places all{0, order.size()},
+        walls = places_of(order, [&](std::uint32_t p) { return particles.is_wall(p); }),
+        others = places_of(order, [&](std::uint32_t p) { return !particles.is_wall(p); });
+    for (const NamedField& field : particles.fields()) {
+        const FieldOf of = field.memory->of();
+        field.memory->reorder(
+            order, of == FieldOf::walls ? walls : (of == FieldOf::others ? others : all));
+    }
 }
 
 }  // namespace doseki

@@ -26,14 +26,20 @@ public:
                 [&](auto l) { return records[std::min<std::uint32_t>(first + l, last)].x[a]; });
     }
 
-    DOSEKI_FN Pair<Lanes, D> pair(const std::array<Coordinate<real>, D>& x_j, real unit) const {
-        Pair<Lanes, D> pair;
+    /// x_i - x_j [m].
+    DOSEKI_FN Vec<Lanes, D> from(const std::array<Coordinate<real>, D>& x_j, real unit) const {
+        Vec<Lanes, D> r_ij;
         for (int a = 0; a < D; ++a) {
             if constexpr (std::is_same_v<real, double>)
-                pair.r_ij[a] = x_[a] - x_j[a];
+                r_ij[a] = x_[a] - x_j[a];
             else
-                pair.r_ij[a] = stdx::static_simd_cast<Lanes>(x_[a] - x_j[a]) * unit;
+                r_ij[a] = stdx::static_simd_cast<Lanes>(x_[a] - x_j[a]) * unit;
         }
+        return r_ij;
+    }
+    DOSEKI_FN Pair<Lanes, D> pair(const std::array<Coordinate<real>, D>& x_j, real unit) const {
+        Pair<Lanes, D> pair;
+        pair.r_ij = from(x_j, unit);
         // A floor far below any spacing keeps the pair of a particle with itself harmless.
         pair.r = sqrt(max(dot(pair.r_ij, pair.r_ij), Lanes(std::numeric_limits<real>::min())));
         return pair;
@@ -70,14 +76,47 @@ struct PairLoop {
     LaneRows<real> cluster(std::uint32_t first) const {
         return {first, 0, static_cast<std::uint32_t>(records.size() - 1)};
     }
+    /// Of the neighbour that an entry names.
+    template <bool periodic>
+    DOSEKI_FN std::array<Coordinate<real>, D> position(std::uint32_t entry) const {
+        auto x = records[entry & ListEntry::index_mask].x;
+        if constexpr (periodic)
+            for (int a = 0; a < D; ++a) x[a] += shifts[entry >> ListEntry::index_bits][a];
+        return x;
+    }
 };
+
+/// Entries of one list, kept by a thread from one cluster to the next.
+using EntryBuffer = Array<std::uint32_t>;
+
+/// Calls f(entry) for the entries that `each` goes through, in their order. Of a term that knows
+/// its reach, first those are picked out that are in reach of any particle i, without a branch: one
+/// for each pair would be guessed wrong too often.
+template <bool periodic, class Term, class Each, class F>
+[[gnu::always_inline]] inline void for_each_in_reach(
+    const PairLoop<Term>& loop, const LanePositions<typename Term::Real, Term::dim>& x,
+    EntryBuffer& buffer, const Each& each, F&& f) {
+    if constexpr (KnowsItsReach<Term>) {
+        const auto reach = loop.term.reach();
+        std::uint32_t *const begin = buffer.data(), *end = begin;
+        each([&](std::uint32_t entry) {
+            const auto r_ij = x.from(loop.template position<periodic>(entry), loop.unit);
+            *end = entry;
+            end += stdx::all_of(dot(r_ij, r_ij) > reach * reach) ? 0 : 1;
+        });
+        for (const std::uint32_t* entry = begin; entry != end; ++entry) f(*entry);
+    } else {
+        each(f);
+    }
+}
 
 /// The sums of one cluster. Flattened: whatever gcc left as a call in here would be made for every
 /// pair.
 template <bool periodic, class Term>
 [[gnu::flatten, gnu::noinline]] AccumulatorsOf<Term> sum_over_list(const PairLoop<Term>& loop,
                                                                    const ClusterList& list,
-                                                                   std::uint32_t first) {
+                                                                   std::uint32_t first,
+                                                                   EntryBuffer& buffer) {
     using real = typename Term::Real;
     constexpr int D = Term::dim;
     const Term& term = loop.term;
@@ -86,26 +125,27 @@ template <bool periodic, class Term>
     const auto i = term.load(rows);
     AccumulatorsOf<Term> sums{};
     auto pair_with = [&](std::uint32_t entry) {
-        auto x_j = loop.records[entry & ListEntry::index_mask].x;
-        if constexpr (periodic)
-            for (int a = 0; a < D; ++a) x_j[a] += loop.shifts[entry >> ListEntry::index_bits][a];
-        return x.pair(x_j, loop.unit);
+        return x.pair(loop.template position<periodic>(entry), loop.unit);
     };
     auto neighbour = [](std::uint32_t entry) {
         return OneRow<Pack<real>>{entry & ListEntry::index_mask};
     };
     [[maybe_unused]] PairEntry at{first, 0};
-    list.for_each_moving([&](std::uint32_t entry) {
-        if constexpr (SeesEntries<Term>)
-            term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)), at),
-                ++at.number;
-        else
-            term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)));
-    });
+    for_each_in_reach<periodic>(
+        loop, x, buffer, [&](auto&& f) { list.for_each_moving(f); },
+        [&](std::uint32_t entry) {
+            if constexpr (SeesEntries<Term>)
+                term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)), at),
+                    ++at.number;
+            else
+                term.add(sums, pair_with(entry), i, term.load_moving(neighbour(entry)));
+        });
     if constexpr (requires { term.after_moving(sums); }) term.after_moving(sums);
-    list.for_each_fixed([&](std::uint32_t entry) {
-        term.add_fixed(sums, pair_with(entry), i, term.load_fixed(neighbour(entry)));
-    });
+    for_each_in_reach<periodic>(
+        loop, x, buffer, [&](auto&& f) { list.for_each_fixed(f); },
+        [&](std::uint32_t entry) {
+            term.add_fixed(sums, pair_with(entry), i, term.load_fixed(neighbour(entry)));
+        });
     return sums;
 }
 
@@ -134,12 +174,16 @@ void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const Clus
     const PairLoop<Term> loop{records, image_shifts(neighbours, frame),
                               static_cast<real>(frame.unit), term};
 
-    for_each_task(clusters.size(), 16, [&](std::size_t, std::size_t c) {
+    std::size_t longest = 0;  // no list has as many entries as words
+    if constexpr (KnowsItsReach<Term>)
+        for (const ClusterList& list : clusters) longest = std::max(longest, list.words());
+    Array<EntryBuffer> buffers(static_cast<std::size_t>(thread_count()), EntryBuffer(longest));
+    for_each_task(clusters.size(), 16, [&](std::size_t thread, std::size_t c) {
         if (options.skip_empty && clusters[c].empty()) return;
         const auto number = static_cast<std::uint32_t>(options.first_cluster + c);
         const std::uint32_t first = number * width;
         const auto count = std::min<std::size_t>(width, neighbours.size() - first);
-        const auto sums = sum_over_list<periodic>(loop, clusters[c], first);
+        const auto sums = sum_over_list<periodic>(loop, clusters[c], first, buffers[thread]);
         if (options.sampled && options.sampled->samples(number))
             options.sampled->sample_stress(
                 [&] { run_epilogue<Term>(epilogue, first, count, sums); });

@@ -14,7 +14,10 @@
 //       void add_fixed(...) const;                       // the same for a fixed j
 //       void after_moving(Accumulators<T>&) const;       // between the two; may be left out
 //       using SeesEntries = void;                        // may be left out, see PairEntry
+//       Real reach() const;                              // may be left out, see KnowsItsReach
 //   };
+
+#include <concepts>
 
 #include "base/members.hpp"
 #include "pairs/records.hpp"
@@ -31,6 +34,14 @@ struct PairEntry {
 
 template <class Term>
 concept SeesEntries = requires { typename Term::SeesEntries; };
+
+/// A term that says from which distance [m] on a pair adds nothing at all. The loop leaves out the
+/// neighbours that are out of reach of all particles of a cluster, so that a wide margin of the
+/// lists costs no more than their distances.
+template <class Term>
+concept KnowsItsReach = requires(const Term& term) {
+    { term.reach() } -> std::same_as<typename Term::Real>;
+};
 
 /// The accumulators of a term over packs, or over another number type.
 template <class Term, class T = Pack<typename Term::Real>>

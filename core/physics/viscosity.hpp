@@ -13,11 +13,11 @@ struct ViscousForm {
     T along_jump, along_pair;
 };
 
-/// What mu F multiplies: `v_dot_r` = v_ij.r_ij.
+/// What mu F multiplies: `v_dot_r` = v_ij.r_ij, `inverse_r` = 1/r.
 template <class T, int D>
 DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D>& v_ij,
-                                      const T& v_dot_r, const T& r, const Vec<T, D>& r_ij) {
-    const T along = form.along_pair * v_dot_r / (r * r);
+                                      const T& v_dot_r, const T& inverse_r, const Vec<T, D>& r_ij) {
+    const T along = form.along_pair * v_dot_r * (inverse_r * inverse_r);
     return form.along_jump * v_ij + along * r_ij;
 }
 

@@ -55,9 +55,11 @@ Sym<double, D> turned_bend(const Sym<double, D>& bend, const Vec<double, D>& bef
 template <class T, int D>
 DOSEKI_FN Vec<T, D> normal_at_foot(const Vec<T, D>& normal, const Vec<T, D>& turn) {
     const T most = number<T>(0.3);
-    const T square = dot(turn, turn), share = most / max(sqrt(square), most);
-    const T stretch = T(1) / sqrt(T(1) + share * share * square);
-    return stretch * (normal + share * turn);
+    const T square = dot(turn, turn);
+    if (!any(square != T(0))) return normal;
+    const T size = max(sqrt(square), most), length = sqrt(T(1) + min(square, most * most));
+    const T inverse = T(1) / (size * length);  // one division for both
+    return (size * inverse) * normal + (most * inverse) * turn;
 }
 
 /// How much larger than v_i - v_w the jump to the velocity extrapolated into a no-slip wall is

@@ -35,7 +35,7 @@ void bind_flow(nb::module_& m) {
            [](const auto& in, auto& out) {  // along_jump, along_pair, v_ij, r_ij
                const auto v = vector<D>(in, 2), x = vector<D>(in, 2 + D);
                const ViscousForm<NumberOf<decltype(in)>> form{in[0], in[1]};
-               put(viscous_direction(form, v, dot(v, x), sqrt(dot(x, x)), x), out);
+               put(viscous_direction(form, v, dot(v, x), 1.0 / sqrt(dot(x, x)), x), out);
            });
     define(m, "wall_excess_pressure", 1,
            [](const auto& in, auto& out) {  // rho, g_n, r.n, grad p, n, r

@@ -17,7 +17,10 @@ Bytes pack(Particles<D>& particles, std::span<const std::uint32_t> chosen) {
     for (const auto& [name, memory] : particles.fields())
         for (const std::uint32_t p : chosen) {
             const std::byte* const value = memory->element(p);
-            bytes.insert(bytes.end(), value, value + memory->element_size());
+            if (value)
+                bytes.insert(bytes.end(), value, value + memory->element_size());
+            else
+                bytes.resize(bytes.size() + memory->element_size());
         }
     return bytes;
 }

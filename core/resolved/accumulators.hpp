@@ -168,11 +168,14 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
     const Vec<T, D> v_ij = i.v - j.v;
     const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
     const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
-    const T extra = approach_pressure((smooth - v_dot_r) / pair.r, rho, c);
+    // One division for 1/r and 1/(rho c).
+    const T impedance = rho * c, inverse = T(1) / (pair.r * impedance);
+    const T inverse_r = impedance * inverse;
+    const T extra = approach_pressure((smooth - v_dot_r) * inverse_r, rho, c);
     const Vec<T, D> corrected_r = j.correction * pair.r_ij;
     const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
     const ViscousForm<T> form{T(constants.form.along_jump), T(constants.form.along_pair)};
-    const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, pair.r, pair.r_ij);
+    const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, inverse_r, pair.r_ij);
     const T W = Kernel::value(pair.r, inverse_support);
     const T exchange = half * T(constants.exchange) * rho * j.volume * W;
     for (int a = 0; a < D; ++a) {
@@ -183,7 +186,7 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
         sums.corrected_gradient[a] += VF * corrected_r[a];
     }
     const T jump = pressure_jump(i.p, j.p, i.pressure_gradient, j.pressure_gradient, pair.r_ij);
-    const T levelled = half * jump * pair.r / (rho * c);
+    const T levelled = half * jump * (pair.r * pair.r * inverse);
     sums.density_rate += VF * (dot(v_ij, corrected_r) + levelled);
     sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r + half * levelled * (i.p - j.p));
     add_gradients(sums, pair.r_ij, VF, i.p - j.p, v_ij);

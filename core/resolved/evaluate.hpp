@@ -183,7 +183,7 @@ void Resolved<D, Backend>::sum_walls(State& state, const Lists& lists,
                                      const FlowRecords<D>& records, double dt) {
     const auto timing = phases_.measure(Phase::pass_1);
     if (!has_wet_walls(records)) {
-        std::fill(state.wall.force.begin(), state.wall.force.end(), Vec<double, D>{});
+        std::ranges::fill(state.wall.force.stored(), Vec<double, D>{});
         return;
     }
     const std::size_t first = fluid_count_ / Backend::width;

@@ -20,6 +20,8 @@ struct FlowRecords {
     double inverse_support;
 
     std::uint32_t first_wall() const { return fluid_count; }
+    /// From which distance on kernels are zero, whatever the rounding [m].
+    double reach() const { return (1.0 + 1e-12) / inverse_support; }
 
     template <class Rows>
     DOSEKI_FN auto fluid(Rows rows) const {
@@ -46,6 +48,8 @@ struct FluidTerm {
 
     FlowRecords<D> records;
     FlowConstants constants;
+
+    double reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
@@ -83,6 +87,8 @@ struct WallTerm {
     FlowRecords<D> records;
     FlowConstants constants;
     Vec<double, D> gravity;
+
+    double reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {

@@ -9,6 +9,7 @@
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/cpu.hpp"
+#include "pairs/skin.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -38,6 +39,10 @@ public:
     static constexpr int dim = D;
     /// The second one reads the gradients that the first one has left.
     static constexpr int first_evaluations = 2;
+    /// The sums leave out what is not in reach (KnowsItsReach), so a skin costs its distances
+    /// alone.
+    static constexpr SkinCosts skin_costs =
+        D == 2 ? SkinCosts{1.25, 0.15, 0.4} : SkinCosts{1.0, 0.25, 0.3};
 
     Resolved(Array<Material> materials, const Options<D>& options);
 

@@ -15,20 +15,20 @@ struct ResolvedState : Particles<D> {
         this->wall.in_use = true;
     }
 
-    Field<Vec<double, D>> pressure_gradient;  // [Pa/m]
-    Field<Mat<double, D>> velocity_gradient;  // [1/s]
+    FluidField<Vec<double, D>> pressure_gradient;  // [Pa/m]
+    FluidField<Mat<double, D>> velocity_gradient;  // [1/s]
     /// Inverse moment of kernel gradients less the identity: zero near a free surface, and before a
     /// particle has been summed over.
-    Field<Sym<double, D>> correction_excess;
-    Field<Vec<double, D>> shift;     // velocity relative to the fluid [m/s]
-    Field<double> surface;           // free-surface indicator
-    Field<double> mixing_length;     // [m]
-    Field<double> mean_pressure;     // over a time, where friction depends on it [Pa]
-    Field<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
-    bool has_voellmy_beds;           // without, the fields below stay empty
+    FluidField<Sym<double, D>> correction_excess;
+    FluidField<Vec<double, D>> shift;     // velocity relative to the fluid [m/s]
+    FluidField<double> surface;           // free-surface indicator
+    FluidField<double> mixing_length;     // [m]
+    FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
+    FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
+    bool has_voellmy_beds;                // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
-    Field<Vec<double, D>> bed_slip;  // [m]
-    Field<double> bed_load;          // normal stress on them, over a time [Pa]
+    WallField<Vec<double, D>> bed_slip;  // [m]
+    WallField<double> bed_load;          // normal stress on them, over a time [Pa]
 
     template <class F>
     void for_each_field(F&& f) {

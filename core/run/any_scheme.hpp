@@ -17,6 +17,7 @@
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
+#include "pairs/skin.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -27,8 +28,8 @@ namespace doseki {
 /// Fields that tables of particles show where a scheme keeps them; null where it does not.
 template <int D>
 struct OwnFields {
-    Field<double>* surface = nullptr;
-    Field<Mat<double, D>>* velocity_gradient = nullptr;
+    const FluidField<double>* surface = nullptr;
+    const FluidField<Mat<double, D>>* velocity_gradient = nullptr;
     Field<Deviator<double, D>>* deviatoric_stress = nullptr;
 };
 
@@ -53,6 +54,7 @@ public:
     virtual void build_lists(Lists& lists, std::span<const Vec<double, D>> position,
                              std::span<const double> support, double skin,
                              std::span<const std::int32_t> faces) = 0;
+    virtual SkinCosts skin_costs() const = 0;
     virtual WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) const = 0;
     /// How many neighbours within support each particle has.
     virtual Array<double> pair_counts(const Lists& lists) const = 0;

@@ -11,7 +11,6 @@
 #include "model/particles.hpp"
 #include "pairs/backend.hpp"
 #include "pairs/list_wear.hpp"
-#include "pairs/skin.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "ranks/migration.hpp"
@@ -124,7 +123,7 @@ private:
     }
     /// Whether walls of any rank have faces that may meet.
     bool faces_meet(const State& state) const {
-        const auto& faces = state.wall.face;
+        const auto faces = state.wall.face.stored();
         const bool own = std::any_of(faces.begin(), faces.end(),
                                      [](std::int32_t face) { return face != Face::none; });
         return halo_.ranks.largest(own ? 1.0 : 0.0) > 0.0;
@@ -176,7 +175,8 @@ double RunLists<Lists>::cheapest_skin(double min_support, std::int64_t steps) co
     const std::int64_t lasted = steps - rebuild_step_;
     if (!adapts_ || skin_ == 0.0) return given_skin_;
     if (lasted == 0) return skin_;
-    return CheapestSkin<D>::at(approach_ / (static_cast<double>(lasted) * min_support));
+    return scheme_.skin_costs().cheapest_skin(approach_ /
+                                              (static_cast<double>(lasted) * min_support));
 }
 
 template <class Lists>
@@ -221,9 +221,10 @@ void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64
 /// Faces of the particles here, sorted, and of their ghosts after them.
 template <class Lists>
 Field<std::int32_t> RunLists<Lists>::faces_with_ghosts(const State& state) {
-    Field<std::int32_t> faces = state.wall.face;
+    Field<std::int32_t> faces;
     static_assert(Face::none == 0, "a field grows by zeros");
     faces.resize(state.size() + halo_.ghosts());
+    for (std::size_t p = 0; p < state.size(); ++p) faces[p] = state.wall.face[p];
     halo_.start({halo_column(faces)});
     halo_.finish();
     return faces;

@@ -53,6 +53,7 @@ public:
                      std::span<const std::int32_t> faces) override {
         Backend::build_lists(lists, position, support, skin, faces);
     }
+    SkinCosts skin_costs() const override { return SchemeOf::skin_costs; }
     WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) const override {
         return SchemeOf::cost_of_lists(words, seconds);
     }

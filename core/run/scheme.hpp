@@ -11,6 +11,7 @@
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
+#include "pairs/skin.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 
@@ -53,6 +54,7 @@ concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, 
                      { known.shear_energy(state, p) } -> std::same_as<double>;
                      // How often the right-hand side is evaluated before the first step.
                      { S::first_evaluations + 0 } -> std::same_as<int>;
+                     { S::skin_costs } -> std::convertible_to<SkinCosts>;
                      { S::cost_of_lists(ListWords{}, PassSeconds{}) } -> std::same_as<WordCosts>;
                  };
 

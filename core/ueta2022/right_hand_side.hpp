@@ -12,6 +12,7 @@
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/cpu.hpp"
+#include "pairs/skin.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -36,6 +37,8 @@ public:
     static constexpr int dim = D;
     /// Nothing that a sum reads was left by the one before.
     static constexpr int first_evaluations = 1;
+    static constexpr SkinCosts skin_costs =
+        D == 2 ? SkinCosts{0.7, 1.6, 0.3} : SkinCosts{1.0, 2.6, 0.3};
 
     Ueta2022(Array<Material> materials, const Options<D>& options);
 

@@ -131,7 +131,7 @@ def reference(dim: int, name: str) -> FlowReference:
     return FlowReference(cloud(dim, case), case.materials, GRAVITY[-dim:], options).start()
 
 
-def core_simulation(isa: str, dim: int, name: str) -> Any:
+def core_simulation(isa: str, dim: int, name: str, skin: float = 0.05) -> Any:
     """The core's simulation of a case, started."""
     case, particles = CASES[name], vars(cloud(dim, CASES[name]))
     ours = asdict(reference(dim, name).options)
@@ -141,7 +141,7 @@ def core_simulation(isa: str, dim: int, name: str) -> Any:
     }
     flow |= {"shifting": ours["shifting"], "walls": list(case.walls)}
     options = {key: ours[key] for key in ("eta", "cflnumber", "cfl_force")}
-    options |= {"alpha": 0.0, "skin": 0.05, "balsara": False, "sym_grad": False, "flow": flow}
+    options |= {"alpha": 0.0, "skin": skin, "balsara": False, "sym_grad": False, "flow": flow}
     options |= {"tension": "free", "h_mode": "constant", "gravity": GRAVITY[-dim:]}
     options |= {"domain_min": [0.0] * dim, "domain_max": [1.0] * dim}
     options["periodic"] = [axis in case.periodic for axis in "xyz"[:dim]]
@@ -186,6 +186,19 @@ def test_rates(isa: str, dim: int, name: str) -> None:
     assert_close(state["pressure"][~fluid], ours.wall_pressure, "pressure of walls")
     assert (rates["acceleration"][~fluid] == 0).all()
     assert (rates["density_rate"][~fluid] == 0).all()
+
+
+@pytest.mark.parametrize("skin", [0.0, 0.6])
+@pytest.mark.parametrize("name", ["open", "two fluids, periodic", "wide kernel"])
+def test_the_margin_of_lists_adds_nothing(isa: str, dim: int, name: str, skin: float) -> None:
+    """Lists without one hold the pairs in reach; those of a wide one many others, and clusters of
+    which no particle has the neighbour in reach.
+    """
+    ours, core = reference(dim, name), core_simulation(isa, dim, name, skin)
+    rates, state, fluid = core.rates(), core.state(), ours.fluid
+    assert_close(rates["acceleration"][fluid], ours.acceleration, "acceleration")
+    assert_close(rates["density_rate"][fluid], ours.density_rate, "density rate")
+    assert_close(state["force"][~fluid], ours.wall_force, "force on walls")
 
 
 @pytest.mark.parametrize("name", ["open", "rough, periodic"])
