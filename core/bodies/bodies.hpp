@@ -61,6 +61,7 @@ public:
     void start(Particles<D>& particles) {
         deformable.start(particles, gravity_);
         number_bodies();
+        breakable_.measure_strengths(deformable);
         start_breakable();
         prepare_contacts();
         find_contacts();
@@ -99,7 +100,7 @@ public:
     /// Largest step that motion without a fluid may have.
     double timestep() const {
         if (!any_moves()) return std::numeric_limits<double>::infinity();
-        if (breakable_.any()) return max_contact_steps * contacts_.timestep(PairKind::rigid);
+        if (breakable_.any()) return max_contact_steps * contacts_.timestep(PairKind::slow);
         return max_contact_steps * std::min(contacts_.timestep(PairKind::all), deformable_step_);
     }
 
@@ -205,7 +206,7 @@ private:
     void start_breakable() {
         if (!breakable_.any()) return;
         breakable_.start(rigid, deformable);
-        contacts_.tell_kinds_apart();
+        contacts_.tell_kinds_apart(rigid.size() - rigid_origins_.parts());
     }
     /// In how many steps, none longer than `longest`, a time passes.
     static double steps_of(double time, double longest) {
@@ -227,18 +228,20 @@ private:
     /// have steps of their own.
     void advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course);
     void drift_apart(const MovingWalls<D>& walls, double t, double dt, Course& course);
-    void push_rigid(double dt, Course& course);
+    void step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course);
+    void push_slow(double dt, Course& course);
+    void push_fast(double t, double dt, Course& course);
     /// Forces of contacts of a kind; makes bodies deformable that are struck.
     void touch(PairKind kind, double dt, Course& course);
     void show(PairKind kind) {
         rigid.show(contact_, contacts_.points(kind));
-        if (kind != PairKind::rigid) deformable.show(contact_);
+        if (kind != PairKind::slow) deformable.show(contact_);
     }
     void make_deformable(const Array<std::size_t>& struck, Course& course);
     void make_rigid_again(double dt, Course& course);
-    bool is_still(const BreakableBody<D>& body) const;
+    bool becomes_still(BreakableBody<D>& body, double dt);
     void change_breakable(const Array<std::size_t>& which, const Fragments<D>& before);
-    /// Which rigid bodies may touch deformable ones.
+    /// Which rigid bodies move in the short steps: dust, and those that may touch what does.
     void find_companions();
 
     void prepare_contacts() {
@@ -272,6 +275,12 @@ private:
         return std::min({contacts_.timestep(kind), 0.25 * margin_ / std::max(fastest, 1e-300),
                          std::sqrt(0.25 * margin_ / std::max(pull, 1e-300))});
     }
+    /// That of what is deformable and of dust.
+    double shorter_step() const {
+        if (companions_.empty() && !deformable.any_deforms())
+            return std::numeric_limits<double>::infinity();
+        return std::min(longest_step(PairKind::fast), deformable_step_);
+    }
     /// Contacts that have pressed on fixed bodies for dt.
     void add_loads(PairKind kind, double dt) {
         if (loads.empty()) return;
@@ -296,7 +305,7 @@ private:
     double memory_;
     Contacts<D> contacts_;
     BreakableBodies<D> breakable_;
-    Array<std::uint32_t> companions_, others_;  // rigid bodies that may touch deformable ones
+    Array<std::uint32_t> companions_, others_;  // rigid bodies in short steps, and in long ones
     bool rebinds_ = false;                      // whether bodies have changed since place()
     RigidParticles<D> rigid_particles_;
     Origins rigid_origins_, deformable_origins_;

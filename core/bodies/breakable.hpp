@@ -13,30 +13,50 @@ void Bodies<D>::find_companions() {
     if (!breakable_.any()) return;
     Array<std::uint8_t> is_companion(rigid.size(), 0);
     auto mark = [&](std::int32_t k) {
-        if (static_cast<std::size_t>(k) < rigid.size()) is_companion[static_cast<std::size_t>(k)] = 1;
+        if (static_cast<std::size_t>(k) < rigid.size())
+            is_companion[static_cast<std::size_t>(k)] = 1;
     };
-    contacts_.for_each_pair_of(PairKind::deformable,
+    contacts_.for_each_pair_of(PairKind::fast,
                                [&](std::int32_t a, std::int32_t b) { mark(a), mark(b); });
     companions_.clear(), others_.clear();
     for (std::uint32_t k = 0; k < rigid.size(); ++k)
-        (is_companion[k] ? companions_ : others_).push_back(k);
+        (is_companion[k] || rigid_origins_[k].parent >= 0 ? companions_ : others_).push_back(k);
 }
 
-/// Eq. (142): contacts of rigid bodies push once, in the middle of a step, in each half of which
-/// deformable bodies and their companions have steps of their own (Tuckerman, Berne and Martyna, J.
-/// Chem. Phys. 97, 1992).
+/// Eq. (142): slow contacts push once, in the middle of a step, in each half of which what is
+/// deformable, dust and what they may touch have steps of their own (Tuckerman, Berne and Martyna,
+/// J. Chem. Phys. 97, 1992).
 template <int D>
 void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
-        const double steps = steps_of(left, longest_step(PairKind::rigid)), step = left / steps,
-                     now = t + dt - left;
-        course.gravity_lag = 0.0;
-        drift_apart(walls, now, 0.5 * step, course);
-        push_rigid(step, course);
-        course.gravity_lag = -0.5 * step;
-        drift_apart(walls, now + 0.5 * step, 0.5 * step, course);
+        const double longest = longest_step(PairKind::slow), shorter = shorter_step(),
+                     steps = steps_of(left, longest < 2.0 * shorter ? std::min(longest, shorter)
+                                                                    : longest),
+                     step = left / steps, now = t + dt - left;
+        if (step < 2.0 * shorter)
+            step_at_once(walls, now, step, course);
+        else {
+            course.gravity_lag = 0.0;
+            drift_apart(walls, now, 0.5 * step, course);
+            course.gravity_lag = 0.5 * step;
+            push_slow(step, course);
+            course.gravity_lag = -0.5 * step;
+            drift_apart(walls, now + 0.5 * step, 0.5 * step, course);
+        }
         left = steps > 1.0 ? left - step : 0.0;
     }
+}
+
+/// Where two short steps are longer than a long one.
+template <int D>
+void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course) {
+    drift(0.5 * dt);
+    follow_walls(walls, t, dt);
+    course.gravity_lag = 0.0;  // what becomes deformable here is pushed by gravity below
+    push_slow(dt, course);
+    course.gravity_lag = -dt;
+    push_fast(t, dt, course);
+    drift(0.5 * dt);
 }
 
 template <int D>
@@ -44,38 +64,39 @@ void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Co
     Array<std::uint32_t> together = companions_;  // and dust that is born on the way
     double ahead = rigid.drift(dt, others_);
     moved_ += ahead;
-    if (!deformable.any_deforms()) {
-        follow_walls(walls, t, dt);
-        moved_ += std::max(0.0, rigid.drift(dt, together) - ahead);
-        return;
-    }
     auto drift_together = [&](double step) {
         const double way = std::max(deformable.drift(step), rigid.drift(step, together));
         moved_ += std::max(0.0, way - ahead), ahead = std::max(0.0, ahead - way);
     };
     for (double left = dt; left > 0.0;) {
-        const double longest = std::min(longest_step(PairKind::deformable), deformable_step_),
-                     steps = steps_of(left, longest), step = left / steps, now = t + dt - left;
+        const double steps = steps_of(left, shorter_step()), step = left / steps,
+                     now = t + dt - left;
         drift_together(0.5 * step);
         follow_walls(walls, now, step);
-        touch(PairKind::deformable, step, course);
+        const std::size_t before = rigid.size();
+        if (!together.empty() || deformable.any_deforms()) push_fast(now, step, course);
         course.gravity_lag += step;
-        deformable.collect(contact_);
-        course.given = course.given + deformable.push(step, gravity_);
-        rigid.push({}, step);
-        const auto before = static_cast<std::uint32_t>(rigid.size());
-        part_if_cracked(now, step, course);
-        for (std::uint32_t k = before; k < rigid.size(); ++k) together.push_back(k);
+        for (std::size_t k = before; k < rigid.size(); ++k)
+            together.push_back(static_cast<std::uint32_t>(k));
         drift_together(0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
 }
 
 template <int D>
-void Bodies<D>::push_rigid(double dt, Course& course) {
-    course.gravity_lag = 0.5 * dt;
-    touch(PairKind::rigid, dt, course);
+void Bodies<D>::push_slow(double dt, Course& course) {
+    touch(PairKind::slow, dt, course);
     rigid.push(gravity_, dt);
+}
+
+template <int D>
+void Bodies<D>::push_fast(double t, double dt, Course& course) {
+    touch(PairKind::fast, dt, course);
+    rigid.push({}, dt);
+    if (!deformable.any_deforms()) return;
+    deformable.collect(contact_);
+    course.given = course.given + deformable.push(dt, gravity_);
+    part_if_cracked(t, dt, course);
 }
 
 template <int D>
@@ -114,7 +135,7 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
             {body.centre, state.centre, state.velocity, state.angular_momentum, turn},
             state.acceleration);
         rigid.take_out(body.rigid);
-        body.deforms_for = 0.0;
+        body.deforms_for = body.loudness = 0.0;
     }
     const BodySums<D> gone = rigid.sums().less(had);
     course.before = course.before + gone;
@@ -122,16 +143,15 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
     change_breakable(struck, before);
 }
 
-/// A body that is whole and has come to rest within itself is rigid again, with the momenta that it
-/// has; what it still has of vibration counts as damped.
+/// A body that is whole and has come to rest within itself is rigid again, with the shape and the
+/// momenta that it has; what it still has of vibration counts as damped.
 template <int D>
 void Bodies<D>::make_rigid_again(double dt, Course& course) {
     Array<std::size_t> still;
     for (std::size_t n = 0; n < breakable_.size(); ++n) {
         BreakableBody<D>& body = breakable_[n];
         if (deformable.solids().is_rigid(body.deformable)) continue;
-        body.deforms_for += dt;
-        if (is_still(body)) still.push_back(n);
+        if (becomes_still(body, dt)) still.push_back(n);
     }
     if (still.empty()) return;
     const Fragments<D> before = deformable.as_they_are();
@@ -148,32 +168,36 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
                                              in_space(motion.velocity));
         rigid.put_back(body.rigid, centre, motion.velocity,
                        motion.orientation.after(body.orientation), own);
-        deformable.make_rigid(body.deformable, rigid.kinetic_energy_of(body.rigid));
+        deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
+        breakable_.weigh_cracks(n, deformable);
     }
     course.before = course.before + rigid.sums().less(had);
     change_breakable(still, before);
 }
 
-/// Whether it has no crack, has had time for waves to go to and fro, and has but a small part of
-/// the energy with which a crack begins, Eq. (141).
+/// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small part
+/// of the energy with which a crack begins, Eq. (141).
 template <int D>
-bool Bodies<D>::is_still(const BreakableBody<D>& body) const {
+bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     constexpr double crossings = 20.0;  // of waves, before anything is judged
+    constexpr double lately = 5.0;      // crossings
     constexpr double share = 0.2;       // of the tension that it bears
     const auto& solids = deformable.solids();
     const DeformableBody& material = solids.material(body.deformable);
-    if (body.deforms_for * material.wave_speed() < crossings * body.diameter) return false;
-    if (solids.is_cracked(body.deformable)) return false;
     const Array<std::uint32_t> points = solids.points_of(body.deformable);
     const RigidMotion<D> motion = rigid_motion<D>(solids, points);
-    const double stress = share * body.strength,
-                 enough = motion.mass / material.rho0 * stress * stress /
-                          (2.0 * material.young_modulus());
-    double kinetic = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
-                     0.5 * dot(motion.spin, motion.angular_momentum);
+    double vibration = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
+                       0.5 * dot(motion.spin, motion.angular_momentum);
     for (const std::uint32_t p : points)
-        kinetic += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
-    return kinetic + solids.strain_energy(points) <= enough;
+        vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
+    const double crossing = body.diameter / material.wave_speed();
+    body.deforms_for += dt;
+    body.loudness = std::max(vibration, body.loudness * std::exp(-dt / (lately * crossing)));
+    const double stress = share * body.strength, volume = motion.mass / material.rho0,
+                 enough = volume * stress * stress / (2.0 * material.young_modulus());
+    constexpr double rounding = 1e-9;
+    const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
+    return whole && body.deforms_for > crossings * crossing && body.loudness <= enough;
 }
 
 /// Contacts of bodies that have changed begin with the overlaps that they have at rest, Eq. (115).

@@ -19,7 +19,9 @@ struct BreakableBody {
     Vec<double, D> centre;  // of the rigid one where the points of the other are at rest
     Quaternion orientation;
     double deforms_for = 0.0;  // since it was made deformable [s]
+    double loudness = 0.0;     // energy of its vibration lately [J], 2-D: [J/m]
     double strength = 0.0;     // tension at which the first crack begins [Pa]
+    double bears = 0.0;        // the same with the cracks that it has
     double impedance = 0.0, diameter = 0.0;  // see Touch
 };
 
@@ -35,7 +37,18 @@ public:
     void add(std::size_t rigid, std::size_t deformable, const RigidBodyState<D>& state) {
         bodies_.push_back({rigid, deformable, state.centre, state.orientation});
     }
-    /// Call once all bodies are in and started.
+    /// Finds out what a body bears with the cracks that it has.
+    void weigh_cracks(std::size_t n, const DeformableBodies<D>& deformable) {
+        constexpr double least = 0.1;  // of its strength: a notch concentrates stress
+        const double intact = deformable.solids().least_intactness(bodies_[n].deformable);
+        bodies_[n].bears = std::max(least, intact) * bodies_[n].strength;
+    }
+    /// Call once all bodies are in and started, before any has a crack.
+    void measure_strengths(const DeformableBodies<D>& deformable) {
+        for (BreakableBody<D>& body : bodies_)
+            body.strength = deformable.solids().strength(body.deformable);
+    }
+    /// Call once all bodies are in, started or restored.
     void start(const RigidBodies<D>& rigid, const DeformableBodies<D>& deformable);
 
     /// The one that a rigid body is of; none.
@@ -86,11 +99,11 @@ void BreakableBodies<D>::start(const RigidBodies<D>& rigid, const DeformableBodi
         of_rigid_[body.rigid] = static_cast<std::int32_t>(n);
         const auto& solids = deformable.solids();
         const DeformableBody& material = solids.material(body.deformable);
-        body.strength = solids.strength(body.deformable);
         body.impedance = material.rho0 * material.wave_speed();
         const double volume = rigid.body(body.rigid).mass / material.rho0;
         body.diameter = D == 2 ? std::sqrt(4.0 * volume / std::numbers::pi)
                                : std::cbrt(6.0 * volume / std::numbers::pi);
+        weigh_cracks(n, deformable);
     }
     const Array<std::int32_t>& points = deformable.rigid_points();
     deformable_point_.clear();
@@ -134,7 +147,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairK
     });
     Array<std::size_t> found;
     for (std::size_t n = 0; n < size(); ++n)
-        if (tension[n] >= bodies_[n].strength) found.push_back(n);
+        if (tension[n] >= bodies_[n].bears) found.push_back(n);
     return found;
 }
 
@@ -143,21 +156,23 @@ void BreakableBodies<D>::serialise(Archive& archive) {
     Array<std::int32_t> rigid, deformable;
     Array<Vec<double, D>> centre;
     Array<Vec<double, 4>> orientation;
-    Array<double> deforms_for;
+    Array<double> deforms_for, loudness, strength;
     for (const BreakableBody<D>& body : bodies_) {
         const auto& [w, x, y, z] = body.orientation;
         rigid.push_back(static_cast<std::int32_t>(body.rigid)),
             deformable.push_back(static_cast<std::int32_t>(body.deformable));
         centre.push_back(body.centre), orientation.push_back(Vec<double, 4>{{w, x, y, z}});
-        deforms_for.push_back(body.deforms_for);
+        deforms_for.push_back(body.deforms_for), loudness.push_back(body.loudness);
+        strength.push_back(body.strength);
     }
     archive("breakable_rigid", rigid), archive("breakable_deformable", deformable);
     archive("breakable_centre", centre), archive("breakable_orientation", orientation);
-    archive("breakable_deforms_for", deforms_for);
+    archive("breakable_deforms_for", deforms_for), archive("breakable_loudness", loudness);
+    archive("breakable_strength", strength);
     if (!archive.loads()) return;
     const std::size_t n = rigid.size();
     expect_fit(deformable.size() == n && centre.size() == n && orientation.size() == n &&
-                   deforms_for.size() == n,
+                   deforms_for.size() == n && loudness.size() == n && strength.size() == n,
                "breakable_rigid");
     bodies_.clear();
     for (std::size_t k = 0; k < n; ++k) {
@@ -166,7 +181,7 @@ void BreakableBodies<D>::serialise(Archive& archive) {
         expect_fit(rigid[k] >= 0 && deformable[k] >= 0, "breakable_rigid");
         bodies_.push_back({static_cast<std::size_t>(rigid[k]),
                            static_cast<std::size_t>(deformable[k]), centre[k],
-                           {q[0], q[1], q[2], q[3]}, deforms_for[k]});
+                           {q[0], q[1], q[2], q[3]}, deforms_for[k], loudness[k], strength[k]});
     }
 }
 

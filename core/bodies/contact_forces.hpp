@@ -204,7 +204,7 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     }
     selections_ = {};
     if (apart_)
-        select(PairKind::rigid), select(PairKind::deformable);
+        select(PairKind::slow), select(PairKind::fast);
     else
         select(PairKind::all);
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
@@ -221,7 +221,8 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
 template <int D>
 PairKind Contacts<D>::kind_of(std::size_t k) const {
     if (!apart_) return PairKind::all;
-    return contacts_[k].law.rigid ? PairKind::rigid : PairKind::deformable;
+    const auto [a, b] = std::minmax(contacts_[k].body_a, contacts_[k].body_b);
+    return static_cast<std::size_t>(b) < slow_bodies_ ? PairKind::slow : PairKind::fast;
 }
 
 template <int D>

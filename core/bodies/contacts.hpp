@@ -14,8 +14,9 @@
 
 namespace doseki {
 
-/// Pairs by the bodies that they are of: those of two rigid ones can be followed in longer steps.
-enum class PairKind { all, rigid, deformable };
+/// Pairs by the steps that they need: slow are those of bodies that were rigid when the run began,
+/// fast are those with one that is deformable or a part of a broken one.
+enum class PairKind { all, slow, fast };
 
 /// The contacts between different bodies: who may touch, the springs of those that do, and their
 /// forces.
@@ -39,8 +40,9 @@ public:
     template <class NewPair>
     void accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new);
 
-    /// From the next find() on, pairs of one kind can be looked at alone, and no longer all.
-    void tell_kinds_apart() { apart_ = true; }
+    /// From the next find() on, pairs of one kind can be looked at alone, and no longer all. Slow
+    /// are those of bodies with numbers below this one.
+    void tell_kinds_apart(std::size_t slow_bodies) { slow_bodies_ = slow_bodies, apart_ = true; }
     /// Adds forces and torques of all pairs of a kind, whose springs stretch for dt.
     void apply(ContactBodies<D>& bodies, PairKind kind, double dt);
     /// Gives springs back what they were before the last apply() of a kind, of pairs told apart.
@@ -165,6 +167,7 @@ private:
     Array<Vec<double, D>> normals_;  // of what touches; zero: nothing
     std::array<Selection, 3> selections_;  // by PairKind
     bool apart_ = false;                   // whether these are of kinds, or of all pairs
+    std::size_t slow_bodies_ = 0;
     Array<Contact> contacts_;
     Array<Push> pushes_;
     double max_overlap_ = 0.0;

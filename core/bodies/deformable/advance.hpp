@@ -77,7 +77,7 @@ void TotalLagrangian<D>::sort() {
         for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
         field.swap(sorted);
     };
-    reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(gone_);
+    reorder(held_shape_), reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(gone_);
     reorder(radii);
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;
@@ -298,7 +298,7 @@ void TotalLagrangian<D>::divide(const Division& division, double opening) {
     for (const std::int32_t parent : division.parent) {
         const auto k = static_cast<std::size_t>(parent);
         bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
-        rigid_.push_back(0);
+        rigid_.push_back(0), held_energy_.push_back(0.0);
     }
     for (std::size_t p = 0; p < size(); ++p) {
         if (division.body[p] >= 0)

@@ -13,7 +13,8 @@ template <int D>
 void TotalLagrangian<D>::make_deformable(std::size_t body, const RigidPlacement<D>& placement) {
     const Array<std::uint32_t> points = points_of(body);
     for (const std::uint32_t p : points)
-        x[p] = placement.centre + rotated(placement.turn, rest_position(p) - placement.rest_centre);
+        x[p] = placement.centre + rotated(placement.turn, rest_position(p) + held_shape_[p] -
+                                                              placement.rest_centre);
     const RigidMotion<D> still = rigid_motion<D>(*this, points);
     const Vec3 own = placement.angular_momentum +
                      still.mass * cross(in_space(placement.centre - still.centre),
@@ -25,17 +26,29 @@ void TotalLagrangian<D>::make_deformable(std::size_t body, const RigidPlacement<
         for (int i = 0; i < D; ++i)
             for (int j = 0; j < D; ++j) deformation_[p](i, j) = placement.turn(i, j);
     }
-    rigid_[body] = 0;
+    rigid_[body] = 0, held_energy_[body] = 0.0;
     choose_stepped();
 }
 
+/// The shape is held in the frame at rest, Eq. (141).
 template <int D>
-void TotalLagrangian<D>::make_rigid(std::size_t body, double kinetic) {
-    const double before = kinetic_energy() + elastic_energy().sum();
-    for (const std::uint32_t p : points_of(body)) v[p] = a[p] = {};
+void TotalLagrangian<D>::make_rigid(std::size_t body, const RigidMotion<D>& motion,
+                                    double kinetic) {
+    const Array<std::uint32_t> points = points_of(body);
+    const Mat<double, 3> turn = motion.orientation.matrix();
+    const ElasticEnergy before = elastic_energy();
+    const double moved = kinetic_energy();
+    for (const std::uint32_t p : points) {
+        held_shape_[p] = rotated_back(turn, x[p] - motion.centre) -
+                         (rest_position(p) - motion.rest_centre);
+        v[p] = a[p] = {};
+    }
     rigid_[body] = 1;
     choose_stepped();
-    damping_work_ += before - (kinetic_energy() + elastic_energy().sum() + kinetic);
+    const ElasticEnergy after = elastic_energy();
+    bonds_.finish_step(points, before.opening - after.opening);
+    held_energy_[body] = before.sum() - after.sum();
+    damping_work_ += moved - kinetic_energy() - kinetic;
 }
 
 template <int D>
@@ -48,10 +61,10 @@ double TotalLagrangian<D>::strength(std::size_t body) const {
 }
 
 template <int D>
-bool TotalLagrangian<D>::is_cracked(std::size_t body) const {
-    for (const std::uint32_t p : points_of(body))
-        if (bonds_.is_cracked(p)) return true;
-    return false;
+double TotalLagrangian<D>::least_intactness(std::size_t body) const {
+    double least = 1.0;
+    for (const std::uint32_t p : points_of(body)) least = min(least, bonds_.least_intactness(p));
+    return least;
 }
 
 template <int D>

@@ -85,7 +85,9 @@ public:
         for (const std::uint32_t p : solids_.points_of(body))
             flow_force_[p] = {}, acceleration_[p] = acceleration, before_[p] = solids_.v[p];
     }
-    void make_rigid(std::size_t body, double kinetic) { solids_.make_rigid(body, kinetic); }
+    void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic) {
+        solids_.make_rigid(body, motion, kinetic);
+    }
     /// Numbers contacts as if no body had changed, for those that do not part.
     Fragments<D> as_they_are() const {
         Fragments<D> fragments{};

@@ -11,7 +11,9 @@ namespace doseki {
 /// are what the next one goes on from.
 template <int D>
 ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
-    if (!stepped_.any()) return {};
+    ElasticEnergy sum;
+    for (const double held : held_energy_) sum.strain += held;
+    if (!stepped_.any()) return sum;
     auto& [solid, energy, points] = energy_rows_;
     solid.resize(size()), energy.resize(size()), points.resize(bonds_.any() ? size() : 0);
     stepped_.for_each([&](std::size_t p) {
@@ -45,7 +47,6 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
     sum_springs(records, [&](std::size_t p, const MisfitMoments<double, D>& sums) {
         energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.square);
     });
-    ElasticEnergy sum;
     for (const std::uint32_t p : stepped_.points())
         if (!gone(p)) sum.strain += energy[p].strain, sum.springs += energy[p].springs;
     sum.opening = bonds_.opening([&rows = points](std::size_t p) { return rows[p]; },

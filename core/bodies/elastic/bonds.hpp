@@ -143,12 +143,18 @@ public:
         for (std::uint32_t n = 1; n < size(); ++n)
             if (moves(pairs_[n].a)) stepped_.push_back(n);
     }
-    /// Whether there is a crack across any bond of point p.
-    bool is_cracked(std::size_t p) const {
-        if (p + 1 >= first_bond_.size()) return false;
-        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n)
-            if (state_[bond_[n]].cracked() || state_[bond_[n]].whole != 1.0) return true;
-        return false;
+    /// Intactness of the weakest of the bonds of point p, see for_each_bond.
+    double least_intactness(std::size_t p) const {
+        double least = 1.0;
+        for_each_bond(p, [&least](std::uint32_t, double intact) { least = min(least, intact); });
+        return least;
+    }
+    /// Counts for good what the last step did to the bonds of some points: `opening`.
+    void finish_step(std::span<const std::uint32_t> points, double opening) {
+        work_ += opening;
+        for (const std::uint32_t p : points)
+            for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n)
+                state_[bond_[n]].change = {};
     }
     /// Tension [Pa] at which the first of the bonds of point p begins to crack.
     template <class Point, class Body>

@@ -21,6 +21,8 @@ template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
+template <int D>
+struct RigidMotion;
 
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
@@ -73,9 +75,10 @@ public:
             x.push_back(points.position[k]);
             v.push_back(points.clamped[k] ? Vec<double, D>{} : points.velocity[k]);
             body_.push_back(number), clamped_.push_back(points.clamped[k]);
-            gone_.push_back(0);
+            gone_.push_back(0), held_shape_.push_back({});
         }
-        bodies_.push_back(body), apart_.push_back(apart), rigid_.push_back(is_rigid);
+        bodies_.push_back(body), apart_.push_back(apart);
+        rigid_.push_back(is_rigid), held_energy_.push_back(0.0);
     }
     /// Whether a body moves as a rigid one, which someone else steps.
     bool is_rigid(std::size_t body) const { return rigid_[body] != 0; }
@@ -89,18 +92,13 @@ public:
     }
     /// Makes a rigid body deformable, with the momenta of the placement.
     void make_deformable(std::size_t body, const RigidPlacement<D>& placement);
-    /// Makes a body rigid that has no cracks; what it had of energy beyond `kinetic` [J] counts as
-    /// damped.
-    void make_rigid(std::size_t body, double kinetic);
-    /// Tension [Pa] at which the first of the bonds of a body cracks, none of which has.
+    /// Makes a body rigid that moves as in `motion`: it keeps its shape with the elastic energy
+    /// that is in it; what it had of motion beyond `kinetic` [J] counts as damped.
+    void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic);
+    /// Tension [Pa] at which the first of the bonds of a body cracks while none has.
     double strength(std::size_t body) const;
-    bool is_cracked(std::size_t body) const;
-    /// Of the strain of a body, without springs.
-    double strain_energy(std::span<const std::uint32_t> points) const {
-        double sum = 0.0;
-        for (const std::uint32_t p : points) sum += volume(p) * body_of(p).energy(deformation_[p]);
-        return sum;
-    }
+    /// Of the weakest bond of a body, see Bonds.
+    double least_intactness(std::size_t body) const;
 
     /// Finds pairs, corrects gradients, takes the first accelerations. Call once, after the bodies
     /// are in.
@@ -209,7 +207,8 @@ public:
         archive("elastic_position", x), archive("elastic_velocity", v),
             archive("elastic_body", body_);
         archive("elastic_clamped", clamped_), archive("elastic_slot", slot_);
-        archive("elastic_rigid", rigid_);
+        archive("elastic_rigid", rigid_), archive("elastic_held_energy", held_energy_);
+        archive("elastic_held_shape", held_shape_);
         archive("elastic_gone", gone_);
         double stable_step = stable_step_;
         archive("elastic_stable_step", stable_step);
@@ -244,7 +243,9 @@ private:
                       std::size_t deformations) const {
         const std::size_t n = x.size();
         expect_fit(numbers == apart_.size() * DeformableBody::count, "elastic_numbers");
-        expect_fit(rigid_.size() == apart_.size(), "elastic_rigid");
+        expect_fit(rigid_.size() == apart_.size() && held_energy_.size() == apart_.size(),
+                   "elastic_rigid");
+        expect_fit(held_shape_.size() == n, "elastic_held_shape");
         expect_fit(rest_.size() == n && v.size() == n && body_.size() == n &&
                        clamped_.size() == n && gone_.size() == n && slot_.size() == n &&
                        accelerations == n && deformations == n,
@@ -309,6 +310,9 @@ private:
 
     Array<DeformableBody> bodies_;
     Array<std::uint8_t> rigid_;  // by body
+    // Of rigid ones: their elastic energy, and by point how their shape differs from that at rest.
+    Array<double> held_energy_;
+    Array<Vec<double, D>> held_shape_;
     SteppedPoints stepped_;
     mutable EnergyRows energy_rows_;
     Array<Vec<double, D>> apart_;  // by body: shift of its places at rest

@@ -24,19 +24,20 @@ ALIKE = (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
         "deformable_flow_force", "deformable_acceleration", "elastic_gone", "deformable_depth",
-        "deformable_rigid_point",
+        "deformable_rigid_point", "elastic_held_shape",
     ),
     (
         "surface_point", "surface_offset", "surface_crease", "surface_radius", "surface_key",
         "surface_curve",
     ),
     (
-        "elastic_apart", "elastic_rigid", "deformable_material", "deformable_group", "deformable_origin_number",
-        "deformable_origin_parent", "deformable_origin_born",
+        "elastic_apart", "elastic_rigid", "elastic_held_energy", "deformable_material",
+        "deformable_group", "deformable_origin_number", "deformable_origin_parent",
+        "deformable_origin_born",
     ),
     (
         "breakable_rigid", "breakable_deformable", "breakable_centre", "breakable_orientation",
-        "breakable_deforms_for",
+        "breakable_deforms_for", "breakable_loudness", "breakable_strength",
     ),
 )  # fmt: skip
 # An entry of a list: a particle, and in the upper bits through which image of it.
@@ -50,7 +51,8 @@ NOT_NEGATIVE = {
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
-    "surface_radius", "breakable_deforms_for", "rigid_origin_born", "deformable_origin_born", "body_numbers",
+    "surface_radius", "rigid_origin_born", "deformable_origin_born", "body_numbers",
+    "breakable_deforms_for",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
