@@ -247,7 +247,7 @@ REFUSED = {
     "clamped": ("spin = 0.0", "clamped = 1", 'only kinematics = "elastic" has it'),
     "negative strength": ("tensile_strength = 1e6", "tensile_strength = -1", "tensile_strength"),
     "another scheme": ('scheme = "resolved"', 'scheme = "ueta2022"', "only the scheme resolved"),
-    "a fluid": ('law = "solid"', 'law = "fluid"', "belongs to"),
+    "a fluid": ('law = "solid"', 'law = "fluid"\nspeedsound = 50', "fracture"),
 }
 
 
