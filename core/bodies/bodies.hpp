@@ -100,7 +100,9 @@ public:
     /// Largest step that motion without a fluid may have.
     double timestep() const {
         if (!any_moves()) return std::numeric_limits<double>::infinity();
-        if (breakable_.any()) return max_contact_steps * contacts_.timestep(PairKind::slow);
+        if (breakable_.any())
+            return std::min(max_contact_steps * contacts_.timestep(PairKind::slow),
+                            breakable_.longest_look(deformable));
         return max_contact_steps * std::min(contacts_.timestep(PairKind::all), deformable_step_);
     }
 

@@ -180,7 +180,6 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
 template <int D>
 bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     constexpr double crossings = 20.0;  // of waves, before anything is judged
-    constexpr double lately = 5.0;      // crossings
     constexpr double share = 0.2;       // of the tension that it bears
     const auto& solids = deformable.solids();
     const DeformableBody& material = solids.material(body.deformable);
@@ -190,14 +189,14 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
                        0.5 * dot(motion.spin, motion.angular_momentum);
     for (const std::uint32_t p : points)
         vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
-    const double crossing = body.diameter / material.wave_speed();
     body.deforms_for += dt;
-    body.loudness = std::max(vibration, body.loudness * std::exp(-dt / (lately * crossing)));
+    body.loudness =
+        std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
     constexpr double rounding = 1e-9;
     const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
-    return whole && body.deforms_for > crossings * crossing && body.loudness <= enough;
+    return whole && body.deforms_for > crossings * body.crossing(deformable) && body.loudness <= enough;
 }
 
 /// Contacts of bodies that have changed begin with the overlaps that they have at rest, Eq. (115).

@@ -23,6 +23,13 @@ struct BreakableBody {
     double strength = 0.0;     // tension at which the first crack begins [Pa]
     double bears = 0.0;        // the same with the cracks that it has
     double impedance = 0.0, diameter = 0.0;  // see Touch
+
+    /// Time in which a wave goes through it once [s].
+    double crossing(const DeformableBodies<D>& bodies) const {
+        return diameter / bodies.solids().material(deformable).wave_speed();
+    }
+    /// Time for which it remembers how it vibrated [s].
+    double lately(const DeformableBodies<D>& bodies) const { return 5.0 * crossing(bodies); }
 };
 
 /// All of them.
@@ -51,6 +58,15 @@ public:
     /// Call once all bodies are in, started or restored.
     void start(const RigidBodies<D>& rigid, const DeformableBodies<D>& deformable);
 
+    /// Time between two looks at whether one that is deformable has come to rest [s], infinite
+    /// where none is.
+    double longest_look(const DeformableBodies<D>& deformable) const {
+        double longest = std::numeric_limits<double>::infinity();
+        for (const BreakableBody<D>& body : bodies_)
+            if (!deformable.solids().is_rigid(body.deformable))
+                longest = std::min(longest, body.lately(deformable));
+        return longest;
+    }
     /// The one that a rigid body is of; none.
     const BreakableBody<D>* of_rigid(std::size_t k) const {
         const std::int32_t n = k < of_rigid_.size() ? of_rigid_[k] : -1;

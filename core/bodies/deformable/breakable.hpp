@@ -78,7 +78,7 @@ void DeformableBodies<D>::rebind(Particles<D>& particles, std::size_t p,
         const std::int32_t k = of_rigid[particles.point(p)];
         if (k < 0) return;
         const auto own = static_cast<std::size_t>(k);
-        if (!solids_.is_rigid(static_cast<std::size_t>(solids_.body(own))) && !solids_.gone(own))
+        if (!solids_.is_rigid(static_cast<std::size_t>(solids_.body(own))))
             particles.set_point(p, BodyKind::deformable, own);
     }
 }

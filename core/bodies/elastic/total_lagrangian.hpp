@@ -86,8 +86,13 @@ public:
     const SteppedPoints& stepped() const { return stepped_; }
     Array<std::uint32_t> points_of(std::size_t body) const {
         Array<std::uint32_t> points;
-        for (std::uint32_t p = 0; p < size(); ++p)
+        auto add = [&](std::uint32_t p) {
             if (!gone(p) && body_[p] == static_cast<std::int32_t>(body)) points.push_back(p);
+        };
+        if (is_rigid(body))
+            for (std::uint32_t p = 0; p < size(); ++p) add(p);
+        else
+            for (const std::uint32_t p : stepped_.points()) add(p);
         return points;
     }
     /// Makes a rigid body deformable, with the momenta of the placement.

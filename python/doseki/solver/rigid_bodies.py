@@ -33,7 +33,7 @@ def rigid_tables(
     velocity, spin = bodies.velocity, bodies.spin
     if scenario.bed is not None:
         for key, values in _ground_columns(scenario, names, len(shapes)).items():
-            columns[key].append(values)
+            columns.setdefault(key, []).append(values)
         shapes.append({"radius": 1.0, "ground": True})
         velocity, spin = np.pad(velocity, ((0, 1), (0, 0))), np.pad(spin, ((0, 1), (0, 0)))
     table = {key: np.ascontiguousarray(np.concatenate(v)) for key, v in columns.items()}
@@ -97,7 +97,7 @@ def add_bodies(
     simulation: CoreSimulation, scenario: Scenario, bodies: Bodies, names: list[str]
 ) -> None:
     """Hand bodies over to the core, after the particles; nothing where nothing moves."""
-    if len(bodies):
+    if len(bodies) or (bodies.elastic and scenario.bed is not None):
         shapes, table = rigid_tables(scenario, bodies, names)
         simulation.add_shapes(shapes)
         simulation.add_rigid_bodies(table)
