@@ -2,7 +2,7 @@
 
 #include "bodies/bodies.hpp"
 
-#include "bodies/breakable.hpp"
+#include "bodies/breakable/advance.hpp"
 #include "bodies/contact_forces.hpp"
 #include "bodies/fragments/dust_room.hpp"
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "base/array.hpp"
-#include "bodies/breakable_bodies.hpp"
+#include "bodies/breakable/breakable_bodies.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/body_energy.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
@@ -201,9 +201,10 @@ private:
 
     /// A step of the run, as far as it has come.
     struct Course {
-        BodySums<D> before;    // of rigid bodies at its start, with those that have become one since
-        BodyStep<D> given;     // to deformable bodies
-        double gravity_lag{};  // time for which gravity has not acted yet on velocities of rigid ones
+        BodySums<D> before;  // of rigid bodies at its start, with those that have become one since
+        BodyStep<D> given;   // to deformable bodies
+        double
+            gravity_lag{};  // time for which gravity has not acted yet on velocities of rigid ones
     };
     void start_breakable() {
         if (!breakable_.any()) return;
@@ -267,9 +268,7 @@ private:
         find_companions();
     }
     /// Also short against the margin of the pairs, at the speed of now and in a fall from rest.
-    double contact_step() const {
-        return std::min(longest_step(PairKind::all), deformable_step_);
-    }
+    double contact_step() const { return std::min(longest_step(PairKind::all), deformable_step_); }
     /// The same of contacts of a kind alone.
     double longest_step(PairKind kind) const {
         const double fastest = std::max(deformable.max_speed(), rigid.max_speed()),
@@ -287,8 +286,9 @@ private:
     void add_loads(PairKind kind, double dt) {
         if (loads.empty()) return;
         contacts_.for_each_push(
-            contact_, kind, [&](std::int32_t on, std::int32_t by, const Vec<double, D>& place,
-                          const Vec<double, D>& force, const Vec3& moment, double approach) {
+            contact_, kind,
+            [&](std::int32_t on, std::int32_t by, const Vec<double, D>& place,
+                const Vec<double, D>& force, const Vec3& moment, double approach) {
                 const auto k = static_cast<std::size_t>(on), other = static_cast<std::size_t>(by);
                 if (k >= rigid.size() || !rigid.body(k).fixed) return;
                 const double radius = other < rigid.size() ? rigid.shape(other).radius : 0.0;
@@ -351,45 +351,6 @@ void Bodies<D>::number_bodies() {
         rigid_origins_.add({rigid.body(k).fixed ? -1 : numbers_++, -1, 0.0});
     for (std::size_t k = 0; k < deformable.bodies(); ++k)
         deformable_origins_.add({number_of_deformable(k), -1, 0.0});
-}
-
-template <int D>
-BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
-    if (!any_moves() || dt <= 0.0) return {};
-    Course course{rigid.sums(), {}};
-    rigid.begin_step(), deformable.begin_step();
-    deformable_step_ = deformable.timestep();
-    if (breakable_.any())
-        advance_apart(walls, t, dt, course);
-    else
-        advance_together(walls, t, dt, course);
-    deformable.end_step(dt, memory_);
-    rigid.end_step(dt, memory_);
-    if (breakable_.any()) make_rigid_again(dt, course);
-    return course.given + rigid.sums().since(course.before, gravity_);
-}
-
-/// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
-template <int D>
-void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double dt,
-                                 Course& course) {
-    for (double left = dt; left > 0.0;) {
-        const double steps = steps_of(left, contact_step()), step = left / steps;
-        drift(0.5 * step);
-        follow_walls(walls, t + dt - left, step);
-        if (2.0 * moved_ >= margin_)
-            show_bodies(all_points_), find_contacts();
-        else if (contacts_.any(PairKind::all))
-            show(PairKind::all);
-        contacts_.apply(contact_, PairKind::all, step);
-        add_loads(PairKind::all, step);
-        rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
-        if (!deformable.empty()) course.given = course.given + deformable.push(step, gravity_);
-        rigid.push(gravity_, step);
-        part_if_cracked(t + dt - left, step, course);
-        drift(0.5 * step);
-        left = steps > 1.0 ? left - step : 0.0;
-    }
 }
 
 template <int D>

@@ -164,7 +164,7 @@ private:
     // with hollows.
     Array<ContactPair> pairs_;
     Array<ContactSprings> springs_;
-    Array<Vec<double, D>> normals_;  // of what touches; zero: nothing
+    Array<Vec<double, D>> normals_;        // of what touches; zero: nothing
     std::array<Selection, 3> selections_;  // by PairKind
     bool apart_ = false;                   // whether these are of kinds, or of all pairs
     std::size_t slow_bodies_ = 0;

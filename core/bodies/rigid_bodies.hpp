@@ -334,32 +334,6 @@ void RigidBodies<D>::begin_step() {
 }
 
 template <int D>
-double RigidBodies<D>::drift_one(std::size_t k, double dt) {
-    if (!is_free(k)) return 0.0;
-    RigidBodyState<D>& state = states_[k];
-    const Vec3 turn = dt * spin(k);
-    const double distance = dt * norm(state.velocity);
-    state.centre = state.centre + dt * state.velocity;
-    if (shape(k).is_ball()) {
-        ball_turn_[k] = ball_turn_[k] + turn;
-        return distance;
-    }
-    state.orientation = state.orientation.turned(turn);
-    return distance + shape(k).radius * norm(turn);
-}
-
-template <int D>
-void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
-                              const Vec<double, D>& velocity, const Quaternion& orientation,
-                              const Vec3& angular_momentum) {
-    RigidBodyState<D>& state = states_[k];
-    state.removed = 0.0, state.centre = centre, state.velocity = velocity;
-    state.orientation = orientation, state.angular_momentum = angular_momentum;
-    state.acceleration = {}, state.spin_rate = {}, state.flow_force = {}, state.flow_torque = {};
-    ball_turn_[k] = {};
-}
-
-template <int D>
 void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
     for_each_particle(size(), [&](std::size_t k) {
         RigidBodyState<D>& state = states_[k];

@@ -143,8 +143,8 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const Array<const char*> own{"material", "particles",  "rest",     "position",
-                                 "velocity", "clamped",    "vertex",   "carrier",
+    const Array<const char*> own{"material", "particles",  "rest",      "position",
+                                 "velocity", "clamped",    "vertex",    "carrier",
                                  "crease",   "cell_count", "cell_node", "rigid_first"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");

@@ -136,7 +136,9 @@ def test_energy_and_momentum_close(dropped):
     assert checks["momentum"].value < 1e-9
 
 
-@pytest.mark.parametrize("name", ["fracture_work", "damping_work", "contact_work", "kinetic_energy"])
+@pytest.mark.parametrize(
+    "name", ["fracture_work", "damping_work", "contact_work", "kinetic_energy"]
+)
 def test_every_part_of_it_matters(dropped, name):
     assert gap(without(dropped, name)) > 0.02
 

@@ -18,10 +18,9 @@ namespace doseki {
 template <int D>
 template <class Term, class Epilogue>
 void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
-    for_each_pair<false>(neighbours_, neighbours_.clusters(),
-                         std::span<const MotionRecord<double, D>>(motion_),
-                         CoordinateFrame<double, D>{}, term, epilogue,
-                         {.only = stepped_.clusters()});
+    for_each_pair<false>(
+        neighbours_, neighbours_.clusters(), std::span<const MotionRecord<double, D>>(motion_),
+        CoordinateFrame<double, D>{}, term, epilogue, {.only = stepped_.clusters()});
 }
 
 template <int D>
@@ -77,7 +76,8 @@ void TotalLagrangian<D>::sort() {
         for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
         field.swap(sorted);
     };
-    reorder(held_shape_), reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(gone_);
+    reorder(held_shape_), reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_),
+        reorder(gone_);
     reorder(radii);
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;

@@ -13,12 +13,12 @@ template <int D>
 void TotalLagrangian<D>::make_deformable(std::size_t body, const RigidPlacement<D>& placement) {
     const Array<std::uint32_t> points = points_of(body);
     for (const std::uint32_t p : points)
-        x[p] = placement.centre + rotated(placement.turn, rest_position(p) + held_shape_[p] -
-                                                              placement.rest_centre);
+        x[p] = placement.centre +
+               rotated(placement.turn, rest_position(p) + held_shape_[p] - placement.rest_centre);
     const RigidMotion<D> still = rigid_motion<D>(*this, points);
-    const Vec3 own = placement.angular_momentum +
-                     still.mass * cross(in_space(placement.centre - still.centre),
-                                        in_space(placement.velocity));
+    const Vec3 own =
+        placement.angular_momentum +
+        still.mass * cross(in_space(placement.centre - still.centre), in_space(placement.velocity));
     const Vec3 spin = inverse(still.inertia, 0.0) * own;
     for (const std::uint32_t p : points) {
         v[p] = placement.velocity + turning_velocity(spin, x[p] - still.centre);
@@ -39,8 +39,8 @@ void TotalLagrangian<D>::make_rigid(std::size_t body, const RigidMotion<D>& moti
     const ElasticEnergy before = elastic_energy();
     const double moved = kinetic_energy();
     for (const std::uint32_t p : points) {
-        held_shape_[p] = rotated_back(turn, x[p] - motion.centre) -
-                         (rest_position(p) - motion.rest_centre);
+        held_shape_[p] =
+            rotated_back(turn, x[p] - motion.centre) - (rest_position(p) - motion.rest_centre);
         v[p] = a[p] = {};
     }
     rigid_[body] = 1;

@@ -192,8 +192,7 @@ public:
             const std::size_t n = solids_.size();
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
-                           rigid_point_.size() == n &&
-                           material_.size() == solids_.bodies() &&
+                           rigid_point_.size() == n && material_.size() == solids_.bodies() &&
                            group_.size() == solids_.bodies(),
                        "deformable_normal");
         }

@@ -56,9 +56,8 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
 
 template <int D>
 double TotalLagrangian<D>::kinetic_energy() const {
-    return stepped_.reduce(0.0, std::plus<>(), [this](std::size_t p) {
-        return 0.5 * mass(p) * dot(v[p], v[p]);
-    });
+    return stepped_.reduce(0.0, std::plus<>(),
+                           [this](std::size_t p) { return 0.5 * mass(p) * dot(v[p], v[p]); });
 }
 
 }  // namespace doseki

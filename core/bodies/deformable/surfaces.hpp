@@ -176,7 +176,8 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
         const std::size_t k = point_of(v);
         if (is_rigid(k, solids)) continue;
         const std::int32_t body = solids.body(k);
-        const bool begins = shown_.empty() || body != solids.body(shown_vertex(shown_.size() - 1).point);
+        const bool begins =
+            shown_.empty() || body != solids.body(shown_vertex(shown_.size() - 1).point);
         shown_.push_back(static_cast<std::int32_t>(v));
         if (begins) {
             first_vertex_.push_back(shown_.size() - 1);

@@ -69,7 +69,8 @@ public:
     /// Tension [Pa] along the bond at which a crack begins.
     double strength() const {
         const CrackSite place = site((1.0 / norm(rest_)) * rest_);
-        return with_value(body_.law->fracture, [&](const auto& law) { return law.strength(place); });
+        return with_value(body_.law->fracture,
+                          [&](const auto& law) { return law.strength(place); });
     }
     BondChange take(double dt, bool beside) {
         if (!state_.cracked() && !begins(beside)) return {};

@@ -270,7 +270,7 @@ private:
     Array<std::uint32_t> code_;
     Array<std::size_t> first_code_;
     Array<std::uint32_t> stepped_;  // numbers of bonds, rising
-    Array<std::uint8_t> settled_;  // see BondPoint
+    Array<std::uint8_t> settled_;   // see BondPoint
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;

@@ -301,7 +301,9 @@ private:
     void advance_bonds(double dt);
 
     void choose_stepped() {
-        auto moves = [this](std::uint32_t p) { return !is_rigid(static_cast<std::size_t>(body_[p])); };
+        auto moves = [this](std::uint32_t p) {
+            return !is_rigid(static_cast<std::size_t>(body_[p]));
+        };
         stepped_.choose(size(), moves);
         bonds_.step_only(moves);
     }

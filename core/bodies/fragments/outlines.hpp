@@ -207,7 +207,7 @@ private:
     }
 
     OutlineSources from_;
-    Array<std::size_t> cells_;  // of bodies with parts
+    Array<std::size_t> cells_;                              // of bodies with parts
     Array<std::pair<std::uint32_t, std::uint32_t>> sides_;  // of their outlines
     std::map<std::uint64_t, PlacedVertex> known_;
     std::map<std::uint64_t, std::pair<std::size_t, std::size_t>> places_;  // curve and vertex

@@ -50,7 +50,7 @@ def contact_faces(
 
 
 def _may_deform(bodies: Bodies) -> np.ndarray:
-    """Particles of rigid bodies that become deformable when they are struck; those have no faces."""
+    """Particles of rigid bodies that become deformable when they are struck: without faces."""
     members = [body.members for body in bodies.elastic if body.rigid_first]
     return np.concatenate([np.zeros(0, np.int32), *members])
 

@@ -12,7 +12,7 @@ from ..scenario.model import Scenario
 from ..scenario.tables.terrain.terrain import TERRAIN
 from ..scene.bodies import Bodies
 from ..scene.groups import UPRIGHT, Group
-from ..scene.shapes import Shape
+from ..scene.shapes import MeshShape, Shape
 from .elastic_bodies import add_elastic_bodies
 from .placed import origin_of
 from .protocol import CoreSimulation, Simulation
@@ -80,7 +80,7 @@ def _gyration(group: Group, shape: Shape, spacing: float) -> np.ndarray:
 
     That of the points where a body may become deformable, so that nothing jumps when it does.
     """
-    if not group.breakable:
+    if not group.breakable or isinstance(shape, MeshShape):
         return shape.inertia
     points = shape.elastic_particles(spacing).position
     arm = np.pad(points - points.mean(axis=0), ((0, 0), (0, 3 - points.shape[1])))

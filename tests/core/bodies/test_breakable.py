@@ -161,7 +161,7 @@ def test_mass_and_momenta_are_kept_through_the_change(build, dim, spin, share):
 
 def test_a_whole_body_is_rigid_again_when_it_is_still(build):
     """It flies on with the momenta that it had; its vibration is damped, its elastic energy held."""
-    simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + 'damping = 0.2\n')
+    simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + "damping = 0.2\n")
     before = sums(simulation)
     run(simulation, 0.0006)
     assert deformable(simulation) == 2
@@ -242,7 +242,7 @@ def test_deformable_and_rigid_bodies_beside_breakable_ones(build):
 
 
 REFUSED = {
-    "of what does not break": ("fracture = \"cohesive\"", "fracture = \"none\"", "does not break"),
+    "of what does not break": ('fracture = "cohesive"', 'fracture = "none"', "does not break"),
     "too few points": ("radius = 0.05", "radius = 0.03", "needs at least 8"),
     "clamped": ("spin = 0.0", "clamped = 1", 'only kinematics = "elastic" has it'),
     "negative strength": ("tensile_strength = 1e6", "tensile_strength = -1", "tensile_strength"),

@@ -7,7 +7,7 @@
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/rigid_bodies.hpp"
-#include "physics/impact.hpp"
+#include "physics/fracture/impact.hpp"
 
 namespace doseki {
 
@@ -18,10 +18,10 @@ struct BreakableBody {
     std::size_t rigid, deformable;
     Vec<double, D> centre;  // of the rigid one where the points of the other are at rest
     Quaternion orientation;
-    double deforms_for = 0.0;  // since it was made deformable [s]
-    double loudness = 0.0;     // energy of its vibration lately [J], 2-D: [J/m]
-    double strength = 0.0;     // tension at which the first crack begins [Pa]
-    double bears = 0.0;        // the same with the cracks that it has
+    double deforms_for = 0.0;                // since it was made deformable [s]
+    double loudness = 0.0;                   // energy of its vibration lately [J], 2-D: [J/m]
+    double strength = 0.0;                   // tension at which the first crack begins [Pa]
+    double bears = 0.0;                      // the same with the cracks that it has
     double impedance = 0.0, diameter = 0.0;  // see Touch
 
     /// Time in which a wave goes through it once [s].
@@ -84,7 +84,8 @@ public:
     /// Those that are rigid and in which the contacts of a kind, as they were last applied, may
     /// cause more tension than they bear.
     Array<std::size_t> struck(const Contacts<D>& contacts, PairKind kind,
-                              const DeformableBodies<D>& deformable, std::size_t rigid_bodies) const;
+                              const DeformableBodies<D>& deformable,
+                              std::size_t rigid_bodies) const;
 
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored ones are those of these bodies.
@@ -154,13 +155,14 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairK
         if (!body) return;
         const auto n = static_cast<std::size_t>(body - bodies_.data());
         force[n] += 0.5 * push;
-        tension[n] = std::max(tension[n], expected_tension<D>({approach, body->impedance,
-                                                               impedance(other), force[n],
-                                                               body->diameter}));
+        tension[n] =
+            std::max(tension[n], expected_tension<D>({approach, body->impedance, impedance(other),
+                                                      force[n], body->diameter}));
     };
-    contacts.for_each_touch(kind, [&](std::int32_t a, std::int32_t b, double push, double approach) {
-        feel(a, b, push, approach), feel(b, a, push, approach);
-    });
+    contacts.for_each_touch(kind,
+                            [&](std::int32_t a, std::int32_t b, double push, double approach) {
+                                feel(a, b, push, approach), feel(b, a, push, approach);
+                            });
     Array<std::size_t> found;
     for (std::size_t n = 0; n < size(); ++n)
         if (tension[n] >= bodies_[n].bears) found.push_back(n);
@@ -196,8 +198,12 @@ void BreakableBodies<D>::serialise(Archive& archive) {
         expect_fit(std::abs(dot(q, q) - 1.0) < 1e-6, "breakable_orientation");
         expect_fit(rigid[k] >= 0 && deformable[k] >= 0, "breakable_rigid");
         bodies_.push_back({static_cast<std::size_t>(rigid[k]),
-                           static_cast<std::size_t>(deformable[k]), centre[k],
-                           {q[0], q[1], q[2], q[3]}, deforms_for[k], loudness[k], strength[k]});
+                           static_cast<std::size_t>(deformable[k]),
+                           centre[k],
+                           {q[0], q[1], q[2], q[3]},
+                           deforms_for[k],
+                           loudness[k],
+                           strength[k]});
     }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Steps of bodies of which some are rigid until they are struck, which bodies.cpp compiles.
+// Steps of bodies, of which some may be rigid until they are struck, which bodies.cpp compiles.
 
 #include <cmath>
 
@@ -7,6 +7,70 @@
 #include "bodies/fragments/rigid_motion.hpp"
 
 namespace doseki {
+
+template <int D>
+double RigidBodies<D>::drift_one(std::size_t k, double dt) {
+    if (!is_free(k)) return 0.0;
+    RigidBodyState<D>& state = states_[k];
+    const Vec3 turn = dt * spin(k);
+    const double distance = dt * norm(state.velocity);
+    state.centre = state.centre + dt * state.velocity;
+    if (shape(k).is_ball()) {
+        ball_turn_[k] = ball_turn_[k] + turn;
+        return distance;
+    }
+    state.orientation = state.orientation.turned(turn);
+    return distance + shape(k).radius * norm(turn);
+}
+
+template <int D>
+void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
+                              const Vec<double, D>& velocity, const Quaternion& orientation,
+                              const Vec3& angular_momentum) {
+    RigidBodyState<D>& state = states_[k];
+    state.removed = 0.0, state.centre = centre, state.velocity = velocity;
+    state.orientation = orientation, state.angular_momentum = angular_momentum;
+    state.acceleration = {}, state.spin_rate = {}, state.flow_force = {}, state.flow_torque = {};
+    ball_turn_[k] = {};
+}
+
+template <int D>
+BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
+    if (!any_moves() || dt <= 0.0) return {};
+    Course course{rigid.sums(), {}};
+    rigid.begin_step(), deformable.begin_step();
+    deformable_step_ = deformable.timestep();
+    if (breakable_.any())
+        advance_apart(walls, t, dt, course);
+    else
+        advance_together(walls, t, dt, course);
+    deformable.end_step(dt, memory_);
+    rigid.end_step(dt, memory_);
+    if (breakable_.any()) make_rigid_again(dt, course);
+    return course.given + rigid.sums().since(course.before, gravity_);
+}
+
+/// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
+template <int D>
+void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double dt, Course& course) {
+    for (double left = dt; left > 0.0;) {
+        const double steps = steps_of(left, contact_step()), step = left / steps;
+        drift(0.5 * step);
+        follow_walls(walls, t + dt - left, step);
+        if (2.0 * moved_ >= margin_)
+            show_bodies(all_points_), find_contacts();
+        else if (contacts_.any(PairKind::all))
+            show(PairKind::all);
+        contacts_.apply(contact_, PairKind::all, step);
+        add_loads(PairKind::all, step);
+        rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
+        if (!deformable.empty()) course.given = course.given + deformable.push(step, gravity_);
+        rigid.push(gravity_, step);
+        part_if_cracked(t + dt - left, step, course);
+        drift(0.5 * step);
+        left = steps > 1.0 ? left - step : 0.0;
+    }
+}
 
 template <int D>
 void Bodies<D>::find_companions() {
@@ -30,8 +94,8 @@ template <int D>
 void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
         const double longest = longest_step(PairKind::slow), shorter = shorter_step(),
-                     steps = steps_of(left, longest < 2.0 * shorter ? std::min(longest, shorter)
-                                                                    : longest),
+                     steps = steps_of(
+                         left, longest < 2.0 * shorter ? std::min(longest, shorter) : longest),
                      step = left / steps, now = t + dt - left;
         if (step < 2.0 * shorter)
             step_at_once(walls, now, step, course);
@@ -104,8 +168,7 @@ void Bodies<D>::touch(PairKind kind, double dt, Course& course) {
     if (2.0 * moved_ >= margin_) show_bodies(all_points_), find_contacts();
     show(kind);
     contacts_.apply(contact_, kind, dt);
-    const Array<std::size_t> struck =
-        breakable_.struck(contacts_, kind, deformable, rigid.size());
+    const Array<std::size_t> struck = breakable_.struck(contacts_, kind, deformable, rigid.size());
     if (!struck.empty()) {
         contacts_.revert(kind);
         make_deformable(struck, course);
@@ -163,9 +226,9 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
         const Mat<double, 3> turn = motion.orientation.matrix();
         const Vec<double, D> centre =
             motion.centre + rotated(turn, body.centre - motion.rest_centre);
-        const Vec3 own = motion.angular_momentum +
-                         motion.mass * cross(in_space(motion.centre - centre),
-                                             in_space(motion.velocity));
+        const Vec3 own =
+            motion.angular_momentum +
+            motion.mass * cross(in_space(motion.centre - centre), in_space(motion.velocity));
         rigid.put_back(body.rigid, centre, motion.velocity,
                        motion.orientation.after(body.orientation), own);
         deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
@@ -175,8 +238,8 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
     change_breakable(still, before);
 }
 
-/// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small part
-/// of the energy with which a crack begins, Eq. (141).
+/// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small
+/// part of the energy with which a crack begins, Eq. (141).
 template <int D>
 bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     constexpr double crossings = 20.0;  // of waves, before anything is judged
@@ -190,13 +253,13 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     for (const std::uint32_t p : points)
         vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
     body.deforms_for += dt;
-    body.loudness =
-        std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
+    body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
     constexpr double rounding = 1e-9;
     const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
-    return whole && body.deforms_for > crossings * body.crossing(deformable) && body.loudness <= enough;
+    return whole && body.deforms_for > crossings * body.crossing(deformable) &&
+           body.loudness <= enough;
 }
 
 /// Contacts of bodies that have changed begin with the overlaps that they have at rest, Eq. (115).
