@@ -2,9 +2,9 @@
 
 #include "bodies/bodies.hpp"
 
-#include "bodies/breakable/advance.hpp"
 #include "bodies/contact_forces.hpp"
 #include "bodies/fragments/dust_room.hpp"
+#include "bodies/steps/advance.hpp"
 
 namespace doseki {
 
