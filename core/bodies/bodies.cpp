@@ -4,6 +4,7 @@
 
 #include "bodies/contact_forces.hpp"
 #include "bodies/fragments/dust_room.hpp"
+#include "bodies/steps/advance.hpp"
 
 namespace doseki {
 
@@ -20,9 +21,7 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
     const std::size_t first = rigid.size();
     for (std::size_t k = 0; k < fragments.dust.size(); ++k)
         add_dust(fragments.dust[k], fragments.dust_normals[k], origin(fragments.dust_parent[k]));
-    const BodySums<D> after = rigid.sums();
-    born.momentum = after.momentum - before.momentum, born.moment = after.moment - before.moment;
-    born.kinetic_energy = after.kinetic_energy - before.kinetic_energy;
+    born = rigid.sums().less(before);
     prepare_contacts();
     if constexpr (D == 2) {
         shrink_dust(first);
@@ -73,8 +72,10 @@ void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
     for (std::size_t s = 0; s < contact_.surfaces.size(); ++s)
         now[contact_.surfaces[s].body - static_cast<std::int32_t>(rigid.size())] =
             static_cast<std::int32_t>(contact_.solids.size() + s);
-    for (const std::int32_t body : fragments.surface_body)
-        shapes.push_back(fragments.divided[static_cast<std::size_t>(body)] ? -1 : now.at(body));
+    for (const std::int32_t body : fragments.surface_body) {
+        const bool stays = !fragments.divided[static_cast<std::size_t>(body)] && now.contains(body);
+        shapes.push_back(stays ? now.at(body) : -1);
+    }
     contacts_.renumber(points, shapes);
     find_contacts();
 }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/array.hpp"
+#include "bodies/breakable/breakable_bodies.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/body_energy.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
@@ -45,10 +46,23 @@ public:
         return rigid_particles_.body_of(particles, p);
     }
 
+    /// Makes the last deformable body, which was added as rigid, what rigid body k becomes when it
+    /// is struck.
+    void make_breakable(std::size_t k) {
+        breakable_.add(k, deformable.bodies() - 1, rigid.state(k));
+    }
+    /// Whether rigid body k is deformable now.
+    bool deforms(std::size_t k) const {
+        const BreakableBody<D>* body = breakable_.of_rigid(k);
+        return body && !deformable.solids().is_rigid(body->deformable);
+    }
+
     /// Call once after everything is in.
     void start(Particles<D>& particles) {
         deformable.start(particles, gravity_);
         number_bodies();
+        breakable_.measure_strengths(deformable);
+        start_breakable();
         prepare_contacts();
         find_contacts();
     }
@@ -85,8 +99,11 @@ public:
 
     /// Largest step that motion without a fluid may have.
     double timestep() const {
-        return any_moves() ? max_contact_steps * std::min(contacts_.timestep(), deformable_step_)
-                           : std::numeric_limits<double>::infinity();
+        if (!any_moves()) return std::numeric_limits<double>::infinity();
+        if (breakable_.any())
+            return std::min(max_contact_steps * contacts_.timestep(PairKind::slow),
+                            breakable_.longest_look(deformable));
+        return max_contact_steps * std::min(contacts_.timestep(PairKind::all), deformable_step_);
     }
 
     /// Takes over what the fluid does to the particles of bodies.
@@ -105,6 +122,7 @@ public:
     /// have acted for `ahead` more; returns the largest distance that one went.
     double place(Particles<D>& particles, double ahead) {
         if (!any_moves()) return 0.0;
+        rebind(particles);
         bind_dust(particles);
         const double bent = deformable.place(particles, contacts_.domain());
         deformable.set_velocities(particles, ahead);
@@ -150,6 +168,11 @@ private:
     static constexpr double most_contact_steps = 1e6;
 
     void number_bodies();
+    std::int32_t number_of_deformable(std::size_t body) {
+        const std::int32_t rigid_one = breakable_.rigid_of(body);
+        if (rigid_one >= 0) return rigid_origins_[static_cast<std::size_t>(rigid_one)].number;
+        return deformable.breaks(body) ? numbers_++ : -1;
+    }
     /// What came of parts that are bodies now: what dust brings to the rigid bodies, and the energy
     /// that was lost [J], 2-D: [J/m].
     struct Parted {
@@ -167,6 +190,62 @@ private:
     Array<std::int32_t> bodies_before(const Fragments<D>& fragments, std::size_t first_dust) const;
     /// Particles of what has become dust are points of rigid bodies from now on.
     void bind_dust(Particles<D>& particles);
+    /// Particles of breakable bodies are points of what those are now.
+    void rebind(Particles<D>& particles) {
+        if (!rebinds_) return;
+        for_each_particle(particles.size(), [&](std::size_t p) {
+            deformable.rebind(particles, p, breakable_.deformable_points());
+        });
+        rebinds_ = false;
+    }
+
+    /// A step of the run, as far as it has come.
+    struct Course {
+        BodySums<D> before;  // of rigid bodies at its start, with those that have become one since
+        BodyStep<D> given;   // to deformable bodies
+        double
+            gravity_lag{};  // time for which gravity has not acted yet on velocities of rigid ones
+    };
+    void start_breakable() {
+        if (!breakable_.any()) return;
+        breakable_.start(rigid, deformable);
+        contacts_.tell_kinds_apart(rigid.size() - rigid_origins_.parts());
+    }
+    /// In how many steps, none longer than `longest`, a time passes.
+    static double steps_of(double time, double longest) {
+        const double steps = std::max(1.0, std::ceil(time / longest));
+        if (!(steps <= most_contact_steps))
+            throw PhysicsFailure("bodies are too fast for their contacts to be followed",
+                                 FailureKind::speed);
+        return steps;
+    }
+    void part_if_cracked(double time, double dt, Course& course) {
+        if (!deformable.has_cracked()) return;
+        const Parted parted = part(time, dt);
+        course.before = course.before + parted.born;
+        course.given.parting_work += parted.work;
+    }
+    /// In steps of all bodies.
+    void advance_together(const MovingWalls<D>& walls, double t, double dt, Course& course);
+    /// In steps of contacts of rigid bodies, within which deformable ones and what they may touch
+    /// have steps of their own.
+    void advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course);
+    void drift_apart(const MovingWalls<D>& walls, double t, double dt, Course& course);
+    void step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course);
+    void push_slow(double dt, Course& course);
+    void push_fast(double t, double dt, Course& course);
+    /// Forces of contacts of a kind; makes bodies deformable that are struck.
+    void touch(PairKind kind, double dt, Course& course);
+    void show(PairKind kind) {
+        rigid.show(contact_, contacts_.points(kind));
+        if (kind != PairKind::slow) deformable.show(contact_);
+    }
+    void make_deformable(const Array<std::size_t>& struck, Course& course);
+    void make_rigid_again(double dt, Course& course);
+    bool becomes_still(BreakableBody<D>& body, double dt);
+    void change_breakable(const Array<std::size_t>& which, const Fragments<D>& before);
+    /// Which rigid bodies move in the short steps: dust, and those that may touch what does.
+    void find_companions();
 
     void prepare_contacts() {
         contact_ = {};
@@ -186,21 +265,30 @@ private:
     void find_contacts() {
         moved_ = 0.0;
         contacts_.find(contact_, margin_);
+        find_companions();
     }
     /// Also short against the margin of the pairs, at the speed of now and in a fall from rest.
-    double contact_step() const {
+    double contact_step() const { return std::min(longest_step(PairKind::all), deformable_step_); }
+    /// The same of contacts of a kind alone.
+    double longest_step(PairKind kind) const {
         const double fastest = std::max(deformable.max_speed(), rigid.max_speed()),
                      pull = norm(gravity_);
-        return std::min({contacts_.timestep(), deformable_step_,
-                         0.25 * margin_ / std::max(fastest, 1e-300),
+        return std::min({contacts_.timestep(kind), 0.25 * margin_ / std::max(fastest, 1e-300),
                          std::sqrt(0.25 * margin_ / std::max(pull, 1e-300))});
     }
+    /// That of what is deformable and of dust.
+    double shorter_step() const {
+        if (companions_.empty() && !deformable.any_deforms())
+            return std::numeric_limits<double>::infinity();
+        return std::min(longest_step(PairKind::fast), deformable_step_);
+    }
     /// Contacts that have pressed on fixed bodies for dt.
-    void add_loads(double dt) {
+    void add_loads(PairKind kind, double dt) {
         if (loads.empty()) return;
         contacts_.for_each_push(
-            contact_, [&](std::int32_t on, std::int32_t by, const Vec<double, D>& place,
-                          const Vec<double, D>& force, const Vec3& moment, double approach) {
+            contact_, kind,
+            [&](std::int32_t on, std::int32_t by, const Vec<double, D>& place,
+                const Vec<double, D>& force, const Vec3& moment, double approach) {
                 const auto k = static_cast<std::size_t>(on), other = static_cast<std::size_t>(by);
                 if (k >= rigid.size() || !rigid.body(k).fixed) return;
                 const double radius = other < rigid.size() ? rigid.shape(other).radius : 0.0;
@@ -218,6 +306,9 @@ private:
     Vec<double, D> gravity_;
     double memory_;
     Contacts<D> contacts_;
+    BreakableBodies<D> breakable_;
+    Array<std::uint32_t> companions_, others_;  // rigid bodies in short steps, and in long ones
+    bool rebinds_ = false;                      // whether bodies have changed since place()
     RigidParticles<D> rigid_particles_;
     Origins rigid_origins_, deformable_origins_;
     std::int32_t numbers_ = 0;                        // of bodies, given so far
@@ -235,6 +326,7 @@ void Bodies<D>::serialise(Archive& archive) {
     rigid_particles_.serialise(archive);
     archive("bodies_moved", moved_);
     deformable.serialise(archive, gravity_);
+    breakable_.serialise(archive);
     contacts_.serialise(archive);
     loads.serialise(archive);
     archive.nested("rigid_origin_", rigid_origins_);
@@ -245,8 +337,11 @@ void Bodies<D>::serialise(Archive& archive) {
                        deformable_origins_.size() == deformable.bodies(),
                    "body_numbers");
         rigid_particles_.expect_points_of(rigid.size());
+        breakable_.expect_bodies_of(rigid.size(), deformable, rigid_particles_.size());
+        start_breakable();
         prepare_contacts();
         contacts_.restore(contact_);
+        find_companions();
     }
 }
 
@@ -255,43 +350,7 @@ void Bodies<D>::number_bodies() {
     for (std::size_t k = 0; k < rigid.size(); ++k)
         rigid_origins_.add({rigid.body(k).fixed ? -1 : numbers_++, -1, 0.0});
     for (std::size_t k = 0; k < deformable.bodies(); ++k)
-        deformable_origins_.add({deformable.breaks(k) ? numbers_++ : -1, -1, 0.0});
-}
-
-/// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
-template <int D>
-BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
-    if (!any_moves() || dt <= 0.0) return {};
-    BodySums<D> before = rigid.sums();
-    BodyStep<D> given;  // to deformable bodies
-    rigid.begin_step(), deformable.begin_step();
-    deformable_step_ = deformable.timestep();
-    for (double left = dt; left > 0.0;) {
-        const double steps = std::max(1.0, std::ceil(left / contact_step())), step = left / steps;
-        if (!(steps <= most_contact_steps))
-            throw PhysicsFailure("bodies are too fast for their contacts to be followed",
-                                 FailureKind::speed);
-        drift(0.5 * step);
-        follow_walls(walls, t + dt - left, step);
-        if (2.0 * moved_ >= margin_)
-            show_bodies(all_points_), find_contacts();
-        else if (contacts_.any())
-            show_bodies(contacts_.points());
-        contacts_.apply(contact_, step);
-        add_loads(step);
-        rigid.collect(contact_, contacts_.points()), deformable.collect(contact_);
-        if (!deformable.empty()) given = given + deformable.push(step, gravity_);
-        rigid.push(gravity_, step);
-        if (deformable.has_cracked()) {
-            const Parted parted = part(t + dt - left, step);
-            before = before + parted.born, given.parting_work += parted.work;
-        }
-        drift(0.5 * step);
-        left = steps > 1.0 ? left - step : 0.0;
-    }
-    deformable.end_step(dt, memory_);
-    rigid.end_step(dt, memory_);
-    return given + rigid.sums().since(before, gravity_);
+        deformable_origins_.add({number_of_deformable(k), -1, 0.0});
 }
 
 template <int D>

@@ -15,132 +15,29 @@
 
 namespace doseki {
 
-/// A spring along the surface turns with it.
-inline Vec3 turned_with(const Vec3& n, const ContactSprings& springs, int first) {
-    Vec3 stretch;
-    for (int c = 0; c < 3; ++c) stretch[c] = springs[first + c];
-    const double before = norm(stretch);
-    stretch = stretch - dot(stretch, n) * n;
-    const double after = norm(stretch);
-    return after > 0.0 ? (before / after) * stretch : stretch;
-}
-
-inline double ContactLaw::timestep(double speed, double points) const {
-    const CollisionEstimate collision = hertz ? hertz_collision(stiffness, curvature(), mass, speed)
-                                              : linear_collision(stiffness, mass, speed);
-    constexpr double frequency = 4.0;  // of one spring, over the time of a collision, at most
-    const double fastest = frequency * std::max(2.0 * zeta * points, std::sqrt(points));
-    return collision.time / std::max(steps, fastest);
-}
-
-inline NormalSpring ContactLaw::normal_spring(double overlap) const {
-    return hertz ? hertz_spring(stiffness, curvature(), overlap)
-                 : linear_spring(stiffness, overlap);
-}
-
-inline double ContactLaw::stored(const ContactSprings& springs, double pressed) const {
-    const NormalSpring spring = normal_spring(pressed);
-    double square = 0.0;
-    for (int c = 0; c < 3; ++c) square += springs[c] * springs[c];
-    return (hertz ? 0.4 : 0.5) * spring.force * pressed +
-           0.5 * tangential * spring.stiffness * square;
-}
-
-inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, const Vec3& n,
-                                     const RelativeMotion& motion, double dt) const {
-    const double approach = dot(motion.velocity, n);
-    springs[rest_overlap] = min(springs[rest_overlap], overlap);
-    const NormalSpring spring = normal_spring(overlap - springs[rest_overlap]);
-    const double damping = contact_damping(hertz, zeta, spring.stiffness, mass);
-    const double normal = normal_force(spring, damping, approach);
-    const double along = tangential * spring.stiffness, dashpot = tangential * damping;
-    Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
-    ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,
-                                        friction * normal) -
-                             normal * n,
-                         {}};
-    if (radius > 0.0 && rolling > 0.0)
-        result.moment = radius * cross(n, sliding_spring(rolled, radius * cross(motion.spin, n), dt,
-                                                         along, dashpot, rolling * normal));
-    for (int c = 0; c < 3; ++c) springs[c] = slid[c], springs[3 + c] = rolled[c];
-    return result;
-}
-
-template <int D>
-ContactLaws<D>::ContactLaws(const ContactOptions& options, Array<ContactProperties> materials)
-    : options_(options), materials_(std::move(materials)) {
-    for (const ContactProperties& a : materials_)
-        for (const ContactProperties& b : materials_)
-            damping_.push_back(damping_ratio(0.5 * (a.restitution + b.restitution), hertz()));
-}
-
-template <int D>
-ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) const {
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    const auto first = static_cast<std::size_t>(a.material),
-               second = static_cast<std::size_t>(b.material);
-    const ContactProperties &u = materials_[first], &v = materials_[second];
-    const bool penalty = a.deformable || b.deformable;
-    ContactLaw law{};
-    law.rigid = !penalty;
-    law.hertz = hertz() && !penalty;
-    law.mass = !a.fixed && !b.fixed ? a.mass * b.mass / (a.mass + b.mass)
-               : a.fixed            ? b.mass
-                                    : a.mass;
-    law.diameter = std::min(a.fixed ? infinite : a.diameter, b.fixed ? infinite : b.diameter);
-    law.radius = b.flat ? a.radius : a.radius * b.radius / (a.radius + b.radius);
-    law.zeta = damping_[first * materials_.size() + second];
-    law.friction = 0.5 * (u.friction + v.friction);
-    law.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
-    law.steps = penalty ? penalty_steps : options_.steps;
-    if (penalty) {
-        const double spacing = 2.0 * (b.flat ? a.radius : std::min(a.radius, b.radius));
-        law.stiffness =
-            penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : a.share * b.share);
-        law.zeta = law.rolling = 0.0;
-    } else
-        law.stiffness = stiffness(law, u, v);
-    // Linear: equal times of both springs for balls. Hertz: Mindlin's 4 G*/E*.
-    const double nu = 0.5 * (u.poisson_ratio + v.poisson_ratio);
-    law.tangential = hertz() ? 2.0 * (1.0 - nu) / (2.0 - nu) : 2.0 / 7.0;
-    return law;
-}
-
-/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
-template <int D>
-double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
-                                 const ContactProperties& b) const {
-    const double radius = law.curvature();
-    const double v = options_.speed, overlap = options_.overlap * law.diameter;
-    const double soft_k = law.mass * v * v / (overlap * overlap);
-    const double soft_E =
-        15.0 / 16.0 * law.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));
-    if (options_.softened) return hertz() ? soft_E : soft_k;
-    const double E = contact_modulus(a, b);
-    if (hertz()) return E;
-    if constexpr (D == 2) return 0.25 * std::numbers::pi * E;  // of a line contact, per length
-    const double same = hertz_collision(E, radius, law.mass, v).overlap;
-    return law.mass * v * v / (same * same);
-}
-
 template <int D>
 void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
     std::unordered_map<std::uint64_t, std::size_t> before;  // first rows
     for (std::size_t k = 0; k < pairs_.size(); ++k) before.try_emplace(key(pairs_[k]), k);
     const Array<ContactSprings> springs = std::move(springs_);
     const Array<Vec<double, D>> normals = std::move(normals_);
+    const Array<Push> pushes = std::move(pushes_);
+    const Array<Contact> contacts = std::move(contacts_);
     pairs_.clear();
     find_ball_pairs(bodies.points, domain_, margin, pairs_);
     find_solid_pairs(bodies, domain_, margin, pairs_);
     turn_to_surfaces(bodies, pairs_);
     add_rows(bodies);
     springs_.assign(pairs_.size(), {}), normals_.assign(pairs_.size(), {});
+    restore(bodies);
+    pushes_.assign(pairs_.size(), {});
     for (std::size_t k = 0; k < pairs_.size(); ++k)
         if (const auto found = before.find(key(pairs_[k])); found != before.end()) {
-            springs_[k] = springs[found->second], normals_[k] = normals[found->second];
-            ++found->second;  // the next row of the same pair
+            const std::size_t row = found->second++;  // the next row of the same pair comes next
+            springs_[k] = springs[row], normals_[k] = normals[row];
+            if (row < pushes.size()) pushes_[k] = pushes[row];
+            if (row < contacts.size()) contacts_[k].overlap = contacts[row].overlap;
         }
-    restore(bodies);
 }
 
 template <int D>
@@ -188,10 +85,7 @@ bool is_light_ball(const ContactPoints<D>& points, const ContactPair& pair) {
 template <int D>
 void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
-    points_ = points_of(pairs_);
-    list_pushes();
-    contacts_.clear();
-    timestep_ = std::numeric_limits<double>::infinity();
+    contacts_.clear(), pushes_.clear();
     std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch
     auto at = [&points](const Contact& contact) -> double& {
         return points[std::minmax(contact.body_a, contact.body_b)];
@@ -200,13 +94,52 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
         contacts_.push_back(contact_of(bodies, pair));
         at(contacts_.back()) += 1.0;
     }
+    selections_ = {};
+    if (apart_)
+        select(PairKind::slow), select(PairKind::fast);
+    else
+        select(PairKind::all);
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
         const Contact& contact = contacts_[k];
         // Points of deformable bodies move each on its own, but on a light ball press many.
         const double together = contact.law.rigid                         ? at(contact)
                                 : is_light_ball(bodies.points, pairs_[k]) ? 4.0
                                                                           : 1.0;
-        timestep_ = std::min(timestep_, contact.law.timestep(laws_.speed(), together));
+        double& step = of(kind_of(k)).timestep;
+        step = std::min(step, contact.law.timestep(laws_.speed(), together));
+    }
+}
+
+template <int D>
+PairKind Contacts<D>::kind_of(std::size_t k) const {
+    if (!apart_) return PairKind::all;
+    const auto [a, b] = std::minmax(contacts_[k].body_a, contacts_[k].body_b);
+    return static_cast<std::size_t>(b) < slow_bodies_ ? PairKind::slow : PairKind::fast;
+}
+
+template <int D>
+void Contacts<D>::select(PairKind kind) {
+    Selection& selection = of(kind);
+    Array<ContactPair> pairs;
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+        if (kind_of(k) == kind) selection.rows.push_back(k), pairs.push_back(pairs_[k]);
+    selection.points = points_of(pairs);
+    list_pushes(selection);
+}
+
+template <int D>
+void Contacts<D>::keep(Selection& selection) const {
+    selection.springs.clear(), selection.normals.clear();
+    for (const std::size_t k : selection.rows)
+        selection.springs.push_back(springs_[k]), selection.normals.push_back(normals_[k]);
+}
+
+template <int D>
+void Contacts<D>::revert(PairKind kind) {
+    const Selection& selection = of(kind);
+    for (std::size_t n = 0; n < selection.rows.size(); ++n) {
+        const std::size_t k = selection.rows[n];
+        springs_[k] = selection.springs[n], normals_[k] = selection.normals[n];
     }
 }
 
@@ -249,11 +182,14 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
 /// Each point takes what its pairs do to it in their order, so that sums do not depend on the
 /// number of threads.
 template <int D>
-void Contacts<D>::apply(ContactBodies<D>& bodies, double dt) {
+void Contacts<D>::apply(ContactBodies<D>& bodies, PairKind kind, double dt) {
+    Selection& selection = of(kind);
     pushes_.resize(pairs_.size());
-    for_each_contact(pairs_.size(), [&](std::size_t k) { push_pair(bodies, k, dt); });
-    hand_out(bodies.points);
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    if (apart_) keep(selection);
+    for_each_contact(selection.rows.size(),
+                     [&](std::size_t n) { push_pair(bodies, selection.rows[n], dt); });
+    hand_out(selection, bodies.points);
+    for (const std::size_t k : selection.rows) {
         const Push& push = pushes_[k];
         if (!push.touches) continue;
         max_overlap_ = std::max(max_overlap_, contacts_[k].overlap / contacts_[k].law.diameter);
@@ -272,34 +208,37 @@ double Contacts<D>::stored_energy() const {
 }
 
 template <int D>
-void Contacts<D>::list_pushes() {
-    first_push_.assign(points_.size() + 1, 0);
-    auto place = [this](std::size_t point) {
+void Contacts<D>::list_pushes(Selection& selection) const {
+    const Array<std::int32_t>& points = selection.points;
+    Array<std::size_t>& first_push = selection.first_push;
+    first_push.assign(points.size() + 1, 0);
+    auto place = [&points](std::size_t point) {
         return static_cast<std::size_t>(
-            std::lower_bound(points_.begin(), points_.end(), static_cast<std::int32_t>(point)) -
-            points_.begin());
+            std::lower_bound(points.begin(), points.end(), static_cast<std::int32_t>(point)) -
+            points.begin());
     };
-    auto for_each_side = [this, &place](auto&& f) {
-        for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    auto for_each_side = [&](auto&& f) {
+        for (const std::size_t k : selection.rows) {
             f(place(pairs_[k].first()), 2 * k);
             if (!pairs_[k].with_shape()) f(place(pairs_[k].second()), 2 * k + 1);
         }
     };
-    for_each_side([this](std::size_t n, std::size_t) { ++first_push_[n + 1]; });
-    for (std::size_t n = 0; n < points_.size(); ++n) first_push_[n + 1] += first_push_[n];
-    pushes_on_.resize(first_push_.back());
-    Array<std::size_t> next = first_push_;
-    for_each_side([&](std::size_t n, std::size_t side) { pushes_on_[next[n]++] = side; });
+    for_each_side([&](std::size_t n, std::size_t) { ++first_push[n + 1]; });
+    for (std::size_t n = 0; n < points.size(); ++n) first_push[n + 1] += first_push[n];
+    selection.pushes_on.resize(first_push.back());
+    Array<std::size_t> next = first_push;
+    for_each_side([&](std::size_t n, std::size_t side) { selection.pushes_on[next[n]++] = side; });
 }
 
 template <int D>
-void Contacts<D>::hand_out(ContactPoints<D>& points) const {
-    for_each_contact(points_.size(), [&](std::size_t n) {
-        const auto c = static_cast<std::size_t>(points_[n]);
-        for (std::size_t m = first_push_[n]; m < first_push_[n + 1]; ++m) {
-            const Push& push = pushes_[pushes_on_[m] / 2];
+void Contacts<D>::hand_out(const Selection& selection, ContactPoints<D>& points) const {
+    for_each_contact(selection.points.size(), [&](std::size_t n) {
+        const auto c = static_cast<std::size_t>(selection.points[n]);
+        for (std::size_t m = selection.first_push[n]; m < selection.first_push[n + 1]; ++m) {
+            const std::size_t side = selection.pushes_on[m];
+            const Push& push = pushes_[side / 2];
             if (!push.touches) continue;
-            const bool second = pushes_on_[m] % 2 == 1;
+            const bool second = side % 2 == 1;
             points.force[c] = points.force[c] + (second ? -1.0 : 1.0) * push.force;
             points.torque[c] = points.torque[c] + (second ? push.torque_b : push.torque_a);
         }

@@ -1,5 +1,9 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 
 #include "base/array.hpp"
 #include "bodies/rotation.hpp"
@@ -92,5 +96,113 @@ private:
     Array<ContactProperties> materials_;
     Array<double> damping_;  // ratio by pair of materials
 };
+
+/// A spring along the surface turns with it.
+inline Vec3 turned_with(const Vec3& n, const ContactSprings& springs, int first) {
+    Vec3 stretch;
+    for (int c = 0; c < 3; ++c) stretch[c] = springs[first + c];
+    const double before = norm(stretch);
+    stretch = stretch - dot(stretch, n) * n;
+    const double after = norm(stretch);
+    return after > 0.0 ? (before / after) * stretch : stretch;
+}
+
+inline double ContactLaw::timestep(double speed, double points) const {
+    const CollisionEstimate collision = hertz ? hertz_collision(stiffness, curvature(), mass, speed)
+                                              : linear_collision(stiffness, mass, speed);
+    constexpr double frequency = 4.0;  // of one spring, over the time of a collision, at most
+    const double fastest = frequency * std::max(2.0 * zeta * points, std::sqrt(points));
+    return collision.time / std::max(steps, fastest);
+}
+
+inline NormalSpring ContactLaw::normal_spring(double overlap) const {
+    return hertz ? hertz_spring(stiffness, curvature(), overlap)
+                 : linear_spring(stiffness, overlap);
+}
+
+inline double ContactLaw::stored(const ContactSprings& springs, double pressed) const {
+    const NormalSpring spring = normal_spring(pressed);
+    double square = 0.0;
+    for (int c = 0; c < 3; ++c) square += springs[c] * springs[c];
+    return (hertz ? 0.4 : 0.5) * spring.force * pressed +
+           0.5 * tangential * spring.stiffness * square;
+}
+
+inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, const Vec3& n,
+                                     const RelativeMotion& motion, double dt) const {
+    const double approach = dot(motion.velocity, n);
+    springs[rest_overlap] = min(springs[rest_overlap], overlap);
+    const NormalSpring spring = normal_spring(overlap - springs[rest_overlap]);
+    const double damping = contact_damping(hertz, zeta, spring.stiffness, mass);
+    const double normal = normal_force(spring, damping, approach);
+    const double along = tangential * spring.stiffness, dashpot = tangential * damping;
+    Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
+    ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,
+                                        friction * normal) -
+                             normal * n,
+                         {}};
+    if (radius > 0.0 && rolling > 0.0)
+        result.moment = radius * cross(n, sliding_spring(rolled, radius * cross(motion.spin, n), dt,
+                                                         along, dashpot, rolling * normal));
+    for (int c = 0; c < 3; ++c) springs[c] = slid[c], springs[3 + c] = rolled[c];
+    return result;
+}
+
+template <int D>
+ContactLaws<D>::ContactLaws(const ContactOptions& options, Array<ContactProperties> materials)
+    : options_(options), materials_(std::move(materials)) {
+    for (const ContactProperties& a : materials_)
+        for (const ContactProperties& b : materials_)
+            damping_.push_back(damping_ratio(0.5 * (a.restitution + b.restitution), hertz()));
+}
+
+template <int D>
+ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto first = static_cast<std::size_t>(a.material),
+               second = static_cast<std::size_t>(b.material);
+    const ContactProperties &u = materials_[first], &v = materials_[second];
+    const bool penalty = a.deformable || b.deformable;
+    ContactLaw law{};
+    law.rigid = !penalty;
+    law.hertz = hertz() && !penalty;
+    law.mass = !a.fixed && !b.fixed ? a.mass * b.mass / (a.mass + b.mass)
+               : a.fixed            ? b.mass
+                                    : a.mass;
+    law.diameter = std::min(a.fixed ? infinite : a.diameter, b.fixed ? infinite : b.diameter);
+    law.radius = b.flat ? a.radius : a.radius * b.radius / (a.radius + b.radius);
+    law.zeta = damping_[first * materials_.size() + second];
+    law.friction = 0.5 * (u.friction + v.friction);
+    law.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
+    law.steps = penalty ? penalty_steps : options_.steps;
+    if (penalty) {
+        const double spacing = 2.0 * (b.flat ? a.radius : std::min(a.radius, b.radius));
+        law.stiffness =
+            penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : a.share * b.share);
+        law.zeta = law.rolling = 0.0;
+    } else
+        law.stiffness = stiffness(law, u, v);
+    // Linear: equal times of both springs for balls. Hertz: Mindlin's 4 G*/E*.
+    const double nu = 0.5 * (u.poisson_ratio + v.poisson_ratio);
+    law.tangential = hertz() ? 2.0 * (1.0 - nu) / (2.0 - nu) : 2.0 / 7.0;
+    return law;
+}
+
+/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
+template <int D>
+double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
+                                 const ContactProperties& b) const {
+    const double radius = law.curvature();
+    const double v = options_.speed, overlap = options_.overlap * law.diameter;
+    const double soft_k = law.mass * v * v / (overlap * overlap);
+    const double soft_E =
+        15.0 / 16.0 * law.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));
+    if (options_.softened) return hertz() ? soft_E : soft_k;
+    const double E = contact_modulus(a, b);
+    if (hertz()) return E;
+    if constexpr (D == 2) return 0.25 * std::numbers::pi * E;  // of a line contact, per length
+    const double same = hertz_collision(E, radius, law.mass, v).overlap;
+    return law.mass * v * v / (same * same);
+}
 
 }  // namespace doseki

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -12,6 +13,10 @@
 #include "model/archive.hpp"
 
 namespace doseki {
+
+/// Pairs by the steps that they need: slow are those of bodies that were rigid when the run began,
+/// fast are those with one that is deformable or a part of a broken one.
+enum class PairKind { all, slow, fast };
 
 /// The contacts between different bodies: who may touch, the springs of those that do, and their
 /// forces.
@@ -35,16 +40,35 @@ public:
     template <class NewPair>
     void accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new);
 
-    /// Adds forces and torques of all pairs, whose springs stretch for dt.
-    void apply(ContactBodies<D>& bodies, double dt);
+    /// From the next find() on, pairs of one kind can be looked at alone, and no longer all. Slow
+    /// are those of bodies with numbers below this one.
+    void tell_kinds_apart(std::size_t slow_bodies) { slow_bodies_ = slow_bodies, apart_ = true; }
+    /// Adds forces and torques of all pairs of a kind, whose springs stretch for dt.
+    void apply(ContactBodies<D>& bodies, PairKind kind, double dt);
+    /// Gives springs back what they were before the last apply() of a kind, of pairs told apart.
+    void revert(PairKind kind);
 
-    /// Whether there are pairs that may touch.
-    bool any() const { return !pairs_.empty(); }
+    /// Whether there are pairs of a kind that may touch.
+    bool any(PairKind kind) const { return !of(kind).rows.empty(); }
     /// The contact points of these pairs, in rising order.
-    const Array<std::int32_t>& points() const { return points_; }
+    const Array<std::int32_t>& points(PairKind kind) const { return of(kind).points; }
     const Domain<D>& domain() const { return domain_; }
-    /// Step that follows the stiffest pair found, infinite without any.
-    double timestep() const { return timestep_; }
+    /// Step that follows the stiffest pair of a kind, infinite without any.
+    double timestep(PairKind kind) const { return of(kind).timestep; }
+    /// Calls f(body, other) for the bodies of each pair of a kind that may touch.
+    template <class F>
+    void for_each_pair_of(PairKind kind, F&& f) const {
+        for (const std::size_t k : of(kind).rows) f(contacts_[k].body_a, contacts_[k].body_b);
+    }
+    /// Calls f(body, other, force, approach) for the pairs that touched when a kind was last
+    /// applied: the size of the force, and see for_each_push.
+    template <class F>
+    void for_each_touch(PairKind kind, F&& f) const {
+        for (const std::size_t k : of(kind).rows)
+            if (pushes_[k].touches)
+                f(contacts_[k].body_a, contacts_[k].body_b, norm(pushes_[k].force),
+                  pushes_[k].approach);
+    }
     /// Largest overlap there ever was, over the diameter.
     double max_overlap() const { return max_overlap_; }
     /// Energy in the springs of all pairs when they were last applied [J], 2-D: [J/m].
@@ -58,10 +82,10 @@ public:
     }
 
     /// Calls f(body, other, place, force, moment, approach) for each body of each pair that touched
-    /// when they were last applied: the force on it there, the moment beside that of the force, and
-    /// the speed of approach where the contact began.
+    /// when a kind was last applied: the force on it there, the moment beside that of the force,
+    /// and the speed of approach where the contact began.
     template <class F>
-    void for_each_push(const ContactBodies<D>& bodies, F&& f) const;
+    void for_each_push(const ContactBodies<D>& bodies, PairKind kind, F&& f) const;
 
     void serialise(Archive& archive) {
         Array<std::int32_t> a, b;
@@ -95,6 +119,22 @@ private:
         double share = 1.0;       // of the springs
     };
 
+    /// Pairs that are applied together.
+    struct Selection {
+        Array<std::size_t> rows;
+        Array<std::int32_t> points;
+        Array<std::size_t> first_push;  // of each of `points` in pushes_on, and their end
+        Array<std::size_t> pushes_on;   // row of the pair, doubled, plus one for its second side
+        double timestep = std::numeric_limits<double>::infinity();
+        Array<ContactSprings> springs;  // of `rows`, before they were applied
+        Array<Vec<double, D>> normals;
+    };
+    const Selection& of(PairKind kind) const { return selections_[static_cast<std::size_t>(kind)]; }
+    Selection& of(PairKind kind) { return selections_[static_cast<std::size_t>(kind)]; }
+    PairKind kind_of(std::size_t k) const;
+    void select(PairKind kind);
+    void keep(Selection& selection) const;
+
     static std::uint64_t key(const ContactPair& pair) {
         return static_cast<std::uint64_t>(static_cast<std::uint32_t>(pair.a)) << 32 |
                static_cast<std::uint32_t>(pair.b);
@@ -111,8 +151,8 @@ private:
     /// The pair of row k does not touch there.
     void part(std::size_t k);
     /// Lists for each point, in rising order, the pairs that push it.
-    void list_pushes();
-    void hand_out(ContactPoints<D>& points) const;
+    void list_pushes(Selection& selection) const;
+    void hand_out(const Selection& selection, ContactPoints<D>& points) const;
     /// Finds what a pair does whose run of rows begins with k.
     void push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt);
     Push push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
@@ -124,13 +164,12 @@ private:
     // with hollows.
     Array<ContactPair> pairs_;
     Array<ContactSprings> springs_;
-    Array<Vec<double, D>> normals_;  // of what touches; zero: nothing
-    Array<std::int32_t> points_;
-    Array<std::size_t> first_push_;  // of each of points_ in pushes_on_, and their end
-    Array<std::size_t> pushes_on_;   // row of the pair, doubled, plus one for its second side
+    Array<Vec<double, D>> normals_;        // of what touches; zero: nothing
+    std::array<Selection, 3> selections_;  // by PairKind
+    bool apart_ = false;                   // whether these are of kinds, or of all pairs
+    std::size_t slow_bodies_ = 0;
     Array<Contact> contacts_;
     Array<Push> pushes_;
-    double timestep_ = std::numeric_limits<double>::infinity();
     double max_overlap_ = 0.0;
 };
 
@@ -155,8 +194,8 @@ void Contacts<D>::renumber(const Array<std::int32_t>& point, const Array<std::in
 
 template <int D>
 template <class F>
-void Contacts<D>::for_each_push(const ContactBodies<D>& bodies, F&& f) const {
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+void Contacts<D>::for_each_push(const ContactBodies<D>& bodies, PairKind kind, F&& f) const {
+    for (const std::size_t k : of(kind).rows) {
         const Push& push = pushes_[k];
         if (!push.touches || bodies.surface(pairs_[k])) continue;  // surfaces are of no fixed body
         const ContactPair& pair = pairs_[k];

@@ -71,9 +71,24 @@ public:
     void kick(double half_dt);
     void begin_step();
     /// Positions and orientations; returns the largest distance that a point of a surface goes.
-    double drift(double dt);
+    double drift(double dt) {
+        return reduce(size(), 0.0, maximum, [&](std::size_t k) { return drift_one(k, dt); });
+    }
+    /// The same of some bodies.
+    double drift(double dt, std::span<const std::uint32_t> which) {
+        return reduce(which.size(), 0.0, maximum,
+                      [&](std::size_t n) { return drift_one(which[n], dt); });
+    }
     /// Velocities, by gravity and contacts.
     void push(const Vec<double, D>& gravity, double dt);
+    /// How a body is turned within a step.
+    Quaternion orientation(std::size_t k) const {
+        return states_[k].orientation.turned(ball_turn_[k]);
+    }
+    /// Takes a body out, and puts it back in the middle of a step with this motion.
+    void take_out(std::size_t k) { states_[k].removed = 1.0; }
+    void put_back(std::size_t k, const Vec<double, D>& centre, const Vec<double, D>& velocity,
+                  const Quaternion& orientation, const Vec3& angular_momentum);
     /// Averages accelerations over the time `memory`.
     void end_step(double dt, double memory);
 
@@ -119,10 +134,12 @@ public:
     double kinetic_energy() const {
         double energy = 0.0;
         for (std::size_t k = 0; k < size(); ++k)
-            if (is_free(k))
-                energy += 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) +
-                          0.5 * dot(spin(k), states_[k].angular_momentum);
+            if (is_free(k)) energy += kinetic_energy_of(k);
         return energy;
+    }
+    double kinetic_energy_of(std::size_t k) const {
+        return 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) +
+               0.5 * dot(spin(k), states_[k].angular_momentum);
     }
 
     void serialise(Archive& archive) {
@@ -134,6 +151,7 @@ public:
     }
 
 private:
+    double drift_one(std::size_t k, double dt);
     /// Of body k, the sample that contact point c is.
     std::size_t sample(std::size_t k, std::size_t c) const {
         return c - static_cast<std::size_t>(first_point_[k]);
@@ -312,23 +330,6 @@ void RigidBodies<D>::begin_step() {
     for_each_particle(size(), [&](std::size_t k) {
         velocity_before_[k] = states_[k].velocity;
         impulse_before_[k] = states_[k].contact_impulse;
-    });
-}
-
-template <int D>
-double RigidBodies<D>::drift(double dt) {
-    return reduce(size(), 0.0, maximum, [&](std::size_t k) {
-        if (!is_free(k)) return 0.0;
-        RigidBodyState<D>& state = states_[k];
-        const Vec3 turn = dt * spin(k);
-        const double distance = dt * norm(state.velocity);
-        state.centre = state.centre + dt * state.velocity;
-        if (shape(k).is_ball()) {
-            ball_turn_[k] = ball_turn_[k] + turn;
-            return distance;
-        }
-        state.orientation = state.orientation.turned(turn);
-        return distance + shape(k).radius * norm(turn);
     });
 }
 

@@ -56,6 +56,12 @@ struct Quaternion {
         return q;
     }
 
+    /// This turn after another.
+    Quaternion after(const Quaternion& q) const {
+        return {w * q.w - x * q.x - y * q.y - z * q.z, w * q.x + x * q.w + y * q.z - z * q.y,
+                w * q.y - x * q.z + y * q.w + z * q.x, w * q.z + x * q.y - y * q.x + z * q.w};
+    }
+
     Mat<double, 3> matrix() const {
         Mat<double, 3> R;
         R(0, 0) = 1 - 2 * (y * y + z * z), R(0, 1) = 2 * (x * y - w * z),

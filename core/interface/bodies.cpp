@@ -143,18 +143,25 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const Array<const char*> own{"material", "particles",  "rest",     "position",
-                                 "velocity", "clamped",    "vertex",   "carrier",
-                                 "crease",   "cell_count", "cell_node"};
+    const Array<const char*> own{"material", "particles",  "rest",      "position",
+                                 "velocity", "clamped",    "vertex",    "carrier",
+                                 "crease",   "cell_count", "cell_node", "rigid_first"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;
-    Reader(table, "elastic body")("material", material);
+    bool rigid_first = false;
+    Reader keys(table, "elastic body");
+    keys("material", material), keys("rigid_first", rigid_first, optional);
     ColumnReader column(table, "elastic body");
     const auto members = column.numbers<std::int32_t>("particles");
     const SolidPoints<D> points = solid_points<D>(column);
+    const std::int32_t rigid =
+        rigid_first ? bodies.rigid_body_of(particles, static_cast<std::size_t>(members.at(0))) : -1;
+    if (rigid_first && rigid < 0)
+        throw std::invalid_argument("elastic body.rigid_first: its particles are of no rigid body");
     bodies.deformable.add(particles, body, material, members, points,
-                          surface_of<D>(table, points.rest), cells_of(table));
+                          surface_of<D>(table, points.rest), cells_of(table), rigid_first);
+    if (rigid_first) bodies.make_breakable(static_cast<std::size_t>(rigid));
 }
 
 template <int D>
@@ -179,7 +186,7 @@ NamedValues BodyTables<D>::rigid(const Bodies<D>& bodies) {
         mass[k] = body.mass, radius[k] = rigid.shape(k).radius;
         named[k] = body.group, material[k] = body.material, fixed[k] = body.fixed;
         removed[k] = state.is_removed();
-        const Origin origin = bodies.rigid_origins()[k];
+        const Origin origin = bodies.deforms(k) ? Origin{} : bodies.rigid_origins()[k];
         number[k] = origin.number, parent[k] = origin.parent, born[k] = origin.born;
     }
     bodies.contacts().for_each_touching([&](std::int32_t a, std::int32_t b, double share) {
@@ -260,7 +267,8 @@ NamedValues BodyTables<D>::fragments(const Bodies<D>& bodies) {
     Array<std::size_t> rows;
     std::map<std::int32_t, std::size_t> row_of;  // by the number of the body among those that touch
     for (std::size_t b = 0; b < bodies.deformable_origins().size(); ++b) {
-        if (bodies.deformable_origins()[b].number < 0) continue;
+        if (bodies.deformable_origins()[b].number < 0 || bodies.deformable.solids().is_rigid(b))
+            continue;
         row_of[static_cast<std::int32_t>(bodies.rigid.size() + b)] = rows.size();
         rows.push_back(b);
     }

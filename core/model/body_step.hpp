@@ -27,6 +27,10 @@ struct BodySums {
         return {momentum + other.momentum, moment + other.moment,
                 kinetic_energy + other.kinetic_energy};
     }
+    BodySums less(const BodySums& other) const {
+        return {momentum - other.momentum, moment - other.moment,
+                kinetic_energy - other.kinetic_energy};
+    }
     /// What came between an earlier moment and this one, in which nothing but gravity and contacts
     /// acted.
     BodyStep<D> since(const BodySums& before, const Vec<double, D>& gravity) const {

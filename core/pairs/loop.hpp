@@ -153,6 +153,7 @@ struct PairLoopOptions {
     bool skip_empty = false;        // particles without any neighbour have no epilogue either
     std::size_t first_cluster = 0;  // number of the first cluster that is given
     PhaseTimer* sampled = nullptr;  // times the epilogue of some clusters
+    const Array<std::uint32_t>* only = nullptr;  // numbers of those that are summed; none: all
 };
 
 /// Calls the epilogue for each particle of a cluster.
@@ -178,7 +179,9 @@ void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const Clus
     if constexpr (KnowsItsReach<Term>)
         for (const ClusterList& list : clusters) longest = std::max(longest, list.words());
     Array<EntryBuffer> buffers(static_cast<std::size_t>(thread_count()), EntryBuffer(longest));
-    for_each_task(clusters.size(), 16, [&](std::size_t thread, std::size_t c) {
+    const std::size_t tasks = options.only ? options.only->size() : clusters.size();
+    for_each_task(tasks, 16, [&](std::size_t thread, std::size_t task) {
+        const std::size_t c = options.only ? (*options.only)[task] : task;
         if (options.skip_empty && clusters[c].empty()) return;
         const auto number = static_cast<std::uint32_t>(options.first_cluster + c);
         const std::uint32_t first = number * width;

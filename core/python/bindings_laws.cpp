@@ -6,6 +6,7 @@
 #include "model/material_laws.hpp"
 #include "physics/contact.hpp"
 #include "physics/equation_of_state.hpp"
+#include "physics/fracture/impact.hpp"
 #include "physics/hourglass.hpp"
 #include "physics/hyperelastic.hpp"
 #include "physics/rheology.hpp"
@@ -118,6 +119,11 @@ void bind_contact(nb::module_& m) {
                    [](const auto& in, auto& out) {  // E*, R*, overlap -> F, dF/doverlap
                        const auto spring = hertz_spring(in[0], in[1], in[2]);
                        out[0] = spring.force, out[1] = spring.stiffness;
+                   });
+    define_numbers(m, "expected_tension", 2,  // speed, impedances, force, diameter -> 2-D, 3-D
+                   [](const auto& in, auto& out) {
+                       const Touch touch{in[0], in[1], in[2], in[3], in[4]};
+                       out[0] = expected_tension<2>(touch), out[1] = expected_tension<3>(touch);
                    });
     define_numbers(m, "hertz_collision", 2,
                    [](const auto& in, auto& out) {  // E*, R*, m*, v -> overlap, time

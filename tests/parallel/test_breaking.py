@@ -67,10 +67,19 @@ velocity = [-9, 0, 0]
 WORDS = ("--no-figures", "--threads", 1)
 
 
+RIGID_FIRST = PAIR.replace('"elastic"', '"breakable"')
+IN_SPACE_RIGID_FIRST = IN_SPACE.replace('"elastic"', '"breakable"')
+
+
 @pytest.fixture(
     scope="module",
-    params=[PAIR, pytest.param(IN_SPACE, marks=pytest.mark.ranks)],
-    ids=["2-D", "3-D"],
+    params=[
+        PAIR,
+        RIGID_FIRST,
+        pytest.param(IN_SPACE, marks=pytest.mark.ranks),
+        pytest.param(IN_SPACE_RIGID_FIRST, marks=pytest.mark.ranks),
+    ],
+    ids=["2-D", "2-D, rigid first", "3-D", "3-D, rigid first"],
 )
 def pairs(command, tmp_path_factory, request):
     """The run on one and two ranks, and both after a stop in the middle."""

@@ -93,6 +93,49 @@ material = "basalt"
 centre = {{ d2 = [3.0, 1.0], d3 = [3.0, 1.0, 1.0] }}
 radius = 0.3
 """
+# Bodies that strike a plate and break, one of them rigid until then.
+BREAKING = """\
+dim = {dim}
+dp = {dp}
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 8
+gravity = {{ d2 = [0, -9.8], d3 = [0, 0, -9.8] }}
+
+[material.chalk]
+law = "solid"
+rho0 = 1000
+young_modulus = 1e8
+poisson_ratio = 0.2
+friction = 0.3
+fracture = "cohesive"
+tensile_strength = 1e5
+fracture_energy = 1
+
+[body.stone]
+shape = {{ d2 = "disc", d3 = "sphere" }}
+material = "chalk"
+kinematics = "breakable"
+centre = {{ d2 = [0, 0.0502], d3 = [0, 0, 0.0502] }}
+radius = 0.05
+velocity = {{ d2 = [1, -6], d3 = [1, 0, -6] }}
+
+[body.clod]
+shape = {{ d2 = "disc", d3 = "sphere" }}
+material = "chalk"
+kinematics = "elastic"
+centre = {{ d2 = [0.11, 0.0502], d3 = [0.11, 0, 0.0502] }}
+radius = 0.05
+velocity = {{ d2 = [-1, -6], d3 = [-1, 0, -6] }}
+
+[body.plate]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = {{ d2 = [-0.1, -0.03], d3 = [-0.1, -0.1, -0.03] }}
+max = {{ d2 = [0.2, 0], d3 = [0.2, 0.1, 0] }}
+"""
 PLACES = {
     2: "between = [0.6, 2.0]",
     3: "polygon = [[0.6, 0.6], [2.0, 0.6], [2.0, 1.4], [0.6, 1.4]]",
@@ -142,6 +185,13 @@ def slide(dim, folder):
     return load_scenario(str(file))
 
 
+def breaking(dim, folder):
+    """Bodies that break on a plate."""
+    file = Path(folder) / "breaking.toml"
+    file.write_text(BREAKING.format(dim=dim, dp=0.01 if dim == 2 else 0.0125))
+    return load_scenario(str(file))
+
+
 def exercise(scenario):
     """Step it, look at everything, and go on from a checkpoint to the same bits."""
     simulation, names = build_simulation(scenario)
@@ -172,3 +222,4 @@ with tempfile.TemporaryDirectory() as folder:
     for dim in (2, 3):
         exercise(channel(dim, size, folder))
         exercise(slide(dim, folder))
+        exercise(breaking(dim, folder))

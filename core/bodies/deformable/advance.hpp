@@ -18,9 +18,9 @@ namespace doseki {
 template <int D>
 template <class Term, class Epilogue>
 void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
-    for_each_pair<false>(neighbours_, neighbours_.clusters(),
-                         std::span<const MotionRecord<double, D>>(motion_),
-                         CoordinateFrame<double, D>{}, term, epilogue);
+    for_each_pair<false>(
+        neighbours_, neighbours_.clusters(), std::span<const MotionRecord<double, D>>(motion_),
+        CoordinateFrame<double, D>{}, term, epilogue, {.only = stepped_.clusters()});
 }
 
 template <int D>
@@ -45,6 +45,7 @@ template <int D>
 void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     if (size() == 0) return;
     sort();
+    stepped_.choose(size(), [](std::uint32_t) { return true; });
     a.assign(size(), {}), load.assign(size(), {});
     deformation_.assign(size(), identity<double, D>());
     motion_.resize(size()), solid_.resize(size()), damping_force_.assign(size(), {});
@@ -61,6 +62,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     if (bonds_.any()) find_spans();
     limit_timestep();
     compute_accelerations(0.0, gravity);
+    choose_stepped();
 }
 
 template <int D>
@@ -74,7 +76,8 @@ void TotalLagrangian<D>::sort() {
         for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = field[order[k]];
         field.swap(sorted);
     };
-    reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_), reorder(gone_);
+    reorder(held_shape_), reorder(rest_), reorder(x), reorder(v), reorder(body_), reorder(clamped_),
+        reorder(gone_);
     reorder(radii);
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;
@@ -180,7 +183,7 @@ void TotalLagrangian<D>::damp_springs() {
 template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
-    for_each_particle(size(), [&](std::size_t p) {
+    stepped_.for_each([&](std::size_t p) {
         solid_[p].x = x[p];
         motion_[p].v = v[p] + half_dt * a[p];
     });
@@ -205,7 +208,7 @@ void TotalLagrangian<D>::compute_accelerations(double half_dt, const Vec<double,
 
 template <int D>
 double TotalLagrangian<D>::drift(double dt) {
-    const double fastest = reduce(size(), 0.0, maximum, [&](std::size_t p) {
+    const double fastest = stepped_.reduce(0.0, maximum, [&](std::size_t p) {
         x[p] = x[p] + dt * v[p];
         return dot(v[p], v[p]);
     });
@@ -217,10 +220,10 @@ double TotalLagrangian<D>::drift(double dt) {
 template <int D>
 BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     compute_accelerations(0.5 * dt, gravity);
-    damping_work_ -= reduce(size(), 0.0, std::plus<>(), [&](std::size_t p) {
+    damping_work_ -= stepped_.reduce(0.0, std::plus<>(), [&](std::size_t p) {
         return dot(damping_force_[p], dt * v[p] + (0.5 * dt * dt) * a[p]);
     });
-    const BodyStep<D> given = reduce(size(), BodyStep<D>{}, std::plus<>(), [&](std::size_t p) {
+    const BodyStep<D> given = stepped_.reduce(BodyStep<D>{}, std::plus<>(), [&](std::size_t p) {
         const Vec<double, D> way = dt * v[p] + (0.5 * dt * dt) * a[p];
         v[p] = v[p] + dt * a[p];
         if (clamped_[p]) return BodyStep<D>{};
@@ -295,11 +298,12 @@ void TotalLagrangian<D>::divide(const Division& division, double opening) {
     for (const std::int32_t parent : division.parent) {
         const auto k = static_cast<std::size_t>(parent);
         bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
+        rigid_.push_back(0), held_energy_.push_back(0.0);
     }
     for (std::size_t p = 0; p < size(); ++p) {
         if (division.body[p] >= 0)
             body_[p] = division.body[p];
-        else if (!gone(p))
+        else if (division.body[p] < -1)
             gone_[p] = clamped_[p] = 1, v[p] = a[p] = {};
     }
     auto apart = [this](std::uint32_t p, std::uint32_t j) {
@@ -312,8 +316,9 @@ void TotalLagrangian<D>::divide(const Division& division, double opening) {
 
 template <int D>
 double TotalLagrangian<D>::timestep() const {
+    if (!stepped_.any()) return std::numeric_limits<double>::infinity();
     double stiffening = 1.0;
-    for (std::size_t p = 0; p < size(); ++p)
+    for (const std::uint32_t p : stepped_.points())
         stiffening = max(stiffening, body_of(p).stiffening(deformation_[p]));
     return courant * stable_step_ / stiffening;
 }
@@ -327,7 +332,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
         for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
         return result;
     };
-    normal_ = sorted(normal_), depth_ = sorted(depth_);
+    normal_ = sorted(normal_), depth_ = sorted(depth_), rigid_point_ = sorted(rigid_point_);
     surfaces_.start(solids_);
     flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
     for (std::size_t p = 0; p < particles.size(); ++p)
@@ -338,7 +343,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
 template <int D>
 void DeformableBodies<D>::end_step(double dt, double memory) {
     const double share = std::min(1.0, dt / memory);
-    for (std::size_t k = 0; k < solids_.size(); ++k) {
+    for (const std::uint32_t k : solids_.stepped().points()) {
         if (solids_.clamped(k)) continue;
         const Vec<double, D> mean =
             (1.0 / dt) * (solids_.v[k] - before_[k]) + (1.0 / solids_.mass(k)) * flow_force_[k];

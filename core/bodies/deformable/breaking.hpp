@@ -40,7 +40,8 @@ template <int D>
 void TotalLagrangian<D>::find_spans() {
     auto point = [this](std::size_t p) { return bond_point(p); };
     auto all = [](std::uint32_t) { return true; };
-    for_each_particle(spans_.size(), [&](std::size_t p) {
+    if (spans_.empty()) return;
+    stepped_.for_each([&](std::size_t p) {
         spans_[p] = !body_of(p).breaks() || spans_space(bonds_.moment(p, point, all));
     });
 }

@@ -1,6 +1,7 @@
 // Deformable bodies, compiled once for all schemes.
 
 #include "bodies/deformable/advance.hpp"
+#include "bodies/deformable/breakable.hpp"
 #include "bodies/deformable/breaking.hpp"
 #include "bodies/deformable/dividing.hpp"
 #include "bodies/deformable/energy.hpp"

@@ -45,10 +45,11 @@ public:
     std::size_t size() const { return solids_.size(); }
 
     /// Makes the particles `members`, with the normals that they have, the points of one body.
-    /// Vertices of its surface are carried by points numbered within the body.
+    /// Vertices of its surface are carried by points numbered within the body. Where it is to be
+    /// rigid at first, `is_rigid`, the particles stay points of the rigid body that they are of.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
              std::span<const std::int32_t> members, const SolidPoints<D>& points,
-             std::span<const SurfaceVertex<D>> surface, const BodyCells& cells) {
+             std::span<const SurfaceVertex<D>> surface, const BodyCells& cells, bool is_rigid) {
         const auto first = static_cast<std::uint32_t>(solids_.size()),
                    first_vertex = CellNode::outline | static_cast<std::uint32_t>(surfaces_.size()),
                    own = static_cast<std::uint32_t>(members.size());
@@ -63,16 +64,43 @@ public:
         }
         for (std::size_t k = 0; k < members.size(); ++k) {
             const auto p = static_cast<std::size_t>(members[k]);
-            particles.set_point(p, BodyKind::deformable, solids_.size() + k);
+            rigid_point_.push_back(is_rigid ? static_cast<std::int32_t>(particles.point(p)) : -1);
+            if (!is_rigid) particles.set_point(p, BodyKind::deformable, solids_.size() + k);
             normal_.push_back(particles.wall.normal[p]);
             depth_.push_back(particles.wall.depth[p]);
         }
-        solids_.add(body, points);
+        solids_.add(body, points, is_rigid);
         material_.push_back(material);
         group_.push_back(
             members.empty() ? 0 : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
 
+    /// Of each point: its number among those of rigid bodies, of which it is one while its body is
+    /// rigid; -1: none.
+    const Array<std::int32_t>& rigid_points() const { return rigid_point_; }
+    /// See TotalLagrangian; the fluid sees an acceleration from then on.
+    void make_deformable(std::size_t body, const RigidPlacement<D>& placement,
+                         const Vec<double, D>& acceleration) {
+        solids_.make_deformable(body, placement);
+        for (const std::uint32_t p : solids_.points_of(body))
+            flow_force_[p] = {}, acceleration_[p] = acceleration, before_[p] = solids_.v[p];
+    }
+    void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic) {
+        solids_.make_rigid(body, motion, kinetic);
+    }
+    /// Numbers contacts as if no body had changed, for those that do not part.
+    Fragments<D> as_they_are() const {
+        Fragments<D> fragments{};
+        fragments.first_contact_point = surfaces_.first_contact_point();
+        fragments.surface_body = surfaces_.bodies(solids_);
+        fragments.divided.assign(bodies(), 0);
+        fragments.vertex = surfaces_.shown();
+        return fragments;
+    }
+    /// Particle p, a point of a body that has changed, as a point of what it is now.
+    void rebind(Particles<D>& particles, std::size_t p, const Array<std::int32_t>& of_rigid) const;
+    /// Whether any body is deformable now.
+    bool any_deforms() const { return solids_.stepped().any(); }
     std::size_t bodies() const { return solids_.bodies(); }
     /// Whether a body may come apart.
     bool breaks(std::size_t body) const { return solids_.breaks(body); }
@@ -118,7 +146,10 @@ public:
         ranks.sum(numbers_of(flow_force_));
     }
     void kick(double half_dt) { solids_.kick(half_dt, flow_force_); }
-    void begin_step() { before_ = solids_.v; }
+    void begin_step() {
+        before_.resize(size());
+        for (const std::uint32_t p : solids_.stepped().points()) before_[p] = solids_.v[p];
+    }
     /// Accelerations as the fluid sees them, averaged over `memory`.
     void end_step(double dt, double memory);
     /// Shows the contacts where the points are, and takes their forces.
@@ -137,13 +168,14 @@ public:
     ElasticEnergy elastic_energy() const { return solids_.elastic_energy(); }
     double max_speed() const {
         double square = 0.0;
-        for (const auto& v : solids_.v) square = std::max(square, dot(v, v));
+        for (const std::uint32_t p : solids_.stepped().points())
+            square = std::max(square, dot(solids_.v[p], solids_.v[p]));
         return std::sqrt(square);
     }
     /// How far points may go before contacts are looked for again [m].
     double margin() const {
         double smallest = std::numeric_limits<double>::infinity();
-        for (std::size_t p = 0; p < solids_.size(); ++p)
+        for (const std::uint32_t p : solids_.stepped().points())
             smallest = std::min(smallest, 0.5 * solids_.body_of(p).spacing);
         return smallest;
     }
@@ -153,13 +185,14 @@ public:
         surfaces_.serialise(archive, solids_);
         archive("deformable_normal", normal_), archive("deformable_material", material_);
         archive("deformable_depth", depth_), archive("deformable_group", group_);
+        archive("deformable_rigid_point", rigid_point_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
         if (archive.loads()) {
             const std::size_t n = solids_.size();
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
-                           material_.size() == solids_.bodies() &&
+                           rigid_point_.size() == n && material_.size() == solids_.bodies() &&
                            group_.size() == solids_.bodies(),
                        "deformable_normal");
         }
@@ -185,6 +218,7 @@ private:
 
     Array<Vec<double, D>> normal_;          // at rest
     Array<double> depth_;                   // below the surface [m]
+    Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;

@@ -80,7 +80,10 @@ Fragments<D> DeformableBodies<D>::divide(double dt) {
     fragments.surface_body = surfaces_.bodies(solids_);
     solids_.divide(parts, opening);
     fragments.lost -= kinetic_energy() + solids_.energy_across(dt);
-    fragments.vertex = surfaces_.divide(solids_, parts, before, crack, places);
+    Array<std::int32_t> shown = surfaces_.shown();
+    const Array<std::int32_t> number = surfaces_.divide(solids_, parts, before, crack, places);
+    for (std::int32_t& vertex : shown) vertex = number[static_cast<std::size_t>(vertex)];
+    fragments.vertex = shown;
     turn_to_cracks(solids_, crack, before, parts.body, normal_, depth_);
     for (const std::int32_t parent : parts.parent) {
         const auto k = static_cast<std::size_t>(parent);

@@ -11,12 +11,15 @@ namespace doseki {
 /// are what the next one goes on from.
 template <int D>
 ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
-    if (size() == 0) return {};
-    Array<ElasticRecord<D>> solid = solid_;
-    for (std::size_t p = 0; p < size(); ++p) solid[p].x = x[p] + ahead * v[p];
+    ElasticEnergy sum;
+    for (const double held : held_energy_) sum.strain += held;
+    if (!stepped_.any()) return sum;
+    auto& [solid, energy, points] = energy_rows_;
+    solid.resize(size()), energy.resize(size()), points.resize(bonds_.any() ? size() : 0);
+    stepped_.for_each([&](std::size_t p) {
+        solid[p] = solid_[p], solid[p].x = x[p] + ahead * v[p], energy[p] = {};
+    });
     const ElasticTerm<D> records{motion_, solid};
-    Array<ElasticEnergy> energy(size());
-    Array<BondPoint<D>> points(bonds_.any() ? size() : 0);
     auto strain = [&](std::size_t p, const Mat<double, D>& F) {
         const DeformableBody& body = body_of(p);
         solid[p].F = F, solid[p].kappa = body.hourglass * body.shear_modulus();
@@ -44,18 +47,17 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
     sum_springs(records, [&](std::size_t p, const MisfitMoments<double, D>& sums) {
         energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.square);
     });
-    ElasticEnergy sum;
-    for (std::size_t p = 0; p < size(); ++p)
+    for (const std::uint32_t p : stepped_.points())
         if (!gone(p)) sum.strain += energy[p].strain, sum.springs += energy[p].springs;
-    sum.opening = bonds_.opening([&points](std::size_t p) { return points[p]; },
+    sum.opening = bonds_.opening([&rows = points](std::size_t p) { return rows[p]; },
                                  [this](std::size_t p) -> const auto& { return body_of(p); });
     return sum;
 }
 
 template <int D>
 double TotalLagrangian<D>::kinetic_energy() const {
-    return reduce(size(), 0.0, std::plus<>(),
-                  [this](std::size_t p) { return 0.5 * mass(p) * dot(v[p], v[p]); });
+    return stepped_.reduce(0.0, std::plus<>(),
+                           [this](std::size_t p) { return 0.5 * mass(p) * dot(v[p], v[p]); });
 }
 
 }  // namespace doseki

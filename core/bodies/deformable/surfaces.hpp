@@ -33,14 +33,17 @@ public:
     /// A cell of a body in 2-D by the numbers of its points and vertices among all.
     void add_cell(std::span<const std::uint32_t> nodes) { cells_.add(nodes); }
     std::size_t size() const { return vertices_.size(); }
-    /// Body of each surface, as contacts number them.
+    /// Body of each surface that contacts have, as they number them.
     Array<std::int32_t> bodies(const TotalLagrangian<D>& solids) const {
         Array<std::int32_t> bodies;
-        for (std::size_t v = 0; v < vertices_.size(); ++v)
-            if (v == 0 || solids.body(point_of(v)) != bodies.back())
-                bodies.push_back(solids.body(point_of(v)));
+        for (const std::int32_t v : shown_) {
+            const std::int32_t body = solids.body(point_of(static_cast<std::size_t>(v)));
+            if (bodies.empty() || body != bodies.back()) bodies.push_back(body);
+        }
         return bodies;
     }
+    /// The vertices that contacts have, in their order: those of bodies that are not rigid.
+    const Array<std::int32_t>& shown() const { return shown_; }
     /// Finds the points, which had been numbers of adding, where they are stored.
     void start(const TotalLagrangian<D>& solids) {
         for (std::size_t v = 0; v < vertices_.size(); ++v) {
@@ -54,11 +57,12 @@ public:
         }
         cells_.start([&](std::uint32_t number) { return solids.slot(number); });
     }
-    /// Where the vertices are.
+    /// Where the vertices are, but those of rigid bodies.
     Array<Vec<double, D>> places(const TotalLagrangian<D>& solids) const {
         Array<Vec<double, D>> places;
         for (const auto& [p, offset, crease, radius, key, curve] : vertices_)
-            places.push_back(solids.x[p] + solids.motion_around(p) * offset);
+            places.push_back(is_rigid(p, solids) ? Vec<double, D>{}
+                                                 : solids.x[p] + solids.motion_around(p) * offset);
         return places;
     }
     /// Draws the surfaces of the parts of bodies, which the solids have become already; vertices
@@ -69,16 +73,17 @@ public:
                                const Array<std::uint32_t>& crack,
                                const Array<Vec<double, D>>& places);
     std::size_t first_contact_point() const { return first_contact_point_; }
-    /// The number of a contact point after a division, with new numbers of vertices; `first`: that
-    /// of the first point of these surfaces before. -1: none.
+    /// The number of a contact point after a division, with new numbers of the vertices that had
+    /// been shown; `first`: that of the first point of these surfaces before. -1: none.
     std::int32_t renumbered(std::size_t k, std::size_t first,
                             std::span<const std::int32_t> vertex) const {
         if (k < first) return static_cast<std::int32_t>(k);
         const std::size_t sample = k - first;
         const std::int32_t now = vertex[sample / points_each];
-        if (now < 0) return -1;
-        return static_cast<std::int32_t>(first_contact_point_ +
-                                         static_cast<std::size_t>(now) * points_each +
+        const auto at = std::lower_bound(shown_.begin(), shown_.end(), now);
+        if (now < 0 || at == shown_.end() || *at != now) return -1;
+        const auto number = static_cast<std::size_t>(at - shown_.begin());
+        return static_cast<std::int32_t>(first_contact_point_ + number * points_each +
                                          sample % points_each);
     }
     /// Adds surfaces to those that may touch, with the points at which they do; `first_body` is the
@@ -129,8 +134,14 @@ private:
     };
 
     std::size_t point_of(std::size_t v) const { return vertices_[v].point; }
-    Vec<double, D> rest(std::size_t v, const TotalLagrangian<D>& solids) const {
-        return solids.rest_position(point_of(v)) + vertices_[v].offset;
+    static bool is_rigid(std::size_t p, const TotalLagrangian<D>& solids) {
+        return solids.is_rigid(static_cast<std::size_t>(solids.body(p)));
+    }
+    const SurfaceVertex<D>& shown_vertex(std::size_t n) const {
+        return vertices_[static_cast<std::size_t>(shown_[n])];
+    }
+    Vec<double, D> rest(std::size_t n, const TotalLagrangian<D>& solids) const {
+        return solids.rest_position(shown_vertex(n).point) + shown_vertex(n).offset;
     }
     void add_sample(ContactBodies<D>& contact, const Sample& sample, const ContactSide& side);
     void add_samples(ContactBodies<D>& contact, std::size_t surface,
@@ -147,6 +158,7 @@ private:
     Array<SurfaceVertex<D>> vertices_;      // those of a curve, and of a body, one after another
     Array<std::uint32_t> carrier_at_rest_;  // 2-D: of each vertex that there was at the start
     Cells cells_;
+    Array<std::int32_t> shown_;  // see shown(); what follows is of those alone, in their order
     Array<Array<PointShare>> carriers_;
     Array<Patch<D>> patches_;          // around the point of each
     Array<std::size_t> first_vertex_;  // of each surface, and the end
@@ -159,23 +171,27 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
                                    const TotalLagrangian<D>& solids,
                                    const Array<std::int32_t>& material) {
     first_contact_point_ = contact.points.size();
-    carriers_.clear(), patches_.clear(), first_vertex_.clear(), samples_.clear();
+    carriers_.clear(), patches_.clear(), first_vertex_.clear(), samples_.clear(), shown_.clear();
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const std::size_t k = point_of(v);
+        if (is_rigid(k, solids)) continue;
         const std::int32_t body = solids.body(k);
-        if (v == 0 || body != solids.body(point_of(v - 1))) {
-            first_vertex_.push_back(v);
+        const bool begins =
+            shown_.empty() || body != solids.body(shown_vertex(shown_.size() - 1).point);
+        shown_.push_back(static_cast<std::int32_t>(v));
+        if (begins) {
+            first_vertex_.push_back(shown_.size() - 1);
             Surface<D>& surface = contact.surfaces.emplace_back();
             surface.body = first_body + body;
             surface.material = material[static_cast<std::size_t>(body)];
             surface.mass = solids.mass(k), surface.spacing = solids.body_of(k).spacing;
         }
-        if (v == 0 || !same_curve(v, v - 1, solids)) contact.surfaces.back().begin_curve();
+        if (begins || !same_curve(v, v - 1, solids)) contact.surfaces.back().begin_curve();
         contact.surfaces.back().add(vertices_[v].crease != 0);
         carriers_.push_back(solids.carriers(k, vertices_[v].offset));
         patches_.emplace_back(solids.neighbours_of(k));
     }
-    first_vertex_.push_back(vertices_.size());
+    first_vertex_.push_back(shown_.size());
     for (std::size_t s = 0; s < contact.surfaces.size(); ++s) add_samples(contact, s, solids);
 }
 
@@ -184,12 +200,12 @@ void DeformableSurfaces<D>::add_samples(ContactBodies<D>& contact, std::size_t s
                                         const TotalLagrangian<D>& solids) {
     const Surface<D>& surface = contact.surfaces[s];
     const std::size_t first = first_vertex_[s];
-    auto clamped = [&](std::uint32_t v) { return solids.clamped(point_of(first + v)); };
+    auto clamped = [&](std::uint32_t v) { return solids.clamped(shown_vertex(first + v).point); };
     ContactSide side = surface.side();
     side.flat = false;
     for (std::uint32_t v = 0; v < surface.size(); ++v) {
         if constexpr (D == 3) {
-            side.radius = vertices_[first + v].radius, side.share = 1.0, side.fixed = clamped(v);
+            side.radius = shown_vertex(first + v).radius, side.share = 1.0, side.fixed = clamped(v);
             add_sample(contact, {s, {{v, v, v, v}, {1.0, 0.0, 0.0, 0.0}}}, side);
         } else {
             const auto part = rest(first + surface.after(v, 1), solids) - rest(first + v, solids);
@@ -245,6 +261,7 @@ Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& soli
                                                   const Array<Vec<double, D>>& places) {
     Array<std::pair<SurfaceVertex<D>, std::int32_t>> kept;  // and their number before
     auto divides = [&](std::uint32_t p) {
+        if (is_rigid(p, solids)) return false;
         return before[p] < 0 || division.divides[static_cast<std::size_t>(before[p])];
     };
     for (std::size_t v = 0; v < vertices_.size(); ++v)

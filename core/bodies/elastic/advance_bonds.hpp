@@ -19,6 +19,7 @@ void Bonds<D>::index(std::size_t points) {
     for (std::size_t n = 1; n < size(); ++n)
         for (const std::uint32_t p : {pairs_[n].a, pairs_[n].b})
             bond_[next[p]++] = static_cast<std::uint32_t>(n);
+    step_only([](std::uint32_t) { return true; });
 }
 
 template <int D>
@@ -65,6 +66,12 @@ public:
         return half_work(pull_of(p == ends_.a ? a_ : b_, at_rest() - state_.change));
     }
     /// `beside`: whether another bond of its points has a crack.
+    /// Tension [Pa] along the bond at which a crack begins.
+    double strength() const {
+        const CrackSite place = site((1.0 / norm(rest_)) * rest_);
+        return with_value(body_.law->fracture,
+                          [&](const auto& law) { return law.strength(place); });
+    }
     BondChange take(double dt, bool beside) {
         if (!state_.cracked() && !begins(beside)) return {};
         Crack crack{state_.opening, state_.max_opening, state_.damage};
@@ -218,11 +225,11 @@ template <int D>
 template <class Point, class Body>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
     Array<std::uint8_t> at_crack(first_bond_.size() - 1, 0);
-    for (std::size_t n = 1; n < size(); ++n)
+    for (const std::uint32_t n : stepped_)
         if (state_[n].opening > 0.0) at_crack[pairs_[n].a] = at_crack[pairs_[n].b] = 1;
-    change_ = reduce(size() - 1, BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
-        const BondEnds& ends = pairs_[k + 1];
-        BondState<D>& state = state_[k + 1];
+    change_ = reduce(stepped_.size(), BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
+        const BondEnds& ends = pairs_[stepped_[k]];
+        BondState<D>& state = state_[stepped_[k]];
         if (state.whole == 0.0) return BondChange{};
         const bool beside = at_crack[ends.a] != 0 || at_crack[ends.b] != 0;
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
@@ -234,10 +241,23 @@ void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
 
 template <int D>
 template <class Point, class Body>
+double Bonds<D>::strength(std::size_t p, const Point& point, const Body& body) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+        const BondEnds& ends = pairs_[bond_[k]];
+        BondState<D> state = state_[bond_[k]];
+        const BondStep<D> bond(ends, point(ends.a), point(ends.b), body(ends.a), state);
+        least = min(least, bond.strength());
+    }
+    return least;
+}
+
+template <int D>
+template <class Point, class Body>
 double Bonds<D>::opening(const Point& point, const Body& body) const {
-    return reduce(size() - 1, 0.0, std::plus<>{}, [&](std::size_t k) {
-        const BondEnds& ends = pairs_[k + 1];
-        BondState<D> state = state_[k + 1];
+    return reduce(stepped_.size(), 0.0, std::plus<>{}, [&](std::size_t k) {
+        const BondEnds& ends = pairs_[stepped_[k]];
+        BondState<D> state = state_[stepped_[k]];
         if (state.whole == 0.0 || !state.cracked()) return 0.0;
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).half_work();
     });

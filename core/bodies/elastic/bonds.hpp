@@ -133,8 +133,32 @@ public:
     }
     void clear() {
         pairs_.assign(1, BondEnds{}), state_.assign(1, {}), code_.clear(), first_code_.clear();
-        work_ = 0.0, change_ = {}, broken_ = 0, settled_.clear();
+        work_ = 0.0, change_ = {}, broken_ = 0, settled_.clear(), stepped_.clear();
     }
+    /// From now on only the bonds of points for which moves(p) take part in steps; the others keep
+    /// what they are.
+    template <class Moves>
+    void step_only(const Moves& moves) {
+        stepped_.clear(), change_ = {};
+        for (std::uint32_t n = 1; n < size(); ++n)
+            if (moves(pairs_[n].a)) stepped_.push_back(n);
+    }
+    /// Intactness of the weakest of the bonds of point p, see for_each_bond.
+    double least_intactness(std::size_t p) const {
+        double least = 1.0;
+        for_each_bond(p, [&least](std::uint32_t, double intact) { least = min(least, intact); });
+        return least;
+    }
+    /// Counts for good what the last step did to the bonds of some points: `opening`.
+    void finish_step(std::span<const std::uint32_t> points, double opening) {
+        work_ += opening;
+        for (const std::uint32_t p : points)
+            for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n)
+                state_[bond_[n]].change = {};
+    }
+    /// Tension [Pa] at which the first of the bonds of point p begins to crack.
+    template <class Point, class Body>
+    double strength(std::size_t p, const Point& point, const Body& body) const;
     /// Finds the bonds of each of `points` points, which were added in the order of their first.
     void index(std::size_t points);
     /// Codes of a list: `neighbour(p)` of each lane, of one more entry of the cluster that begins
@@ -172,12 +196,13 @@ public:
     template <class Apart>
     void part(const Apart& apart, double opening) {
         work_ += opening;
-        for (std::size_t n = 1; n < size(); ++n)
+        for (const std::uint32_t n : stepped_) {
             if (apart(pairs_[n].a, pairs_[n].b)) {
                 broken_ += intactness(n) > 0.0;
                 state_[n].whole = 0.0, state_[n].damage = 1.0;
             }
-        for (BondState<D>& state : state_) state.change = {};
+            state_[n].change = {};
+        }
     }
     /// Bonds that bear no tension.
     std::size_t broken() const { return broken_; }
@@ -244,7 +269,8 @@ private:
     Array<std::uint32_t> bond_;
     Array<std::uint32_t> code_;
     Array<std::size_t> first_code_;
-    Array<std::uint8_t> settled_;  // see BondPoint
+    Array<std::uint32_t> stepped_;  // numbers of bonds, rising
+    Array<std::uint8_t> settled_;   // see BondPoint
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;

@@ -93,7 +93,7 @@ void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
                       const TakeSpans& take_spans) {
     if (change_.gone == 0) return;
     const auto all = [](std::uint32_t) { return true; };
-    for (std::size_t n = 1; n < size(); ++n)
+    for (const std::uint32_t n : stepped_)
         if (state_[n].whole < 0.0) settled_[pairs_[n].a] = settled_[pairs_[n].b] = 1;
     for (std::size_t p = 0; p < settled_.size(); ++p) {
         if (!settled_[p] || !point(p).spans) continue;
@@ -103,8 +103,8 @@ void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
         if (spans) work_ -= energy_across(p, Moment::now, point, body, place, all);
         take_spans(p, spans);
     }
-    for (BondState<D>& state : state_)
-        if (state.whole < 0.0) state.whole = 0.0, state.change = {};
+    for (const std::uint32_t n : stepped_)
+        if (state_[n].whole < 0.0) state_[n].whole = 0.0, state_[n].change = {};
 }
 
 }  // namespace doseki

@@ -9,6 +9,7 @@
 #include "bodies/elastic/deformable_body.hpp"
 #include "bodies/elastic/division.hpp"
 #include "bodies/elastic/records.hpp"
+#include "bodies/elastic/stepped_points.hpp"
 #include "bodies/rotation.hpp"
 #include "model/body_step.hpp"
 #include "pairs/neighbour_lists.hpp"
@@ -20,6 +21,8 @@ template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
 struct ElasticTerm;
+template <int D>
+struct RigidMotion;
 
 /// The points of a body that is to be: where they are without stress, and how they start.
 template <int D>
@@ -34,6 +37,15 @@ struct ElasticEnergy {
     double strain = 0.0, springs = 0.0, opening = 0.0;
 
     double sum() const { return strain + springs; }
+};
+
+/// How a body moves that keeps its shape: the place of what was at `rest_centre`, and how it is
+/// turned since then.
+template <int D>
+struct RigidPlacement {
+    Vec<double, D> rest_centre, centre, velocity;
+    Vec3 angular_momentum;  // about `centre`
+    Mat<double, 3> turn;
 };
 
 /// Part of a point in a place that points carry along.
@@ -53,8 +65,9 @@ class TotalLagrangian {
 public:
     TotalLagrangian() : neighbours_(Domain<D>{}) {}
 
-    /// Clamped points stay where they are. A point's mass is rho0 times spacing^D.
-    void add(const DeformableBody& body, const SolidPoints<D>& points) {
+    /// Clamped points stay where they are. A point's mass is rho0 times spacing^D. A body that
+    /// `is_rigid` takes part in nothing until it is made deformable.
+    void add(const DeformableBody& body, const SolidPoints<D>& points, bool is_rigid = false) {
         const auto number = static_cast<std::int32_t>(bodies_.size());
         const Vec<double, D> apart = room_for(body, points.rest);
         for (std::size_t k = 0; k < points.rest.size(); ++k) {
@@ -62,10 +75,35 @@ public:
             x.push_back(points.position[k]);
             v.push_back(points.clamped[k] ? Vec<double, D>{} : points.velocity[k]);
             body_.push_back(number), clamped_.push_back(points.clamped[k]);
-            gone_.push_back(0);
+            gone_.push_back(0), held_shape_.push_back({});
         }
         bodies_.push_back(body), apart_.push_back(apart);
+        rigid_.push_back(is_rigid), held_energy_.push_back(0.0);
     }
+    /// Whether a body moves as a rigid one, which someone else steps.
+    bool is_rigid(std::size_t body) const { return rigid_[body] != 0; }
+    /// Points of all bodies that are not rigid.
+    const SteppedPoints& stepped() const { return stepped_; }
+    Array<std::uint32_t> points_of(std::size_t body) const {
+        Array<std::uint32_t> points;
+        auto add = [&](std::uint32_t p) {
+            if (!gone(p) && body_[p] == static_cast<std::int32_t>(body)) points.push_back(p);
+        };
+        if (is_rigid(body))
+            for (std::uint32_t p = 0; p < size(); ++p) add(p);
+        else
+            for (const std::uint32_t p : stepped_.points()) add(p);
+        return points;
+    }
+    /// Makes a rigid body deformable, with the momenta of the placement.
+    void make_deformable(std::size_t body, const RigidPlacement<D>& placement);
+    /// Makes a body rigid that moves as in `motion`: it keeps its shape with the elastic energy
+    /// that is in it; what it had of motion beyond `kinetic` [J] counts as damped.
+    void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic);
+    /// Tension [Pa] at which the first of the bonds of a body cracks while none has.
+    double strength(std::size_t body) const;
+    /// Of the weakest bond of a body, see Bonds.
+    double least_intactness(std::size_t body) const;
 
     /// Finds pairs, corrects gradients, takes the first accelerations. Call once, after the bodies
     /// are in.
@@ -73,7 +111,7 @@ public:
 
     /// Half a step of the forces of others, which change slowly [N], 2-D: [N/m].
     void kick(double half_dt, std::span<const Vec<double, D>> force) {
-        for (std::size_t p = 0; p < size(); ++p)
+        for (const std::uint32_t p : stepped_.points())
             if (!clamped_[p]) v[p] = v[p] + (half_dt / mass(p)) * force[p];
     }
 
@@ -88,7 +126,8 @@ public:
     double drift(double dt);
     BodyStep<D> push(double dt, const Vec<double, D>& gravity);
 
-    /// The longest that is stable, for bodies strained as they are [s].
+    /// The longest that is stable, for bodies strained as they are [s]; infinite where all are
+    /// rigid.
     double timestep() const;
     std::size_t size() const { return x.size(); }
     std::size_t bodies() const { return bodies_.size(); }
@@ -98,13 +137,15 @@ public:
         return bodies_[static_cast<std::size_t>(body_[p])];
     }
     std::int32_t body(std::size_t p) const { return body_[p]; }
+    const DeformableBody& material(std::size_t body) const { return bodies_[body]; }
     bool breaks(std::size_t body) const { return bodies_[body].breaks(); }
     /// Whether the point has become dust: it stays where it is and does nothing.
     bool gone(std::size_t p) const { return gone_[p] != 0; }
-    /// The body of each point, -1 of those that are gone.
+    /// The body of each point, -1 of those that are gone and of rigid ones.
     Array<std::int32_t> holders() const {
-        Array<std::int32_t> holder(size());
-        for (std::size_t p = 0; p < size(); ++p) holder[p] = gone(p) ? -1 : body_[p];
+        Array<std::int32_t> holder(size(), -1);
+        for (const std::uint32_t p : stepped_.points())
+            if (!gone(p)) holder[p] = body_[p];
         return holder;
     }
     bool clamped(std::size_t p) const { return clamped_[p] != 0; }
@@ -171,6 +212,8 @@ public:
         archive("elastic_position", x), archive("elastic_velocity", v),
             archive("elastic_body", body_);
         archive("elastic_clamped", clamped_), archive("elastic_slot", slot_);
+        archive("elastic_rigid", rigid_), archive("elastic_held_energy", held_energy_);
+        archive("elastic_held_shape", held_shape_);
         archive("elastic_gone", gone_);
         double stable_step = stable_step_;
         archive("elastic_stable_step", stable_step);
@@ -205,6 +248,9 @@ private:
                       std::size_t deformations) const {
         const std::size_t n = x.size();
         expect_fit(numbers == apart_.size() * DeformableBody::count, "elastic_numbers");
+        expect_fit(rigid_.size() == apart_.size() && held_energy_.size() == apart_.size(),
+                   "elastic_rigid");
+        expect_fit(held_shape_.size() == n, "elastic_held_shape");
         expect_fit(rest_.size() == n && v.size() == n && body_.size() == n &&
                        clamped_.size() == n && gone_.size() == n && slot_.size() == n &&
                        accelerations == n && deformations == n,
@@ -254,7 +300,28 @@ private:
     void update_deformations();
     void advance_bonds(double dt);
 
+    void choose_stepped() {
+        auto moves = [this](std::uint32_t p) {
+            return !is_rigid(static_cast<std::size_t>(body_[p]));
+        };
+        stepped_.choose(size(), moves);
+        bonds_.step_only(moves);
+    }
+
+    /// Arrays for elastic_energy(), of which only the rows of stepped points are used.
+    struct EnergyRows {
+        Array<ElasticRecord<D>> solid;
+        Array<ElasticEnergy> energy;
+        Array<BondPoint<D>> points;
+    };
+
     Array<DeformableBody> bodies_;
+    Array<std::uint8_t> rigid_;  // by body
+    // Of rigid ones: their elastic energy, and by point how their shape differs from that at rest.
+    Array<double> held_energy_;
+    Array<Vec<double, D>> held_shape_;
+    SteppedPoints stepped_;
+    mutable EnergyRows energy_rows_;
     Array<Vec<double, D>> apart_;  // by body: shift of its places at rest
     double reach_ = 0.0;           // how far along x places at rest are taken
     Array<Vec<double, D>> rest_;

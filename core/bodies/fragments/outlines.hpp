@@ -49,12 +49,17 @@ public:
             curve.position.back() = known[k].place;
             known_[vertex.key] = known[k];
         }
+        for (std::size_t cell = 0; cell < from_.cells.size(); ++cell)
+            if (is_there(cell)) cells_.push_back(cell);
+        for (const auto& [node, other] : from_.cells.outline())
+            if (from_.before[point(node)] >= 0 || from_.before[point(other)] >= 0)
+                sides_.push_back({node, other});
     }
 
     /// The closed curves around a part, anticlockwise; clockwise around holes.
     Array<Array<PlacedVertex>> trace(std::int32_t part) {
         next_.clear();
-        for (std::size_t cell = 0; cell < from_.cells.size(); ++cell) follow_cell(cell, part);
+        for (const std::size_t cell : cells_) follow_cell(cell, part);
         follow_outline(part);
         Array<Array<PlacedVertex>> curves;
         while (!next_.empty()) {
@@ -85,6 +90,11 @@ private:
     }
     auto after() const {
         return [this](std::uint32_t node) { return from_.after[point(node)]; };
+    }
+    bool is_there(std::size_t cell) const {
+        for (std::size_t k = 0; k < from_.cells.corners(cell); ++k)
+            if (from_.before[point(from_.cells.node(cell, k))] >= 0) return true;
+        return false;
     }
     Vec<double, 2> place(std::uint32_t node) const {
         return CellNode::is_vertex(node) ? known_.at(VertexKey::of_outline(node)).place
@@ -187,7 +197,7 @@ private:
     }
 
     void follow_outline(std::int32_t part) {
-        for (const auto& [node, other] : from_.cells.outline()) {
+        for (const auto& [node, other] : sides_) {
             const bool mine = after()(node) == part, also = after()(other) == part;
             const std::uint64_t own = VertexKey::of_outline(node),
                                 others = VertexKey::of_outline(other);
@@ -197,6 +207,8 @@ private:
     }
 
     OutlineSources from_;
+    Array<std::size_t> cells_;                              // of bodies with parts
+    Array<std::pair<std::uint32_t, std::uint32_t>> sides_;  // of their outlines
     std::map<std::uint64_t, PlacedVertex> known_;
     std::map<std::uint64_t, std::pair<std::size_t, std::size_t>> places_;  // curve and vertex
     Array<Surface<2>> curves_;

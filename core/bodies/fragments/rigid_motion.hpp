@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "base/array.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
@@ -17,6 +18,9 @@ struct RigidMotion {
     Vec3 spin{};
     Quaternion orientation;
     double mass = 0.0, radius = 0.0;  // radius of the ball around the centre
+    Vec<double, D> rest_centre{};
+    Mat<double, 3> inertia{};  // about the centre
+    Vec3 angular_momentum{};
 };
 
 /// The quaternion of a rotation.
@@ -41,50 +45,51 @@ inline Mat<double, 3> nearest_rotation(Mat<double, 3> m) {
     return m;
 }
 
-/// Those of all bodies.
+/// That of the points of one body; zero where there are none.
 template <int D>
-Array<RigidMotion<D>> rigid_motions(const TotalLagrangian<D>& solids) {
-    const std::size_t bodies = solids.bodies();
-    Array<RigidMotion<D>> motions(bodies);
-    Array<Vec<double, D>> rest(bodies);
-    Array<Vec3> momentum(bodies);
-    Array<Mat<double, 3>> inertia(bodies), turn(bodies);
-    auto for_each_point = [&](auto&& f) {
-        for (std::size_t p = 0; p < solids.size(); ++p)
-            if (!solids.gone(p)) f(p, static_cast<std::size_t>(solids.body(p)), solids.mass(p));
-    };
-    for_each_point([&](std::size_t p, std::size_t b, double m) {
-        RigidMotion<D>& motion = motions[b];
-        motion.mass += m, rest[b] = rest[b] + m * solids.rest_position(p);
+RigidMotion<D> rigid_motion(const TotalLagrangian<D>& solids,
+                            std::span<const std::uint32_t> points) {
+    RigidMotion<D> motion;
+    for (const std::uint32_t p : points) {
+        const double m = solids.mass(p);
+        motion.mass += m, motion.rest_centre = motion.rest_centre + m * solids.rest_position(p);
         motion.centre = motion.centre + m * solids.x[p];
         motion.velocity = motion.velocity + m * solids.v[p];
-    });
-    for (std::size_t b = 0; b < bodies; ++b) {
-        const double share = motions[b].mass > 0.0 ? 1.0 / motions[b].mass : 0.0;
-        motions[b].centre = share * motions[b].centre, rest[b] = share * rest[b];
-        motions[b].velocity = share * motions[b].velocity;
     }
-    for_each_point([&](std::size_t p, std::size_t b, double m) {
-        RigidMotion<D>& motion = motions[b];
+    if (!(motion.mass > 0.0)) return motion;
+    const double share = 1.0 / motion.mass;
+    motion.centre = share * motion.centre, motion.rest_centre = share * motion.rest_centre;
+    motion.velocity = share * motion.velocity;
+    Mat<double, 3> turn{};
+    for (const std::uint32_t p : points) {
+        const double m = solids.mass(p);
         const Vec3 r = in_space(solids.x[p] - motion.centre),
-                   R = in_space(solids.rest_position(p) - rest[b]);
-        momentum[b] = momentum[b] + m * cross(r, in_space(solids.v[p] - motion.velocity));
+                   R = in_space(solids.rest_position(p) - motion.rest_centre);
+        motion.angular_momentum =
+            motion.angular_momentum + m * cross(r, in_space(solids.v[p] - motion.velocity));
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) {
-                inertia[b](i, j) += m * ((i == j ? dot(r, r) : 0.0) - r[i] * r[j]);
-                turn[b](i, j) += m * r[i] * R[j];
+                motion.inertia(i, j) += m * ((i == j ? dot(r, r) : 0.0) - r[i] * r[j]);
+                turn(i, j) += m * r[i] * R[j];
             }
         motion.radius = std::max(motion.radius, norm(r) + 0.5 * solids.body_of(p).spacing);
-    });
-    for (std::size_t b = 0; b < bodies; ++b) {
-        if (!(motions[b].mass > 0.0)) continue;
-        motions[b].spin = inverse(inertia[b], 0.0) * momentum[b];
-        const double size = turn[b](0, 0) * turn[b](0, 0) + turn[b](1, 1) * turn[b](1, 1) +
-                            turn[b](0, 1) * turn[b](0, 1) + turn[b](1, 0) * turn[b](1, 0);
-        if (D == 2) turn[b](2, 2) = std::sqrt(size);
-        if (determinant(turn[b]) > 0.0)
-            motions[b].orientation = quaternion_of(nearest_rotation(turn[b]));
     }
+    motion.spin = inverse(motion.inertia, 0.0) * motion.angular_momentum;
+    const double size = turn(0, 0) * turn(0, 0) + turn(1, 1) * turn(1, 1) +
+                        turn(0, 1) * turn(0, 1) + turn(1, 0) * turn(1, 0);
+    if (D == 2) turn(2, 2) = std::sqrt(size);
+    if (determinant(turn) > 0.0) motion.orientation = quaternion_of(nearest_rotation(turn));
+    return motion;
+}
+
+/// Those of all bodies that are not rigid.
+template <int D>
+Array<RigidMotion<D>> rigid_motions(const TotalLagrangian<D>& solids) {
+    Array<Array<std::uint32_t>> points(solids.bodies());
+    for (const std::uint32_t p : solids.stepped().points())
+        if (!solids.gone(p)) points[static_cast<std::size_t>(solids.body(p))].push_back(p);
+    Array<RigidMotion<D>> motions;
+    for (const auto& of_body : points) motions.push_back(rigid_motion<D>(solids, of_body));
     return motions;
 }
 

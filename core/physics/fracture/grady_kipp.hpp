@@ -35,6 +35,11 @@ struct GradyKipp {
         return max_flaws;
     }
 
+    /// Eq. (112) of the first flaw.
+    T strength(const CrackSite& site) const {
+        const T first = -std::log(random_number(site.seed, site.key, 0));
+        return site.young * std::pow(first / (weibull_k * site.volume), T(1) / weibull_m);
+    }
     bool starts(T tension, const CrackSite& site) const {
         return active_flaws(tension / site.young, site) > 0;
     }

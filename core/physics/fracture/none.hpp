@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "physics/fracture/crack.hpp"
 
 namespace doseki {
@@ -11,6 +13,7 @@ struct Unbreakable {
     template <class F>
     void members(F&&) {}
 
+    T strength(const CrackSite&) const { return std::numeric_limits<T>::infinity(); }
     bool starts(T, const CrackSite&) const { return false; }
     void grow(Crack&, T, T, const CrackSite&) const {}
     T traction(const Crack&, const CrackSite&) const { return T(0); }

@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 from ..errors import UserError
 from ..record.particles import FIXED, FREE
 from ..record.reader import Run, Snapshot
+from ..scenario.kinematics import DEFORM
 from . import numbers as measure
 from .views import View, flow_direction, fluid_names
 
@@ -91,11 +92,11 @@ def keep_their_shape(run: Run, snapshot: Snapshot) -> np.ndarray:
     The others bend, or have come off such as do.
     """
     tables = run.scenario.get("body", {})
-    elastic = {name for name, table in tables.items() if table.get("kinematics") == "elastic"}
+    deform = {name for name, table in tables.items() if table.get("kinematics") in DEFORM}
     table = snapshot.grains
     if not table:
         return np.zeros(0, bool)
-    return (table["parent"] < 0) & ~np.isin(table["body"], sorted(elastic))
+    return (table["parent"] < 0) & ~np.isin(table["body"], sorted(deform))
 
 
 def _near(position: np.ndarray, diameter: np.ndarray) -> np.ndarray:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-ELASTIC_KEYS = (
-    "clamped", "damping", "displacement", "elastic_law", "flaw_seed", "hourglass"
-)  # fmt: skip
+OF_POINTS = ("damping", "elastic_law", "flaw_seed", "hourglass")
+ELASTIC_KEYS = (*OF_POINTS, "clamped", "displacement")
 OF_WHOLE_BODIES = ("kinematics", "spin", "settle")
 
 
@@ -22,6 +21,8 @@ class Kinematics:
         """Why a body that moves in this way has no such key; None where it has."""
         if key in self.keys:
             return None
+        if self.is_whole and key in OF_POINTS:
+            return 'only kinematics = "elastic" and "breakable" have it'
         if self.is_whole and key in ELASTIC_KEYS:
             return 'only kinematics = "elastic" has it'
         if not self.is_whole and key in (*OF_WHOLE_BODIES, *ELASTIC_KEYS):
@@ -34,3 +35,5 @@ PARTICLES = Kinematics("particles")  # each particle by itself, as the scheme sa
 RIGID = Kinematics("rigid", True, OF_WHOLE_BODIES)
 SINGLE = Kinematics("single", True, OF_WHOLE_BODIES)  # rigid, one particle per body
 ELASTIC = Kinematics("elastic", True, (*OF_WHOLE_BODIES, *ELASTIC_KEYS))
+BREAKABLE = Kinematics("breakable", True, (*OF_WHOLE_BODIES, *OF_POINTS))  # rigid until struck
+DEFORM = ("elastic", "breakable")  # the kinematics of bodies that are not always rigid

@@ -33,6 +33,7 @@ class ElasticBody:
     clamped: np.ndarray  # (n,) bool: does not move
     surface: ElasticSurface  # which touches other bodies
     cells: Cells = field(default_factory=Cells)  # 2-D, of one that may break
+    rigid_first: bool = False  # one of the rigid bodies until it is struck
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ class Bodies:
     normal: np.ndarray  # (N, dim)
     depth: np.ndarray  # (N,)
     curvature: np.ndarray  # (N,)
-    elastic: list[ElasticBody] = field(default_factory=list)  # deformable ones, not in `groups`
+    elastic: list[ElasticBody] = field(default_factory=list)  # in `groups` only if `rigid_first`
 
     def __len__(self) -> int:
         return sum(len(group) for group in self.groups)

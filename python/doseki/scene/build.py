@@ -163,7 +163,7 @@ def _joined(
         body, group = bodies[name], of_name[name]
         placed, owner = particles_of(group, body.spacing, scenario.dim)
         points = body.particles_of_bodies(group, names, placed, owner)
-        if group.elastic:
+        if group.deforms:
             made = body.elastic_bodies(group, placed, owner, sum(map(len, sets)))
             if carried is not None and name in scenario.carried:
                 points, made = carried.elastic(name, points, made)

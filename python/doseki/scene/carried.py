@@ -112,6 +112,12 @@ class CarriedOver:
 
     def group(self, group: Group) -> Group:
         """The rigid bodies of a table that have not left, where they are."""
+        if group.breakable:
+            raise self._error(
+                group.name,
+                'a snapshot does not hold the cracks of bodies with kinematics = "breakable"; '
+                "resume the earlier run, or leave it out of carry",
+            )
         grains = self._grains_of(group.name)
         reach = 2 * np.array([shape.reach for shape in group.shapes])
         diameter = grains["diameter"]

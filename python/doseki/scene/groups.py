@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scenario.kinematics import ELASTIC, FIXED, SINGLE, Kinematics
+from ..scenario.kinematics import BREAKABLE, ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
 from .periodic import nearest_image, periods, wrapped
 from .shapes import MeshShape, Particles, Shape
@@ -43,6 +43,16 @@ class Group:
     def elastic(self) -> bool:
         """Whether they are deformable."""
         return self.kinematics is ELASTIC
+
+    @property
+    def breakable(self) -> bool:
+        """Whether they are rigid until they are struck."""
+        return self.kinematics is BREAKABLE
+
+    @property
+    def deforms(self) -> bool:
+        """Whether they are deformable, at once or when they are struck."""
+        return self.elastic or self.breakable
 
     @property
     def measures(self) -> tuple[np.ndarray, np.ndarray]:
@@ -100,7 +110,7 @@ def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
         raise TypeError("particles of a mesh are no parts of a body")
     if group.single:
         return shape.single()
-    return shape.elastic_particles(spacing) if group.elastic else shape.particles(spacing)
+    return shape.elastic_particles(spacing) if group.deforms else shape.particles(spacing)
 
 
 def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:

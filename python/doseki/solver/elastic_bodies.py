@@ -45,6 +45,7 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
             "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
             "cell_count": body.cells.count,
             "cell_node": body.cells.node,
+            "rigid_first": body.rigid_first,
         }
     )
 

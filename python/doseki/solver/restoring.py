@@ -24,14 +24,20 @@ ALIKE = (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
         "deformable_flow_force", "deformable_acceleration", "elastic_gone", "deformable_depth",
+        "deformable_rigid_point", "elastic_held_shape",
     ),
     (
         "surface_point", "surface_offset", "surface_crease", "surface_radius", "surface_key",
         "surface_curve",
     ),
     (
-        "elastic_apart", "deformable_material", "deformable_group", "deformable_origin_number",
-        "deformable_origin_parent", "deformable_origin_born",
+        "elastic_apart", "elastic_rigid", "elastic_held_energy", "deformable_material",
+        "deformable_group", "deformable_origin_number", "deformable_origin_parent",
+        "deformable_origin_born",
+    ),
+    (
+        "breakable_rigid", "breakable_deformable", "breakable_centre", "breakable_orientation",
+        "breakable_deforms_for", "breakable_loudness", "breakable_strength",
     ),
 )  # fmt: skip
 # An entry of a list: a particle, and in the upper bits through which image of it.
@@ -46,6 +52,7 @@ NOT_NEGATIVE = {
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
     "surface_radius", "rigid_origin_born", "deformable_origin_born", "body_numbers",
+    "breakable_deforms_for",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
@@ -198,7 +205,11 @@ def _check_origins(state: Arrays) -> None:
     """Bodies that the record follows have the numbers from 0 on, each once."""
     count = int(state["body_numbers"][0])
     kinds = ("rigid_origin", "deformable_origin")
-    numbers = np.concatenate([state[f"{kind}_number"] for kind in kinds])
+    rigid, deformable = (state[f"{kind}_number"] for kind in kinds)
+    own, first = state["breakable_deformable"], state["breakable_rigid"]
+    if not np.array_equal(deformable[own], rigid[first]):
+        raise ValueError("the checkpoint's breakable_rigid are not those of its bodies")
+    numbers = np.concatenate([rigid, np.delete(deformable, own)])
     if not np.array_equal(np.sort(numbers[numbers >= 0]), np.arange(count)):
         raise ValueError("the checkpoint's body_numbers are not those of its bodies")
     for kind in kinds:
@@ -232,6 +243,8 @@ def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
         "body_material": materials,
         "body_named": bodies,
         "elastic_body": len(state["elastic_apart"]),
+        "breakable_rigid": len(state["bodies"]),
+        "breakable_deformable": len(state["elastic_apart"]),
         "elastic_slot": len(state["elastic_position"]),
         "surface_point": len(state["elastic_position"]),
         "deformable_material": materials,

@@ -12,9 +12,12 @@ from ..scenario.model import Scenario
 from ..scenario.tables.terrain.terrain import TERRAIN
 from ..scene.bodies import Bodies
 from ..scene.groups import UPRIGHT, Group
+from ..scene.shapes import MeshShape, Shape
 from .elastic_bodies import add_elastic_bodies
 from .placed import origin_of
 from .protocol import CoreSimulation, Simulation
+
+AS_ALIKE = 1e-12  # moments of inertia that differ by less are those of a ball
 
 
 def rigid_tables(
@@ -30,7 +33,7 @@ def rigid_tables(
     velocity, spin = bodies.velocity, bodies.spin
     if scenario.bed is not None:
         for key, values in _ground_columns(scenario, names, len(shapes)).items():
-            columns[key].append(values)
+            columns.setdefault(key, []).append(values)
         shapes.append({"radius": 1.0, "ground": True})
         velocity, spin = np.pad(velocity, ((0, 1), (0, 0))), np.pad(spin, ((0, 1), (0, 0)))
     table = {key: np.ascontiguousarray(np.concatenate(v)) for key, v in columns.items()}
@@ -55,9 +58,11 @@ def _ground_columns(scenario: Scenario, names: list[str], shape: int) -> dict[st
 def _columns(
     scenario: Scenario, group: Group, names: list[str], first_shape: int
 ) -> dict[str, np.ndarray]:
+    table = scenario.body.get(group.name)
+    spacing = (table.given("dp") if table is not None else None) or scenario.dp
     n, rho0 = len(group), scenario.materials[group.material].rho0
     mass = rho0 * group.measures[0]
-    gyration = np.array([shape.inertia for shape in group.shapes])[group.shape]
+    gyration = np.array([_gyration(group, shape, spacing) for shape in group.shapes])[group.shape]
     return {
         "shape": (first_shape + group.shape).astype(np.int32),
         "centre": group.centre,
@@ -70,11 +75,29 @@ def _columns(
     }
 
 
+def _gyration(group: Group, shape: Shape, spacing: float) -> np.ndarray:
+    """Inertia tensor (3, 3) over the mass, m2, in the frame of the shape.
+
+    That of the points where a body may become deformable, so that nothing jumps when it does.
+    """
+    if not group.breakable or isinstance(shape, MeshShape):
+        return shape.inertia
+    points = shape.elastic_particles(spacing).position
+    arm = np.pad(points - points.mean(axis=0), ((0, 0), (0, 3 - points.shape[1])))
+    square = (arm**2).sum(axis=1).mean()
+    found = square * np.eye(3) - arm.T @ arm / len(arm)
+    if points.shape[1] == 2:
+        return np.diag([0, 0, found[2, 2]])
+    mean = np.trace(found) / 3 * np.eye(3)  # of balls and cubes, to rounding
+    alike = np.abs(found - mean).max() < AS_ALIKE * square
+    return np.asarray(mean if alike else found)
+
+
 def add_bodies(
     simulation: CoreSimulation, scenario: Scenario, bodies: Bodies, names: list[str]
 ) -> None:
     """Hand bodies over to the core, after the particles; nothing where nothing moves."""
-    if len(bodies):
+    if len(bodies) or (bodies.elastic and scenario.bed is not None):
         shapes, table = rigid_tables(scenario, bodies, names)
         simulation.add_shapes(shapes)
         simulation.add_rigid_bodies(table)

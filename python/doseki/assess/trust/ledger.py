@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...record.reader import Run
+from ...scenario.kinematics import DEFORM
 from .snapshots import gravity_of, is_resolved
 from .verdicts import Check, judged, unknown
 
@@ -96,7 +97,7 @@ def ledger_of(run: Run) -> Ledger | None:
     if not is_resolved(scenario) or "gravity_work" not in history or len(history["time"]) < 2:
         return None
     bodies = [body for body in scenario.get("body", {}).values() if body.get("enabled", True)]
-    deforms = any(body.get("kinematics") == "elastic" for body in bodies)
+    deforms = any(body.get("kinematics") in DEFORM for body in bodies)
     if deforms and OF_BODIES not in history:
         return None
     why = "the work of the attraction is not recorded" if scenario.get("attraction", 0.0) else ""

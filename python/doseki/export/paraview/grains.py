@@ -48,10 +48,10 @@ def grain_shapes(scenario: Scenario, snapshot: Snapshot) -> tuple[GrainShapes, l
         if not len(rows) or not body.is_of_bodies:
             continue
         group = body.group()
-        if len(group) != len(rows) and not group.elastic:
+        if len(group) != len(rows) and not group.deforms:
             continue
         unknown.discard(name)
-        if group.elastic:
+        if group.deforms:
             bends.update(rows.tolist())
             continue
         for row, which in zip(rows, group.shape, strict=True):

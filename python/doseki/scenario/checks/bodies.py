@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kinematics import ELASTIC, SINGLE
+from ..kinematics import DEFORM, SINGLE
 from ..model import Scenario
 from ..schemes import RESOLVED
 from ..tables.body import BodyTable
@@ -132,7 +132,7 @@ def _check_sound(scenario: Scenario, name: str) -> None:
     why = None
     if scenario.scheme != RESOLVED:
         why = f"the scheme {scenario.scheme} computes with it"
-    elif ELASTIC in ways and not stiff:
+    elif any(way.name in DEFORM for way in ways) and not stiff:
         why = "the stiffness of elastic bodies follows from it, or from young_modulus"
     elif scenario.contact.stiffness == "material" and not stiff:
         why = "the stiffness of contacts follows from it, or from young_modulus"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..array import Array
-from ..kinematics import ELASTIC, FIXED, PARTICLES, RIGID, SINGLE, Kinematics
+from ..kinematics import BREAKABLE, ELASTIC, FIXED, PARTICLES, RIGID, SINGLE, Kinematics
 from ..materials import ELASTIC_DEFAULTS, HYPERELASTIC_LAWS
 from ..schemes import RESOLVED
 from ..table import Only, Part
@@ -93,10 +93,10 @@ class ShapedBody(WallKeys, BodyTable):
     normal: Annotated[Vector | None, OF_WALLS] = Field(
         None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
     )
-    kinematics: Literal["rigid", "elastic", "single"] | None = Field(
+    kinematics: Literal["rigid", "elastic", "breakable", "single"] | None = Field(
         None,
-        description="free solids of the resolved scheme: rigid (the default), elastic, or single: "
-        "one particle per grain",
+        description="free solids of the resolved scheme: rigid (the default), elastic, breakable: "
+        "rigid until something strikes it so that it may break, or single: one particle per grain",
     )
     clamped: ScalarField | None = Field(
         None, description="elastic: points do not move where this expression of x, y, z is above 0"
@@ -143,7 +143,8 @@ class ShapedBody(WallKeys, BodyTable):
         """Solids of the resolved scheme move as bodies."""
         if self.fixed or scheme != RESOLVED or law != "solid":
             return super().kinematics_in(scheme, law)
-        return {"elastic": ELASTIC, "single": SINGLE}.get(self.kinematics or "", RIGID)
+        ways = {way.name: way for way in (ELASTIC, BREAKABLE, SINGLE)}
+        return ways.get(self.kinematics or "", RIGID)
 
 
 class TurnedBody(ShapedBody):

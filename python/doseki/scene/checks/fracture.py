@@ -24,7 +24,7 @@ class UnbreakableBody(Finding):
     def __str__(self) -> str:
         return (
             f"{self.place}: the material {self.material} breaks, but only bodies with "
-            'kinematics = "elastic" do: this one will not'
+            'kinematics = "elastic" or "breakable" do: this one will not'
         )
 
 
@@ -58,9 +58,15 @@ def fracture_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) -> I
                 f".flaw_seed: the material {name} has no random flaws; only those with fracture = "
                 '"grady_kipp" do'
             )
+        if group.breakable and material.fracture == NO_FRACTURE:
+            raise body.error(
+                f'.kinematics = "breakable": the material {name} does not break; give it a '
+                'fracture, or choose "rigid" or "elastic"',
+                "kinematics",
+            )
         if material.fracture == NO_FRACTURE:
             continue
-        if group.elastic:
+        if group.deforms:
             yield from _breakable(body, group, material)
         elif not group.fixed:
             yield UnbreakableBody(group.name, name)

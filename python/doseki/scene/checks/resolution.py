@@ -53,7 +53,7 @@ def resolution_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) ->
             continue
         body = bodies[group.name]
         across = min(shape.width for shape in group.shapes) / body.spacing
-        if group.elastic:
+        if group.deforms:
             yield from _elastic_warnings(body, across)
         elif across < MIN_ACROSS - 1e-6:
             yield CoarseBody(group.name, across, body.spacing)

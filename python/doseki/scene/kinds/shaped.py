@@ -141,6 +141,7 @@ class Shaped(Body[S], Generic[S]):
                     clamped[own],
                     surface,
                     self._cells(placed.position[own], surface, spacing),
+                    group.breakable,
                 )
             )
         return made

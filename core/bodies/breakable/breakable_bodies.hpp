@@ -1,0 +1,210 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+
+#include "base/array.hpp"
+#include "base/error.hpp"
+#include "bodies/contacts.hpp"
+#include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/rigid_bodies.hpp"
+#include "physics/fracture/impact.hpp"
+
+namespace doseki {
+
+/// One of `breakable` kinematics: the rigid body that it is while nothing strikes it, and the
+/// deformable one that it is while something does. Only one of them takes part in steps.
+template <int D>
+struct BreakableBody {
+    std::size_t rigid, deformable;
+    Vec<double, D> centre;  // of the rigid one where the points of the other are at rest
+    Quaternion orientation;
+    double deforms_for = 0.0;                // since it was made deformable [s]
+    double loudness = 0.0;                   // energy of its vibration lately [J], 2-D: [J/m]
+    double strength = 0.0;                   // tension at which the first crack begins [Pa]
+    double bears = 0.0;                      // the same with the cracks that it has
+    double impedance = 0.0, diameter = 0.0;  // see Touch
+
+    /// Time in which a wave goes through it once [s].
+    double crossing(const DeformableBodies<D>& bodies) const {
+        return diameter / bodies.solids().material(deformable).wave_speed();
+    }
+    /// Time for which it remembers how it vibrated [s].
+    double lately(const DeformableBodies<D>& bodies) const { return 5.0 * crossing(bodies); }
+};
+
+/// All of them.
+template <int D>
+class BreakableBodies {
+public:
+    bool any() const { return !bodies_.empty(); }
+    std::size_t size() const { return bodies_.size(); }
+    BreakableBody<D>& operator[](std::size_t n) { return bodies_[n]; }
+    const BreakableBody<D>& operator[](std::size_t n) const { return bodies_[n]; }
+
+    void add(std::size_t rigid, std::size_t deformable, const RigidBodyState<D>& state) {
+        bodies_.push_back({rigid, deformable, state.centre, state.orientation});
+    }
+    /// Finds out what a body bears with the cracks that it has.
+    void weigh_cracks(std::size_t n, const DeformableBodies<D>& deformable) {
+        constexpr double least = 0.1;  // of its strength: a notch concentrates stress
+        const double intact = deformable.solids().least_intactness(bodies_[n].deformable);
+        bodies_[n].bears = std::max(least, intact) * bodies_[n].strength;
+    }
+    /// Call once all bodies are in and started, before any has a crack.
+    void measure_strengths(const DeformableBodies<D>& deformable) {
+        for (BreakableBody<D>& body : bodies_)
+            body.strength = deformable.solids().strength(body.deformable);
+    }
+    /// Call once all bodies are in, started or restored.
+    void start(const RigidBodies<D>& rigid, const DeformableBodies<D>& deformable);
+
+    /// Time between two looks at whether one that is deformable has come to rest [s], infinite
+    /// where none is.
+    double longest_look(const DeformableBodies<D>& deformable) const {
+        double longest = std::numeric_limits<double>::infinity();
+        for (const BreakableBody<D>& body : bodies_)
+            if (!deformable.solids().is_rigid(body.deformable))
+                longest = std::min(longest, body.lately(deformable));
+        return longest;
+    }
+    /// The one that a rigid body is of; none.
+    const BreakableBody<D>* of_rigid(std::size_t k) const {
+        const std::int32_t n = k < of_rigid_.size() ? of_rigid_[k] : -1;
+        return n < 0 ? nullptr : &bodies_[static_cast<std::size_t>(n)];
+    }
+    /// The rigid body that a deformable one was at first; -1: none.
+    std::int32_t rigid_of(std::size_t deformable) const {
+        for (const BreakableBody<D>& body : bodies_)
+            if (body.deformable == deformable) return static_cast<std::int32_t>(body.rigid);
+        return -1;
+    }
+    /// The points of deformable bodies, by the numbers that they have among those of rigid ones.
+    const Array<std::int32_t>& deformable_points() const { return deformable_point_; }
+
+    /// Those that are rigid and in which the contacts of a kind, as they were last applied, may
+    /// cause more tension than they bear.
+    Array<std::size_t> struck(const Contacts<D>& contacts, PairKind kind,
+                              const DeformableBodies<D>& deformable,
+                              std::size_t rigid_bodies) const;
+
+    void serialise(Archive& archive);
+    /// Throws std::invalid_argument unless restored ones are those of these bodies.
+    void expect_bodies_of(std::size_t rigid_bodies, const DeformableBodies<D>& deformable,
+                          std::size_t rigid_points) const {
+        for (const BreakableBody<D>& body : bodies_)
+            expect_fit(body.rigid < rigid_bodies && body.deformable < deformable.bodies(),
+                       "breakable_rigid");
+        const Array<std::int32_t>& points = deformable.rigid_points();
+        for (const std::int32_t point : points)
+            expect_fit(point >= -1 && point < static_cast<std::int32_t>(rigid_points),
+                       "deformable_rigid_point");
+        for (const BreakableBody<D>& body : bodies_)
+            for (const std::uint32_t p : deformable.solids().points_of(body.deformable))
+                expect_fit(points[p] >= 0, "deformable_rigid_point");
+    }
+
+private:
+    Array<BreakableBody<D>> bodies_;
+    Array<std::int32_t> of_rigid_, deformable_point_;
+};
+
+template <int D>
+void BreakableBodies<D>::start(const RigidBodies<D>& rigid, const DeformableBodies<D>& deformable) {
+    of_rigid_.assign(rigid.size(), -1);
+    for (std::size_t n = 0; n < size(); ++n) {
+        BreakableBody<D>& body = bodies_[n];
+        of_rigid_[body.rigid] = static_cast<std::int32_t>(n);
+        const auto& solids = deformable.solids();
+        const DeformableBody& material = solids.material(body.deformable);
+        body.impedance = material.rho0 * material.wave_speed();
+        const double volume = rigid.body(body.rigid).mass / material.rho0;
+        body.diameter = D == 2 ? std::sqrt(4.0 * volume / std::numbers::pi)
+                               : std::cbrt(6.0 * volume / std::numbers::pi);
+        weigh_cracks(n, deformable);
+    }
+    const Array<std::int32_t>& points = deformable.rigid_points();
+    deformable_point_.clear();
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        if (points[p] < 0) continue;
+        const auto own = static_cast<std::size_t>(points[p]);
+        if (own >= deformable_point_.size()) deformable_point_.resize(own + 1, -1);
+        deformable_point_[own] = static_cast<std::int32_t>(p);
+    }
+}
+
+template <int D>
+Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairKind kind,
+                                              const DeformableBodies<D>& deformable,
+                                              std::size_t rigid_bodies) const {
+    auto waits = [&](std::int32_t k) -> const BreakableBody<D>* {
+        const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
+        return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
+    };
+    auto impedance = [&](std::int32_t k) {
+        const auto other = static_cast<std::size_t>(k);
+        if (other >= rigid_bodies) {
+            const DeformableBody& body = deformable.solids().material(other - rigid_bodies);
+            return body.rho0 * body.wave_speed();
+        }
+        const BreakableBody<D>* body = of_rigid(other);
+        return body ? body->impedance : std::numeric_limits<double>::infinity();
+    };
+    Array<double> force(size(), 0.0), tension(size(), 0.0);
+    auto feel = [&](std::int32_t k, std::int32_t other, double push, double approach) {
+        const BreakableBody<D>* body = waits(k);
+        if (!body) return;
+        const auto n = static_cast<std::size_t>(body - bodies_.data());
+        force[n] += 0.5 * push;
+        tension[n] =
+            std::max(tension[n], expected_tension<D>({approach, body->impedance, impedance(other),
+                                                      force[n], body->diameter}));
+    };
+    contacts.for_each_touch(kind,
+                            [&](std::int32_t a, std::int32_t b, double push, double approach) {
+                                feel(a, b, push, approach), feel(b, a, push, approach);
+                            });
+    Array<std::size_t> found;
+    for (std::size_t n = 0; n < size(); ++n)
+        if (tension[n] >= bodies_[n].bears) found.push_back(n);
+    return found;
+}
+
+template <int D>
+void BreakableBodies<D>::serialise(Archive& archive) {
+    Array<std::int32_t> rigid, deformable;
+    Array<Vec<double, D>> centre;
+    Array<Vec<double, 4>> orientation;
+    Array<double> deforms_for, loudness, strength;
+    for (const BreakableBody<D>& body : bodies_) {
+        const auto& [w, x, y, z] = body.orientation;
+        rigid.push_back(static_cast<std::int32_t>(body.rigid)),
+            deformable.push_back(static_cast<std::int32_t>(body.deformable));
+        centre.push_back(body.centre), orientation.push_back(Vec<double, 4>{{w, x, y, z}});
+        deforms_for.push_back(body.deforms_for), loudness.push_back(body.loudness);
+        strength.push_back(body.strength);
+    }
+    archive("breakable_rigid", rigid), archive("breakable_deformable", deformable);
+    archive("breakable_centre", centre), archive("breakable_orientation", orientation);
+    archive("breakable_deforms_for", deforms_for), archive("breakable_loudness", loudness);
+    archive("breakable_strength", strength);
+    if (!archive.loads()) return;
+    const std::size_t n = rigid.size();
+    expect_fit(deformable.size() == n && centre.size() == n && orientation.size() == n &&
+                   deforms_for.size() == n && loudness.size() == n && strength.size() == n,
+               "breakable_rigid");
+    bodies_.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+        const Vec<double, 4>& q = orientation[k];
+        expect_fit(std::abs(dot(q, q) - 1.0) < 1e-6, "breakable_orientation");
+        expect_fit(rigid[k] >= 0 && deformable[k] >= 0, "breakable_rigid");
+        bodies_.push_back({static_cast<std::size_t>(rigid[k]),
+                           static_cast<std::size_t>(deformable[k]),
+                           centre[k],
+                           {q[0], q[1], q[2], q[3]},
+                           deforms_for[k],
+                           loudness[k],
+                           strength[k]});
+    }
+}
+
+}  // namespace doseki

@@ -1,0 +1,282 @@
+#pragma once
+// Steps of bodies, of which some may be rigid until they are struck, which bodies.cpp compiles.
+
+#include <cmath>
+
+#include "bodies/bodies.hpp"
+#include "bodies/fragments/rigid_motion.hpp"
+
+namespace doseki {
+
+template <int D>
+double RigidBodies<D>::drift_one(std::size_t k, double dt) {
+    if (!is_free(k)) return 0.0;
+    RigidBodyState<D>& state = states_[k];
+    const Vec3 turn = dt * spin(k);
+    const double distance = dt * norm(state.velocity);
+    state.centre = state.centre + dt * state.velocity;
+    if (shape(k).is_ball()) {
+        ball_turn_[k] = ball_turn_[k] + turn;
+        return distance;
+    }
+    state.orientation = state.orientation.turned(turn);
+    return distance + shape(k).radius * norm(turn);
+}
+
+template <int D>
+void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
+                              const Vec<double, D>& velocity, const Quaternion& orientation,
+                              const Vec3& angular_momentum) {
+    RigidBodyState<D>& state = states_[k];
+    state.removed = 0.0, state.centre = centre, state.velocity = velocity;
+    state.orientation = orientation, state.angular_momentum = angular_momentum;
+    state.acceleration = {}, state.spin_rate = {}, state.flow_force = {}, state.flow_torque = {};
+    ball_turn_[k] = {};
+}
+
+template <int D>
+BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
+    if (!any_moves() || dt <= 0.0) return {};
+    Course course{rigid.sums(), {}};
+    rigid.begin_step(), deformable.begin_step();
+    deformable_step_ = deformable.timestep();
+    if (breakable_.any())
+        advance_apart(walls, t, dt, course);
+    else
+        advance_together(walls, t, dt, course);
+    deformable.end_step(dt, memory_);
+    rigid.end_step(dt, memory_);
+    if (breakable_.any()) make_rigid_again(dt, course);
+    return course.given + rigid.sums().since(course.before, gravity_);
+}
+
+/// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
+template <int D>
+void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double dt, Course& course) {
+    for (double left = dt; left > 0.0;) {
+        const double steps = steps_of(left, contact_step()), step = left / steps;
+        drift(0.5 * step);
+        follow_walls(walls, t + dt - left, step);
+        if (2.0 * moved_ >= margin_)
+            show_bodies(all_points_), find_contacts();
+        else if (contacts_.any(PairKind::all))
+            show(PairKind::all);
+        contacts_.apply(contact_, PairKind::all, step);
+        add_loads(PairKind::all, step);
+        rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
+        if (!deformable.empty()) course.given = course.given + deformable.push(step, gravity_);
+        rigid.push(gravity_, step);
+        part_if_cracked(t + dt - left, step, course);
+        drift(0.5 * step);
+        left = steps > 1.0 ? left - step : 0.0;
+    }
+}
+
+template <int D>
+void Bodies<D>::find_companions() {
+    if (!breakable_.any()) return;
+    Array<std::uint8_t> is_companion(rigid.size(), 0);
+    auto mark = [&](std::int32_t k) {
+        if (static_cast<std::size_t>(k) < rigid.size())
+            is_companion[static_cast<std::size_t>(k)] = 1;
+    };
+    contacts_.for_each_pair_of(PairKind::fast,
+                               [&](std::int32_t a, std::int32_t b) { mark(a), mark(b); });
+    companions_.clear(), others_.clear();
+    for (std::uint32_t k = 0; k < rigid.size(); ++k)
+        (is_companion[k] || rigid_origins_[k].parent >= 0 ? companions_ : others_).push_back(k);
+}
+
+/// Eq. (142): slow contacts push once, in the middle of a step, in each half of which what is
+/// deformable, dust and what they may touch have steps of their own (Tuckerman, Berne and Martyna,
+/// J. Chem. Phys. 97, 1992).
+template <int D>
+void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
+    for (double left = dt; left > 0.0;) {
+        const double longest = longest_step(PairKind::slow), shorter = shorter_step(),
+                     steps = steps_of(
+                         left, longest < 2.0 * shorter ? std::min(longest, shorter) : longest),
+                     step = left / steps, now = t + dt - left;
+        if (step < 2.0 * shorter)
+            step_at_once(walls, now, step, course);
+        else {
+            course.gravity_lag = 0.0;
+            drift_apart(walls, now, 0.5 * step, course);
+            course.gravity_lag = 0.5 * step;
+            push_slow(step, course);
+            course.gravity_lag = -0.5 * step;
+            drift_apart(walls, now + 0.5 * step, 0.5 * step, course);
+        }
+        left = steps > 1.0 ? left - step : 0.0;
+    }
+}
+
+/// Where two short steps are longer than a long one.
+template <int D>
+void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course) {
+    drift(0.5 * dt);
+    follow_walls(walls, t, dt);
+    course.gravity_lag = 0.0;  // what becomes deformable here is pushed by gravity below
+    push_slow(dt, course);
+    course.gravity_lag = -dt;
+    push_fast(t, dt, course);
+    drift(0.5 * dt);
+}
+
+template <int D>
+void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
+    Array<std::uint32_t> together = companions_;  // and dust that is born on the way
+    double ahead = rigid.drift(dt, others_);
+    moved_ += ahead;
+    auto drift_together = [&](double step) {
+        const double way = std::max(deformable.drift(step), rigid.drift(step, together));
+        moved_ += std::max(0.0, way - ahead), ahead = std::max(0.0, ahead - way);
+    };
+    for (double left = dt; left > 0.0;) {
+        const double steps = steps_of(left, shorter_step()), step = left / steps,
+                     now = t + dt - left;
+        drift_together(0.5 * step);
+        follow_walls(walls, now, step);
+        const std::size_t before = rigid.size();
+        if (!together.empty() || deformable.any_deforms()) push_fast(now, step, course);
+        course.gravity_lag += step;
+        for (std::size_t k = before; k < rigid.size(); ++k)
+            together.push_back(static_cast<std::uint32_t>(k));
+        drift_together(0.5 * step);
+        left = steps > 1.0 ? left - step : 0.0;
+    }
+}
+
+template <int D>
+void Bodies<D>::push_slow(double dt, Course& course) {
+    touch(PairKind::slow, dt, course);
+    rigid.push(gravity_, dt);
+}
+
+template <int D>
+void Bodies<D>::push_fast(double t, double dt, Course& course) {
+    touch(PairKind::fast, dt, course);
+    rigid.push({}, dt);
+    if (!deformable.any_deforms()) return;
+    deformable.collect(contact_);
+    course.given = course.given + deformable.push(dt, gravity_);
+    part_if_cracked(t, dt, course);
+}
+
+template <int D>
+void Bodies<D>::touch(PairKind kind, double dt, Course& course) {
+    if (2.0 * moved_ >= margin_) show_bodies(all_points_), find_contacts();
+    show(kind);
+    contacts_.apply(contact_, kind, dt);
+    const Array<std::size_t> struck = breakable_.struck(contacts_, kind, deformable, rigid.size());
+    if (!struck.empty()) {
+        contacts_.revert(kind);
+        make_deformable(struck, course);
+        show(kind);
+        contacts_.apply(contact_, kind, dt);
+    }
+    add_loads(kind, dt);
+    rigid.collect(contact_, contacts_.points(kind));
+}
+
+template <int D>
+void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course) {
+    const Fragments<D> before = deformable.as_they_are();
+    for (const std::size_t n : struck) {
+        RigidBodyState<D>& state = rigid.state(breakable_[n].rigid);
+        state.velocity = state.velocity + course.gravity_lag * gravity_;
+    }
+    const BodySums<D> had = rigid.sums();
+    const double kinetic = deformable.kinetic_energy();
+    for (const std::size_t n : struck) {
+        BreakableBody<D>& body = breakable_[n];
+        RigidBodyState<D>& state = rigid.state(body.rigid);
+        const Quaternion now = rigid.orientation(body.rigid);
+        const Mat<double, 3> turn = now.matrix() * transposed(body.orientation.matrix());
+        deformable.make_deformable(
+            body.deformable,
+            {body.centre, state.centre, state.velocity, state.angular_momentum, turn},
+            state.acceleration);
+        rigid.take_out(body.rigid);
+        body.deforms_for = body.loudness = 0.0;
+    }
+    const BodySums<D> gone = rigid.sums().less(had);
+    course.before = course.before + gone;
+    course.given.parting_work -= gone.kinetic_energy + (deformable.kinetic_energy() - kinetic);
+    change_breakable(struck, before);
+}
+
+/// A body that is whole and has come to rest within itself is rigid again, with the shape and the
+/// momenta that it has; what it still has of vibration counts as damped.
+template <int D>
+void Bodies<D>::make_rigid_again(double dt, Course& course) {
+    Array<std::size_t> still;
+    for (std::size_t n = 0; n < breakable_.size(); ++n) {
+        BreakableBody<D>& body = breakable_[n];
+        if (deformable.solids().is_rigid(body.deformable)) continue;
+        if (becomes_still(body, dt)) still.push_back(n);
+    }
+    if (still.empty()) return;
+    const Fragments<D> before = deformable.as_they_are();
+    const BodySums<D> had = rigid.sums();
+    for (const std::size_t n : still) {
+        const BreakableBody<D>& body = breakable_[n];
+        const auto& solids = deformable.solids();
+        const RigidMotion<D> motion = rigid_motion<D>(solids, solids.points_of(body.deformable));
+        const Mat<double, 3> turn = motion.orientation.matrix();
+        const Vec<double, D> centre =
+            motion.centre + rotated(turn, body.centre - motion.rest_centre);
+        const Vec3 own =
+            motion.angular_momentum +
+            motion.mass * cross(in_space(motion.centre - centre), in_space(motion.velocity));
+        rigid.put_back(body.rigid, centre, motion.velocity,
+                       motion.orientation.after(body.orientation), own);
+        deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
+        breakable_.weigh_cracks(n, deformable);
+    }
+    course.before = course.before + rigid.sums().less(had);
+    change_breakable(still, before);
+}
+
+/// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small
+/// part of the energy with which a crack begins, Eq. (141).
+template <int D>
+bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
+    constexpr double crossings = 20.0;  // of waves, before anything is judged
+    constexpr double share = 0.2;       // of the tension that it bears
+    const auto& solids = deformable.solids();
+    const DeformableBody& material = solids.material(body.deformable);
+    const Array<std::uint32_t> points = solids.points_of(body.deformable);
+    const RigidMotion<D> motion = rigid_motion<D>(solids, points);
+    double vibration = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
+                       0.5 * dot(motion.spin, motion.angular_momentum);
+    for (const std::uint32_t p : points)
+        vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
+    body.deforms_for += dt;
+    body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
+    const double stress = share * body.strength, volume = motion.mass / material.rho0,
+                 enough = volume * stress * stress / (2.0 * material.young_modulus());
+    constexpr double rounding = 1e-9;
+    const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
+    return whole && body.deforms_for > crossings * body.crossing(deformable) &&
+           body.loudness <= enough;
+}
+
+/// Contacts of bodies that have changed begin with the overlaps that they have at rest, Eq. (115).
+template <int D>
+void Bodies<D>::change_breakable(const Array<std::size_t>& which, const Fragments<D>& before) {
+    prepare_contacts();
+    renumber_contacts(before);
+    std::set<std::int32_t> changed;
+    for (const std::size_t n : which) {
+        changed.insert(static_cast<std::int32_t>(breakable_[n].rigid));
+        changed.insert(static_cast<std::int32_t>(rigid.size() + breakable_[n].deformable));
+    }
+    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+        const auto [a, b] = contact_.bodies(pair);
+        return changed.contains(a) || changed.contains(b);
+    });
+    rebinds_ = true;
+}
+
+}  // namespace doseki

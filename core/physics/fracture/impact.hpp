@@ -1,0 +1,39 @@
+#pragma once
+// What a touch does to a body that might break.
+
+#include <algorithm>
+#include <numbers>
+
+namespace doseki {
+
+/// One body that others touch: how fast the fastest of those that have just met it comes nearer
+/// [m/s], impedances rho c_P of the body and of that one [Pa s/m], infinite where it does not
+/// yield, half the sum of the forces on the body [N], 2-D: [N/m], and the diameter of a ball as
+/// large [m].
+struct Touch {
+    double speed = 0.0, impedance = 0.0, other_impedance = 0.0, force = 0.0, diameter = 0.0;
+};
+
+/// Stress of the plane wave that two bodies send into each other when their faces meet, Eq. (139a)
+/// (Kolsky, Stress Waves in Solids, 1953).
+inline double impact_stress(double speed, double impedance, double other_impedance) {
+    return speed * impedance / (1.0 + impedance / other_impedance);
+}
+
+/// Largest tension in a disc or ball between two forces, Eq. (139b): of a disc after Timoshenko and
+/// Goodier (Theory of Elasticity, 1970), of a ball after Hiramatsu and Oka (Int. J. Rock Mech. Min.
+/// Sci. 3, 1966).
+template <int D>
+double pressed_tension(double force, double diameter) {
+    if constexpr (D == 2) return 2.0 * force / (std::numbers::pi * diameter);
+    return 2.8 * force / (std::numbers::pi * diameter * diameter);
+}
+
+/// Eq. (139): the tension that is to be expected at most.
+template <int D>
+double expected_tension(const Touch& touch) {
+    return std::max(impact_stress(touch.speed, touch.impedance, touch.other_impedance),
+                    pressed_tension<D>(touch.force, touch.diameter));
+}
+
+}  // namespace doseki
