@@ -26,7 +26,8 @@ SPARE = 0.08  # of all: summaries, cells, blocks of lists
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-def test_walls_and_flow_take_only_what_is_theirs(flows, dim):
+def test_walls_and_flow_take_only_what_is_theirs(core, flows, dim):
+    """On one thread: each has blocks of lists of its own."""
     run = advance(flows(FILM.format(dim=dim)), 20)
     saved, walls = run.checkpoint(), run.state()["motion"] != 0
     n, n_walls = len(walls), int(walls.sum())
