@@ -99,7 +99,7 @@ def deformable(simulation) -> int:
 
 
 def sums(simulation) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, momentum and angular momentum of the particles: rigid bodies have the inertia of theirs."""
+    """Mass, momentum and angular momentum: rigid bodies have the inertia of their particles."""
     state = simulation.state()
     m = state["mass"]
     pad = ((0, 0), (0, 3 - state["position"].shape[1]))
@@ -160,7 +160,7 @@ def test_mass_and_momenta_are_kept_through_the_change(build, dim, spin, share):
 
 
 def test_a_whole_body_is_rigid_again_when_it_is_still(build):
-    """It flies on with the momenta that it had; its vibration is damped, its elastic energy held."""
+    """It flies on with its momenta; its vibration is damped, its elastic energy held."""
     simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + "damping = 0.2\n")
     before = sums(simulation)
     run(simulation, 0.0006)
@@ -231,7 +231,7 @@ def test_deformable_and_rigid_bodies_beside_breakable_ones(build):
     tables += ball("c", 2, "elastic", [0, 0], [0, 0])
     tables += ball("d", 2, "breakable", [0.101, 0], [0, 0])
     simulation = build(tables)
-    mass, momentum, turning = sums(simulation)
+    mass, momentum, _ = sums(simulation)
     run(simulation, 0.0004)
     found = simulation.fragments()
     assert {0, 3} >= set(found["number"].tolist()) - {1, 2}
