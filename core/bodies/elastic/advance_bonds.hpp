@@ -41,17 +41,43 @@ Sym<double, D> material_stress(const BondPoint<D>& point) {
     return symmetric_part(inverse(point.F, 0.0) * point.P);
 }
 
+/// An open crack that ends at a point: its normal at rest, and the tension at which it goes on
+/// [Pa].
+template <int D>
+struct CrackTip {
+    Vec<double, D> normal{};
+    double strength = std::numeric_limits<double>::infinity();
+
+    /// The one that goes on at less.
+    void meet(const BondState<D>& bond) {
+        if (bond.strength < strength) normal = bond.normal, strength = bond.strength;
+    }
+    /// For a crack of this normal: cracks go on within 45 degrees of their plane.
+    double strength_for(const Vec<double, D>& other) const {
+        const double along = dot(normal, other);
+        return along * along >= 0.5 ? strength : std::numeric_limits<double>::infinity();
+    }
+};
+
+/// What is at the points of a bond: whether another bond has an open crack, and cracks that end.
+template <int D>
+struct Beside {
+    bool crack = false;
+    CrackTip<D> a{}, b{};
+};
+
 /// One bond, its points, and what happens to it in a step.
 template <int D>
 class BondStep {
 public:
     BondStep(const BondEnds& ends, const BondPoint<D>& a, const BondPoint<D>& b,
-             const DeformableBody& body, BondState<D>& state)
+             const DeformableBody& body, BondState<D>& state, const Beside<D>& beside = {})
         : ends_(ends),
           a_(a),
           b_(b),
           body_(body),
           state_(state),
+          beside_(beside),
           rest_(a.rest - b.rest),
           share_(ends.weight * a.volume * b.volume) {}
 
@@ -65,15 +91,14 @@ public:
     double first_half(std::size_t p) const {
         return half_work(pull_of(p == ends_.a ? a_ : b_, at_rest() - state_.change));
     }
-    /// `beside`: whether another bond of its points has a crack.
     /// Tension [Pa] along the bond at which a crack begins.
     double strength() const {
         const CrackSite place = site((1.0 / norm(rest_)) * rest_);
         return with_value(body_.law->fracture,
                           [&](const auto& law) { return law.strength(place); });
     }
-    BondChange take(double dt, bool beside) {
-        if (!state_.cracked() && !begins(beside)) return {};
+    BondChange take(double dt) {
+        if (!state_.cracked() && !begins()) return {};
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
         pull_ = pull();
@@ -138,24 +163,27 @@ private:
         const auto [low, high] = std::minmax(a_.number, b_.number);
         const std::uint64_t key = (std::uint64_t{low} << 32) | high;
         const double growth = DeformableBody::crack_speed * c / radius;
-        return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed};
+        const double tip = std::min(beside_.a.strength_for(normal), beside_.b.strength_for(normal));
+        return {stiffness, body_.young_modulus(), volume, growth, key, body_.seed, tip};
     }
 
     /// A bond beside a crack is stretched by it though its points have little stress: there, what
     /// it bears itself counts too.
-    bool begins(bool beside) {
+    bool begins() {
         const auto [stress, normal] = largest_principal(
             symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))));
         const double along = dot(normal, rest_);
         if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
         const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;
-        const double own = beside ? dot(pull(), outward) / area(outward) : 0.0,
+        const double own = beside_.crack ? dot(pull(), outward) / area(outward) : 0.0,
                      tension = max(stress, own);
         const CrackSite place = site(outward);
         if (!with_value(body_.law->fracture,
                         [&](const auto& law) { return law.starts(tension, place); }))
             return false;
         state_.normal = outward;
+        state_.strength =
+            with_value(body_.law->fracture, [&](const auto& law) { return law.strength(place); });
         return true;
     }
 
@@ -216,6 +244,7 @@ private:
     BondPoint<D> a_, b_;
     const DeformableBody& body_;
     BondState<D>& state_;
+    const Beside<D> beside_;
     Vec<double, D> rest_;
     double share_;
     Vec<double, D> pull_{};  // before this step
@@ -225,15 +254,22 @@ template <int D>
 template <class Point, class Body>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
     Array<std::uint8_t> at_crack(first_bond_.size() - 1, 0);
-    for (const std::uint32_t n : stepped_)
-        if (state_[n].opening > 0.0) at_crack[pairs_[n].a] = at_crack[pairs_[n].b] = 1;
+    Array<CrackTip<D>> tip(first_bond_.size() - 1);
+    for (const std::uint32_t n : stepped_) {
+        if (!(state_[n].opening > 0.0)) continue;
+        for (const std::uint32_t p : {pairs_[n].a, pairs_[n].b}) {
+            at_crack[p] = 1;
+            if (state_[n].damage >= 1.0 && state_[n].whole != 0.0) tip[p].meet(state_[n]);
+        }
+    }
     change_ = reduce(stepped_.size(), BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
         const BondEnds& ends = pairs_[stepped_[k]];
         BondState<D>& state = state_[stepped_[k]];
         if (state.whole == 0.0) return BondChange{};
-        const bool beside = at_crack[ends.a] != 0 || at_crack[ends.b] != 0;
-        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
-            .take(dt, beside);
+        const Beside<D> beside{at_crack[ends.a] != 0 || at_crack[ends.b] != 0, tip[ends.a],
+                               tip[ends.b]};
+        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state, beside)
+            .take(dt);
     });
     work_ += change_.work, broken_ += change_.broken;
     std::fill(settled_.begin(), settled_.end(), 0);

@@ -57,6 +57,7 @@ struct BondState {
     Vec<double, D> change{};  // of the jump in the last step
     double whole = 1.0;       // 0: it is gone for good; -1: it goes in this step
     double opening = 0.0, max_opening = 0.0, damage = 0.0;  // see Crack
+    double strength = 0.0;                                  // tension at which its crack began [Pa]
 
     bool cracked() const { return dot(normal, normal) > 0.0; }
 };
@@ -256,7 +257,8 @@ private:
     double first_halves(std::size_t p, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {
         bool good = (s.whole == 0.0 || s.whole == 1.0) && s.damage >= 0.0 && s.damage <= 1.0 &&
-                    s.opening >= 0.0 && s.max_opening >= s.opening && std::isfinite(s.max_opening);
+                    s.opening >= 0.0 && s.max_opening >= s.opening &&
+                    std::isfinite(s.max_opening) && s.strength >= 0.0;
         for (int a = 0; a < D; ++a)
             good = good && std::isfinite(s.jump[a]) && std::isfinite(s.change[a]) &&
                    std::abs(s.normal[a]) <= 1.0 + 1e-9;

@@ -17,6 +17,7 @@ struct CrackSite {
     double growth;      // speed of cracks over the size of the place [1/s]
     std::uint64_t key;  // its random numbers
     std::uint64_t seed;
+    double tip;  // tension at which a crack that ends here goes on; infinite: none does [Pa]
 };
 
 }  // namespace doseki

@@ -35,18 +35,20 @@ struct GradyKipp {
         return max_flaws;
     }
 
-    /// Eq. (112) of the first flaw.
+    /// Eq. (112) of the first flaw, or that from which a crack came here.
     T strength(const CrackSite& site) const {
         const T first = -std::log(random_number(site.seed, site.key, 0));
-        return site.young * std::pow(first / (weibull_k * site.volume), T(1) / weibull_m);
+        const T own = site.young * std::pow(first / (weibull_k * site.volume), T(1) / weibull_m);
+        return std::min(own, T(site.tip));
     }
     bool starts(T tension, const CrackSite& site) const {
-        return active_flaws(tension / site.young, site) > 0;
+        return tension >= T(site.tip) || active_flaws(tension / site.young, site) > 0;
     }
     /// The strain is that of the material and the crack together.
     void grow(Crack& crack, T tension, T dt, const CrackSite& site) const {
         const T whole = tension + site.stiffness * crack.opening;
-        const int flaws = active_flaws(whole / site.young, site);
+        const int flaws =
+            active_flaws(whole / site.young, site) + static_cast<int>(whole >= T(site.tip));
         const T size = std::cbrt(crack.damage) + flaws * site.growth * dt;
         crack.damage = std::min(T(1), size * size * size);
     }

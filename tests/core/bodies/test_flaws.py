@@ -60,18 +60,17 @@ OTHERS = range(101, 131)  # flaws of large bars are not those of small ones
 def test_eight_times_the_volume_is_weaker_by_the_exponent(core, m, other):
     """30 bars of each size with as many points: within 10 % of 8^(-1/m), not of another m.
 
-    The mean is about that of Weibull's law for the weakest flaw; more, since a bar bears on when
-    its weakest bond is gone.
+    The mean is that of Weibull's law for the weakest flaw: its crack runs on, Eq. (143).
     """
     small, large = Bars(core, m), Bars(core, m, size=EIGHT_TIMES)
     assert large.volume == pytest.approx(8 * small.volume)
     bars = small.strengths()
     found, error = ratio(large.strengths(OTHERS), bars)
-    assert error < 0.025
+    assert error < 0.045  # strengths scatter as Weibull's do
     assert found == pytest.approx(8 ** (-1 / m), rel=0.10)
     assert found != pytest.approx(8 ** (-1 / other), rel=0.10)
     weakest = ROCK["young_modulus"] * STRAIN * math.gamma(1 + 1 / m)
-    assert 1.0 < bars.mean() / weakest < 1.8
+    assert 1.0 < bars.mean() / weakest < 1.2
 
 
 @pytest.mark.full
@@ -81,13 +80,10 @@ def test_half_the_speed_changes_the_mean_strength_little(core):
 
 
 @pytest.mark.full
-@pytest.mark.xfail(
-    reason="a bar of 8 times the points has 0.92 of the strength, not 0.78: it bears on when its "
-    "weakest bond is gone, until some that lie together are, and those are rarer"
-)
 def test_eight_times_the_points_are_weaker_by_the_exponent(core):
-    """Of one spacing, four times as long and twice as wide."""
+    """Of one spacing, four times as long and twice as wide; 0.92 where cracks do not run on."""
     small, large = Bars(core, 8.5), Bars(core, 8.5, count=(4, 2))
     assert large.volume == pytest.approx(8 * small.volume)
-    found, _ = ratio(large.strengths(OTHERS[:12], slowness=20.0), small.strengths())
+    found, error = ratio(large.strengths(OTHERS, slowness=20.0), small.strengths())
+    assert error < 0.04
     assert found == pytest.approx(8 ** (-1 / 8.5), rel=0.10)
