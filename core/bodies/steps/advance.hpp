@@ -97,7 +97,7 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
                      steps = steps_of(
                          left, longest < 2.0 * shorter ? std::min(longest, shorter) : longest),
                      step = left / steps, now = t + dt - left;
-        if (step < 2.0 * shorter)
+        if (step < 2.0 * std::min(shorter, deformable.unstrained_timestep()))
             step_at_once(walls, now, step, course);
         else {
             course.gravity_lag = 0.0;
@@ -111,7 +111,7 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
     }
 }
 
-/// Where two short steps are longer than a long one.
+/// Where two short steps are longer than a long one, also those of what may be struck in it.
 template <int D>
 void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     drift(0.5 * dt);

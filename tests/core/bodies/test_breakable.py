@@ -159,6 +159,24 @@ def test_mass_and_momenta_are_kept_through_the_change(build, dim, spin, share):
     assert changed
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+@pytest.mark.parametrize("share", [1.2, 4.0])
+def test_stiff_bodies_gain_nothing_from_the_step_in_which_they_meet(build, turn, share):
+    """What is made deformable in a long step of rigid bodies goes on in short ones of its own."""
+    stiff = TOP[TOP.index("[material") :].replace("chalk", "rock").replace("1e8", "1e10")
+    left, taken = {}, {}
+    for kinematics in ("breakable", "elastic"):
+        tables = pair(2, kinematics, 0.1 * share * MEETS, turn).replace("chalk", "rock") + stiff
+        simulation = build(tables)
+        start = energy(simulation)
+        run(simulation, 0.0045 / share)
+        left[kinematics] = energy(simulation) / start
+        taken[kinematics] = simulation.totals()["contact_work"] / start
+    assert -0.02 < taken["breakable"] < 0
+    assert taken["breakable"] == pytest.approx(taken["elastic"], abs=2e-3)
+    assert left["breakable"] == pytest.approx(left["elastic"], abs=2e-3)
+
+
 def test_a_whole_body_is_rigid_again_when_it_is_still(build):
     """It flies on with its momenta; its vibration is damped, its elastic energy held."""
     simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + "damping = 0.2\n")
