@@ -261,7 +261,7 @@ def test_deformable_and_rigid_bodies_beside_breakable_ones(build):
 
 REFUSED = {
     "of what does not break": ('fracture = "cohesive"', 'fracture = "none"', "does not break"),
-    "too few points": ("radius = 0.05", "radius = 0.03", "needs at least 8"),
+    "too few points": ("radius = 0.05", "radius = 0.03", 'or kinematics = "rigid"'),
     "clamped": ("spin = 0.0", "clamped = 1", 'only kinematics = "elastic" has it'),
     "negative strength": ("tensile_strength = 1e6", "tensile_strength = -1", "tensile_strength"),
     "another scheme": ('scheme = "resolved"', 'scheme = "ueta2022"', "only the scheme resolved"),
