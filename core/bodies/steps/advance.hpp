@@ -272,10 +272,12 @@ void Bodies<D>::change_breakable(const Array<std::size_t>& which, const Fragment
         changed.insert(static_cast<std::int32_t>(breakable_[n].rigid));
         changed.insert(static_cast<std::int32_t>(rigid.size() + breakable_[n].deformable));
     }
-    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+    auto is_new = [&](const ContactPair& pair) {
         const auto [a, b] = contact_.bodies(pair);
         return changed.contains(a) || changed.contains(b);
-    });
+    };
+    constexpr bool have_met = false;  // surfaces of deformable balls lie within rigid ones
+    contacts_.accept_overlaps(contact_, is_new, have_met);
     rebinds_ = true;
 }
 

@@ -177,6 +177,24 @@ def test_stiff_bodies_gain_nothing_from_the_step_in_which_they_meet(build, turn,
     assert left["breakable"] == pytest.approx(left["elastic"], abs=2e-3)
 
 
+def test_a_body_struck_in_space_breaks_though_its_own_surface_is_touched_late(build):
+    """Layers of balls lie within the ball that is rigid; stiff bodies are still long before."""
+    stiff = TOP[TOP.index("[material") :].replace("chalk", "rock").replace("1e8", "1e10")
+    found = {}
+    for kinematics in ("breakable", "elastic"):
+        tables = pair(3, kinematics, 0.4 * MEETS, 0.7).replace("chalk", "rock") + stiff
+        simulation = build(tables, 3)
+        start = energy(simulation)
+        run(simulation, 0.003)
+        totals = simulation.totals()
+        found[kinematics] = [
+            share / start
+            for share in (energy(simulation), totals["contact_work"], totals["fracture_work"])
+        ]
+    assert found["breakable"][2] > 0.003
+    np.testing.assert_allclose(found["breakable"], found["elastic"], rtol=0, atol=5e-3)
+
+
 def test_a_whole_body_is_rigid_again_when_it_is_still(build):
     """It flies on with its momenta; its vibration is damped, its elastic energy held."""
     simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + "damping = 0.2\n")
