@@ -239,7 +239,7 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
 }
 
 /// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small
-/// part of the energy with which a crack begins, Eq. (141).
+/// part of the energy with which a crack begins, Eq. (141), and bears but a small load.
 template <int D>
 bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     constexpr double crossings = 20.0;  // of waves, before anything is judged
@@ -250,15 +250,19 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     const RigidMotion<D> motion = rigid_motion<D>(solids, points);
     double vibration = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
                        0.5 * dot(motion.spin, motion.angular_momentum);
-    for (const std::uint32_t p : points)
+    double force = 0.0;
+    for (const std::uint32_t p : points) {
         vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
+        force += 0.5 * norm(solids.load[p]);
+    }
     body.deforms_for += dt;
     body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
     constexpr double rounding = 1e-9;
     const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
-    return whole && body.deforms_for > crossings * body.crossing(deformable) &&
+    const bool pressed = pressed_tension<D>(force, body.diameter) > share * body.bears;
+    return whole && !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
            body.loudness <= enough;
 }
 

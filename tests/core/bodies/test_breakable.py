@@ -195,6 +195,30 @@ def test_a_body_struck_in_space_breaks_though_its_own_surface_is_touched_late(bu
     np.testing.assert_allclose(found["breakable"], found["elastic"], rtol=0, atol=5e-3)
 
 
+def test_a_squeezed_stiff_body_stays_deformable_under_its_load(build):
+    """It hardly vibrates; rigid again, it would be without a load, over and over."""
+    stiff = TOP[TOP.index("[material") :].replace("chalk", "rock").replace("1e8", "1e10")
+    plate = """
+[body.{name}]
+shape = "box"
+material = "rock"
+fixed = true
+min = [-0.04, {low}, -0.04]
+max = [0.04, {high}, 0.04]
+motion = {{ velocity = [0, {v}, 0] }}
+"""
+    tables = ball("a", 3, "breakable", [0, 0], [0, 0]).replace("chalk", "rock") + stiff
+    tables += plate.format(name="below", low=-0.0805, high=-0.0502, v=0.15)
+    tables += plate.format(name="above", low=0.0502, high=0.0805, v=-0.15)
+    simulation = build(tables, 3)
+    stored = []
+    for time in (0.0036, 0.0048, 0.006):
+        run(simulation, time)
+        assert deformable(simulation) == 1
+        stored.append(simulation.totals()["elastic_energy"])
+    assert stored[2] > 2 * stored[1] > 4 * stored[0] > 0
+
+
 def test_a_whole_body_is_rigid_again_when_it_is_still(build):
     """It flies on with its momenta; its vibration is damped, its elastic energy held."""
     simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + "damping = 0.2\n")
