@@ -276,11 +276,12 @@ private:
         return std::min({contacts_.timestep(kind), 0.25 * margin_ / std::max(fastest, 1e-300),
                          std::sqrt(0.25 * margin_ / std::max(pull, 1e-300))});
     }
-    /// That of what is deformable and of dust.
+    /// That of what is deformable and of dust, and of what that may strike.
     double shorter_step() const {
         if (companions_.empty() && !deformable.any_deforms())
             return std::numeric_limits<double>::infinity();
-        return std::min(longest_step(PairKind::fast), deformable_step_);
+        return std::min(
+            {longest_step(PairKind::fast), deformable_step_, deformable.unstrained_timestep()});
     }
     /// Contacts that have pressed on fixed bodies for dt.
     void add_loads(PairKind kind, double dt) {

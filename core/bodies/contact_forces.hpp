@@ -258,14 +258,15 @@ Overlaps<D> Contacts<D>::overlaps_of_pair(const ContactBodies<D>& bodies, std::s
 
 template <int D>
 template <class NewPair>
-void Contacts<D>::accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new) {
+void Contacts<D>::accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new,
+                                  bool have_met) {
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const std::size_t rows = run_from(k);
         if (rows == 0 || !is_new(pairs_[k])) continue;
         const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
         for (std::size_t n = 0; n < std::min(overlaps.size(), rows); ++n) {
             springs_[k + n] = {}, springs_[k + n][rest_overlap] = overlaps[n].depth;
-            normals_[k + n] = overlaps[n].normal;
+            normals_[k + n] = have_met ? overlaps[n].normal : Vec<double, D>{};
         }
     }
 }

@@ -36,9 +36,10 @@ public:
     void renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape);
 
     /// Lets the overlaps that pairs have now press no more than before, Eq. (115), those for which
-    /// is_new(pair).
+    /// is_new(pair). Unless they have met, their contacts begin at the speed that they have next.
     template <class NewPair>
-    void accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new);
+    void accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new,
+                         bool have_met = true);
 
     /// From the next find() on, pairs of one kind can be looked at alone, and no longer all. Slow
     /// are those of bodies with numbers below this one.

@@ -164,6 +164,10 @@ public:
     double timestep() const {
         return empty() ? std::numeric_limits<double>::infinity() : solids_.timestep();
     }
+    /// The same of unstrained ones, also of those that are rigid [s].
+    double unstrained_timestep() const {
+        return empty() ? std::numeric_limits<double>::infinity() : solids_.unstrained_timestep();
+    }
     double kinetic_energy() const { return solids_.kinetic_energy(); }
     ElasticEnergy elastic_energy() const { return solids_.elastic_energy(); }
     double max_speed() const {

@@ -129,6 +129,8 @@ public:
     /// The longest that is stable, for bodies strained as they are [s]; infinite where all are
     /// rigid.
     double timestep() const;
+    /// The same of unstrained ones, also of those that are rigid.
+    double unstrained_timestep() const { return courant * stable_step_; }
     std::size_t size() const { return x.size(); }
     std::size_t bodies() const { return bodies_.size(); }
     double mass(std::size_t p) const { return body_of(p).rho0 * volume(p); }

@@ -97,7 +97,7 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
                      steps = steps_of(
                          left, longest < 2.0 * shorter ? std::min(longest, shorter) : longest),
                      step = left / steps, now = t + dt - left;
-        if (step < 2.0 * shorter)
+        if (step < 2.0 * std::min(shorter, deformable.unstrained_timestep()))
             step_at_once(walls, now, step, course);
         else {
             course.gravity_lag = 0.0;
@@ -111,7 +111,7 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
     }
 }
 
-/// Where two short steps are longer than a long one.
+/// Where two short steps are longer than a long one, also those of what may be struck in it.
 template <int D>
 void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     drift(0.5 * dt);
@@ -239,7 +239,7 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
 }
 
 /// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small
-/// part of the energy with which a crack begins, Eq. (141).
+/// part of the energy with which a crack begins, Eq. (141), and bears but a small load.
 template <int D>
 bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     constexpr double crossings = 20.0;  // of waves, before anything is judged
@@ -250,15 +250,19 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     const RigidMotion<D> motion = rigid_motion<D>(solids, points);
     double vibration = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
                        0.5 * dot(motion.spin, motion.angular_momentum);
-    for (const std::uint32_t p : points)
+    double force = 0.0;
+    for (const std::uint32_t p : points) {
         vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
+        force += 0.5 * norm(solids.load[p]);
+    }
     body.deforms_for += dt;
     body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
     constexpr double rounding = 1e-9;
     const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
-    return whole && body.deforms_for > crossings * body.crossing(deformable) &&
+    const bool pressed = pressed_tension<D>(force, body.diameter) > share * body.bears;
+    return whole && !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
            body.loudness <= enough;
 }
 
@@ -272,10 +276,12 @@ void Bodies<D>::change_breakable(const Array<std::size_t>& which, const Fragment
         changed.insert(static_cast<std::int32_t>(breakable_[n].rigid));
         changed.insert(static_cast<std::int32_t>(rigid.size() + breakable_[n].deformable));
     }
-    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+    auto is_new = [&](const ContactPair& pair) {
         const auto [a, b] = contact_.bodies(pair);
         return changed.contains(a) || changed.contains(b);
-    });
+    };
+    constexpr bool have_met = false;  // surfaces of deformable balls lie within rigid ones
+    contacts_.accept_overlaps(contact_, is_new, have_met);
     rebinds_ = true;
 }
 

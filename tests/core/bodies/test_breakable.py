@@ -159,6 +159,66 @@ def test_mass_and_momenta_are_kept_through_the_change(build, dim, spin, share):
     assert changed
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+@pytest.mark.parametrize("share", [1.2, 4.0])
+def test_stiff_bodies_gain_nothing_from_the_step_in_which_they_meet(build, turn, share):
+    """What is made deformable in a long step of rigid bodies goes on in short ones of its own."""
+    stiff = TOP[TOP.index("[material") :].replace("chalk", "rock").replace("1e8", "1e10")
+    left, taken = {}, {}
+    for kinematics in ("breakable", "elastic"):
+        tables = pair(2, kinematics, 0.1 * share * MEETS, turn).replace("chalk", "rock") + stiff
+        simulation = build(tables)
+        start = energy(simulation)
+        run(simulation, 0.0045 / share)
+        left[kinematics] = energy(simulation) / start
+        taken[kinematics] = simulation.totals()["contact_work"] / start
+    assert -0.02 < taken["breakable"] < 0
+    assert taken["breakable"] == pytest.approx(taken["elastic"], abs=2e-3)
+    assert left["breakable"] == pytest.approx(left["elastic"], abs=2e-3)
+
+
+def test_a_body_struck_in_space_breaks_though_its_own_surface_is_touched_late(build):
+    """Layers of balls lie within the ball that is rigid; stiff bodies are still long before."""
+    stiff = TOP[TOP.index("[material") :].replace("chalk", "rock").replace("1e8", "1e10")
+    found = {}
+    for kinematics in ("breakable", "elastic"):
+        tables = pair(3, kinematics, 0.4 * MEETS, 0.7).replace("chalk", "rock") + stiff
+        simulation = build(tables, 3)
+        start = energy(simulation)
+        run(simulation, 0.003)
+        totals = simulation.totals()
+        found[kinematics] = [
+            share / start
+            for share in (energy(simulation), totals["contact_work"], totals["fracture_work"])
+        ]
+    assert found["breakable"][2] > 0.003
+    np.testing.assert_allclose(found["breakable"], found["elastic"], rtol=0, atol=5e-3)
+
+
+def test_a_squeezed_stiff_body_stays_deformable_under_its_load(build):
+    """It hardly vibrates; rigid again, it would be without a load, over and over."""
+    stiff = TOP[TOP.index("[material") :].replace("chalk", "rock").replace("1e8", "1e10")
+    plate = """
+[body.{name}]
+shape = "box"
+material = "rock"
+fixed = true
+min = [-0.04, {low}, -0.04]
+max = [0.04, {high}, 0.04]
+motion = {{ velocity = [0, {v}, 0] }}
+"""
+    tables = ball("a", 3, "breakable", [0, 0], [0, 0]).replace("chalk", "rock") + stiff
+    tables += plate.format(name="below", low=-0.0805, high=-0.0502, v=0.15)
+    tables += plate.format(name="above", low=0.0502, high=0.0805, v=-0.15)
+    simulation = build(tables, 3)
+    stored = []
+    for time in (0.0036, 0.0048, 0.006):
+        run(simulation, time)
+        assert deformable(simulation) == 1
+        stored.append(simulation.totals()["elastic_energy"])
+    assert stored[2] > 2 * stored[1] > 4 * stored[0] > 0
+
+
 def test_a_whole_body_is_rigid_again_when_it_is_still(build):
     """It flies on with its momenta; its vibration is damped, its elastic energy held."""
     simulation = build(pair(2, "breakable", 1.2 * MEETS, 0.0, 20.0) + "damping = 0.2\n")
@@ -243,7 +303,7 @@ def test_deformable_and_rigid_bodies_beside_breakable_ones(build):
 
 REFUSED = {
     "of what does not break": ('fracture = "cohesive"', 'fracture = "none"', "does not break"),
-    "too few points": ("radius = 0.05", "radius = 0.03", "needs at least 8"),
+    "too few points": ("radius = 0.05", "radius = 0.03", 'or kinematics = "rigid"'),
     "clamped": ("spin = 0.0", "clamped = 1", 'only kinematics = "elastic" has it'),
     "negative strength": ("tensile_strength = 1e6", "tensile_strength = -1", "tensile_strength"),
     "another scheme": ('scheme = "resolved"', 'scheme = "ueta2022"', "only the scheme resolved"),

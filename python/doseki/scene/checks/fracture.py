@@ -76,10 +76,11 @@ def _breakable(body: Body[Any], group: Group, material: Material) -> Iterator[Fi
     width = min(shape.width for shape in group.shapes)
     across = width / body.spacing
     if across < MIN_ACROSS_BREAKABLE - 1e-6:
+        whole = f'a material with fracture = "{NO_FRACTURE}"'
         raise body.error(
             f": {across:.2g} particles across a body that breaks; it needs at least "
-            f"{MIN_ACROSS_BREAKABLE}: dp = {width / MIN_ACROSS_BREAKABLE:.2g} would do, or a "
-            f'material with fracture = "{NO_FRACTURE}"'
+            f"{MIN_ACROSS_BREAKABLE}: dp = {width / MIN_ACROSS_BREAKABLE:.2g} would do, or "
+            + ('kinematics = "rigid"' if group.breakable else whole)
         )
     if material.fracture == "cohesive":
         numbers = material.of_laws
