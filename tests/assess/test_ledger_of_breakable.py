@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -12,11 +10,11 @@ from doseki.assess.trust.report import trust_checks
 from doseki.record.history import BODY_ENERGIES, BROKEN
 from doseki.record.reader import load
 from doseki.running.resume import resume_run
-from doseki.running.runner import RunOptions, run_scenario
-from doseki.scenario.load import load_scenario
+from doseki.running.runner import RunOptions
 
 from ..small_scenarios import CHALK
 from ..terrain.scenes import grid, profile
+from .accounts import gap, recorded, without
 
 HEAD = """
 schema = 1
@@ -91,15 +89,6 @@ velocity = [0, -5]
 """
 
 
-def recorded(folder, text, *settings, threads=1):
-    """The record of a run of this scenario."""
-    folder.mkdir(exist_ok=True)
-    (folder / "case.toml").write_text(text)
-    scenario = load_scenario(str(folder / "case.toml"), list(settings))
-    run_scenario(scenario, folder / "run", RunOptions(threads=threads))
-    return load(folder / "run")
-
-
 def drop(folder, sign="", down=-1.8, material=CHALK, threads=1, *settings):
     """A disc that strikes a plate, and another that nothing strikes."""
     head = HEAD.format(dim=2, dp=0.01, time=0.0024, out=0.0012, gravity=[0, -9.81])
@@ -110,22 +99,6 @@ def drop(folder, sign="", down=-1.8, material=CHALK, threads=1, *settings):
 @pytest.fixture(scope="module")
 def dropped(tmp_path_factory):
     return drop(tmp_path_factory.mktemp("drop"))
-
-
-def gap(ledger):
-    return np.max(np.abs(ledger.energy_residual())) / ledger.largest
-
-
-class WithColumns:
-    """A run with some columns of the history replaced."""
-
-    def __init__(self, run, **columns):
-        self.scenario, self.history = run.scenario, dict(run.history) | columns
-
-
-def without(run, name):
-    zeros = {name: np.zeros(len(run.history["time"]))}
-    return dataclasses.replace(ledger_of(run), run=WithColumns(run, **zeros))
 
 
 def test_energy_and_momentum_close(dropped):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -13,10 +11,10 @@ from doseki.assess.trust.report import trust_checks
 from doseki.record.history import BODY_ENERGIES, BROKEN
 from doseki.record.reader import load
 from doseki.running.resume import resume_run
-from doseki.running.runner import RunOptions, run_scenario
-from doseki.scenario.load import load_scenario
+from doseki.running.runner import RunOptions
 
 from ..small_scenarios import CHALK
+from .accounts import gap, recorded, without
 
 DROP = """
 schema = 1
@@ -48,32 +46,12 @@ max = [0.1, 0]
 
 def drop(folder, sign="", threads=1, *settings):
     """The record of a disc that strikes a plate at an angle and breaks."""
-    folder.mkdir(exist_ok=True)
-    (folder / "drop.toml").write_text(DROP.format(sign=sign) + CHALK)
-    scenario = load_scenario(str(folder / "drop.toml"), list(settings))
-    run_scenario(scenario, folder / "run", RunOptions(threads=threads))
-    return load(folder / "run")
+    return recorded(folder, DROP.format(sign=sign) + CHALK, *settings, threads=threads)
 
 
 @pytest.fixture(scope="module")
 def dropped(tmp_path_factory):
     return drop(tmp_path_factory.mktemp("drop"))
-
-
-def gap(ledger):
-    return np.max(np.abs(ledger.energy_residual())) / ledger.largest
-
-
-class WithColumns:
-    """A run with some columns of the history replaced."""
-
-    def __init__(self, run, **columns):
-        self.scenario, self.history = run.scenario, dict(run.history) | columns
-
-
-def without(run, name):
-    zeros = {name: np.zeros(len(run.history["time"]))}
-    return dataclasses.replace(ledger_of(run), run=WithColumns(run, **zeros))
 
 
 def test_energy_and_momentum_close(dropped):
