@@ -12,7 +12,7 @@ from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from ..small_scenarios import CHALK
-from .test_ledger_of_breaking import gap, without
+from .accounts import gap, without
 
 DROP = """
 schema = 1
