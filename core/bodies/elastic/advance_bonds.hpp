@@ -41,10 +41,11 @@ Sym<double, D> material_stress(const BondPoint<D>& point) {
     return symmetric_part(inverse(point.F, 0.0) * point.P);
 }
 
-/// An open crack that ends at a point: its normal at rest, and the tension at which it goes on
-/// [Pa].
+/// What open cracks leave at a point: whether there are any, and of a broken bond the normal at
+/// rest and the tension at which its crack goes on [Pa].
 template <int D>
 struct CrackTip {
+    bool open = false;
     Vec<double, D> normal{};
     double strength = std::numeric_limits<double>::infinity();
 
@@ -59,10 +60,9 @@ struct CrackTip {
     }
 };
 
-/// What is at the points of a bond: whether another bond has an open crack, and cracks that end.
+/// Those at the points of a bond.
 template <int D>
 struct Beside {
-    bool crack = false;
     CrackTip<D> a{}, b{};
 };
 
@@ -175,7 +175,8 @@ private:
         const double along = dot(normal, rest_);
         if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
         const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;
-        const double own = beside_.crack ? dot(pull(), outward) / area(outward) : 0.0,
+        const double own = beside_.a.open || beside_.b.open ? dot(pull(), outward) / area(outward)
+                                                            : 0.0,
                      tension = max(stress, own);
         const CrackSite place = site(outward);
         if (!with_value(body_.law->fracture,
@@ -253,12 +254,11 @@ private:
 template <int D>
 template <class Point, class Body>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
-    Array<std::uint8_t> at_crack(first_bond_.size() - 1, 0);
     Array<CrackTip<D>> tip(first_bond_.size() - 1);
     for (const std::uint32_t n : stepped_) {
         if (!(state_[n].opening > 0.0)) continue;
         for (const std::uint32_t p : {pairs_[n].a, pairs_[n].b}) {
-            at_crack[p] = 1;
+            tip[p].open = true;
             if (state_[n].damage >= 1.0 && state_[n].whole != 0.0) tip[p].meet(state_[n]);
         }
     }
@@ -266,8 +266,7 @@ void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
         const BondEnds& ends = pairs_[stepped_[k]];
         BondState<D>& state = state_[stepped_[k]];
         if (state.whole == 0.0) return BondChange{};
-        const Beside<D> beside{at_crack[ends.a] != 0 || at_crack[ends.b] != 0, tip[ends.a],
-                               tip[ends.b]};
+        const Beside<D> beside{tip[ends.a], tip[ends.b]};
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state, beside)
             .take(dt);
     });
