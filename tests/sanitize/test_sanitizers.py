@@ -16,6 +16,7 @@ import doseki
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(doseki.__file__).parent
 HERE = Path(__file__).parent
+SCENES = 10  # that exercise.py goes through, a line each
 COMMON = "-fno-omit-frame-pointer"
 ADDRESS = f"-fsanitize=address,undefined -fno-sanitize-recover=undefined {COMMON}"
 THREAD = f"-fsanitize=thread {COMMON}"
@@ -98,7 +99,7 @@ def test_addresses_and_undefined_behaviour(addresses):
     # Python itself frees nothing at its end, which would count as leaks.
     done = exercise(site, preload, 2, 1.0, ASAN_OPTIONS="detect_leaks=0", DOSEKI_POISON="1")
     assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("\n") == 8
+    assert done.stdout.count("\n") == SCENES
 
 
 @pytest.mark.sanitize
@@ -135,7 +136,7 @@ def test_threads_do_not_race(tmp_path):
     done = exercise(site, preload, 4, 3.0, TSAN_OPTIONS="exitcode=66")
     assert "WARNING: ThreadSanitizer" not in done.stderr, done.stderr[:3000]
     assert done.returncode == 0, done.stderr[-3000:]
-    assert done.stdout.count("\n") == 8
+    assert done.stdout.count("\n") == SCENES
 
 
 POISONED = """
