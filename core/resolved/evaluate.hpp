@@ -160,9 +160,9 @@ void Resolved<D, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& ha
         if (friction)
             halo.start({halo_column(wall_, &WallRecord<D>::traction, HaloColumn::fixed,
                                     first_ghost_wall)});
-        sum_fluid<Kernel>(state, lists, halo, records);
+        sum_fluid<Kernel>(state, lists, halo, records, dt);
     } else {
-        sum_fluid<Kernel>(state, lists, halo, records);
+        sum_fluid<Kernel>(state, lists, halo, records, dt);
         sum_walls<Kernel>(state, lists, records, dt);
     }
 }
@@ -196,9 +196,9 @@ void Resolved<D, Backend>::sum_walls(State& state, const Lists& lists,
 template <int D, class Backend>
 template <class Kernel>
 void Resolved<D, Backend>::sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
-                                     const FlowRecords<D>& records) {
+                                     const FlowRecords<D>& records, double dt) {
     const FluidTerm<Kernel, D> term{records, model_->constants};
-    const FluidEpilogue<D> epilogue(*model_, fluid_, fluid_count_, summary_, state);
+    const FluidEpilogue<D> epilogue(*model_, fluid_, fluid_count_, summary_, state, dt);
     const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
     while_ghosts_come(halo, lists, lists.clusters().first(clusters), Backend::width,
                       [&](std::span<const ClusterList> part, std::size_t first) {

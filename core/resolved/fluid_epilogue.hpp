@@ -17,14 +17,16 @@ class FluidEpilogue {
 public:
     using Sums = FluidAccumulators<double, D>;
 
+    /// `dt`: since the evaluation before.
     FluidEpilogue(const ResolvedModel<D>& model, std::span<const FluidRecord<D>> records,
                   std::size_t fluid_count, std::span<FlowSummary<D>> summaries,
-                  ResolvedState<D>& state)
+                  ResolvedState<D>& state, double dt)
         : model_(model),
           records_(records),
           fluid_count_(fluid_count),
           summaries_(summaries),
-          state_(state) {}
+          state_(state),
+          dt_(dt) {}
 
     void operator()(std::size_t p, const Sums& sums) const {
         if (p >= fluid_count_) return;  // a wall particle in the last cluster of fluid
@@ -36,7 +38,7 @@ public:
         state_.shift[p] = {};
         summary(p).fault.note_density(records_[p].rho, rho0(p), p);
         summary(p).power +=
-            records_[p].volume * (sums.power - dot(sums.traction, state_.velocity[p]) +
+            records_[p].volume * (sums.power - dot(sums.traction, predicted_velocity(p)) +
                                   state_.damping_pressure[p] * sums.density_rate);
         summary(p).work.power += records_[p].volume * sums.made_power;
         if (!state_.is_free(p)) {
@@ -57,6 +59,7 @@ public:
             shift(p, sums, strain, rates);
         relax_density(p, indicator.normalised_density, strain, rates);
         bound_tension(p, sums.at_body > 0.0, rates);
+        summary(p).work.power += power_of_surface(p);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
         summary(p).work.power += power_of_corrections(p, rates.density - of_pairs.density);
@@ -65,7 +68,7 @@ public:
     }
 
 private:
-    /// Time [h/c] in which water that comes to a body under tension gives it up.
+    /// Time [h/c] in which water that comes to a body or to the surface under tension gives it up.
     static constexpr double tension_release = 10.0;
     /// Cap on the shifting velocity over the sound speed, half of the fastest flow; it diverges in
     /// a closing gap.
@@ -79,6 +82,14 @@ private:
     double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
     /// Without what damps sound.
     double pressure(std::size_t p) const { return records_[p].p - state_.damping_pressure[p]; }
+    /// That the sums have seen; `state_` has the acceleration of the evaluation before.
+    Vec<double, D> predicted_velocity(std::size_t p) const {
+        return state_.velocity[p] + (0.5 * dt_) * state_.acceleration[p];
+    }
+    /// As the next evaluation will see it.
+    bool on_surface(std::size_t p) const {
+        return state_.surface[p] > FreeSurfaceIndicator::surface;
+    }
     FlowSummary<D>& summary(std::size_t p) const {
         return summaries_[p / static_cast<std::size_t>(lanes<double>)];
     }
@@ -191,13 +202,28 @@ private:
         rates.density += rate * (normalised_density * rho0(p) - rho);
     }
 
-    /// Below its least density a fluid does not expand any further.
+    /// Below its least density a fluid does not expand any further, Eqs. (85) and (144). On a free
+    /// surface that is the one at rest: were the water still stretched when what has parted meets
+    /// again, it would be under tension at once.
     void bound_tension(std::size_t p, bool at_body, Rates& rates) const {
-        const double least = model_.min_density[state_.tag[p].material].at(at_body);
+        const bool gives_up = at_body || on_surface(p);
+        const double least =
+            on_surface(p) ? rho0(p) : model_.min_density[state_.tag[p].material].at(at_body);
         const double missing = least - records_[p].rho;
         if (missing <= 0.0) return;
         const double time = tension_release * state_.smoothing_length[p] / model_.constants.c;
-        rates.density = std::max(at_body ? missing / time : 0.0, rates.density);
+        rates.density = std::max(gives_up ? missing / time : 0.0, rates.density);
+    }
+
+    /// Of tension that is lost where water comes to the surface, and is there at once where
+    /// stretched water leaves it [W].
+    double power_of_surface(std::size_t p) const {
+        const double rho = records_[p].rho;
+        const bool was_on_surface = records_[p].surface > FreeSurfaceIndicator::surface;
+        if (was_on_surface == on_surface(p) || rho >= rho0(p) || dt_ <= 0.0) return 0.0;
+        const Material& material = model_.material(state_.tag[p]);
+        const double energy = state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy;
+        return (on_surface(p) ? -energy : energy) / dt_;
     }
 
     /// For the next evaluation. It brings no tension that the liquid does not bear, none on a free
@@ -213,8 +239,7 @@ private:
             const double bound = thermodynamic_state(*material.laws, least).pressure;
             added = std::max(added, std::min(0.0, bound - pressure(p)));
         }
-        const bool on_surface = state_.surface[p] > FreeSurfaceIndicator::surface;
-        state_.damping_pressure[p] = on_surface ? 0.0 : added;
+        state_.damping_pressure[p] = on_surface(p) ? 0.0 : added;
     }
 
     void limit_timestep(std::size_t p) const {
@@ -234,6 +259,7 @@ private:
     std::size_t fluid_count_;
     std::span<FlowSummary<D>> summaries_;
     ResolvedState<D>& state_;
+    double dt_;
 };
 
 }  // namespace doseki

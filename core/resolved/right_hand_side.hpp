@@ -108,7 +108,8 @@ private:
     template <class Kernel>
     void sum_walls(State& state, const Lists& lists, const FlowRecords<D>& records, double dt);
     template <class Kernel>
-    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<D>& records);
+    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<D>& records,
+                   double dt);
     bool has_wet_walls(const FlowRecords<D>& records) const;
     void reduce_summaries();
 
