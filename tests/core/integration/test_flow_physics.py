@@ -69,7 +69,7 @@ def test_momentum_of_a_small_drop_is_conserved(core, flows, dim):
     before, mass = np.array(drop.totals()["momentum"]), drop.totals()["mass"]
     advance(drop, 40)
     fluid, _, size = forces(drop, 0.0)
-    assert size > mass
+    assert size > 0.5 * mass  # there are forces
     np.testing.assert_allclose(fluid, 0, atol=1e-14 * size)
     np.testing.assert_allclose(drop.totals()["momentum"], before, rtol=0, atol=1e-13 * mass)
 
