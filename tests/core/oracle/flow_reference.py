@@ -29,6 +29,7 @@ RELAXATION_PER_STRAIN = 10.0
 LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
+TENSION_RELEASE = 10.0  # h/c, on a surface
 EDGE_NOISE, EDGE_WHOLE = 0.15, 0.3  # share of what slides past an edge, Eq. (133)
 LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
@@ -477,8 +478,11 @@ class FlowReference:
         rate = RELAXATION_PER_STRAIN * strain
         self.relaxation = np.clip(rate, self.slowest, self.fastest)
         self.density_rate += self.relaxation * (self.filling * self.rho0 - self.rho)
-        void = self.rho < LEAST_DENSITY * self.rho0
-        self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
+        on_surface = self.measure > SURFACE
+        missing = np.where(on_surface, 1, LEAST_DENSITY) * self.rho0 - self.rho
+        least = np.where(on_surface, missing * self.c / (TENSION_RELEASE * self.h), 0)
+        void = np.maximum(self.density_rate, least)
+        self.density_rate = np.where(missing > 0, void, self.density_rate)
 
     def _set_timestep(self) -> None:
         speed = np.linalg.norm(self.v, axis=1)

@@ -25,7 +25,7 @@ MATERIAL = {
     "shear_modulus": ["1e9"],
     "nu": ["1e-2"],
     "cavitation_pressure": ["-1 with body.water.pressure=-50"],
-    "air_entry_suction": ["1e9 with body.water.pressure=-50"],
+    "air_entry_suction": ["1e9 with body.water.pressure=-50; eta=2"],
     "yield_strength": ["10"],
     "cohesion": ["10"],
     "friction_angle": ["10"],
