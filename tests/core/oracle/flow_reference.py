@@ -319,9 +319,7 @@ class FlowReference:
         turned = n + turn * LARGEST_TURN / np.maximum(size, LARGEST_TURN)
         return turned / np.linalg.norm(turned, axis=-1, keepdims=True)
 
-    def _dissipation(
-        self, approach: np.ndarray, rho: np.ndarray, smooth: np.ndarray
-    ) -> np.ndarray:
+    def _dissipation(self, approach: np.ndarray, rho: np.ndarray, smooth: np.ndarray) -> np.ndarray:
         """What the Riemann solver adds to the mean pressure; a smooth flow has no least beta."""
         sizes = approach**2 + (SMOOTH * smooth) ** 2
         least = LEAST_BETA * approach**2 / np.maximum(sizes, 1e-300)

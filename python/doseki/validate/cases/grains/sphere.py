@@ -100,7 +100,9 @@ def in_oil(name: str, title: str, oil: Oil, short: str) -> Case:
                 unit="m/s",
             ),
             Criterion(SPEED, (at_most(0.08),), "over the terminal speed", short=short),
-            Criterion(WAY, (at_most(0.08),), "over the measured way, after a diameter", short=short),
+            Criterion(
+                WAY, (at_most(0.08),), "over the measured way, after a diameter", short=short
+            ),
         ),
         axes=("time (s)", "speed (m/s)"),
         controls=(
