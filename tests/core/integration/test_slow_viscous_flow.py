@@ -1,4 +1,4 @@
-"""The least dissipation of the Riemann solver is no viscosity of a liquid that creeps, Eq. (145)."""
+"""The least dissipation of the Riemann solver is no viscosity of a slow liquid, Eq. (145)."""
 
 from __future__ import annotations
 
