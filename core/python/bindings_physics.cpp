@@ -76,8 +76,11 @@ void bind_flow(nb::module_& m) {
 
 /// Those that have no dimension.
 void bind_flow_numbers(nb::module_& m) {
-    define(m, "approach_pressure", 1, [](const auto& in, auto& out) {  // dU, rho, c
-        out[0] = approach_pressure(in[0], in[1], in[2]);
+    define(m, "approach_pressure", 1, [](const auto& in, auto& out) {  // dU, rho, c, smooth
+        out[0] = approach_pressure(in[0], in[1], in[2], in[3]);
+    });
+    define(m, "smooth_approach", 1, [](const auto& in, auto& out) {  // strain rate, r
+        out[0] = smooth_approach(in[0], in[1]);
     });
     define(m, "no_slip_factor", 1, [](const auto& in, auto& out) {  // d_w, d_i, least
         out[0] = no_slip_factor(in[0], in[1], in[2]);

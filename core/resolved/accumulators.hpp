@@ -111,7 +111,9 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     const Vec<T, D> at_foot = normal_at_foot(w.normal, w.bend * r_iw);
     const T least =
         select(w.bound > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
-    const T extra = max(approach_pressure(T(-2) * dot(v_iw, at_foot), i.rho, c), least);
+    const T solved = approach_pressure(T(-2) * dot(v_iw, at_foot), i.rho, c,
+                                       smooth_approach(i.resolved_strain, r));
+    const T extra = max(solved, least);
     const Vec<T, D> across = contact.r_dot_n * at_foot;
     contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
                                           contact.r_dot_n, r_iw);
@@ -171,7 +173,9 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
     // One division for 1/r and 1/(rho c).
     const T impedance = rho * c, inverse = T(1) / (pair.r * impedance);
     const T inverse_r = impedance * inverse;
-    const T extra = approach_pressure((smooth - v_dot_r) * inverse_r, rho, c);
+    const T resolved = min(i.resolved_strain, j.resolved_strain);
+    const T extra = approach_pressure((smooth - v_dot_r) * inverse_r, rho, c,
+                                      smooth_approach(resolved, pair.r));
     const Vec<T, D> corrected_r = j.correction * pair.r_ij;
     const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
     const ViscousForm<T> form{T(constants.form.along_jump), T(constants.form.along_pair)};

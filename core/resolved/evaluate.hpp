@@ -108,7 +108,12 @@ void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_d
     update_mean_pressure(state, p, 2.0 * half_dt);
     record.p += state.damping_pressure[p];
     const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
-    record.mu = viscosity(*material.laws, sheared) + rho * model_->eddy_viscosity(state, p);
+    const double mu = viscosity(*material.laws, sheared), h = state.smoothing_length[p];
+    record.mu = mu + rho * model_->eddy_viscosity(state, p);
+    // The outermost particles need all of what damps noise.
+    record.resolved_strain = record.surface > FreeSurfaceIndicator::surface
+                                 ? 0.0
+                                 : sheared.rate * resolved_shear(mu, rho, sheared.rate * h, h);
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
     record.pressure_gradient = state.pressure_gradient[p];

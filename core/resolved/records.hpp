@@ -15,12 +15,13 @@ struct FluidFields {
     T rho, p;               // p: with what damps sound
     T mu;                   // molecular and eddy viscosity [Pa s]
     T surface;              // free-surface indicator of the last step
+    T resolved_strain;      // rate, as far as viscosity resolves it, Eq. (145) [1/s]
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.pressure_gradient...), f(self.strain...), f(self.correction...);
         f(self.carried...), f(self.volume...), f(self.rest_volume...), f(self.rho...), f(self.p...),
-            f(self.mu...), f(self.surface...);
+            f(self.mu...), f(self.surface...), f(self.resolved_strain...);
     }
 };
 

@@ -16,7 +16,7 @@ CANARIES = (
     "taylor-green-100-lattice", "voellmy-slab",
 )  # fmt: skip
 # One case each of the families that take minutes at their coarsest: the tier validate has them.
-SLOW = ("channel-plane", "hydrostatic-plate")
+SLOW = ("channel-plane", "hydrostatic-plate", "sphere-in-oil")
 
 
 def test_names_and_words():

@@ -24,12 +24,13 @@ SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surfac
 LEAST_CONCENTRATION = 0.6
 ENOUGH_COMPANY = 0.05
 LEAST_BETA = 0.05  # of the Riemann dissipation
+SMOOTH = 2.0  # times the approach that a resolved strain makes, below which that is no noise
 RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
 RELAXATION_PER_STRAIN = 10.0
 LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
-TENSION_RELEASE = 10.0  # h/c, on a surface
+TENSION_RELEASE = 10.0  # h/c in which a surface gives it up, Eq. (144)
 EDGE_NOISE, EDGE_WHOLE = 0.15, 0.3  # share of what slides past an edge, Eq. (133)
 LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
@@ -185,7 +186,9 @@ class FlowReference:
         if self.mean_pressure is None:
             self.mean_pressure = self.p
         self.p = self.p + self.damping
-        self.mu = self._molecular_viscosity() + self.rho * self._eddy_viscosity()
+        molecular = self._molecular_viscosity()
+        self.resolved = self._resolved_strain(molecular)
+        self.mu = molecular + self.rho * self._eddy_viscosity()
         contact = self._contact()
         self._wall_pass(contact)
         self._fluid_pass(contact)
@@ -231,6 +234,12 @@ class FlowReference:
                 growth = (m["mu_2"] - m["mu_s"]) / (m["inertial_number"] / inertial + 1)
                 mu[i] = min((m["mu_s"] + growth) * p / rate, m["viscosity_max"])
         return mu
+
+    def _resolved_strain(self, mu: np.ndarray) -> np.ndarray:
+        """The rate of strain, as far as viscosity is what counts over a smoothing length."""
+        rate = self._strain_rate()
+        resolved = rate * mu / (mu + 0.1 * self.rho * rate * self.h**2 + 1e-300)
+        return np.where(self.surface > SURFACE, 0.0, resolved)
 
     def _eddy_viscosity(self) -> np.ndarray:
         """Square of the mixing length times sqrt(2 D:D)."""
@@ -278,7 +287,8 @@ class FlowReference:
         along = pairs.r_ij - r_n[..., None] * n
         excess = self.rho[:, None] * g_normal * r_n - dot(gradient, along)
         foot = self._normal_at_foot(n, in_front)
-        extra = self._dissipation(-2 * dot(v, foot), self.rho[:, None])
+        smooth = self.resolved[:, None] * pairs.r
+        extra = self._dissipation(-2 * dot(v, foot), self.rho[:, None], smooth)
         across = r_n[..., None] * foot
         p = self.p[:, None] + 0.5 * excess
         corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
@@ -309,9 +319,11 @@ class FlowReference:
         turned = n + turn * LARGEST_TURN / np.maximum(size, LARGEST_TURN)
         return turned / np.linalg.norm(turned, axis=-1, keepdims=True)
 
-    def _dissipation(self, approach: np.ndarray, rho: np.ndarray) -> np.ndarray:
-        """What the Riemann solver adds to the mean pressure."""
-        beta = np.minimum(np.maximum(3 * approach / self.c, LEAST_BETA), 1)
+    def _dissipation(self, approach: np.ndarray, rho: np.ndarray, smooth: np.ndarray) -> np.ndarray:
+        """What the Riemann solver adds to the mean pressure; a smooth flow has no least beta."""
+        sizes = approach**2 + (SMOOTH * smooth) ** 2
+        least = LEAST_BETA * approach**2 / np.maximum(sizes, 1e-300)
+        beta = np.minimum(np.maximum(3 * approach / self.c, least), 1)
         return 0.5 * beta * rho * self.c * approach
 
     def _wall_pass(self, contact: Mapping[str, np.ndarray]) -> None:
@@ -363,7 +375,8 @@ class FlowReference:
         v_r, rho = dot(v, pairs.r_ij), self._mean(self.rho)
         D = 0.5 * (self.old_L + self.old_L.transpose(0, 2, 1))
         smooth = np.einsum("ijab,ija,ijb->ij", self._mean(D), pairs.r_ij, pairs.r_ij)
-        extra = self._dissipation((smooth - v_r) / pairs.safe_r, rho)
+        resolved = np.minimum(self.resolved[:, None], self.resolved[None])
+        extra = self._dissipation((smooth - v_r) / pairs.safe_r, rho, resolved * pairs.r)
         corrected_r = np.einsum("jab,ijb->ija", self.B, pairs.r_ij)
         reverse = self.p[:, None, None] * corrected_r
         pressure = reverse - reverse.transpose(1, 0, 2)  # r_ji = -r_ij
@@ -478,11 +491,11 @@ class FlowReference:
         rate = RELAXATION_PER_STRAIN * strain
         self.relaxation = np.clip(rate, self.slowest, self.fastest)
         self.density_rate += self.relaxation * (self.filling * self.rho0 - self.rho)
-        on_surface = self.measure > SURFACE
-        missing = np.where(on_surface, 1, LEAST_DENSITY) * self.rho0 - self.rho
-        least = np.where(on_surface, missing * self.c / (TENSION_RELEASE * self.h), 0)
-        void = np.maximum(self.density_rate, least)
-        self.density_rate = np.where(missing > 0, void, self.density_rate)
+        outside = self.measure > SURFACE
+        missing = np.where(outside, 1, LEAST_DENSITY) * self.rho0 - self.rho
+        least = np.where(outside, self.c / (TENSION_RELEASE * self.h) * missing, 0)
+        kept = np.maximum(self.density_rate, least)
+        self.density_rate = np.where(missing > 0, kept, self.density_rate)
 
     def _set_timestep(self) -> None:
         speed = np.linalg.norm(self.v, axis=1)

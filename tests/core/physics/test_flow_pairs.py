@@ -17,13 +17,30 @@ def test_approach_pressure_is_that_of_the_limited_riemann_solver(point):
     """beta = 3 dU/c where a pair approaches, 1 where fast, 0.05 where it hardly does or recedes."""
     dU = C * np.array([-2, -0.1, 0, 0.01, 0.1, 0.2, 1 / 3, 0.5, 2])
     beta = np.array([0.05, 0.05, 0.05, 0.05, 0.3, 0.6, 1, 1, 1])
-    (p,) = point("approach_pressure", dU, RHO, C)
+    (p,) = point("approach_pressure", dU, RHO, C, 0)
     np.testing.assert_allclose(p, 0.5 * beta * RHO * C * dU, rtol=1e-13)
 
 
-def test_approach_pressure_is_continuous_and_never_lowers_the_dissipation(point):
+def test_what_is_small_beside_a_resolved_flow_has_no_least_beta(point):
+    """Half of it where the approach is twice what the strain makes of the distance."""
+    rate, r = 5.0, 0.01
+    (smooth,) = point("smooth_approach", rate, r)
+    dU = -rate * r * np.array([2e-3, 0.2, 2, 20, 2e3])
+    (p,) = point("approach_pressure", dU, RHO, C, smooth)
+    share = np.array([1e-6, 1 / 101, 1 / 2, 100 / 101, 1 - 1e-6])
+    np.testing.assert_allclose(p, 0.5 * 0.05 * share * RHO * C * dU, rtol=2e-6)
+
+
+def test_what_approaches_fast_is_not_spared_by_a_resolved_flow(point):
+    dU = C * np.array([0.1, 0.2, 0.5])
+    (p,) = point("approach_pressure", dU, RHO, C, (0.5 * C) ** 2)
+    np.testing.assert_allclose(p, 0.5 * np.minimum(3 * dU / C, 1) * RHO * C * dU, rtol=1e-13)
+
+
+@pytest.mark.parametrize("smooth", [0.0, (0.01 * C) ** 2, C**2])
+def test_approach_pressure_is_continuous_and_never_lowers_the_dissipation(point, smooth):
     dU = np.linspace(-C, C, 4001)
-    (p,) = point("approach_pressure", dU, RHO, C)
+    (p,) = point("approach_pressure", dU, RHO, C, smooth)
     assert (p * dU >= 0).all()
     assert np.abs(np.diff(p)).max() < 2.1 * RHO * C * (dU[1] - dU[0])
     assert (np.diff(p) > 0).all()
