@@ -84,7 +84,7 @@ void Bodies<D>::find_companions() {
                                [&](std::int32_t a, std::int32_t b) { mark(a), mark(b); });
     companions_.clear(), others_.clear();
     for (std::uint32_t k = 0; k < rigid.size(); ++k)
-        (is_companion[k] || rigid_origins_[k].parent >= 0 ? companions_ : others_).push_back(k);
+        (is_companion[k] ? companions_ : others_).push_back(k);
 }
 
 /// Eq. (142): slow contacts push once, in the middle of a step, in each half of which what is
