@@ -91,7 +91,7 @@ struct RigidBodyColumns {
                        thickness.size() == n,
                    "shape_radius");
         for (std::size_t k = 0; k < n; ++k) {
-            expect_index(kind[k], 4, "shape_kind");
+            expect_index(kind[k], 5, "shape_kind");
             const bool facets = has_facets(static_cast<ShapeKind>(kind[k]));
             expect_fit((facet_count[k] > 0) == facets, "shape_kind");
         }

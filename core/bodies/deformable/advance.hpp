@@ -310,6 +310,7 @@ void TotalLagrangian<D>::divide(const Division& division, double opening) {
         return gone(p) || gone(j) || body_[p] != body_[j];
     };
     bonds_.part(apart, opening);
+    choose_stepped();
     find_spans();
     update_deformations();
 }

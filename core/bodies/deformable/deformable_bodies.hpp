@@ -8,6 +8,7 @@
 #include "bodies/deformable/surfaces.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/dust.hpp"
+#include "bodies/fragments/rigid_motion.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
@@ -87,6 +88,16 @@ public:
     /// Of each point: its number among those of rigid bodies, of which it is one while its body is
     /// rigid; -1: none.
     const Array<std::int32_t>& rigid_points() const { return rigid_point_; }
+    /// The point that point p is of the rigid body that its body may become.
+    void set_rigid_point(std::size_t p, std::size_t number) {
+        rigid_point_[p] = static_cast<std::int32_t>(number);
+    }
+    /// The shape of a body that keeps the one it has, in the frame of `motion`; `shown`: its number
+    /// among those that contacts have been shown.
+    Shape<D> shape_of(const ContactBodies<D>& contact, std::int32_t shown, std::size_t body,
+                      const RigidMotion<D>& motion) const {
+        return surfaces_.shape_of(contact, shown, solids_, body, motion);
+    }
     /// See TotalLagrangian; the fluid sees an acceleration from then on.
     void make_deformable(std::size_t body, const RigidPlacement<D>& placement,
                          const Vec<double, D>& acceleration) {

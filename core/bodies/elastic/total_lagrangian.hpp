@@ -304,7 +304,7 @@ private:
 
     void choose_stepped() {
         auto moves = [this](std::uint32_t p) {
-            return !is_rigid(static_cast<std::size_t>(body_[p]));
+            return !gone(p) && !is_rigid(static_cast<std::size_t>(body_[p]));
         };
         stepped_.choose(size(), moves);
         bonds_.step_only(moves);
