@@ -106,8 +106,8 @@ public:
     double least_intactness(std::size_t body) const;
 
     /// Finds pairs, corrects gradients, takes the first accelerations. Call once, after the bodies
-    /// are in.
-    void start(const Vec<double, D>& gravity);
+    /// are in. The longest stable step [s] is found unless it is given.
+    void start(const Vec<double, D>& gravity, double stable_step = 0.0);
 
     /// Half a step of the forces of others, which change slowly [N], 2-D: [N/m].
     void kick(double half_dt, std::span<const Vec<double, D>> force) {
@@ -230,10 +230,9 @@ public:
             bodies_.clear();
             for (std::size_t k = 0; k < numbers.size(); k += DeformableBody::count)
                 bodies_.push_back(DeformableBody::of(&numbers[k]));
-            start(gravity);
+            start(gravity, stable_step);
             a = accelerations, deformation_ = deformations, slot_ = slots;
             number_points();
-            stable_step_ = stable_step;
         }
         bonds_.serialise(archive);
         if (archive.loads()) find_spans();
@@ -275,6 +274,7 @@ private:
         for (std::uint32_t k = 0; k < size(); ++k) number_[slot_[k]] = k;
     }
     void correct_gradients();
+    Array<std::uint8_t> representatives() const;
     void limit_timestep();
     template <class F>
     void sum_internal_forces(double half_dt, const F& take);
