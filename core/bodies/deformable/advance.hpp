@@ -165,6 +165,7 @@ void TotalLagrangian<D>::limit_timestep() {
     const auto x0 = x, v0 = v;
     const Array<Vec<double, D>> none(size());
     Array<Vec<double, D>> mode(size());
+    x = rest_, v.assign(size(), {});
     const Array<std::uint8_t> chosen = representatives();
     stepped_.choose(size(), [&](std::uint32_t p) { return chosen[p] != 0; });
     for (const std::uint32_t p : stepped_.points())  // not orthogonal to the fastest mode

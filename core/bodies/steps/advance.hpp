@@ -61,7 +61,7 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
             show_bodies(all_points_), find_contacts();
         else if (contacts_.any(PairKind::all))
             show(PairKind::all);
-        contacts_.apply(contact_, PairKind::all, step);
+        contacts_.apply(contact_, PairKind::all, moved_, step);
         add_loads(PairKind::all, step);
         rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
         if (!deformable.empty()) course.given = course.given + deformable.push(step, gravity_);
@@ -167,13 +167,13 @@ template <int D>
 void Bodies<D>::touch(PairKind kind, double dt, Course& course) {
     if (2.0 * moved_ >= margin_) show_bodies(all_points_), find_contacts();
     show(kind);
-    contacts_.apply(contact_, kind, dt);
+    contacts_.apply(contact_, kind, moved_, dt);
     const Array<std::size_t> struck = breakable_.struck(contacts_, kind, deformable, rigid.size());
     if (!struck.empty()) {
         contacts_.revert(kind);
         make_deformable(struck, course);
         show(kind);
-        contacts_.apply(contact_, kind, dt);
+        contacts_.apply(contact_, kind, moved_, dt);
     }
     add_loads(kind, dt);
     rigid.collect(contact_, contacts_.points(kind));
