@@ -62,8 +62,12 @@ double TotalLagrangian<D>::strength(std::size_t body) const {
 
 template <int D>
 double TotalLagrangian<D>::least_intactness(std::size_t body) const {
+    auto is_of_it = [&](std::uint32_t j) {
+        return !gone(j) && body_[j] == static_cast<std::int32_t>(body);
+    };
     double least = 1.0;
-    for (const std::uint32_t p : points_of(body)) least = min(least, bonds_.least_intactness(p));
+    for (const std::uint32_t p : points_of(body))
+        least = min(least, bonds_.least_intactness(p, is_of_it));
     return least;
 }
 

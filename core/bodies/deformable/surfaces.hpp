@@ -393,7 +393,7 @@ void DeformableSurfaces<D>::collect(ContactBodies<D>& contact, TotalLagrangian<D
         contact.surfaces[samples_[k].surface].push(samples_[k].at, contact.points.force[c],
                                                    contact.points.torque[c]);
     }
-    std::fill(solids.load.begin(), solids.load.end(), Vec<double, D>{});
+    for (const std::uint32_t p : solids.stepped().points()) solids.load[p] = {};
     for (std::size_t s = 0; s < contact.surfaces.size(); ++s) {
         const Surface<D>& surface = contact.surfaces[s];
         for (std::size_t v = 0; v < surface.size(); ++v) {

@@ -102,7 +102,7 @@ public:
     void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic);
     /// Tension [Pa] at which the first of the bonds of a body cracks while none has.
     double strength(std::size_t body) const;
-    /// Of the weakest bond of a body, see Bonds.
+    /// Of the weakest of the bonds that a body has within itself, see Bonds.
     double least_intactness(std::size_t body) const;
 
     /// Finds pairs, corrects gradients, takes the first accelerations. Call once, after the bodies
