@@ -195,10 +195,10 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
 }
 
 /// The overlap that a softened contact may reach. Parts of a body are as soft as the body was, up
-/// to a quarter of their own radius: breaking makes no contact shorter.
+/// to two fifths of their own radius: breaking makes no contact shorter.
 template <int D>
 double ContactLaws<D>::largest_overlap(const ContactLaw& law, double whole) const {
-    constexpr double most = 0.125;  // of the diameter
+    constexpr double most = 0.2;  // of the diameter
     const double own = options_.overlap * law.diameter;
     return std::max(own, std::min(options_.overlap * whole, most * law.diameter));
 }

@@ -100,10 +100,12 @@ public:
     const Array<std::int32_t>& deformable_points() const { return deformable_point_; }
 
     /// Those that are rigid and in which the contacts of a kind, as they were last applied, may
-    /// cause more tension than they bear.
+    /// cause more tension than they bear. Dust, is_dust(body), is as small as the points of a body:
+    /// what it does beside its contact is that of its force.
+    template <class IsDust>
     Array<std::size_t> struck(const Contacts<D>& contacts, PairKind kind,
-                              const DeformableBodies<D>& deformable,
-                              std::size_t rigid_bodies) const;
+                              const DeformableBodies<D>& deformable, std::size_t rigid_bodies,
+                              const IsDust& is_dust) const;
 
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored ones are those of these bodies.
@@ -173,9 +175,11 @@ void BreakableBodies<D>::index(std::size_t rigid_bodies, const DeformableBodies<
 }
 
 template <int D>
+template <class IsDust>
 Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairKind kind,
                                               const DeformableBodies<D>& deformable,
-                                              std::size_t rigid_bodies) const {
+                                              std::size_t rigid_bodies,
+                                              const IsDust& is_dust) const {
     auto waits = [&](std::int32_t k) -> const BreakableBody<D>* {
         const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
         return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
@@ -195,6 +199,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairK
         if (!body) return;
         const auto n = static_cast<std::size_t>(body - bodies_.data());
         force[n] += 0.5 * push;
+        if (is_dust(other)) approach = 0.0;
         tension[n] =
             std::max(tension[n], expected_tension<D>({approach, body->impedance, impedance(other),
                                                       force[n], body->diameter}));

@@ -168,7 +168,12 @@ void Bodies<D>::touch(PairKind kind, double dt, Course& course) {
     if (2.0 * moved_ >= margin_) show_bodies(all_points_), find_contacts();
     show(kind);
     contacts_.apply(contact_, kind, moved_, dt);
-    const Array<std::size_t> struck = breakable_.struck(contacts_, kind, deformable, rigid.size());
+    auto of_dust = [this](std::int32_t k) {
+        const auto body = static_cast<std::size_t>(k);
+        return body < rigid.size() && is_dust(body);
+    };
+    const Array<std::size_t> struck =
+        breakable_.struck(contacts_, kind, deformable, rigid.size(), of_dust);
     if (!struck.empty()) {
         contacts_.revert(kind);
         make_deformable(struck, course);
