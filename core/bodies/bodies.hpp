@@ -51,6 +51,12 @@ public:
     void make_breakable(std::size_t k) {
         breakable_.add(k, deformable.bodies() - 1, rigid.state(k));
     }
+    /// Whether deformable body b has left, and no row of the rigid bodies says so.
+    bool has_left(std::size_t b) const {
+        const std::int32_t n = breakable_.of_deformable(b);
+        return deformable.solids().has_left(b) &&
+               (n < 0 || !breakable_[static_cast<std::size_t>(n)].has_rigid());
+    }
     /// Whether rigid body k is deformable now.
     bool deforms(std::size_t k) const {
         const BreakableBody<D>* body = breakable_.of_rigid(k);
@@ -138,10 +144,10 @@ public:
         rigid_particles_.set_velocities(particles, rigid, ahead);
     }
 
-    /// Removes the rigid bodies whose centre is in the region and marks their particles in
-    /// `removed`.
+    /// Removes the bodies whose centre is in the region and marks their particles in `removed`;
+    /// returns the elastic energy that went with them [J], 2-D: [J/m].
     template <class Region>
-    void drain(const Particles<D>& particles, const Region& region, Array<std::uint8_t>& removed);
+    double drain(const Particles<D>& particles, const Region& region, Array<std::uint8_t>& removed);
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
     /// Parts that came off bodies which broke: those that are deformable, and grains of dust.
@@ -174,6 +180,9 @@ private:
     /// More in one step come of speeds or strains that have gone wrong.
     static constexpr double most_contact_steps = 1e6;
 
+    template <class Region>
+    double drain_deformable(const Particles<D>& particles, const Region& region,
+                            Array<std::uint8_t>& removed);
     void number_bodies();
     /// Whether rigid body k is a grain of dust.
     bool is_dust(std::size_t k) const {
@@ -376,15 +385,34 @@ void Bodies<D>::number_bodies() {
 
 template <int D>
 template <class Region>
-void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
-                      Array<std::uint8_t>& removed) {
-    if (!any_moves()) return;
+double Bodies<D>::drain(const Particles<D>& particles, const Region& region,
+                        Array<std::uint8_t>& removed) {
+    if (!any_moves()) return 0.0;
     const Array<std::uint8_t> leaves = rigid.remove_inside(region);
     if (std::find(leaves.begin(), leaves.end(), 1) != leaves.end()) moved_ = margin_;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::int32_t k = rigid_body_of(particles, p);
         if (k >= 0 && leaves[static_cast<std::size_t>(k)]) removed[p] = 1;
     }
+    return drain_deformable(particles, region, removed);
+}
+
+template <int D>
+template <class Region>
+double Bodies<D>::drain_deformable(const Particles<D>& particles, const Region& region,
+                                   Array<std::uint8_t>& removed) {
+    if (!deformable.any_deforms()) return 0.0;
+    const Fragments<D> before = deformable.as_they_are();
+    const auto leaving = deformable.remove_inside(region);
+    if (!leaving.any()) return 0.0;
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (deformable.has(particles, p) &&
+            leaving.is_body[static_cast<std::size_t>(deformable.body_of_point(particles.point(p)))])
+            removed[p] = 1;
+    const std::size_t solids = contact_.solids.size();
+    prepare_contacts();
+    renumber_contacts(before, solids);
+    return leaving.energy;
 }
 
 template <int D>

@@ -121,10 +121,11 @@ Array<Vec<double, D>> TotalLagrangian<D>::linear_response(const Array<Vec<double
                                                           const Array<Vec<double, D>>& velocity) {
     for (const std::uint32_t p : stepped_.points())
         x[p] = rest_[p] + displacement[p], v[p] = velocity[p];
-    Array<Vec<double, D>> response(size());
+    Array<Vec<double, D>> all(size()), response(size());  // clusters have points of others, too
     sum_internal_forces(0.0, [&](std::size_t p, const InternalForce<double, D>& force) {
-        if (!clamped_[p]) response[p] = (1.0 / body_of(p).rho0) * force.all;
+        if (!clamped_[p]) all[p] = (1.0 / body_of(p).rho0) * force.all;
     });
+    for (const std::uint32_t p : stepped_.points()) response[p] = all[p];
     return response;
 }
 
@@ -165,7 +166,6 @@ void TotalLagrangian<D>::limit_timestep() {
     const auto x0 = x, v0 = v;
     const Array<Vec<double, D>> none(size());
     Array<Vec<double, D>> mode(size());
-    x = rest_, v.assign(size(), {});
     const Array<std::uint8_t> chosen = representatives();
     stepped_.choose(size(), [&](std::uint32_t p) { return chosen[p] != 0; });
     for (const std::uint32_t p : stepped_.points())  // not orthogonal to the fastest mode

@@ -108,6 +108,27 @@ public:
     void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic) {
         solids_.make_rigid(body, motion, kinetic);
     }
+    /// Bodies that have left, and the energy that they had beside that of motion [J], 2-D: [J/m].
+    struct Leaving {
+        Array<std::uint8_t> is_body;
+        double energy = 0.0;
+
+        bool any() const { return std::ranges::find(is_body, 1) != is_body.end(); }
+    };
+    /// Removes those whose centre is in the region, but what is clamped.
+    template <class Region>
+    Leaving remove_inside(const Region& region) {
+        Leaving leaving;
+        leaving.is_body.assign(bodies(), 0);
+        const Array<RigidMotion<D>> motions = rigid_motions(solids_);
+        for (std::size_t k = 0; k < bodies(); ++k) {
+            if (!(motions[k].mass > 0.0) || !region.contains(motions[k].centre) ||
+                solids_.is_clamped(k))
+                continue;
+            leaving.is_body[k] = 1, leaving.energy += solids_.take_out(k);
+        }
+        return leaving;
+    }
     /// Numbers contacts as if no body had changed, for those that do not part.
     Fragments<D> as_they_are() const {
         Fragments<D> fragments{};

@@ -80,7 +80,13 @@ public:
         bodies_.push_back(body), apart_.push_back(apart);
         rigid_.push_back(is_rigid), held_energy_.push_back(0.0);
     }
-    /// Whether a body moves as a rigid one, which someone else steps.
+    /// Takes a body out for good: it takes part in nothing from now on. Returns the energy that it
+    /// had beside that of motion [J], 2-D: [J/m].
+    double take_out(std::size_t body);
+    bool has_left(std::size_t body) const { return rigid_[body] == left; }
+    /// Whether a body has points that stay where they are.
+    bool is_clamped(std::size_t body) const;
+    /// Whether a body moves as a rigid one, which someone else steps, or has left.
     bool is_rigid(std::size_t body) const { return rigid_[body] != 0; }
     /// Points of all bodies that are not rigid.
     const SteppedPoints& stepped() const { return stepped_; }
@@ -318,7 +324,8 @@ private:
     };
 
     Array<DeformableBody> bodies_;
-    Array<std::uint8_t> rigid_;  // by body
+    static constexpr std::uint8_t left = 2;
+    Array<std::uint8_t> rigid_;  // by body: 1, or `left`
     // Of rigid ones: their elastic energy, and by point how their shape differs from that at rest.
     Array<double> held_energy_;
     Array<Vec<double, D>> held_shape_;
