@@ -362,9 +362,9 @@ void Bodies<D>::serialise(Archive& archive) {
         expect_fit(rigid_origins_.size() == rigid.size() &&
                        deformable_origins_.size() == deformable.bodies(),
                    "body_numbers");
-        expect_fit(rigid_at_start_ >= 0 &&
-                       static_cast<std::size_t>(rigid_at_start_) <= rigid.size(),
-                   "bodies_at_start");
+        expect_fit(
+            rigid_at_start_ >= 0 && static_cast<std::size_t>(rigid_at_start_) <= rigid.size(),
+            "bodies_at_start");
         rigid_particles_.expect_points_of(rigid.size());
         breakable_.expect_bodies_of(rigid.size(), deformable, rigid_particles_.size());
         start_breakable();

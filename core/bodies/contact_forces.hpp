@@ -192,14 +192,13 @@ void Contacts<D>::apply(ContactBodies<D>& bodies, PairKind kind, double moved, d
     Selection& selection = of(kind);
     pushes_.resize(pairs_.size());
     if (apart_) keep(selection);
-    for_each_contact(selection.rows.size(),
-                     [&](std::size_t n) {
-                         const std::size_t k = selection.rows[n];
-                         if (contacts_[k].gap > contacts_[k].approach(moved))
-                             part(k);
-                         else
-                             push_pair(bodies, k, dt);
-                     });
+    for_each_contact(selection.rows.size(), [&](std::size_t n) {
+        const std::size_t k = selection.rows[n];
+        if (contacts_[k].gap > contacts_[k].approach(moved))
+            part(k);
+        else
+            push_pair(bodies, k, dt);
+    });
     hand_out(selection, bodies.points);
     for (const std::size_t k : selection.rows) {
         const Push& push = pushes_[k];
@@ -286,8 +285,7 @@ double Contacts<D>::gap_of(const ContactBodies<D>& bodies, std::size_t k, double
     }
     const ContactSolid<D>& solid = bodies.solids[pair.shape()];
     const Vec<double, D> r = nearest_image(domain_, x - solid.centre);
-    const auto places =
-        solid.surface->touched_by(rotated_back(solid.rotation, r), radius + margin);
+    const auto places = solid.surface->touched_by(rotated_back(solid.rotation, r), radius + margin);
     return places.empty() ? margin : std::max(0.0, places[0].distance - radius);
 }
 

@@ -43,8 +43,8 @@ struct ContactPoints {
     }
 
     ContactSide side(std::size_t k) const {
-        return {material[k],   radius[k],          mass[k], diameter[k],
-                fixed[k] != 0, deformable[k] != 0, false,   share[k], whole[k]};
+        return {material[k],        radius[k], mass[k],  diameter[k], fixed[k] != 0,
+                deformable[k] != 0, false,     share[k], whole[k]};
     }
 };
 

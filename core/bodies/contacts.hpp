@@ -133,7 +133,7 @@ private:
         Array<std::size_t> first_push;  // of each of `points` in pushes_on, and their end
         Array<std::size_t> pushes_on;   // row of the pair, doubled, plus one for its second side
         double timestep = std::numeric_limits<double>::infinity();
-        Array<std::size_t> kept;        // rows with springs before they were applied, and these
+        Array<std::size_t> kept;  // rows with springs before they were applied, and these
         Array<ContactSprings> springs;
         Array<Vec<double, D>> normals;
     };

@@ -119,7 +119,8 @@ public:
     double margin() const {
         double smallest = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < size(); ++k)
-            if (!bodies_[k].fixed && !(bodies_[k].whole > 0.0)) smallest = std::min(smallest, 0.3 * shape(k).radius);
+            if (!bodies_[k].fixed && !(bodies_[k].whole > 0.0))
+                smallest = std::min(smallest, 0.3 * shape(k).radius);
         return smallest;
     }
     BodySums<D> sums() const {
@@ -242,9 +243,8 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         const RigidBody<D>& body = bodies_[k];
         const auto number = static_cast<std::int32_t>(k);
         const double diameter = 2.0 * shape(k).radius;
-        ContactSide side{body.material, shape(k).radius, body.mass, diameter,
-                         body.fixed,    false,           false,     1.0,
-                         body.whole};
+        ContactSide side{body.material, shape(k).radius, body.mass, diameter,  body.fixed,
+                         false,         false,           1.0,       body.whole};
         if (shape(k).is_ball()) {
             contact.points.add(number, side);
             continue;

@@ -243,14 +243,15 @@ void BreakableBodies<D>::serialise(Archive& archive) {
         const Vec<double, 4>& q = orientation[k];
         expect_fit(std::abs(dot(q, q) - 1.0) < 1e-6, "breakable_orientation");
         expect_fit(rigid[k] >= -1 && deformable[k] >= 0, "breakable_rigid");
-        bodies_.push_back({rigid[k] < 0 ? BreakableBody<D>::none : static_cast<std::size_t>(rigid[k]),
-                           static_cast<std::size_t>(deformable[k]),
-                           centre[k],
-                           {q[0], q[1], q[2], q[3]},
-                           deforms_for[k],
-                           loudness[k],
-                           strength[k],
-                           bears[k]});
+        bodies_.push_back(
+            {rigid[k] < 0 ? BreakableBody<D>::none : static_cast<std::size_t>(rigid[k]),
+             static_cast<std::size_t>(deformable[k]),
+             centre[k],
+             {q[0], q[1], q[2], q[3]},
+             deforms_for[k],
+             loudness[k],
+             strength[k],
+             bears[k]});
     }
 }
 

@@ -241,8 +241,7 @@ public:
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
                            rigid_point_.size() == n && material_.size() == solids_.bodies() &&
-                           group_.size() == solids_.bodies() &&
-                           whole_.size() == solids_.bodies(),
+                           group_.size() == solids_.bodies() && whole_.size() == solids_.bodies(),
                        "deformable_normal");
         }
     }

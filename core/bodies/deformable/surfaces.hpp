@@ -199,7 +199,8 @@ Shape<D> DeformableSurfaces<D>::shape_of(const ContactBodies<D>& contact, std::i
     for (const Vec<double, D>& sample : shape.samples)
         shape.radius = std::max(shape.radius, norm(sample) + 0.5 * shape.thickness);
     for (const Facet<D>& facet : shape.facets)
-        for (const Vec<double, D>& corner : facet) shape.radius = std::max(shape.radius, norm(corner));
+        for (const Vec<double, D>& corner : facet)
+            shape.radius = std::max(shape.radius, norm(corner));
     shape.enclose(nullptr);
     return shape;
 }
@@ -223,7 +224,8 @@ void DeformableSurfaces<D>::add_polygon(const Surface<D>& surface, std::size_t c
         if (add(v, 0.0)) shape.samples.push_back(corners.back());
         add(v, 0.5);
     }
-    while (corners.size() > 1 && norm(corners.front() - corners.back()) < least) corners.resize(corners.size() - 1);
+    while (corners.size() > 1 && norm(corners.front() - corners.back()) < least)
+        corners.resize(corners.size() - 1);
     for (std::size_t k = 0; k < corners.size(); ++k)
         shape.facets.push_back({corners[k], corners[(k + 1) % corners.size()]});
 }

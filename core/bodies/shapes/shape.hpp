@@ -16,8 +16,8 @@ inline bool has_facets(ShapeKind kind) {
 }
 
 /// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D
-/// a disc), what facets enclose, convex or not, a sheet of facets, the ground of a terrain, or balls
-/// around points of a surface.
+/// a disc), what facets enclose, convex or not, a sheet of facets, the ground of a terrain, or
+/// balls around points of a surface.
 template <int D>
 struct Shape {
     ShapeKind kind = ShapeKind::ball;

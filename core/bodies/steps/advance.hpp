@@ -211,8 +211,8 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
     change_breakable(struck, before);
 }
 
-/// A body that has come to rest within itself is rigid, again or, if it is a part, at last, with the shape and the
-/// momenta that it has; what it still has of vibration counts as damped.
+/// A body that has come to rest within itself is rigid, again or, if it is a part, at last, with
+/// the shape and the momenta that it has; what it still has of vibration counts as damped.
 template <int D>
 void Bodies<D>::make_rigid_again(double dt, Course& course) {
     Array<std::size_t> still;
@@ -242,9 +242,8 @@ void Bodies<D>::make_rigid(std::size_t n, std::int32_t shown) {
     if (!body.has_rigid()) add_rigid(n, motion, shown);
     const Mat<double, 3> turn = motion.orientation.matrix();
     const Vec<double, D> centre = motion.centre + rotated(turn, body.centre - motion.rest_centre);
-    const Vec3 own =
-        motion.angular_momentum +
-        motion.mass * cross(in_space(motion.centre - centre), in_space(motion.velocity));
+    const Vec3 own = motion.angular_momentum + motion.mass * cross(in_space(motion.centre - centre),
+                                                                   in_space(motion.velocity));
     rigid.put_back(body.rigid, centre, motion.velocity, motion.orientation.after(body.orientation),
                    own);
     deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
@@ -256,13 +255,8 @@ template <int D>
 void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int32_t shown) {
     const std::size_t b = breakable_[n].deformable, k = rigid.size();
     const Mat<double, 3> turn = motion.orientation.matrix(), back = transposed(turn);
-    const RigidBody<D> body{0,
-                            deformable.material(b),
-                            deformable.group(b),
-                            false,
-                            motion.mass,
-                            back * motion.inertia * turn,
-                            deformable.whole(b)};
+    const RigidBody<D> body{0,           deformable.material(b),       deformable.group(b), false,
+                            motion.mass, back * motion.inertia * turn, deformable.whole(b)};
     RigidBodyState<D> state{};
     state.orientation = motion.orientation;
     rigid.add(body, state, deformable.shape_of(contact_, shown, b, motion));
@@ -270,9 +264,8 @@ void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int3
     breakable_.give_rigid(n, k, motion.rest_centre);
     for (const std::uint32_t p : deformable.solids().points_of(b))
         deformable.set_rigid_point(
-            p, rigid_particles_.add(
-                   k, rotated_back(turn, deformable.solids().x[p] - motion.centre),
-                   rotated_back(turn, deformable.normal(p))));
+            p, rigid_particles_.add(k, rotated_back(turn, deformable.solids().x[p] - motion.centre),
+                                    rotated_back(turn, deformable.normal(p))));
 }
 
 /// Whether it has had time for waves to go to and fro, and has lately had but a small
