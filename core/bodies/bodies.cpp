@@ -17,6 +17,7 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
         return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
     };
     for (const std::int32_t parent : fragments.parent) deformable_origins_.add(origin(parent));
+    divide_breakable(fragments);
     const BodySums<D> before = rigid.sums();
     const std::size_t first = rigid.size();
     for (std::size_t k = 0; k < fragments.dust.size(); ++k)
@@ -27,9 +28,26 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
         shrink_dust(first);
         prepare_contacts();
     }
-    renumber_contacts(fragments);
+    renumber_contacts(fragments, contact_.solids.size());
     if constexpr (D == 3) accept_overlaps(fragments, first);
     return {born, fragments.lost - born.kinetic_energy};
+}
+
+/// The rigid bodies of those that divide have not their shape.
+template <int D>
+void Bodies<D>::divide_breakable(const Fragments<D>& fragments) {
+    const std::size_t first = deformable.bodies() - fragments.parent.size();
+    for (std::size_t b = 0; b < first; ++b) {
+        const std::int32_t n = fragments.divided[b] ? breakable_.of_deformable(b) : -1;
+        if (n < 0) continue;
+        const BreakableBody<D>& body = breakable_[static_cast<std::size_t>(n)];
+        if (body.has_rigid()) rigid_origins_.forget(body.rigid);
+        Array<std::size_t> parts;
+        for (std::size_t k = 0; k < fragments.parent.size(); ++k)
+            if (fragments.parent[k] == static_cast<std::int32_t>(b)) parts.push_back(first + k);
+        breakable_.divide(static_cast<std::size_t>(n), parts, deformable);
+    }
+    breakable_.index(rigid.size(), deformable);
 }
 
 template <int D>
@@ -38,8 +56,11 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     const auto of = static_cast<std::size_t>(deformable.body_of_point(grain.points.front()));
     RigidBody<D> body = grain.body;
     body.material = deformable.material(of), body.group = deformable.group(of);
+    body.whole = deformable.whole(of);
     const std::size_t k = rigid.size();
-    rigid.add_ball(body, grain.state, grain.largest);
+    Shape<D> ball;
+    ball.radius = grain.largest;
+    rigid.add(body, grain.state, ball);
     rigid_origins_.add(origin);
     for (std::size_t n = 0; n < grain.points.size(); ++n) {
         const std::uint32_t p = grain.points[n];
@@ -60,14 +81,13 @@ void Bodies<D>::shrink_dust(std::size_t first) {
 }
 
 template <int D>
-void Bodies<D>::renumber_contacts(const Fragments<D>& fragments) {
+void Bodies<D>::renumber_contacts(const Fragments<D>& fragments, std::size_t solids) {
     Array<std::int32_t> points, shapes;
     const std::size_t first = fragments.first_contact_point,
                       end = first + DeformableSurfaces<D>::points_each * fragments.vertex.size();
     for (std::size_t k = 0; k < end; ++k)
         points.push_back(deformable.surfaces().renumbered(k, first, fragments.vertex));
-    for (std::size_t s = 0; s < contact_.solids.size(); ++s)
-        shapes.push_back(static_cast<std::int32_t>(s));
+    for (std::size_t s = 0; s < solids; ++s) shapes.push_back(static_cast<std::int32_t>(s));
     std::map<std::int32_t, std::int32_t> now;  // the surface of each body
     for (std::size_t s = 0; s < contact_.surfaces.size(); ++s)
         now[contact_.surfaces[s].body - static_cast<std::int32_t>(rigid.size())] =

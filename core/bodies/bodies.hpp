@@ -51,6 +51,12 @@ public:
     void make_breakable(std::size_t k) {
         breakable_.add(k, deformable.bodies() - 1, rigid.state(k));
     }
+    /// Whether deformable body b has left, and no row of the rigid bodies says so.
+    bool has_left(std::size_t b) const {
+        const std::int32_t n = breakable_.of_deformable(b);
+        return deformable.solids().has_left(b) &&
+               (n < 0 || !breakable_[static_cast<std::size_t>(n)].has_rigid());
+    }
     /// Whether rigid body k is deformable now.
     bool deforms(std::size_t k) const {
         const BreakableBody<D>* body = breakable_.of_rigid(k);
@@ -81,10 +87,13 @@ public:
     }
     /// Eq. (127); 1 of dust.
     double damage(const Particles<D>& particles, std::size_t p) const {
-        if (deformable.has(particles, p))
-            return deformable.solids().bonds().damage(particles.point(p));
+        const auto& bonds = deformable.solids().bonds();
+        if (deformable.has(particles, p)) return bonds.damage(particles.point(p));
         const std::int32_t k = rigid_body_of(particles, p);
-        return k >= 0 && rigid_origins_[static_cast<std::size_t>(k)].parent >= 0 ? 1.0 : 0.0;
+        if (k < 0) return 0.0;
+        const std::int32_t own = breakable_.deformable_point(particles.point(p));
+        if (own >= 0) return bonds.damage(static_cast<std::size_t>(own));
+        return is_dust(static_cast<std::size_t>(k)) ? 1.0 : 0.0;
     }
 
     /// Cuts deformable bodies at a time [s] between steps: points, in the order of adding, with
@@ -135,14 +144,18 @@ public:
         rigid_particles_.set_velocities(particles, rigid, ahead);
     }
 
-    /// Removes the rigid bodies whose centre is in the region and marks their particles in
-    /// `removed`.
+    /// Removes the bodies whose centre is in the region and marks their particles in `removed`;
+    /// returns the elastic energy that went with them [J], 2-D: [J/m].
     template <class Region>
-    void drain(const Particles<D>& particles, const Region& region, Array<std::uint8_t>& removed);
+    double drain(const Particles<D>& particles, const Region& region, Array<std::uint8_t>& removed);
 
     double kinetic_energy() const { return deformable.kinetic_energy() + rigid.kinetic_energy(); }
     /// Parts that came off bodies which broke: those that are deformable, and grains of dust.
-    PartCounts parts() const { return {deformable_origins_.parts(), rigid_origins_.parts()}; }
+    PartCounts parts() const {
+        std::size_t dust = 0;
+        for (std::size_t k = 0; k < rigid_origins_.size(); ++k) dust += is_dust(k);
+        return {deformable_origins_.parts(), dust};
+    }
 
     /// Where the energy is: velocities are those of now, forces those last evaluated.
     BodyEnergy energy() const {
@@ -167,10 +180,17 @@ private:
     /// More in one step come of speeds or strains that have gone wrong.
     static constexpr double most_contact_steps = 1e6;
 
+    template <class Region>
+    double drain_deformable(const Particles<D>& particles, const Region& region,
+                            Array<std::uint8_t>& removed);
     void number_bodies();
+    /// Whether rigid body k is a grain of dust.
+    bool is_dust(std::size_t k) const {
+        return rigid_origins_[k].parent >= 0 && !breakable_.of_rigid(k);
+    }
     std::int32_t number_of_deformable(std::size_t body) {
-        const std::int32_t rigid_one = breakable_.rigid_of(body);
-        if (rigid_one >= 0) return rigid_origins_[static_cast<std::size_t>(rigid_one)].number;
+        const std::int32_t n = breakable_.of_deformable(body);
+        if (n >= 0) return rigid_origins_[breakable_[static_cast<std::size_t>(n)].rigid].number;
         return deformable.breaks(body) ? numbers_++ : -1;
     }
     /// What came of parts that are bodies now: what dust brings to the rigid bodies, and the energy
@@ -185,7 +205,9 @@ private:
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void shrink_dust(std::size_t first);
-    void renumber_contacts(const Fragments<D>& fragments);
+    void divide_breakable(const Fragments<D>& fragments);
+    /// `solids`: how many rigid bodies with surfaces there were before.
+    void renumber_contacts(const Fragments<D>& fragments, std::size_t solids);
     void accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust);
     Array<std::int32_t> bodies_before(const Fragments<D>& fragments, std::size_t first_dust) const;
     /// Particles of what has become dust are points of rigid bodies from now on.
@@ -208,8 +230,8 @@ private:
     };
     void start_breakable() {
         if (!breakable_.any()) return;
-        breakable_.start(rigid, deformable);
-        contacts_.tell_kinds_apart(rigid.size() - rigid_origins_.parts());
+        breakable_.start(rigid.size(), deformable);
+        contacts_.tell_kinds_apart(static_cast<std::size_t>(rigid_at_start_));
     }
     /// In how many steps, none longer than `longest`, a time passes.
     static double steps_of(double time, double longest) {
@@ -242,6 +264,8 @@ private:
     }
     void make_deformable(const Array<std::size_t>& struck, Course& course);
     void make_rigid_again(double dt, Course& course);
+    void make_rigid(std::size_t n, std::int32_t shown);
+    void add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int32_t shown);
     bool becomes_still(BreakableBody<D>& body, double dt);
     void change_breakable(const Array<std::size_t>& which, const Fragments<D>& before);
     /// Which rigid bodies move in the short steps: dust, and those that may touch what does.
@@ -313,6 +337,7 @@ private:
     RigidParticles<D> rigid_particles_;
     Origins rigid_origins_, deformable_origins_;
     std::int32_t numbers_ = 0;                        // of bodies, given so far
+    std::int32_t rigid_at_start_ = 0;                 // how many
     std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     Array<std::int32_t> all_points_;
@@ -332,11 +357,14 @@ void Bodies<D>::serialise(Archive& archive) {
     loads.serialise(archive);
     archive.nested("rigid_origin_", rigid_origins_);
     archive.nested("deformable_origin_", deformable_origins_);
-    archive("body_numbers", numbers_);
+    archive("body_numbers", numbers_), archive("bodies_at_start", rigid_at_start_);
     if (archive.loads()) {
         expect_fit(rigid_origins_.size() == rigid.size() &&
                        deformable_origins_.size() == deformable.bodies(),
                    "body_numbers");
+        expect_fit(
+            rigid_at_start_ >= 0 && static_cast<std::size_t>(rigid_at_start_) <= rigid.size(),
+            "bodies_at_start");
         rigid_particles_.expect_points_of(rigid.size());
         breakable_.expect_bodies_of(rigid.size(), deformable, rigid_particles_.size());
         start_breakable();
@@ -348,6 +376,7 @@ void Bodies<D>::serialise(Archive& archive) {
 
 template <int D>
 void Bodies<D>::number_bodies() {
+    rigid_at_start_ = static_cast<std::int32_t>(rigid.size());
     for (std::size_t k = 0; k < rigid.size(); ++k)
         rigid_origins_.add({rigid.body(k).fixed ? -1 : numbers_++, -1, 0.0});
     for (std::size_t k = 0; k < deformable.bodies(); ++k)
@@ -356,15 +385,34 @@ void Bodies<D>::number_bodies() {
 
 template <int D>
 template <class Region>
-void Bodies<D>::drain(const Particles<D>& particles, const Region& region,
-                      Array<std::uint8_t>& removed) {
-    if (!any_moves()) return;
+double Bodies<D>::drain(const Particles<D>& particles, const Region& region,
+                        Array<std::uint8_t>& removed) {
+    if (!any_moves()) return 0.0;
     const Array<std::uint8_t> leaves = rigid.remove_inside(region);
     if (std::find(leaves.begin(), leaves.end(), 1) != leaves.end()) moved_ = margin_;
     for (std::size_t p = 0; p < particles.size(); ++p) {
         const std::int32_t k = rigid_body_of(particles, p);
         if (k >= 0 && leaves[static_cast<std::size_t>(k)]) removed[p] = 1;
     }
+    return drain_deformable(particles, region, removed);
+}
+
+template <int D>
+template <class Region>
+double Bodies<D>::drain_deformable(const Particles<D>& particles, const Region& region,
+                                   Array<std::uint8_t>& removed) {
+    if (!deformable.any_deforms()) return 0.0;
+    const Fragments<D> before = deformable.as_they_are();
+    const auto leaving = deformable.remove_inside(region);
+    if (!leaving.any()) return 0.0;
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        if (deformable.has(particles, p) &&
+            leaving.is_body[static_cast<std::size_t>(deformable.body_of_point(particles.point(p)))])
+            removed[p] = 1;
+    const std::size_t solids = contact_.solids.size();
+    prepare_contacts();
+    renumber_contacts(before, solids);
+    return leaving.energy;
 }
 
 template <int D>

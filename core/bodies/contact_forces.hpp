@@ -30,6 +30,8 @@ void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
     add_rows(bodies);
     springs_.assign(pairs_.size(), {}), normals_.assign(pairs_.size(), {});
     restore(bodies);
+    for_each_contact(pairs_.size(),
+                     [&](std::size_t k) { contacts_[k].gap = gap_of(bodies, k, margin); });
     pushes_.assign(pairs_.size(), {});
     for (std::size_t k = 0; k < pairs_.size(); ++k)
         if (const auto found = before.find(key(pairs_[k])); found != before.end()) {
@@ -129,16 +131,20 @@ void Contacts<D>::select(PairKind kind) {
 
 template <int D>
 void Contacts<D>::keep(Selection& selection) const {
-    selection.springs.clear(), selection.normals.clear();
-    for (const std::size_t k : selection.rows)
+    selection.kept.clear(), selection.springs.clear(), selection.normals.clear();
+    for (const std::size_t k : selection.rows) {
+        if (springs_[k][rest_overlap] == 0.0 && dot(normals_[k], normals_[k]) == 0.0) continue;
+        selection.kept.push_back(k);
         selection.springs.push_back(springs_[k]), selection.normals.push_back(normals_[k]);
+    }
 }
 
 template <int D>
 void Contacts<D>::revert(PairKind kind) {
     const Selection& selection = of(kind);
-    for (std::size_t n = 0; n < selection.rows.size(); ++n) {
-        const std::size_t k = selection.rows[n];
+    for (const std::size_t k : selection.rows) springs_[k] = {}, normals_[k] = {};
+    for (std::size_t n = 0; n < selection.kept.size(); ++n) {
+        const std::size_t k = selection.kept[n];
         springs_[k] = selection.springs[n], normals_[k] = selection.normals[n];
     }
 }
@@ -182,12 +188,17 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
 /// Each point takes what its pairs do to it in their order, so that sums do not depend on the
 /// number of threads.
 template <int D>
-void Contacts<D>::apply(ContactBodies<D>& bodies, PairKind kind, double dt) {
+void Contacts<D>::apply(ContactBodies<D>& bodies, PairKind kind, double moved, double dt) {
     Selection& selection = of(kind);
     pushes_.resize(pairs_.size());
     if (apart_) keep(selection);
-    for_each_contact(selection.rows.size(),
-                     [&](std::size_t n) { push_pair(bodies, selection.rows[n], dt); });
+    for_each_contact(selection.rows.size(), [&](std::size_t n) {
+        const std::size_t k = selection.rows[n];
+        if (contacts_[k].gap > contacts_[k].approach(moved))
+            part(k);
+        else
+            push_pair(bodies, k, dt);
+    });
     hand_out(selection, bodies.points);
     for (const std::size_t k : selection.rows) {
         const Push& push = pushes_[k];
@@ -254,6 +265,28 @@ Overlaps<D> Contacts<D>::overlaps_of_pair(const ContactBodies<D>& bodies, std::s
             return overlap_of(points, pair.first(), *surface, contacts_[k].vertex, domain_);
     if (!pair.with_shape()) return overlap_of(points, pair.first(), pair.second(), domain_);
     return overlaps_of(points, pair.first(), bodies.solids[pair.shape()], domain_);
+}
+
+/// 0 where it is not known.
+template <int D>
+double Contacts<D>::gap_of(const ContactBodies<D>& bodies, std::size_t k, double margin) const {
+    const ContactPair& pair = pairs_[k];
+    const ContactPoints<D>& points = bodies.points;
+    const Vec<double, D>& x = points.position[pair.first()];
+    const double radius = points.radius[pair.first()];
+    if constexpr (D == 2)
+        if (const Surface<D>* surface = bodies.surface(pair)) {
+            const auto foot = surface->foot(x, contacts_[k].vertex, domain_);
+            return foot ? std::max(0.0, -foot->depth) : 0.0;
+        }
+    if (!pair.with_shape()) {
+        const Vec<double, D> r = nearest_image(domain_, points.position[pair.second()] - x);
+        return std::max(0.0, norm(r) - radius - points.radius[pair.second()]);
+    }
+    const ContactSolid<D>& solid = bodies.solids[pair.shape()];
+    const Vec<double, D> r = nearest_image(domain_, x - solid.centre);
+    const auto places = solid.surface->touched_by(rotated_back(solid.rotation, r), radius + margin);
+    return places.empty() ? margin : std::max(0.0, places[0].distance - radius);
 }
 
 template <int D>

@@ -21,6 +21,7 @@ struct ContactSide {
     bool fixed, deformable;
     bool flat;           // touched on a facet
     double share = 1.0;  // of the spring of a point of a deformable body
+    double whole = 0.0;  // diameter of the body that it is a part of [m]; 0: of none
 };
 
 /// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it
@@ -89,8 +90,9 @@ private:
     static constexpr double penalty_factor = 2.0, penalty_steps = 5.0;
 
     bool hertz() const { return D == 3 && options_.hertz; }
-    double stiffness(const ContactLaw& law, const ContactProperties& a,
+    double stiffness(const ContactLaw& law, double whole, const ContactProperties& a,
                      const ContactProperties& b) const;
+    double largest_overlap(const ContactLaw& law, double whole) const;
 
     ContactOptions options_;
     Array<ContactProperties> materials_;
@@ -170,6 +172,9 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
                : a.fixed            ? b.mass
                                     : a.mass;
     law.diameter = std::min(a.fixed ? infinite : a.diameter, b.fixed ? infinite : b.diameter);
+    auto whole_of = [](const ContactSide& side, double if_fixed) {
+        return side.fixed ? if_fixed : std::max(side.whole, side.diameter);
+    };
     law.radius = b.flat ? a.radius : a.radius * b.radius / (a.radius + b.radius);
     law.zeta = damping_[first * materials_.size() + second];
     law.friction = 0.5 * (u.friction + v.friction);
@@ -181,19 +186,30 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
             penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : a.share * b.share);
         law.zeta = law.rolling = 0.0;
     } else
-        law.stiffness = stiffness(law, u, v);
+        law.stiffness =
+            stiffness(law, std::min(whole_of(a, infinite), whole_of(b, infinite)), u, v);
     // Linear: equal times of both springs for balls. Hertz: Mindlin's 4 G*/E*.
     const double nu = 0.5 * (u.poisson_ratio + v.poisson_ratio);
     law.tangential = hertz() ? 2.0 * (1.0 - nu) / (2.0 - nu) : 2.0 / 7.0;
     return law;
 }
 
-/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
+/// The overlap that a softened contact may reach. Parts of a body are as soft as the body was, up
+/// to two fifths of their own radius: breaking makes no contact shorter.
 template <int D>
-double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
+double ContactLaws<D>::largest_overlap(const ContactLaw& law, double whole) const {
+    constexpr double most = 0.2;  // of the diameter
+    const double own = options_.overlap * law.diameter;
+    return std::max(own, std::min(options_.overlap * whole, most * law.diameter));
+}
+
+/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material). `whole` is the
+/// diameter of the smaller body, or of that which it is a part of.
+template <int D>
+double ContactLaws<D>::stiffness(const ContactLaw& law, double whole, const ContactProperties& a,
                                  const ContactProperties& b) const {
     const double radius = law.curvature();
-    const double v = options_.speed, overlap = options_.overlap * law.diameter;
+    const double v = options_.speed, overlap = largest_overlap(law, whole);
     const double soft_k = law.mass * v * v / (overlap * overlap);
     const double soft_E =
         15.0 / 16.0 * law.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));

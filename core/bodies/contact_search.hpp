@@ -43,7 +43,8 @@ SortedBalls<D> sorted_balls(const ContactPoints<D>& points, const Domain<D>& dom
     return balls;
 }
 
-/// Adds pairs of balls of different bodies that are nearer than `margin`.
+/// Adds pairs of balls of different bodies that are nearer than `margin`. Of two points of surfaces
+/// each touches the surface of the other, however many of its points are near.
 template <int D>
 void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, double margin,
                      Array<ContactPair>& pairs) {
@@ -51,15 +52,27 @@ void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, do
     const SortedBalls<D> balls = sorted_balls(points, domain, neighbours);
     if (balls.point.size() < 2) return;
     neighbours.build(1, balls.position, balls.support, margin);
+    Array<std::int32_t> met;  // surfaces
     for (std::uint32_t i = 0; i < neighbours.moving(); ++i) {
+        met.clear();
         auto pair_with = [&](std::uint32_t entry) {
             const std::uint32_t j = entry & ListEntry::index_mask;
-            const std::int32_t a = balls.point[i], b = balls.point[j];
-            if (points.body[a] == points.body[b] || (j < neighbours.moving() && j <= i)) return;
+            const std::int32_t a = balls.point[i], b = balls.point[j], surface = points.surface[b];
+            const bool surfaces = points.surface[a] >= 0 && surface >= 0,
+                       moves = j < neighbours.moving();
+            if (points.body[a] == points.body[b] || (moves && j <= i && !surfaces)) return;
+            if (surfaces && moves && std::ranges::find(met, surface) != met.end()) return;
             const Vec<double, D> r = nearest_image(domain, balls.position[j] - balls.position[i]);
             const double reach = points.reach(static_cast<std::size_t>(a)) +
                                  points.reach(static_cast<std::size_t>(b)) + margin;
-            if (dot(r, r) < reach * reach) pairs.push_back({std::min(a, b), std::max(a, b)});
+            if (!(dot(r, r) < reach * reach)) return;
+            if (!surfaces) {
+                pairs.push_back({std::min(a, b), std::max(a, b)});
+                return;
+            }
+            met.push_back(surface);
+            pairs.push_back({a, b});
+            if (!moves) pairs.push_back({b, a});
         };
         neighbours.clusters()[i].for_each_moving(pair_with);
         neighbours.clusters()[i].for_each_fixed(pair_with);
@@ -130,7 +143,7 @@ void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, d
     }
 }
 
-/// Points of two deformable bodies with surfaces touch the surface of the other, each once.
+/// Of a pair of points of surfaces the first touches the surface of the second, once.
 template <int D>
 void turn_to_surfaces(const ContactBodies<D>& bodies, Array<ContactPair>& pairs) {
     const Array<std::int32_t>& surface = bodies.points.surface;
@@ -141,7 +154,6 @@ void turn_to_surfaces(const ContactBodies<D>& bodies, Array<ContactPair>& pairs)
             continue;
         }
         turned.push_back(bodies.pair_with_surface(pair.a, surface[pair.second()]));
-        turned.push_back(bodies.pair_with_surface(pair.b, surface[pair.first()]));
     }
     std::sort(turned.begin(), turned.end());
     turned.erase(std::unique(turned.begin(), turned.end()), turned.end());

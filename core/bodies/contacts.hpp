@@ -44,8 +44,9 @@ public:
     /// From the next find() on, pairs of one kind can be looked at alone, and no longer all. Slow
     /// are those of bodies with numbers below this one.
     void tell_kinds_apart(std::size_t slow_bodies) { slow_bodies_ = slow_bodies, apart_ = true; }
-    /// Adds forces and torques of all pairs of a kind, whose springs stretch for dt.
-    void apply(ContactBodies<D>& bodies, PairKind kind, double dt);
+    /// Adds forces and torques of all pairs of a kind, whose springs stretch for dt. Nothing has
+    /// gone farther than `moved` since find().
+    void apply(ContactBodies<D>& bodies, PairKind kind, double moved, double dt);
     /// Gives springs back what they were before the last apply() of a kind, of pairs told apart.
     void revert(PairKind kind);
 
@@ -108,6 +109,11 @@ private:
         ContactLaw law;
         double overlap;
         std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
+        double gap = 0.0;          // at least, when pairs were found [m]
+
+        /// How far its sides may come together while points go some way. Vertices of deformable
+        /// bodies lie half a spacing beyond them.
+        double approach(double moved) const { return (law.rigid ? 2.0 : 4.0) * moved; }
     };
 
     /// What a pair does to its bodies; the second one gets the opposite force.
@@ -127,7 +133,8 @@ private:
         Array<std::size_t> first_push;  // of each of `points` in pushes_on, and their end
         Array<std::size_t> pushes_on;   // row of the pair, doubled, plus one for its second side
         double timestep = std::numeric_limits<double>::infinity();
-        Array<ContactSprings> springs;  // of `rows`, before they were applied
+        Array<std::size_t> kept;  // rows with springs before they were applied, and these
+        Array<ContactSprings> springs;
         Array<Vec<double, D>> normals;
     };
     const Selection& of(PairKind kind) const { return selections_[static_cast<std::size_t>(kind)]; }
@@ -142,6 +149,7 @@ private:
     }
     void expect_pairs_of(const ContactBodies<D>& bodies) const;
     Contact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
+    double gap_of(const ContactBodies<D>& bodies, std::size_t k, double margin) const;
     /// Length of the run of one pair that begins with row k; 0 where it began before.
     std::size_t run_from(std::size_t k) const;
     /// As many rows of the pair as it may have places.

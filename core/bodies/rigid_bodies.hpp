@@ -56,8 +56,8 @@ public:
     void resize_ball(std::size_t k, double radius) {
         shapes[static_cast<std::size_t>(bodies_[k].shape)].radius = radius;
     }
-    /// Adds a ball within a step, with the angular momentum of its state.
-    void add_ball(RigidBody<D> body, const RigidBodyState<D>& state, double radius);
+    /// Adds a body within a step, with a shape of its own and the angular momentum of its state.
+    void add(RigidBody<D> body, const RigidBodyState<D>& state, const Shape<D>& own);
 
     /// Adds the bodies to those that may touch; the first that are added.
     void add_to(ContactBodies<D>& contact);
@@ -115,10 +115,12 @@ public:
         });
     }
     /// How far bodies may go before contacts are looked for again [m]; infinite where none moves.
+    /// Grains of dust, which are small, may have more pairs than touch.
     double margin() const {
         double smallest = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < size(); ++k)
-            if (!bodies_[k].fixed) smallest = std::min(smallest, 0.3 * shape(k).radius);
+            if (!bodies_[k].fixed && !(bodies_[k].whole > 0.0))
+                smallest = std::min(smallest, 0.3 * shape(k).radius);
         return smallest;
     }
     BodySums<D> sums() const {
@@ -189,11 +191,10 @@ void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& stat
 }
 
 template <int D>
-void RigidBodies<D>::add_ball(RigidBody<D> body, const RigidBodyState<D>& state, double radius) {
+void RigidBodies<D>::add(RigidBody<D> body, const RigidBodyState<D>& state, const Shape<D>& own) {
     body.shape = static_cast<std::int32_t>(shapes.size());
-    shapes.emplace_back();
-    shapes.back().radius = radius;
-    add(body, state, {});
+    shapes.push_back(own);
+    add(body, state, Vec3{});
     states_.back().angular_momentum = state.angular_momentum;
     velocity_before_.push_back(state.velocity), impulse_before_.push_back({});
     spin_before_.push_back(spin(size() - 1)), ball_turn_.push_back({});
@@ -208,7 +209,7 @@ void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
     bodies_.clear(), states_.clear(), moving_ = 0;
     inverse_inertia_.clear(), turns_alike_.clear();
     contact_force_.clear(), contact_torque_.clear(), mean_contact_force_.clear();
-    for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], {});
+    for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], Vec3{});
     states_ = states;
 }
 
@@ -242,17 +243,20 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         const RigidBody<D>& body = bodies_[k];
         const auto number = static_cast<std::int32_t>(k);
         const double diameter = 2.0 * shape(k).radius;
-        ContactSide side{body.material, shape(k).radius, body.mass, diameter,
-                         body.fixed,    false,           false};
+        ContactSide side{body.material, shape(k).radius, body.mass, diameter,  body.fixed,
+                         false,         false,           1.0,       body.whole};
         if (shape(k).is_ball()) {
             contact.points.add(number, side);
             continue;
         }
         side.radius = 0.0;
+        const bool balls = shape(k).kind == ShapeKind::balls;
+        if (balls) side.radius = 0.5 * shape(k).thickness;
         for (std::size_t s = 0; s < shape(k).samples.size(); ++s) contact.points.add(number, side);
+        if (balls) continue;
         ContactSolid<D> solid;
         solid.body = number, solid.material = body.material, solid.fixed = body.fixed;
-        solid.mass = body.mass, solid.diameter = diameter;
+        solid.mass = body.mass, solid.diameter = diameter, solid.whole = body.whole;
         contact.solids.push_back(solid);
     }
 }

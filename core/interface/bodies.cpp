@@ -267,7 +267,8 @@ NamedValues BodyTables<D>::fragments(const Bodies<D>& bodies) {
     Array<std::size_t> rows;
     std::map<std::int32_t, std::size_t> row_of;  // by the number of the body among those that touch
     for (std::size_t b = 0; b < bodies.deformable_origins().size(); ++b) {
-        if (bodies.deformable_origins()[b].number < 0 || bodies.deformable.solids().is_rigid(b))
+        if (bodies.deformable_origins()[b].number < 0 ||
+            (bodies.deformable.solids().is_rigid(b) && !bodies.has_left(b)))
             continue;
         row_of[static_cast<std::int32_t>(bodies.rigid.size() + b)] = rows.size();
         rows.push_back(b);

@@ -365,15 +365,17 @@ template <class Lists>
 bool Simulation<Lists>::remove_outflow() {
     if (open_boundaries.outflows.empty() && !terrain.is_there()) return false;
     open_boundaries.removed.resize(particles.size(), 0);
-    if (terrain.is_there()) bodies.drain(particles, terrain, open_boundaries.removed);
+    double elastic = 0.0;  // all ranks have all bodies
+    if (terrain.is_there()) elastic += bodies.drain(particles, terrain, open_boundaries.removed);
     const bool any = open_boundaries.remove_outflow(
         particles,
         [this](std::size_t p) {
             return particles.is_free(p) && terrain.contains(particles.position[p]);
         },
-        [this](const Outflow<D>& outflow, auto& removed) {
-            bodies.drain(particles, outflow, removed);
+        [&](const Outflow<D>& outflow, auto& removed) {
+            elastic += bodies.drain(particles, outflow, removed);
         });
+    if (ranks().rank() == 0) open_boundaries.ledger.outflow.energy += elastic;
     return ranks().largest(any ? 1.0 : 0.0) > 0.0;
 }
 

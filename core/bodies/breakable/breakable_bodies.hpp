@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
@@ -12,9 +13,12 @@
 namespace doseki {
 
 /// One of `breakable` kinematics: the rigid body that it is while nothing strikes it, and the
-/// deformable one that it is while something does. Only one of them takes part in steps.
+/// deformable one that it is while something does. Only one of them takes part in steps. What has
+/// come off, and what has lost parts, has no rigid one until it has come to rest within itself.
 template <int D>
 struct BreakableBody {
+    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
     std::size_t rigid, deformable;
     Vec<double, D> centre;  // of the rigid one where the points of the other are at rest
     Quaternion orientation;
@@ -24,6 +28,7 @@ struct BreakableBody {
     double bears = 0.0;                      // the same with the cracks that it has
     double impedance = 0.0, diameter = 0.0;  // see Touch
 
+    bool has_rigid() const { return rigid != none; }
     /// Time in which a wave goes through it once [s].
     double crossing(const DeformableBodies<D>& bodies) const {
         return diameter / bodies.solids().material(deformable).wave_speed();
@@ -44,6 +49,15 @@ public:
     void add(std::size_t rigid, std::size_t deformable, const RigidBodyState<D>& state) {
         bodies_.push_back({rigid, deformable, state.centre, state.orientation});
     }
+    /// Of body n, which divides: its parts bear what it bore, and none has a rigid body.
+    void divide(std::size_t n, std::span<const std::size_t> parts,
+                const DeformableBodies<D>& deformable);
+    /// Gives body n a rigid one, which has its `centre` where points are at rest.
+    void give_rigid(std::size_t n, std::size_t rigid, const Vec<double, D>& centre) {
+        bodies_[n].rigid = rigid, bodies_[n].centre = centre, bodies_[n].orientation = {};
+    }
+    /// Call when bodies or the points of rigid ones have changed.
+    void index(std::size_t rigid_bodies, const DeformableBodies<D>& deformable);
     /// Finds out what a body bears with the cracks that it has.
     void weigh_cracks(std::size_t n, const DeformableBodies<D>& deformable) {
         constexpr double least = 0.1;  // of its strength: a notch concentrates stress
@@ -53,10 +67,10 @@ public:
     /// Call once all bodies are in and started, before any has a crack.
     void measure_strengths(const DeformableBodies<D>& deformable) {
         for (BreakableBody<D>& body : bodies_)
-            body.strength = deformable.solids().strength(body.deformable);
+            body.strength = body.bears = deformable.solids().strength(body.deformable);
     }
     /// Call once all bodies are in, started or restored.
-    void start(const RigidBodies<D>& rigid, const DeformableBodies<D>& deformable);
+    void start(std::size_t rigid_bodies, const DeformableBodies<D>& deformable);
 
     /// Time between two looks at whether one that is deformable has come to rest [s], infinite
     /// where none is.
@@ -72,56 +86,84 @@ public:
         const std::int32_t n = k < of_rigid_.size() ? of_rigid_[k] : -1;
         return n < 0 ? nullptr : &bodies_[static_cast<std::size_t>(n)];
     }
-    /// The rigid body that a deformable one was at first; -1: none.
-    std::int32_t rigid_of(std::size_t deformable) const {
-        for (const BreakableBody<D>& body : bodies_)
-            if (body.deformable == deformable) return static_cast<std::int32_t>(body.rigid);
+    /// Which of them a deformable body is; -1: none.
+    std::int32_t of_deformable(std::size_t deformable) const {
+        for (std::size_t n = 0; n < size(); ++n)
+            if (bodies_[n].deformable == deformable) return static_cast<std::int32_t>(n);
         return -1;
+    }
+    /// The point of a deformable body that a point of a rigid one is; -1: none.
+    std::int32_t deformable_point(std::size_t rigid_point) const {
+        return rigid_point < deformable_point_.size() ? deformable_point_[rigid_point] : -1;
     }
     /// The points of deformable bodies, by the numbers that they have among those of rigid ones.
     const Array<std::int32_t>& deformable_points() const { return deformable_point_; }
 
     /// Those that are rigid and in which the contacts of a kind, as they were last applied, may
-    /// cause more tension than they bear.
+    /// cause more tension than they bear. Dust, is_dust(body), is as small as the points of a body:
+    /// what it does beside its contact is that of its force.
+    template <class IsDust>
     Array<std::size_t> struck(const Contacts<D>& contacts, PairKind kind,
-                              const DeformableBodies<D>& deformable,
-                              std::size_t rigid_bodies) const;
+                              const DeformableBodies<D>& deformable, std::size_t rigid_bodies,
+                              const IsDust& is_dust) const;
 
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored ones are those of these bodies.
     void expect_bodies_of(std::size_t rigid_bodies, const DeformableBodies<D>& deformable,
                           std::size_t rigid_points) const {
         for (const BreakableBody<D>& body : bodies_)
-            expect_fit(body.rigid < rigid_bodies && body.deformable < deformable.bodies(),
+            expect_fit((!body.has_rigid() || body.rigid < rigid_bodies) &&
+                           body.deformable < deformable.bodies(),
                        "breakable_rigid");
         const Array<std::int32_t>& points = deformable.rigid_points();
         for (const std::int32_t point : points)
             expect_fit(point >= -1 && point < static_cast<std::int32_t>(rigid_points),
                        "deformable_rigid_point");
         for (const BreakableBody<D>& body : bodies_)
-            for (const std::uint32_t p : deformable.solids().points_of(body.deformable))
-                expect_fit(points[p] >= 0, "deformable_rigid_point");
+            if (body.has_rigid())
+                for (const std::uint32_t p : deformable.solids().points_of(body.deformable))
+                    expect_fit(points[p] >= 0, "deformable_rigid_point");
     }
 
 private:
+    void measure(BreakableBody<D>& body, const DeformableBodies<D>& deformable) const;
+
     Array<BreakableBody<D>> bodies_;
     Array<std::int32_t> of_rigid_, deformable_point_;
 };
 
 template <int D>
-void BreakableBodies<D>::start(const RigidBodies<D>& rigid, const DeformableBodies<D>& deformable) {
-    of_rigid_.assign(rigid.size(), -1);
-    for (std::size_t n = 0; n < size(); ++n) {
-        BreakableBody<D>& body = bodies_[n];
-        of_rigid_[body.rigid] = static_cast<std::int32_t>(n);
-        const auto& solids = deformable.solids();
-        const DeformableBody& material = solids.material(body.deformable);
-        body.impedance = material.rho0 * material.wave_speed();
-        const double volume = rigid.body(body.rigid).mass / material.rho0;
-        body.diameter = D == 2 ? std::sqrt(4.0 * volume / std::numbers::pi)
-                               : std::cbrt(6.0 * volume / std::numbers::pi);
-        weigh_cracks(n, deformable);
+void BreakableBodies<D>::start(std::size_t rigid_bodies, const DeformableBodies<D>& deformable) {
+    for (BreakableBody<D>& body : bodies_) measure(body, deformable);
+    index(rigid_bodies, deformable);
+}
+
+template <int D>
+void BreakableBodies<D>::measure(BreakableBody<D>& body,
+                                 const DeformableBodies<D>& deformable) const {
+    const DeformableBody& material = deformable.solids().material(body.deformable);
+    body.impedance = material.rho0 * material.wave_speed();
+    body.diameter = diameter_of<D>(material, deformable.solids().points_of(body.deformable).size());
+}
+
+template <int D>
+void BreakableBodies<D>::divide(std::size_t n, std::span<const std::size_t> parts,
+                                const DeformableBodies<D>& deformable) {
+    bodies_[n].rigid = BreakableBody<D>::none;
+    measure(bodies_[n], deformable);
+    for (const std::size_t part : parts) {
+        BreakableBody<D> body{BreakableBody<D>::none, part, {}, {}};
+        body.strength = body.bears = bodies_[n].strength;
+        measure(body, deformable);
+        bodies_.push_back(body);
     }
+}
+
+template <int D>
+void BreakableBodies<D>::index(std::size_t rigid_bodies, const DeformableBodies<D>& deformable) {
+    of_rigid_.assign(rigid_bodies, -1);
+    for (std::size_t n = 0; n < size(); ++n)
+        if (bodies_[n].has_rigid()) of_rigid_[bodies_[n].rigid] = static_cast<std::int32_t>(n);
     const Array<std::int32_t>& points = deformable.rigid_points();
     deformable_point_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
@@ -133,9 +175,11 @@ void BreakableBodies<D>::start(const RigidBodies<D>& rigid, const DeformableBodi
 }
 
 template <int D>
+template <class IsDust>
 Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairKind kind,
                                               const DeformableBodies<D>& deformable,
-                                              std::size_t rigid_bodies) const {
+                                              std::size_t rigid_bodies,
+                                              const IsDust& is_dust) const {
     auto waits = [&](std::int32_t k) -> const BreakableBody<D>* {
         const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
         return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
@@ -155,6 +199,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairK
         if (!body) return;
         const auto n = static_cast<std::size_t>(body - bodies_.data());
         force[n] += 0.5 * push;
+        if (is_dust(other)) approach = 0.0;
         tension[n] =
             std::max(tension[n], expected_tension<D>({approach, body->impedance, impedance(other),
                                                       force[n], body->diameter}));
@@ -174,36 +219,39 @@ void BreakableBodies<D>::serialise(Archive& archive) {
     Array<std::int32_t> rigid, deformable;
     Array<Vec<double, D>> centre;
     Array<Vec<double, 4>> orientation;
-    Array<double> deforms_for, loudness, strength;
+    Array<double> deforms_for, loudness, strength, bears;
     for (const BreakableBody<D>& body : bodies_) {
         const auto& [w, x, y, z] = body.orientation;
         rigid.push_back(static_cast<std::int32_t>(body.rigid)),
             deformable.push_back(static_cast<std::int32_t>(body.deformable));
         centre.push_back(body.centre), orientation.push_back(Vec<double, 4>{{w, x, y, z}});
         deforms_for.push_back(body.deforms_for), loudness.push_back(body.loudness);
-        strength.push_back(body.strength);
+        strength.push_back(body.strength), bears.push_back(body.bears);
     }
     archive("breakable_rigid", rigid), archive("breakable_deformable", deformable);
     archive("breakable_centre", centre), archive("breakable_orientation", orientation);
     archive("breakable_deforms_for", deforms_for), archive("breakable_loudness", loudness);
-    archive("breakable_strength", strength);
+    archive("breakable_strength", strength), archive("breakable_bears", bears);
     if (!archive.loads()) return;
     const std::size_t n = rigid.size();
     expect_fit(deformable.size() == n && centre.size() == n && orientation.size() == n &&
-                   deforms_for.size() == n && loudness.size() == n && strength.size() == n,
+                   deforms_for.size() == n && loudness.size() == n && strength.size() == n &&
+                   bears.size() == n,
                "breakable_rigid");
     bodies_.clear();
     for (std::size_t k = 0; k < n; ++k) {
         const Vec<double, 4>& q = orientation[k];
         expect_fit(std::abs(dot(q, q) - 1.0) < 1e-6, "breakable_orientation");
-        expect_fit(rigid[k] >= 0 && deformable[k] >= 0, "breakable_rigid");
-        bodies_.push_back({static_cast<std::size_t>(rigid[k]),
-                           static_cast<std::size_t>(deformable[k]),
-                           centre[k],
-                           {q[0], q[1], q[2], q[3]},
-                           deforms_for[k],
-                           loudness[k],
-                           strength[k]});
+        expect_fit(rigid[k] >= -1 && deformable[k] >= 0, "breakable_rigid");
+        bodies_.push_back(
+            {rigid[k] < 0 ? BreakableBody<D>::none : static_cast<std::size_t>(rigid[k]),
+             static_cast<std::size_t>(deformable[k]),
+             centre[k],
+             {q[0], q[1], q[2], q[3]},
+             deforms_for[k],
+             loudness[k],
+             strength[k],
+             bears[k]});
     }
 }
 

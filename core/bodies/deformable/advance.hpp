@@ -1,6 +1,11 @@
 #pragma once
 // How deformable bodies are stepped, by themselves and among others.
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -42,7 +47,7 @@ Vec<double, D> TotalLagrangian<D>::room_for(const DeformableBody& body,
 }
 
 template <int D>
-void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
+void TotalLagrangian<D>::start(const Vec<double, D>& gravity, double stable_step) {
     if (size() == 0) return;
     sort();
     stepped_.choose(size(), [](std::uint32_t) { return true; });
@@ -60,7 +65,11 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity) {
     find_bonds();
     correct_gradients();
     if (bonds_.any()) find_spans();
-    limit_timestep();
+    if (stable_step > 0.0)
+        stable_step_ = stable_step;
+    else
+        limit_timestep();
+    stepped_.choose(size(), [](std::uint32_t) { return true; });
     compute_accelerations(0.0, gravity);
     choose_stepped();
 }
@@ -110,12 +119,43 @@ void TotalLagrangian<D>::correct_gradients() {
 template <int D>
 Array<Vec<double, D>> TotalLagrangian<D>::linear_response(const Array<Vec<double, D>>& displacement,
                                                           const Array<Vec<double, D>>& velocity) {
-    for (std::size_t p = 0; p < size(); ++p) x[p] = rest_[p] + displacement[p], v[p] = velocity[p];
-    Array<Vec<double, D>> response(size());
+    for (const std::uint32_t p : stepped_.points())
+        x[p] = rest_[p] + displacement[p], v[p] = velocity[p];
+    Array<Vec<double, D>> all(size()), response(size());  // clusters have points of others, too
     sum_internal_forces(0.0, [&](std::size_t p, const InternalForce<double, D>& force) {
-        if (!clamped_[p]) response[p] = (1.0 / body_of(p).rho0) * force.all;
+        if (!clamped_[p]) all[p] = (1.0 / body_of(p).rho0) * force.all;
     });
+    for (const std::uint32_t p : stepped_.points()) response[p] = all[p];
     return response;
+}
+
+/// Points of one body of each kind: with the same numbers, the same places at rest to a millionth
+/// of a spacing and the same of them clamped.
+template <int D>
+Array<std::uint8_t> TotalLagrangian<D>::representatives() const {
+    constexpr double fine = 1e6;
+    Array<Array<std::uint32_t>> points(bodies());
+    for (const std::uint32_t p : slot_) points[static_cast<std::size_t>(body_[p])].push_back(p);
+    auto before = [](const auto& a, const auto& b) {
+        return std::ranges::lexicographical_compare(a, b);
+    };
+    std::set<Array<std::int64_t>, decltype(before)> known(before);
+    Array<std::uint8_t> chosen(size(), 0);
+    for (std::size_t b = 0; b < bodies(); ++b) {
+        auto numbers = bodies_[b].numbers();
+        numbers.back() = 0.0;  // of flaws, which are not there yet
+        Array<std::int64_t> kind;
+        for (const double number : numbers) kind.push_back(std::bit_cast<std::int64_t>(number));
+        for (const std::uint32_t p : points[b]) {
+            const Vec<double, D> r = rest_[p] - rest_[points[b].front()];
+            for (int a = 0; a < D; ++a)
+                kind.push_back(std::llround(fine / bodies_[b].spacing * r[a]));
+            kind.push_back(clamped_[p]);
+        }
+        if (known.insert(kind).second)
+            for (const std::uint32_t p : points[b]) chosen[p] = 1;
+    }
+    return chosen;
 }
 
 /// Eq. (84). With omega^2 and gamma the eigenvalues of stiffness and damping, Verlet with predicted
@@ -126,7 +166,9 @@ void TotalLagrangian<D>::limit_timestep() {
     const auto x0 = x, v0 = v;
     const Array<Vec<double, D>> none(size());
     Array<Vec<double, D>> mode(size());
-    for (std::size_t p = 0; p < size(); ++p)  // not orthogonal to the fastest mode
+    const Array<std::uint8_t> chosen = representatives();
+    stepped_.choose(size(), [&](std::uint32_t p) { return chosen[p] != 0; });
+    for (const std::uint32_t p : stepped_.points())  // not orthogonal to the fastest mode
         for (int k = 0; k < D && !clamped_[p]; ++k)
             mode[p][k] =
                 std::sin(1.0 + 7.0 * static_cast<double>(D * p + static_cast<std::size_t>(k)));
@@ -310,6 +352,7 @@ void TotalLagrangian<D>::divide(const Division& division, double opening) {
         return gone(p) || gone(j) || body_[p] != body_[j];
     };
     bonds_.part(apart, opening);
+    choose_stepped();
     find_spans();
     update_deformations();
 }

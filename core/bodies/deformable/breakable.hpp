@@ -52,6 +52,23 @@ void TotalLagrangian<D>::make_rigid(std::size_t body, const RigidMotion<D>& moti
 }
 
 template <int D>
+double TotalLagrangian<D>::take_out(std::size_t body) {
+    const Array<std::uint32_t> points = points_of(body);
+    const ElasticEnergy before = elastic_energy();
+    for (const std::uint32_t p : points) v[p] = a[p] = {};
+    rigid_[body] = left;
+    choose_stepped();
+    const ElasticEnergy after = elastic_energy();
+    bonds_.finish_step(points, before.opening - after.opening);
+    return before.sum() - after.sum();
+}
+
+template <int D>
+bool TotalLagrangian<D>::is_clamped(std::size_t body) const {
+    return std::ranges::any_of(points_of(body), [this](std::uint32_t p) { return clamped(p); });
+}
+
+template <int D>
 double TotalLagrangian<D>::strength(std::size_t body) const {
     auto point = [this](std::size_t p) { return bond_point(p); };
     auto of = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
@@ -62,8 +79,12 @@ double TotalLagrangian<D>::strength(std::size_t body) const {
 
 template <int D>
 double TotalLagrangian<D>::least_intactness(std::size_t body) const {
+    auto is_of_it = [&](std::uint32_t j) {
+        return !gone(j) && body_[j] == static_cast<std::int32_t>(body);
+    };
     double least = 1.0;
-    for (const std::uint32_t p : points_of(body)) least = min(least, bonds_.least_intactness(p));
+    for (const std::uint32_t p : points_of(body))
+        least = min(least, bonds_.least_intactness(p, is_of_it));
     return least;
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/array.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/surfaces.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/dust.hpp"
+#include "bodies/fragments/rigid_motion.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
@@ -34,6 +36,14 @@ struct Fragments {
 
     bool any() const { return !parent.empty() || !dust.empty(); }
 };
+
+/// Diameter of a disc or ball as large as so many points.
+template <int D>
+double diameter_of(const DeformableBody& body, std::size_t points) {
+    const double count = static_cast<double>(points);
+    return body.spacing * (D == 2 ? std::sqrt(4.0 * count / std::numbers::pi)
+                                  : std::cbrt(6.0 * count / std::numbers::pi));
+}
 
 /// Deformable bodies among water and other bodies: each of their points is a bound particle, which
 /// the fluid meets as a wall, and their surfaces touch other bodies.
@@ -70,7 +80,7 @@ public:
             depth_.push_back(particles.wall.depth[p]);
         }
         solids_.add(body, points, is_rigid);
-        material_.push_back(material);
+        material_.push_back(material), whole_.push_back(diameter_of<D>(body, members.size()));
         group_.push_back(
             members.empty() ? 0 : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
@@ -78,6 +88,16 @@ public:
     /// Of each point: its number among those of rigid bodies, of which it is one while its body is
     /// rigid; -1: none.
     const Array<std::int32_t>& rigid_points() const { return rigid_point_; }
+    /// The point that point p is of the rigid body that its body may become.
+    void set_rigid_point(std::size_t p, std::size_t number) {
+        rigid_point_[p] = static_cast<std::int32_t>(number);
+    }
+    /// The shape of a body that keeps the one it has, in the frame of `motion`; `shown`: its number
+    /// among those that contacts have been shown.
+    Shape<D> shape_of(const ContactBodies<D>& contact, std::int32_t shown, std::size_t body,
+                      const RigidMotion<D>& motion) const {
+        return surfaces_.shape_of(contact, shown, solids_, body, motion);
+    }
     /// See TotalLagrangian; the fluid sees an acceleration from then on.
     void make_deformable(std::size_t body, const RigidPlacement<D>& placement,
                          const Vec<double, D>& acceleration) {
@@ -87,6 +107,27 @@ public:
     }
     void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic) {
         solids_.make_rigid(body, motion, kinetic);
+    }
+    /// Bodies that have left, and the energy that they had beside that of motion [J], 2-D: [J/m].
+    struct Leaving {
+        Array<std::uint8_t> is_body;
+        double energy = 0.0;
+
+        bool any() const { return std::ranges::find(is_body, 1) != is_body.end(); }
+    };
+    /// Removes those whose centre is in the region, but what is clamped.
+    template <class Region>
+    Leaving remove_inside(const Region& region) {
+        Leaving leaving;
+        leaving.is_body.assign(bodies(), 0);
+        const Array<RigidMotion<D>> motions = rigid_motions(solids_);
+        for (std::size_t k = 0; k < bodies(); ++k) {
+            if (!(motions[k].mass > 0.0) || !region.contains(motions[k].centre) ||
+                solids_.is_clamped(k))
+                continue;
+            leaving.is_body[k] = 1, leaving.energy += solids_.take_out(k);
+        }
+        return leaving;
     }
     /// Numbers contacts as if no body had changed, for those that do not part.
     Fragments<D> as_they_are() const {
@@ -105,6 +146,8 @@ public:
     /// Whether a body may come apart.
     bool breaks(std::size_t body) const { return solids_.breaks(body); }
     std::int32_t material(std::size_t body) const { return material_[body]; }
+    /// Diameter [m] of the body that a body was when the run began, or of that which it came from.
+    double whole(std::size_t body) const { return whole_[body]; }
     /// The [body.NAME] of the scenario that a body belongs to.
     std::int32_t group(std::size_t body) const { return group_[body]; }
     /// With what cracks and damping took of them, and how many bonds bear no tension.
@@ -189,6 +232,7 @@ public:
         surfaces_.serialise(archive, solids_);
         archive("deformable_normal", normal_), archive("deformable_material", material_);
         archive("deformable_depth", depth_), archive("deformable_group", group_);
+        archive("deformable_whole", whole_);
         archive("deformable_rigid_point", rigid_point_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
@@ -197,7 +241,7 @@ public:
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
                            rigid_point_.size() == n && material_.size() == solids_.bodies() &&
-                           group_.size() == solids_.bodies(),
+                           group_.size() == solids_.bodies() && whole_.size() == solids_.bodies(),
                        "deformable_normal");
         }
     }
@@ -224,6 +268,7 @@ private:
     Array<double> depth_;                   // below the surface [m]
     Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
+    Array<double> whole_;                   // see whole()
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;
 };

@@ -12,7 +12,9 @@
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/crack_faces.hpp"
 #include "bodies/fragments/outlines.hpp"
+#include "bodies/fragments/rigid_motion.hpp"
 #include "bodies/fragments/surface_vertex.hpp"
+#include "bodies/shapes/shape.hpp"
 
 namespace doseki {
 
@@ -72,6 +74,11 @@ public:
                                std::span<const std::int32_t> before,
                                const Array<std::uint32_t>& crack,
                                const Array<Vec<double, D>>& places);
+    /// The surface of a body as the shape of a rigid one, see DeformableBodies::shape_of: in 2-D a
+    /// polygon with two corners for each vertex, one of which is a sample; in 3-D the balls.
+    Shape<D> shape_of(const ContactBodies<D>& contact, std::int32_t shown,
+                      const TotalLagrangian<D>& solids, std::size_t body,
+                      const RigidMotion<D>& motion) const;
     std::size_t first_contact_point() const { return first_contact_point_; }
     /// The number of a contact point after a division, with new numbers of the vertices that had
     /// been shown; `first`: that of the first point of these surfaces before. -1: none.
@@ -133,6 +140,9 @@ private:
         SurfaceWeights at;
     };
 
+    template <class InFrame>
+    static void add_polygon(const Surface<D>& surface, std::size_t curve, double least,
+                            const InFrame& in_frame, Shape<D>& shape);
     std::size_t point_of(std::size_t v) const { return vertices_[v].point; }
     static bool is_rigid(std::size_t p, const TotalLagrangian<D>& solids) {
         return solids.is_rigid(static_cast<std::size_t>(solids.body(p)));
@@ -165,6 +175,60 @@ private:
     Array<Sample> samples_;
     std::size_t first_contact_point_ = 0;
 };
+
+template <int D>
+Shape<D> DeformableSurfaces<D>::shape_of(const ContactBodies<D>& contact, std::int32_t shown,
+                                         const TotalLagrangian<D>& solids, std::size_t body,
+                                         const RigidMotion<D>& motion) const {
+    const Mat<double, 3> turn = motion.orientation.matrix();
+    const double spacing = solids.material(body).spacing;
+    auto in_frame = [&](const Vec<double, D>& x) { return rotated_back(turn, x - motion.centre); };
+    Shape<D> shape;
+    if constexpr (D == 3) {
+        shape.kind = ShapeKind::balls, shape.thickness = spacing;
+        for (const SurfaceVertex<D>& vertex : vertices_)
+            if (solids.body(vertex.point) == static_cast<std::int32_t>(body))
+                shape.samples.push_back(in_frame(solids.x[vertex.point]));
+    } else {
+        shape.kind = ShapeKind::mesh;
+        for (const Surface<D>& surface : contact.surfaces)
+            if (surface.body == shown)
+                for (std::size_t c = 0; c < surface.first.size(); ++c)
+                    add_polygon(surface, c, 1e-3 * spacing, in_frame, shape);
+    }
+    for (const Vec<double, D>& sample : shape.samples)
+        shape.radius = std::max(shape.radius, norm(sample) + 0.5 * shape.thickness);
+    for (const Facet<D>& facet : shape.facets)
+        for (const Vec<double, D>& corner : facet)
+            shape.radius = std::max(shape.radius, norm(corner));
+    shape.enclose(nullptr);
+    return shape;
+}
+
+/// Adds a closed curve of a surface to a shape, without sides shorter than `least`.
+template <int D>
+template <class InFrame>
+void DeformableSurfaces<D>::add_polygon(const Surface<D>& surface, std::size_t curve, double least,
+                                        const InFrame& in_frame, Shape<D>& shape) {
+    const std::size_t end =
+        curve + 1 < surface.first.size() ? surface.first[curve + 1] : surface.size();
+    Array<Vec<double, D>> corners;
+    auto add = [&](std::uint32_t vertex, double t) {
+        const Vec<double, D> corner =
+            in_frame(surface.mean(surface.position, surface.at(vertex, t)));
+        if (!corners.empty() && norm(corner - corners.back()) < least) return false;
+        corners.push_back(corner);
+        return true;
+    };
+    for (std::uint32_t v = surface.first[curve]; v < end; ++v) {
+        if (add(v, 0.0)) shape.samples.push_back(corners.back());
+        add(v, 0.5);
+    }
+    while (corners.size() > 1 && norm(corners.front() - corners.back()) < least)
+        corners.resize(corners.size() - 1);
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        shape.facets.push_back({corners[k], corners[(k + 1) % corners.size()]});
+}
 
 template <int D>
 void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first_body,
@@ -331,7 +395,7 @@ void DeformableSurfaces<D>::collect(ContactBodies<D>& contact, TotalLagrangian<D
         contact.surfaces[samples_[k].surface].push(samples_[k].at, contact.points.force[c],
                                                    contact.points.torque[c]);
     }
-    std::fill(solids.load.begin(), solids.load.end(), Vec<double, D>{});
+    for (const std::uint32_t p : solids.stepped().points()) solids.load[p] = {};
     for (std::size_t s = 0; s < contact.surfaces.size(); ++s) {
         const Surface<D>& surface = contact.surfaces[s];
         for (std::size_t v = 0; v < surface.size(); ++v) {

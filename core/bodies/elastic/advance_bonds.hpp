@@ -10,7 +10,7 @@ namespace doseki {
 
 template <int D>
 void Bonds<D>::index(std::size_t points) {
-    first_bond_.assign(points + 1, 0), settled_.assign(points, 0);
+    first_bond_.assign(points + 1, 0), settled_.assign(points, 0), tip_.assign(points, {});
     for (std::size_t n = 1; n < size(); ++n)
         ++first_bond_[pairs_[n].a + 1], ++first_bond_[pairs_[n].b + 1];
     for (std::size_t p = 0; p < points; ++p) first_bond_[p + 1] += first_bond_[p];
@@ -40,25 +40,6 @@ Sym<double, D> material_stress(const BondPoint<D>& point) {
     if (!point.spans) return {};
     return symmetric_part(inverse(point.F, 0.0) * point.P);
 }
-
-/// What open cracks leave at a point: whether there are any, and of a broken bond the normal at
-/// rest and the tension at which its crack goes on [Pa].
-template <int D>
-struct CrackTip {
-    bool open = false;
-    Vec<double, D> normal{};
-    double strength = std::numeric_limits<double>::infinity();
-
-    /// The one that goes on at less.
-    void meet(const BondState<D>& bond) {
-        if (bond.strength < strength) normal = bond.normal, strength = bond.strength;
-    }
-    /// For a crack of this normal: cracks go on within 45 degrees of their plane.
-    double strength_for(const Vec<double, D>& other) const {
-        const double along = dot(normal, other);
-        return along * along >= 0.5 ? strength : std::numeric_limits<double>::infinity();
-    }
-};
 
 /// Those at the points of a bond.
 template <int D>
@@ -254,24 +235,24 @@ private:
 template <int D>
 template <class Point, class Body>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
-    Array<CrackTip<D>> tip(first_bond_.size() - 1);
+    for (const std::uint32_t n : stepped_) tip_[pairs_[n].a] = tip_[pairs_[n].b] = {};
     for (const std::uint32_t n : stepped_) {
         if (!(state_[n].opening > 0.0)) continue;
         for (const std::uint32_t p : {pairs_[n].a, pairs_[n].b}) {
-            tip[p].open = true;
-            if (state_[n].damage >= 1.0 && state_[n].whole != 0.0) tip[p].meet(state_[n]);
+            tip_[p].open = true;
+            if (state_[n].damage >= 1.0 && state_[n].whole != 0.0) tip_[p].meet(state_[n]);
         }
     }
     change_ = reduce(stepped_.size(), BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
         const BondEnds& ends = pairs_[stepped_[k]];
         BondState<D>& state = state_[stepped_[k]];
         if (state.whole == 0.0) return BondChange{};
-        const Beside<D> beside{tip[ends.a], tip[ends.b]};
+        const Beside<D> beside{tip_[ends.a], tip_[ends.b]};
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state, beside)
             .take(dt);
     });
     work_ += change_.work, broken_ += change_.broken;
-    std::fill(settled_.begin(), settled_.end(), 0);
+    for (const std::uint32_t n : stepped_) settled_[pairs_[n].a] = settled_[pairs_[n].b] = 0;
 }
 
 template <int D>

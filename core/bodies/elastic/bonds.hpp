@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 
 #include "base/array.hpp"
@@ -60,6 +61,25 @@ struct BondState {
     double strength = 0.0;                                  // tension at which its crack began [Pa]
 
     bool cracked() const { return dot(normal, normal) > 0.0; }
+};
+
+/// What open cracks leave at a point: whether there are any, and of a broken bond the normal at
+/// rest and the tension at which its crack goes on [Pa].
+template <int D>
+struct CrackTip {
+    bool open = false;
+    Vec<double, D> normal{};
+    double strength = std::numeric_limits<double>::infinity();
+
+    /// The one that goes on at less.
+    void meet(const BondState<D>& bond) {
+        if (bond.strength < strength) normal = bond.normal, strength = bond.strength;
+    }
+    /// For a crack of this normal: cracks go on within 45 degrees of their plane.
+    double strength_for(const Vec<double, D>& other) const {
+        const double along = dot(normal, other);
+        return along * along >= 0.5 ? strength : std::numeric_limits<double>::infinity();
+    }
 };
 
 /// The bonds of the pairs of a list, entry by entry and lane by lane.
@@ -144,10 +164,14 @@ public:
         for (std::uint32_t n = 1; n < size(); ++n)
             if (moves(pairs_[n].a)) stepped_.push_back(n);
     }
-    /// Intactness of the weakest of the bonds of point p, see for_each_bond.
-    double least_intactness(std::size_t p) const {
+    /// Intactness of the weakest of the bonds of point p to points j for which counts(j), see
+    /// for_each_bond.
+    template <class Counts>
+    double least_intactness(std::size_t p, const Counts& counts) const {
         double least = 1.0;
-        for_each_bond(p, [&least](std::uint32_t, double intact) { least = min(least, intact); });
+        for_each_bond(p, [&](std::uint32_t j, double intact) {
+            if (counts(j)) least = min(least, intact);
+        });
         return least;
     }
     /// Counts for good what the last step did to the bonds of some points: `opening`.
@@ -273,6 +297,7 @@ private:
     Array<std::size_t> first_code_;
     Array<std::uint32_t> stepped_;  // numbers of bonds, rising
     Array<std::uint8_t> settled_;   // see BondPoint
+    Array<CrackTip<D>> tip_;        // of the points of stepped bonds, in a step
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;

@@ -1,6 +1,8 @@
 #pragma once
 // What it takes to end bonds.
 
+#include <set>
+
 #include "bodies/elastic/advance_bonds.hpp"
 
 namespace doseki {
@@ -93,10 +95,12 @@ void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
                       const TakeSpans& take_spans) {
     if (change_.gone == 0) return;
     const auto all = [](std::uint32_t) { return true; };
+    std::set<std::uint32_t> points;
     for (const std::uint32_t n : stepped_)
-        if (state_[n].whole < 0.0) settled_[pairs_[n].a] = settled_[pairs_[n].b] = 1;
-    for (std::size_t p = 0; p < settled_.size(); ++p) {
-        if (!settled_[p] || !point(p).spans) continue;
+        if (state_[n].whole < 0.0) points.insert({pairs_[n].a, pairs_[n].b});
+    for (const std::uint32_t p : points) {
+        settled_[p] = 1;
+        if (!point(p).spans) continue;
         const bool spans = spans_space(moment(p, point, all));
         work_ += energy_across(p, Moment::before, point, body, place, all) -
                  first_halves(p, point, body);

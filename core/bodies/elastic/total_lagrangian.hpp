@@ -80,7 +80,13 @@ public:
         bodies_.push_back(body), apart_.push_back(apart);
         rigid_.push_back(is_rigid), held_energy_.push_back(0.0);
     }
-    /// Whether a body moves as a rigid one, which someone else steps.
+    /// Takes a body out for good: it takes part in nothing from now on. Returns the energy that it
+    /// had beside that of motion [J], 2-D: [J/m].
+    double take_out(std::size_t body);
+    bool has_left(std::size_t body) const { return rigid_[body] == left; }
+    /// Whether a body has points that stay where they are.
+    bool is_clamped(std::size_t body) const;
+    /// Whether a body moves as a rigid one, which someone else steps, or has left.
     bool is_rigid(std::size_t body) const { return rigid_[body] != 0; }
     /// Points of all bodies that are not rigid.
     const SteppedPoints& stepped() const { return stepped_; }
@@ -102,12 +108,12 @@ public:
     void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic);
     /// Tension [Pa] at which the first of the bonds of a body cracks while none has.
     double strength(std::size_t body) const;
-    /// Of the weakest bond of a body, see Bonds.
+    /// Of the weakest of the bonds that a body has within itself, see Bonds.
     double least_intactness(std::size_t body) const;
 
     /// Finds pairs, corrects gradients, takes the first accelerations. Call once, after the bodies
-    /// are in.
-    void start(const Vec<double, D>& gravity);
+    /// are in. The longest stable step [s] is found unless it is given.
+    void start(const Vec<double, D>& gravity, double stable_step = 0.0);
 
     /// Half a step of the forces of others, which change slowly [N], 2-D: [N/m].
     void kick(double half_dt, std::span<const Vec<double, D>> force) {
@@ -230,10 +236,9 @@ public:
             bodies_.clear();
             for (std::size_t k = 0; k < numbers.size(); k += DeformableBody::count)
                 bodies_.push_back(DeformableBody::of(&numbers[k]));
-            start(gravity);
+            start(gravity, stable_step);
             a = accelerations, deformation_ = deformations, slot_ = slots;
             number_points();
-            stable_step_ = stable_step;
         }
         bonds_.serialise(archive);
         if (archive.loads()) find_spans();
@@ -275,6 +280,7 @@ private:
         for (std::uint32_t k = 0; k < size(); ++k) number_[slot_[k]] = k;
     }
     void correct_gradients();
+    Array<std::uint8_t> representatives() const;
     void limit_timestep();
     template <class F>
     void sum_internal_forces(double half_dt, const F& take);
@@ -304,7 +310,7 @@ private:
 
     void choose_stepped() {
         auto moves = [this](std::uint32_t p) {
-            return !is_rigid(static_cast<std::size_t>(body_[p]));
+            return !gone(p) && !is_rigid(static_cast<std::size_t>(body_[p]));
         };
         stepped_.choose(size(), moves);
         bonds_.step_only(moves);
@@ -318,7 +324,8 @@ private:
     };
 
     Array<DeformableBody> bodies_;
-    Array<std::uint8_t> rigid_;  // by body
+    static constexpr std::uint8_t left = 2;
+    Array<std::uint8_t> rigid_;  // by body: 1, or `left`
     // Of rigid ones: their elastic energy, and by point how their shape differs from that at rest.
     Array<double> held_energy_;
     Array<Vec<double, D>> held_shape_;

@@ -29,6 +29,8 @@ public:
     Origin operator[](std::size_t k) const { return k < size() ? origins_[k] : Origin{}; }
     std::size_t size() const { return origins_.size(); }
     void add(const Origin& origin) { origins_.push_back(origin); }
+    /// Body k is one no more that is told apart.
+    void forget(std::size_t k) { origins_[k] = {}; }
     /// Those that came off others.
     std::size_t parts() const {
         return static_cast<std::size_t>(

@@ -9,21 +9,23 @@
 
 namespace doseki {
 
-enum class ShapeKind : std::uint8_t { ball, convex, mesh, ground };
+enum class ShapeKind : std::uint8_t { ball, convex, mesh, ground, balls };
 
 inline bool has_facets(ShapeKind kind) {
     return kind == ShapeKind::convex || kind == ShapeKind::mesh;
 }
 
 /// The outline of a rigid body in its own frame, whose origin is the centre of mass: a ball (in 2-D
-/// a disc), what facets enclose, convex or not, a sheet of facets, or the ground of a terrain.
+/// a disc), what facets enclose, convex or not, a sheet of facets, the ground of a terrain, or
+/// balls around points of a surface.
 template <int D>
 struct Shape {
     ShapeKind kind = ShapeKind::ball;
     double radius = 0.0;     // of the ball, or of the ball around everything [m]
-    double thickness = 0.0;  // of a sheet [m]
+    double thickness = 0.0;  // of a sheet; diameter of each of many balls [m]
     Array<Facet<D>> facets;
-    Array<Vec<double, D>> samples;  // points of the surface that may touch another shape
+    // Points of the surface that may touch another shape; the middles of many balls.
+    Array<Vec<double, D>> samples;
     std::shared_ptr<const ContactSurface<D>> surface;  // that others touch; none of a ball
 
     bool is_ball() const { return kind == ShapeKind::ball; }

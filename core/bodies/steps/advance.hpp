@@ -61,7 +61,7 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
             show_bodies(all_points_), find_contacts();
         else if (contacts_.any(PairKind::all))
             show(PairKind::all);
-        contacts_.apply(contact_, PairKind::all, step);
+        contacts_.apply(contact_, PairKind::all, moved_, step);
         add_loads(PairKind::all, step);
         rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
         if (!deformable.empty()) course.given = course.given + deformable.push(step, gravity_);
@@ -84,7 +84,7 @@ void Bodies<D>::find_companions() {
                                [&](std::int32_t a, std::int32_t b) { mark(a), mark(b); });
     companions_.clear(), others_.clear();
     for (std::uint32_t k = 0; k < rigid.size(); ++k)
-        (is_companion[k] || rigid_origins_[k].parent >= 0 ? companions_ : others_).push_back(k);
+        (is_companion[k] ? companions_ : others_).push_back(k);
 }
 
 /// Eq. (142): slow contacts push once, in the middle of a step, in each half of which what is
@@ -167,13 +167,18 @@ template <int D>
 void Bodies<D>::touch(PairKind kind, double dt, Course& course) {
     if (2.0 * moved_ >= margin_) show_bodies(all_points_), find_contacts();
     show(kind);
-    contacts_.apply(contact_, kind, dt);
-    const Array<std::size_t> struck = breakable_.struck(contacts_, kind, deformable, rigid.size());
+    contacts_.apply(contact_, kind, moved_, dt);
+    auto of_dust = [this](std::int32_t k) {
+        const auto body = static_cast<std::size_t>(k);
+        return body < rigid.size() && is_dust(body);
+    };
+    const Array<std::size_t> struck =
+        breakable_.struck(contacts_, kind, deformable, rigid.size(), of_dust);
     if (!struck.empty()) {
         contacts_.revert(kind);
         make_deformable(struck, course);
         show(kind);
-        contacts_.apply(contact_, kind, dt);
+        contacts_.apply(contact_, kind, moved_, dt);
     }
     add_loads(kind, dt);
     rigid.collect(contact_, contacts_.points(kind));
@@ -206,8 +211,8 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
     change_breakable(struck, before);
 }
 
-/// A body that is whole and has come to rest within itself is rigid again, with the shape and the
-/// momenta that it has; what it still has of vibration counts as damped.
+/// A body that has come to rest within itself is rigid, again or, if it is a part, at last, with
+/// the shape and the momenta that it has; what it still has of vibration counts as damped.
 template <int D>
 void Bodies<D>::make_rigid_again(double dt, Course& course) {
     Array<std::size_t> still;
@@ -219,26 +224,51 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
     if (still.empty()) return;
     const Fragments<D> before = deformable.as_they_are();
     const BodySums<D> had = rigid.sums();
-    for (const std::size_t n : still) {
-        const BreakableBody<D>& body = breakable_[n];
-        const auto& solids = deformable.solids();
-        const RigidMotion<D> motion = rigid_motion<D>(solids, solids.points_of(body.deformable));
-        const Mat<double, 3> turn = motion.orientation.matrix();
-        const Vec<double, D> centre =
-            motion.centre + rotated(turn, body.centre - motion.rest_centre);
-        const Vec3 own =
-            motion.angular_momentum +
-            motion.mass * cross(in_space(motion.centre - centre), in_space(motion.velocity));
-        rigid.put_back(body.rigid, centre, motion.velocity,
-                       motion.orientation.after(body.orientation), own);
-        deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
-        breakable_.weigh_cracks(n, deformable);
-    }
+    deformable.show(contact_);
+    const auto first = static_cast<std::int32_t>(rigid.size());
+    for (const std::size_t n : still)
+        make_rigid(n, first + static_cast<std::int32_t>(breakable_[n].deformable));
     course.before = course.before + rigid.sums().less(had);
+    breakable_.index(rigid.size(), deformable);
     change_breakable(still, before);
 }
 
-/// Whether it is whole, has had time for waves to go to and fro, and has lately had but a small
+/// `shown`: its number among the bodies that touch.
+template <int D>
+void Bodies<D>::make_rigid(std::size_t n, std::int32_t shown) {
+    const BreakableBody<D>& body = breakable_[n];
+    const auto& solids = deformable.solids();
+    const RigidMotion<D> motion = rigid_motion<D>(solids, solids.points_of(body.deformable));
+    if (!body.has_rigid()) add_rigid(n, motion, shown);
+    const Mat<double, 3> turn = motion.orientation.matrix();
+    const Vec<double, D> centre = motion.centre + rotated(turn, body.centre - motion.rest_centre);
+    const Vec3 own = motion.angular_momentum + motion.mass * cross(in_space(motion.centre - centre),
+                                                                   in_space(motion.velocity));
+    rigid.put_back(body.rigid, centre, motion.velocity, motion.orientation.after(body.orientation),
+                   own);
+    deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
+    breakable_.weigh_cracks(n, deformable);
+}
+
+/// The shape of a part is the one that it has when it is rigid for the first time.
+template <int D>
+void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int32_t shown) {
+    const std::size_t b = breakable_[n].deformable, k = rigid.size();
+    const Mat<double, 3> turn = motion.orientation.matrix(), back = transposed(turn);
+    const RigidBody<D> body{0,           deformable.material(b),       deformable.group(b), false,
+                            motion.mass, back * motion.inertia * turn, deformable.whole(b)};
+    RigidBodyState<D> state{};
+    state.orientation = motion.orientation;
+    rigid.add(body, state, deformable.shape_of(contact_, shown, b, motion));
+    rigid_origins_.add(deformable_origins_[b]);
+    breakable_.give_rigid(n, k, motion.rest_centre);
+    for (const std::uint32_t p : deformable.solids().points_of(b))
+        deformable.set_rigid_point(
+            p, rigid_particles_.add(k, rotated_back(turn, deformable.solids().x[p] - motion.centre),
+                                    rotated_back(turn, deformable.normal(p))));
+}
+
+/// Whether it has had time for waves to go to and fro, and has lately had but a small
 /// part of the energy with which a crack begins, Eq. (141), and bears but a small load.
 template <int D>
 bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
@@ -259,18 +289,17 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
-    constexpr double rounding = 1e-9;
-    const bool whole = motion.mass > (1.0 - rounding) * rigid.body(body.rigid).mass;
     const bool pressed = pressed_tension<D>(force, body.diameter) > share * body.bears;
-    return whole && !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
+    return !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
            body.loudness <= enough;
 }
 
 /// Contacts of bodies that have changed begin with the overlaps that they have at rest, Eq. (115).
 template <int D>
 void Bodies<D>::change_breakable(const Array<std::size_t>& which, const Fragments<D>& before) {
+    const std::size_t solids = contact_.solids.size();
     prepare_contacts();
-    renumber_contacts(before);
+    renumber_contacts(before, solids);
     std::set<std::int32_t> changed;
     for (const std::size_t n : which) {
         changed.insert(static_cast<std::int32_t>(breakable_[n].rigid));

@@ -54,7 +54,7 @@ class Totals(TypedDict):
     momentum_entered: list[float]  # kg m/s
     momentum_left: list[float]  # kg m/s
     energy_entered: float  # J, kinetic
-    energy_left: float  # J, kinetic
+    energy_left: float  # J, kinetic, and elastic of deformable bodies
     mass_initial: float  # kg
     mass_asked: float  # kg, that inflows should have brought
     mass_entered: float  # kg

@@ -15,7 +15,8 @@ from .protocol import Arrays, CoreSimulation
 ALIKE = (
     (
         "bodies", "body_shape", "body_material", "body_named", "body_fixed", "body_mass",
-        "body_inertia", "rigid_origin_number", "rigid_origin_parent", "rigid_origin_born",
+        "body_inertia", "body_whole", "rigid_origin_number", "rigid_origin_parent",
+        "rigid_origin_born",
     ),
     ("shape_radius", "shape_facets", "shape_sample_count", "shape_kind", "shape_thickness"),
     ("lists_moving", "lists_fixed"),
@@ -32,12 +33,12 @@ ALIKE = (
     ),
     (
         "elastic_apart", "elastic_rigid", "elastic_held_energy", "deformable_material",
-        "deformable_group", "deformable_origin_number", "deformable_origin_parent",
-        "deformable_origin_born",
+        "deformable_group", "deformable_whole", "deformable_origin_number",
+        "deformable_origin_parent", "deformable_origin_born",
     ),
     (
         "breakable_rigid", "breakable_deformable", "breakable_centre", "breakable_orientation",
-        "breakable_deforms_for", "breakable_loudness", "breakable_strength",
+        "breakable_deforms_for", "breakable_loudness", "breakable_strength", "breakable_bears",
     ),
 )  # fmt: skip
 # An entry of a list: a particle, and in the upper bits through which image of it.
@@ -52,7 +53,7 @@ NOT_NEGATIVE = {
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
     "surface_radius", "rigid_origin_born", "deformable_origin_born", "body_numbers",
-    "breakable_deforms_for",
+    "breakable_deforms_for", "bodies_at_start", "body_whole", "deformable_whole",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
@@ -207,6 +208,8 @@ def _check_origins(state: Arrays) -> None:
     kinds = ("rigid_origin", "deformable_origin")
     rigid, deformable = (state[f"{kind}_number"] for kind in kinds)
     own, first = state["breakable_deformable"], state["breakable_rigid"]
+    _expect((first >= -1) & (first < len(rigid)), "breakable_rigid", "is no body")
+    own, first = own[first >= 0], first[first >= 0]
     if not np.array_equal(deformable[own], rigid[first]):
         raise ValueError("the checkpoint's breakable_rigid are not those of its bodies")
     numbers = np.concatenate([rigid, np.delete(deformable, own)])
@@ -239,11 +242,11 @@ def _counts(state: Arrays, materials: int, bodies: int) -> Mapping[str, int]:
         "motion": 4,
         "body_kind": 3,
         "body_shape": len(state["shape_radius"]),
-        "shape_kind": 4,
+        "shape_kind": 5,
+        "elastic_rigid": 3,
         "body_material": materials,
         "body_named": bodies,
         "elastic_body": len(state["elastic_apart"]),
-        "breakable_rigid": len(state["bodies"]),
         "breakable_deformable": len(state["elastic_apart"]),
         "elastic_slot": len(state["elastic_position"]),
         "surface_point": len(state["elastic_position"]),

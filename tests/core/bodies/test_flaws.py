@@ -28,12 +28,14 @@ class Bars:
             "weibull_k": 1 / (LENGTH * Bar.width * STRAIN**m),
         }  # fmt: skip
 
-    def strengths(self, seeds=SEEDS, slowness=40.0):
-        """Highest mean stress of each, Pa."""
+    def strengths(self, seeds=SEEDS, slowness=40.0, turn=None):
+        """Highest mean stress of each, Pa; all is turned by a matrix."""
         found = []
         for seed in seeds:
             flaws = self.flaws | {"flaw_seed": seed}
-            bar = self.kind(self.core, self.across, rows_cut=0, length=self.length, **flaws)
+            bar = self.kind(
+                self.core, self.across, rows_cut=0, length=self.length, turn=turn, **flaws
+            )
             bar.pull(2.5 * STRAIN * self.length, slowness, rows=150)
             found.append(bar.stress.max())
             assert bar.stress[-1] < 0.97 * found[-1], "it did not break"
@@ -71,6 +73,20 @@ def test_eight_times_the_volume_is_weaker_by_the_exponent(core, m, other):
     assert found != pytest.approx(8 ** (-1 / other), rel=0.10)
     weakest = ROCK["young_modulus"] * STRAIN * math.gamma(1 + 1 / m)
     assert 1.0 < bars.mean() / weakest < 1.2
+
+
+C, S = math.cos(math.pi / 6), math.sin(math.pi / 6)
+
+
+@pytest.mark.parametrize(
+    "turn", [[[C, -S], [S, C]], [[1, 0], [0, -1]], [[C, S], [S, -C]]], ids=["30", "mirror", "both"]
+)
+def test_cracks_run_on_alike_in_a_bar_that_is_turned_or_mirrored(core, turn):
+    """The same flaws in a bar at 30 degrees to the axes, its mirror image, and both."""
+    bars, seeds = Bars(core, 8.5), (1, 2)
+    np.testing.assert_allclose(
+        bars.strengths(seeds, turn=np.array(turn)), bars.strengths(seeds), rtol=1e-6
+    )
 
 
 @pytest.mark.full
