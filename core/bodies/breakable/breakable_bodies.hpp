@@ -29,6 +29,10 @@ struct BreakableBody {
     double impedance = 0.0, diameter = 0.0;  // see Touch
 
     bool has_rigid() const { return rigid != none; }
+    /// Whether it is deformable now, and not all dust.
+    bool deforms(const DeformableBodies<D>& bodies) const {
+        return diameter > 0.0 && !bodies.solids().is_rigid(deformable);
+    }
     /// Time in which a wave goes through it once [s].
     double crossing(const DeformableBodies<D>& bodies) const {
         return diameter / bodies.solids().material(deformable).wave_speed();
@@ -77,8 +81,7 @@ public:
     double longest_look(const DeformableBodies<D>& deformable) const {
         double longest = std::numeric_limits<double>::infinity();
         for (const BreakableBody<D>& body : bodies_)
-            if (!deformable.solids().is_rigid(body.deformable))
-                longest = std::min(longest, body.lately(deformable));
+            if (body.deforms(deformable)) longest = std::min(longest, body.lately(deformable));
         return longest;
     }
     /// The one that a rigid body is of; none.

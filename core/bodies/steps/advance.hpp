@@ -218,8 +218,7 @@ void Bodies<D>::make_rigid_again(double dt, Course& course) {
     Array<std::size_t> still;
     for (std::size_t n = 0; n < breakable_.size(); ++n) {
         BreakableBody<D>& body = breakable_[n];
-        if (deformable.solids().is_rigid(body.deformable)) continue;
-        if (becomes_still(body, dt)) still.push_back(n);
+        if (body.deforms(deformable) && becomes_still(body, dt)) still.push_back(n);
     }
     if (still.empty()) return;
     const Fragments<D> before = deformable.as_they_are();
