@@ -104,7 +104,7 @@ void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_d
     record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
     record.surface = state.surface[p];
     record.p = model_->without_surface_tension(thermodynamic_state(*material.laws, rho).pressure,
-                                               record.surface);
+                                               record.surface, state.parted[p]);
     update_mean_pressure(state, p, 2.0 * half_dt);
     record.p += state.damping_pressure[p];
     const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
@@ -245,8 +245,8 @@ ThermodynamicState<double> Resolved<D, Backend>::equation_of_state(const State& 
     if (state.is_wall(p)) return {state.wall.pressure[p], model_->constants.c, 0.0};
     const Material& material = model_->material(state.tag[p]);
     const auto at = thermodynamic_state(*material.laws, state.density[p]);
-    return {model_->without_surface_tension(at.pressure, state.surface[p]), material.c0,
-            at.bulk_energy};
+    return {model_->without_surface_tension(at.pressure, state.surface[p], state.parted[p]),
+            material.c0, at.bulk_energy};
 }
 
 template <int D, class Backend>

@@ -59,7 +59,7 @@ public:
             shift(p, sums, strain, rates);
         relax_density(p, indicator.normalised_density, strain, rates);
         bound_tension(p, sums.at_body > 0.0, rates);
-        summary(p).work.power += power_of_surface(p);
+        summary(p).work.power += part_on_surface(p);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
         summary(p).work.power += power_of_corrections(p, rates.density - of_pairs.density);
@@ -68,7 +68,7 @@ public:
     }
 
 private:
-    /// Time [h/c] in which water that comes to a body or to the surface under tension gives it up.
+    /// Time [h/c] in which water that comes to a body under tension gives it up.
     static constexpr double tension_release = 10.0;
     /// Cap on the shifting velocity over the sound speed, half of the fastest flow; it diverges in
     /// a closing gap.
@@ -202,28 +202,26 @@ private:
         rates.density += rate * (normalised_density * rho0(p) - rho);
     }
 
-    /// Below its least density a fluid does not expand any further, Eqs. (85) and (144). On a free
-    /// surface that is the one at rest: were the water still stretched when what has parted meets
-    /// again, it would be under tension at once.
+    /// Below its least density a fluid does not expand any further.
     void bound_tension(std::size_t p, bool at_body, Rates& rates) const {
-        const bool gives_up = at_body || on_surface(p);
-        const double least =
-            on_surface(p) ? rho0(p) : model_.min_density[state_.tag[p].material].at(at_body);
+        const double least = model_.min_density[state_.tag[p].material].at(at_body);
         const double missing = least - records_[p].rho;
         if (missing <= 0.0) return;
         const double time = tension_release * state_.smoothing_length[p] / model_.constants.c;
-        rates.density = std::max(gives_up ? missing / time : 0.0, rates.density);
+        rates.density = std::max(at_body ? missing / time : 0.0, rates.density);
     }
 
-    /// Of tension that is lost where water comes to the surface, and is there at once where
-    /// stretched water leaves it [W].
-    double power_of_surface(std::size_t p) const {
+    /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
+    /// meets again, until it has closed. Returns the power of the tension that is lost [W].
+    double part_on_surface(std::size_t p) const {
         const double rho = records_[p].rho;
-        const bool was_on_surface = records_[p].surface > FreeSurfaceIndicator::surface;
-        if (was_on_surface == on_surface(p) || rho >= rho0(p) || dt_ <= 0.0) return 0.0;
+        const bool had_tension = pressure(p) < 0.0;
+        if (rho >= rho0(p)) state_.parted[p] = 0.0;
+        if (rho >= rho0(p) || !on_surface(p)) return 0.0;
+        state_.parted[p] = 1.0;
+        if (!had_tension || dt_ <= 0.0) return 0.0;
         const Material& material = model_.material(state_.tag[p]);
-        const double energy = state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy;
-        return (on_surface(p) ? -energy : energy) / dt_;
+        return -state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy / dt_;
     }
 
     /// For the next evaluation. It brings no tension that the liquid does not bear, none on a free

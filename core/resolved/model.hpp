@@ -90,9 +90,9 @@ struct ResolvedModel {
                            [](const WallCondition& wall) { return wall.has_friction(); });
     }
 
-    /// Tension holds inside; a free surface takes none.
-    static double without_surface_tension(double p, double surface) {
-        return surface > FreeSurfaceIndicator::surface ? std::max(0.0, p) : p;
+    /// Tension holds inside; a free surface takes none, and what has parted there none either.
+    static double without_surface_tension(double p, double surface, double parted) {
+        return surface > FreeSurfaceIndicator::surface || parted > 0.0 ? std::max(0.0, p) : p;
     }
 
     /// rho l^2 |D| of Smagorinsky, or of Prandtl's mixing length, over rho [m^2/s].

@@ -22,6 +22,7 @@ struct ResolvedState : Particles<D> {
     FluidField<Sym<double, D>> correction_excess;
     FluidField<Vec<double, D>> shift;     // velocity relative to the fluid [m/s]
     FluidField<double> surface;           // free-surface indicator
+    FluidField<double> parted;            // 1: a void that has not closed, Eq. (144)
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
     FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
@@ -35,6 +36,7 @@ struct ResolvedState : Particles<D> {
         this->for_each_common_field(f);
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
         f("correction_excess", correction_excess), f("shift", shift), f("surface", surface);
+        f("parted", parted);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
         f("damping_pressure", damping_pressure);
         if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);

@@ -13,7 +13,7 @@ WALL_FIELDS = (
 )  # fmt: skip
 FLOW_FIELDS = (
     "pressure_gradient", "velocity_gradient", "correction_excess", "shift", "surface",
-    "mixing_length", "mean_pressure", "damping_pressure",
+    "mixing_length", "mean_pressure", "damping_pressure", "parted",
 )  # fmt: skip
 COMMON_FIELDS = (
     "position", "velocity", "acceleration", "density", "density_rate", "mass", "smoothing_length",

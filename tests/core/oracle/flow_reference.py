@@ -30,7 +30,6 @@ RELAXATION_PER_STRAIN = 10.0
 LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
-TENSION_RELEASE = 10.0  # h/c in which a surface gives it up, Eq. (144)
 EDGE_NOISE, EDGE_WHOLE = 0.15, 0.3  # share of what slides past an edge, Eq. (133)
 LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
@@ -145,7 +144,7 @@ class FlowReference:
         n = len(self.x)
         self.pressure_gradient = np.zeros((n, self.dim))
         self.L = np.zeros((n, self.dim, self.dim))
-        self.surface = np.zeros(n)
+        self.surface, self.parted = np.zeros(n), np.zeros(n, bool)
         self.shift = np.zeros((n, self.dim))
         self.B = np.tile(np.eye(self.dim), (n, 1, 1))
         self.damping = np.zeros(n)
@@ -195,9 +194,9 @@ class FlowReference:
         self.damping = self._damping_pressure()
 
     def _pressure(self, surface: np.ndarray) -> np.ndarray:
-        """Linear or Tait's law; no tension on a free surface."""
+        """Linear or Tait's law; no tension on a free surface, and of what has parted there."""
         p = self._of_density(self.rho / self.rho0)
-        return np.where(surface > SURFACE, np.maximum(p, 0), p)
+        return np.where((surface > SURFACE) | self.parted, np.maximum(p, 0), p)
 
     def _of_density(self, e: np.ndarray) -> np.ndarray:
         """Pressure of a density over that at rest."""
@@ -367,6 +366,7 @@ class FlowReference:
         self._set_timestep()
         self._correct_pressure()
         self.surface = self.measure
+        self.parted = (self.parted | (self.surface > SURFACE)) & (self.rho < self.rho0)
 
     def _pair_sums(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Force over volume, density rate over density and power over volume, of fluid pairs."""
@@ -491,11 +491,8 @@ class FlowReference:
         rate = RELAXATION_PER_STRAIN * strain
         self.relaxation = np.clip(rate, self.slowest, self.fastest)
         self.density_rate += self.relaxation * (self.filling * self.rho0 - self.rho)
-        outside = self.measure > SURFACE
-        missing = np.where(outside, 1, LEAST_DENSITY) * self.rho0 - self.rho
-        least = np.where(outside, self.c / (TENSION_RELEASE * self.h) * missing, 0)
-        kept = np.maximum(self.density_rate, least)
-        self.density_rate = np.where(missing > 0, kept, self.density_rate)
+        void = self.rho < LEAST_DENSITY * self.rho0
+        self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
 
     def _set_timestep(self) -> None:
         speed = np.linalg.norm(self.v, axis=1)
