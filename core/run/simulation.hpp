@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/array.hpp"
-#include "bodies/drain.hpp"
+#include "bodies/steps/drain.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
 #include "boundaries/terrain.hpp"
