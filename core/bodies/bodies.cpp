@@ -3,10 +3,20 @@
 #include "bodies/bodies.hpp"
 
 #include "bodies/contact_forces.hpp"
+#include "bodies/deformable/rigid_shape.hpp"
 #include "bodies/fragments/dust_room.hpp"
 #include "bodies/steps/advance.hpp"
 
 namespace doseki {
+
+template <int D>
+void Bodies<D>::number_bodies() {
+    rigid_at_start_ = static_cast<std::int32_t>(rigid.size());
+    for (std::size_t k = 0; k < rigid.size(); ++k)
+        rigid_origins_.add({rigid.body(k).fixed ? -1 : numbers_++, -1, 0.0});
+    for (std::size_t k = 0; k < deformable.bodies(); ++k)
+        deformable_origins_.add({number_of_deformable(k), -1, 0.0});
+}
 
 template <int D>
 auto Bodies<D>::part(double time, double dt) -> Parted {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/array.hpp"
-#include "bodies/bodies.hpp"
+#include "bodies/steps/drain.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "boundaries/open_boundaries.hpp"
 #include "boundaries/terrain.hpp"
@@ -364,19 +364,16 @@ void Simulation<Lists>::wrap_positions() {
 template <class Lists>
 bool Simulation<Lists>::remove_outflow() {
     if (open_boundaries.outflows.empty() && !terrain.is_there()) return false;
-    open_boundaries.removed.resize(particles.size(), 0);
     double elastic = 0.0;  // all ranks have all bodies
-    if (terrain.is_there()) elastic += bodies.drain(particles, terrain, open_boundaries.removed);
-    const bool any = open_boundaries.remove_outflow(
-        particles,
-        [this](std::size_t p) {
-            return particles.is_free(p) && terrain.contains(particles.position[p]);
-        },
-        [&](const Outflow<D>& outflow, auto& removed) {
-            elastic += bodies.drain(particles, outflow, removed);
-        });
+    open_boundaries.removed.resize(particles.size(), 0);
+    if (terrain.is_there()) elastic = bodies.drain(particles, terrain, open_boundaries.removed);
+    auto leaves = [&](auto p) {
+        return particles.is_free(p) && terrain.contains(particles.position[p]);
+    };
+    auto drain = [&](const auto& at, auto& left) { elastic += bodies.drain(particles, at, left); };
+    const double any = open_boundaries.remove_outflow(particles, leaves, drain) ? 1.0 : 0.0;
     if (ranks().rank() == 0) open_boundaries.ledger.outflow.energy += elastic;
-    return ranks().largest(any ? 1.0 : 0.0) > 0.0;
+    return ranks().largest(any) > 0.0;
 }
 
 template <class Lists>

@@ -5,6 +5,8 @@
 #include "bodies/deformable/breaking.hpp"
 #include "bodies/deformable/dividing.hpp"
 #include "bodies/deformable/energy.hpp"
+#include "bodies/deformable/rigid_shape.hpp"
+#include "bodies/deformable/stable_step.hpp"
 
 namespace doseki {
 

@@ -170,4 +170,5 @@ def test_parts_leave_through_an_outflow(build, dim, rests):
     assert totals["mass"] + totals["mass_left"] == pytest.approx(mass, rel=1e-12)
     assert totals["mass"] == pytest.approx(rows["mass"][~gone].sum(), rel=1e-12)
     if dim == 2:
-        assert found[region] == pytest.approx(found[""], rel=1e-9)
+        # What leaves while it vibrates takes the error of its steps along.
+        assert found[region] == pytest.approx(found[""], rel=1e-9 if rests else 1e-6)
