@@ -20,7 +20,7 @@ COMMON_FIELDS = (
 )  # fmt: skip
 TAG = 16
 # Bytes of the records of a pass, of the place at the last build and its cell, of a list's entry.
-MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 128, 3: 192}, {2: 136, 3: 184}
+MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 136, 3: 200}, {2: 136, 3: 184}
 PLACE, ENTRY = {2: 24, 3: 32}, 2
 SPARE = 0.08  # of all: summaries, cells, blocks of lists
 
