@@ -196,17 +196,14 @@ def drop(build, speed: float, axis: int = 2, strength: float = WEAK):
 
 
 def test_the_faster_a_ball_meets_a_floor_the_smaller_its_largest_part(build):
-    """And its energy never grows: 1 % is what speeds half a step ahead of forces make of it.
-
-    Which crack goes through is chance: of the fastest, the mean of four speeds.
-    """
+    """And its energy never grows: 1 % is what speeds half a step ahead of forces make of it."""
     largest = []
-    for speed in (2.0, 4.0, 6.0, 8.0, 10.0, 12.0):
+    for speed in (2.0, 4.0, 8.0):
         mass, energies = drop(build, speed)
         assert energies.max() < 1.01 * energies[0]
         assert energies[-1] < 0.9 * energies[0]
         largest.append(mass)
-    assert largest[0] > 1.1 * largest[1] > 1.1**2 * np.mean(largest[2:])
+    assert largest[0] > 1.1 * largest[1] > 1.1**2 * largest[2]
 
 
 def test_a_ball_that_holds_keeps_its_energy(build):
