@@ -90,10 +90,8 @@ private:
     static constexpr double penalty_factor = 2.0, penalty_steps = 5.0;
 
     bool hertz() const { return D == 3 && options_.hertz; }
-    double stiffness(const ContactLaw& law, bool parts, const ContactProperties& a,
+    double stiffness(const ContactLaw& law, const ContactProperties& a,
                      const ContactProperties& b) const;
-    double soft_stiffness(const ContactLaw& law) const;
-    double material_stiffness(const ContactLaw& law, double E) const;
 
     ContactOptions options_;
     Array<ContactProperties> materials_;
@@ -184,39 +182,27 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
             penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : a.share * b.share);
         law.zeta = law.rolling = 0.0;
     } else
-        law.stiffness = stiffness(law, a.whole > 0.0 || b.whole > 0.0, u, v);
+        law.stiffness = stiffness(law, u, v);
     // Linear: equal times of both springs for balls. Hertz: Mindlin's 4 G*/E*.
     const double nu = 0.5 * (u.poisson_ratio + v.poisson_ratio);
     law.tangential = hertz() ? 2.0 * (1.0 - nu) / (2.0 - nu) : 2.0 / 7.0;
     return law;
 }
 
-/// E* of a Hertz contact, k of a linear one: eq. (47), or that of the material. Contacts of `parts`
-/// of bodies are never stiffer than the material, which dust is small enough for.
+/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
 template <int D>
-double ContactLaws<D>::stiffness(const ContactLaw& law, bool parts, const ContactProperties& a,
+double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
                                  const ContactProperties& b) const {
-    const double softened = soft_stiffness(law);
-    if (options_.softened && !parts) return softened;
-    const double of_material = material_stiffness(law, contact_modulus(a, b));
-    return options_.softened ? std::min(softened, of_material) : of_material;
-}
-
-template <int D>
-double ContactLaws<D>::soft_stiffness(const ContactLaw& law) const {
+    const double radius = law.curvature();
     const double v = options_.speed, overlap = options_.overlap * law.diameter;
-    if (hertz())
-        return 15.0 / 16.0 * law.mass * v * v /
-               (std::sqrt(law.curvature()) * std::pow(overlap, 2.5));
-    return law.mass * v * v / (overlap * overlap);
-}
-
-template <int D>
-double ContactLaws<D>::material_stiffness(const ContactLaw& law, double E) const {
+    const double soft_k = law.mass * v * v / (overlap * overlap);
+    const double soft_E =
+        15.0 / 16.0 * law.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));
+    if (options_.softened) return hertz() ? soft_E : soft_k;
+    const double E = contact_modulus(a, b);
     if (hertz()) return E;
     if constexpr (D == 2) return 0.25 * std::numbers::pi * E;  // of a line contact, per length
-    const double v = options_.speed,
-                 same = hertz_collision(E, law.curvature(), law.mass, v).overlap;
+    const double same = hertz_collision(E, radius, law.mass, v).overlap;
     return law.mass * v * v / (same * same);
 }
 
