@@ -66,7 +66,6 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     const auto of = static_cast<std::size_t>(deformable.body_of_point(grain.points.front()));
     RigidBody<D> body = grain.body;
     body.material = deformable.material(of), body.group = deformable.group(of);
-    body.whole = deformable.whole(of);
     const std::size_t k = rigid.size();
     Shape<D> ball;
     ball.radius = grain.largest;

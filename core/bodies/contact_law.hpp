@@ -21,7 +21,6 @@ struct ContactSide {
     bool fixed, deformable;
     bool flat;           // touched on a facet
     double share = 1.0;  // of the spring of a point of a deformable body
-    double whole = 0.0;  // diameter of the body that it is a part of [m]; 0: of none
 };
 
 /// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it

@@ -19,7 +19,7 @@ struct ContactPoints {
     Array<Vec3> spin;
     Array<double> radius;
     Array<double> mass, diameter;  // of the body; overlaps are compared with the diameter
-    Array<double> share, whole;    // see ContactSide
+    Array<double> share;           // see ContactSide
     Array<std::int32_t> body, material;
     Array<std::uint8_t> fixed, removed, deformable;
     Array<std::int32_t> surface;  // of which it is a sample, in ContactBodies; -1: of none
@@ -39,12 +39,12 @@ struct ContactPoints {
         diameter.push_back(side.diameter);
         body.push_back(of_body), material.push_back(side.material);
         fixed.push_back(side.fixed), removed.push_back(0), deformable.push_back(side.deformable);
-        share.push_back(side.share), whole.push_back(side.whole), surface.push_back(-1);
+        share.push_back(side.share), surface.push_back(-1);
     }
 
     ContactSide side(std::size_t k) const {
-        return {material[k],        radius[k], mass[k],  diameter[k], fixed[k] != 0,
-                deformable[k] != 0, false,     share[k], whole[k]};
+        return {material[k],   radius[k],          mass[k], diameter[k],
+                fixed[k] != 0, deformable[k] != 0, false,   share[k]};
     }
 };
 
@@ -53,7 +53,7 @@ template <int D>
 struct ContactSolid {
     const ContactSurface<D>* surface = nullptr;
     std::int32_t body = 0, material = 0;
-    double mass = 0.0, diameter = 0.0, whole = 0.0;
+    double mass = 0.0, diameter = 0.0;
     bool fixed = false, removed = false;
     Vec<double, D> centre{}, velocity{};
     Mat<double, 3> rotation{};
@@ -61,9 +61,7 @@ struct ContactSolid {
     Vec<double, D> force{};  // on it
     Vec3 torque{};           // about its centre
 
-    ContactSide side() const {
-        return {material, 0.0, mass, diameter, fixed, false, true, 1.0, whole};
-    }
+    ContactSide side() const { return {material, 0.0, mass, diameter, fixed, false, true}; }
 };
 
 /// Two contact points, or a contact point and shape number -1 - b: the solids, then the surfaces.

@@ -115,12 +115,12 @@ public:
         });
     }
     /// How far bodies may go before contacts are looked for again [m]; infinite where none moves.
-    /// Grains of dust, which are small, may have more pairs than touch.
-    double margin() const {
+    /// Of the first `count` bodies alone: what has come off others since the start comes after
+    /// them, is small, and may have more pairs than touch.
+    double margin(std::size_t count) const {
         double smallest = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < size(); ++k)
-            if (!bodies_[k].fixed && !(bodies_[k].whole > 0.0))
-                smallest = std::min(smallest, 0.3 * shape(k).radius);
+        for (std::size_t k = 0; k < count; ++k)
+            if (!bodies_[k].fixed) smallest = std::min(smallest, 0.3 * shape(k).radius);
         return smallest;
     }
     BodySums<D> sums() const {
@@ -243,8 +243,8 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         const RigidBody<D>& body = bodies_[k];
         const auto number = static_cast<std::int32_t>(k);
         const double diameter = 2.0 * shape(k).radius;
-        ContactSide side{body.material, shape(k).radius, body.mass, diameter,  body.fixed,
-                         false,         false,           1.0,       body.whole};
+        ContactSide side{body.material, shape(k).radius, body.mass, diameter,
+                         body.fixed,    false,           false};
         if (shape(k).is_ball()) {
             contact.points.add(number, side);
             continue;
@@ -256,7 +256,7 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         if (balls) continue;
         ContactSolid<D> solid;
         solid.body = number, solid.material = body.material, solid.fixed = body.fixed;
-        solid.mass = body.mass, solid.diameter = diameter, solid.whole = body.whole;
+        solid.mass = body.mass, solid.diameter = diameter;
         contact.solids.push_back(solid);
     }
 }

@@ -16,7 +16,6 @@ struct RigidBody {
     bool fixed;                // moves only as its wall does
     double mass;               // [kg], 2-D: [kg/m]
     Mat<double, 3> inertia{};  // about the centre, in its own frame; 2-D: zz alone
-    double whole = 0.0;        // see ContactSide
 };
 
 /// What changes of a rigid body; numbers only, so that it can be archived as they are.
@@ -48,7 +47,7 @@ struct RigidBodyPoint {
 template <int D>
 struct RigidBodyColumns {
     Array<std::uint8_t> kind;
-    Array<double> radius, thickness, mass, whole;
+    Array<double> radius, thickness, mass;
     Array<Vec<double, D>> corners, samples;  // of all shapes in turn
     Array<std::int32_t> facet_count, sample_count, shape, material, group;
     Array<std::uint8_t> fixed;
@@ -69,7 +68,6 @@ struct RigidBodyColumns {
             shape.push_back(each.shape), material.push_back(each.material),
                 group.push_back(each.group);
             fixed.push_back(each.fixed), mass.push_back(each.mass), inertia.push_back(each.inertia);
-            whole.push_back(each.whole);
         }
     }
 
@@ -81,7 +79,6 @@ struct RigidBodyColumns {
         archive("body_shape", shape), archive("body_material", material),
             archive("body_named", group);
         archive("body_fixed", fixed), archive("body_mass", mass), archive("body_inertia", inertia);
-        archive("body_whole", whole);
     }
 
     /// Throws std::invalid_argument unless these are the columns of so many bodies.
@@ -98,8 +95,7 @@ struct RigidBodyColumns {
         expect_parts(facet_count, corners.size(), D, "shape_facets");
         expect_parts(sample_count, samples.size(), 1, "shape_sample_count");
         expect_fit(shape.size() == bodies && material.size() == bodies && group.size() == bodies &&
-                       fixed.size() == bodies && mass.size() == bodies &&
-                       inertia.size() == bodies && whole.size() == bodies,
+                       fixed.size() == bodies && mass.size() == bodies && inertia.size() == bodies,
                    "bodies");
         for (const std::int32_t k : shape) expect_index(k, n, "body_shape");
     }
@@ -123,7 +119,7 @@ struct RigidBodyColumns {
     }
 
     RigidBody<D> rigid(std::size_t k) const {
-        return {shape[k], material[k], group[k], fixed[k] != 0, mass[k], inertia[k], whole[k]};
+        return {shape[k], material[k], group[k], fixed[k] != 0, mass[k], inertia[k]};
     }
 
 private:

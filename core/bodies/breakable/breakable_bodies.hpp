@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "base/array.hpp"
@@ -11,6 +12,14 @@
 #include "physics/fracture/impact.hpp"
 
 namespace doseki {
+
+/// Diameter of a disc or ball as large as so many points.
+template <int D>
+double diameter_of(const DeformableBody& body, std::size_t points) {
+    const double count = static_cast<double>(points);
+    return body.spacing * (D == 2 ? std::sqrt(4.0 * count / std::numbers::pi)
+                                  : std::cbrt(6.0 * count / std::numbers::pi));
+}
 
 /// One of `breakable` kinematics: the rigid body that it is while nothing strikes it, and the
 /// deformable one that it is while something does. Only one of them takes part in steps. What has

@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/array.hpp"
 #include "bodies/contact_points.hpp"
@@ -36,14 +35,6 @@ struct Fragments {
 
     bool any() const { return !parent.empty() || !dust.empty(); }
 };
-
-/// Diameter of a disc or ball as large as so many points.
-template <int D>
-double diameter_of(const DeformableBody& body, std::size_t points) {
-    const double count = static_cast<double>(points);
-    return body.spacing * (D == 2 ? std::sqrt(4.0 * count / std::numbers::pi)
-                                  : std::cbrt(6.0 * count / std::numbers::pi));
-}
 
 /// Deformable bodies among water and other bodies: each of their points is a bound particle, which
 /// the fluid meets as a wall, and their surfaces touch other bodies.
@@ -80,7 +71,7 @@ public:
             depth_.push_back(particles.wall.depth[p]);
         }
         solids_.add(body, points, is_rigid);
-        material_.push_back(material), whole_.push_back(diameter_of<D>(body, members.size()));
+        material_.push_back(material);
         group_.push_back(
             members.empty() ? 0 : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
@@ -146,8 +137,6 @@ public:
     /// Whether a body may come apart.
     bool breaks(std::size_t body) const { return solids_.breaks(body); }
     std::int32_t material(std::size_t body) const { return material_[body]; }
-    /// Diameter [m] of the body that a body was when the run began, or of that which it came from.
-    double whole(std::size_t body) const { return whole_[body]; }
     /// The [body.NAME] of the scenario that a body belongs to.
     std::int32_t group(std::size_t body) const { return group_[body]; }
     /// With what cracks and damping took of them, and how many bonds bear no tension.
@@ -232,7 +221,6 @@ public:
         surfaces_.serialise(archive, solids_);
         archive("deformable_normal", normal_), archive("deformable_material", material_);
         archive("deformable_depth", depth_), archive("deformable_group", group_);
-        archive("deformable_whole", whole_);
         archive("deformable_rigid_point", rigid_point_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_acceleration", acceleration_);
@@ -241,7 +229,7 @@ public:
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
                            rigid_point_.size() == n && material_.size() == solids_.bodies() &&
-                           group_.size() == solids_.bodies() && whole_.size() == solids_.bodies(),
+                           group_.size() == solids_.bodies(),
                        "deformable_normal");
         }
     }
@@ -268,7 +256,6 @@ private:
     Array<double> depth_;                   // below the surface [m]
     Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
-    Array<double> whole_;                   // see whole()
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     DeformableSurfaces<D> surfaces_;
 };

@@ -88,7 +88,6 @@ Fragments<D> DeformableBodies<D>::divide(double dt) {
     for (const std::int32_t parent : parts.parent) {
         const auto k = static_cast<std::size_t>(parent);
         material_.push_back(std::int32_t{material_[k]}), group_.push_back(std::int32_t{group_[k]});
-        whole_.push_back(double{whole_[k]});
     }
     fragments.parent = parts.parent, fragments.dust_parent = parts.dust_parent;
     fragments.divided = parts.divides;

@@ -254,8 +254,8 @@ template <int D>
 void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int32_t shown) {
     const std::size_t b = breakable_[n].deformable, k = rigid.size();
     const Mat<double, 3> turn = motion.orientation.matrix(), back = transposed(turn);
-    const RigidBody<D> body{0,           deformable.material(b),       deformable.group(b), false,
-                            motion.mass, back * motion.inertia * turn, deformable.whole(b)};
+    const RigidBody<D> body{0,           deformable.material(b),      deformable.group(b), false,
+                            motion.mass, back * motion.inertia * turn};
     RigidBodyState<D> state{};
     state.orientation = motion.orientation;
     rigid.add(body, state, deformable.shape_of(contact_, shown, b, motion));

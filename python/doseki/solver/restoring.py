@@ -15,7 +15,7 @@ from .protocol import Arrays, CoreSimulation
 ALIKE = (
     (
         "bodies", "body_shape", "body_material", "body_named", "body_fixed", "body_mass",
-        "body_inertia", "body_whole", "rigid_origin_number", "rigid_origin_parent",
+        "body_inertia", "rigid_origin_number", "rigid_origin_parent",
         "rigid_origin_born",
     ),
     ("shape_radius", "shape_facets", "shape_sample_count", "shape_kind", "shape_thickness"),
@@ -33,7 +33,7 @@ ALIKE = (
     ),
     (
         "elastic_apart", "elastic_rigid", "elastic_held_energy", "deformable_material",
-        "deformable_group", "deformable_whole", "deformable_origin_number",
+        "deformable_group", "deformable_origin_number",
         "deformable_origin_parent", "deformable_origin_born",
     ),
     (
@@ -53,7 +53,7 @@ NOT_NEGATIVE = {
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
     "surface_radius", "rigid_origin_born", "deformable_origin_born", "body_numbers",
-    "breakable_deforms_for", "bodies_at_start", "body_whole", "deformable_whole",
+    "breakable_deforms_for", "bodies_at_start",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
