@@ -50,8 +50,13 @@ def spinning_energy(simulation) -> float:
     return float((0.5 * inertia * spin**2)[left].sum())
 
 
-GAINS = pytest.mark.xfail(reason="contacts of stiff dust gain more than 1e-3 of the energy")
-LASTS = pytest.mark.xfail(reason="two bodies that stiff dust strikes are still deformable")
+# Not strict: what breaks follows from the last digits, which another processor has otherwise.
+GAINS = pytest.mark.xfail(
+    reason="contacts of stiff dust gain more than 1e-3 of the energy", strict=False
+)
+LASTS = pytest.mark.xfail(
+    reason="two bodies that stiff dust strikes are still deformable", strict=False
+)
 
 
 @pytest.mark.parametrize(

@@ -102,7 +102,10 @@ def test_it_floats_once_the_water_is_as_deep_as_archimedes_says(density, floats)
     assert (rise > 0.1 * dp) if floats else (abs(rise) < 0.02 * dp)
 
 
-@pytest.mark.xfail(reason="3.1 % too much at 16 across, and it scatters from 2.8 to 3.4 %")
+# Not strict: on another processor it may be inside.
+@pytest.mark.xfail(
+    reason="3.1 % too much at 16 across, and it scatters from 2.8 to 3.4 %", strict=False
+)
 def test_friction_on_a_tilted_bed_is_that_of_the_submerged_weight():
     assert sliding(16) == pytest.approx(1, abs=CLOSE)
 
