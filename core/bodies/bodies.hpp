@@ -275,8 +275,7 @@ private:
         contact_ = {};
         rigid.add_to(contact_);
         deformable.add_to(contact_, static_cast<std::int32_t>(rigid.size()));
-        const double margin =
-            std::min(rigid.margin(static_cast<std::size_t>(rigid_at_start_)), deformable.margin());
+        const double margin = std::min(rigid.margin(), deformable.margin());
         margin_ = std::isfinite(margin) ? margin : 0.0;
         deformable_step_ = deformable.timestep();
         all_points_.resize(contact_.points.size());

@@ -115,11 +115,9 @@ public:
         });
     }
     /// How far bodies may go before contacts are looked for again [m]; infinite where none moves.
-    /// Of the first `count` bodies alone: what has come off others since the start comes after
-    /// them, is small, and may have more pairs than touch.
-    double margin(std::size_t count) const {
+    double margin() const {
         double smallest = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t k = 0; k < size(); ++k)
             if (!bodies_[k].fixed) smallest = std::min(smallest, 0.3 * shape(k).radius);
         return smallest;
     }
