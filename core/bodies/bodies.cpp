@@ -39,7 +39,7 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
         prepare_contacts();
     }
     renumber_contacts(fragments, contact_.solids.size());
-    if constexpr (D == 3) accept_overlaps(fragments, first);
+    accept_overlaps(fragments, first);
     return {born, fragments.lost - born.kinetic_energy};
 }
 
@@ -109,12 +109,15 @@ void Bodies<D>::renumber_contacts(const Fragments<D>& fragments, std::size_t sol
     find_contacts();
 }
 
-/// Pairs of balls that could not touch before, since both were of one body or one is new, have the
-/// overlaps that they are born with at rest, Eq. (115).
+/// Pairs that could not touch before, since both were of one body or one is new, have the overlaps
+/// that they are born with at rest, Eq. (115). In 2-D crack faces fit each other, but parts that
+/// hung together at a corner may have turned into each other.
 template <int D>
 void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust) {
     Array<std::uint8_t> is_old(contact_.points.size(), 0);
-    for (std::size_t k = 0; k < fragments.first_contact_point + fragments.vertex.size(); ++k) {
+    const std::size_t end = fragments.first_contact_point +
+                            DeformableSurfaces<D>::points_each * fragments.vertex.size();
+    for (std::size_t k = 0; k < end; ++k) {
         const std::int32_t now =
             deformable.surfaces().renumbered(k, fragments.first_contact_point, fragments.vertex);
         if (now >= 0) is_old[static_cast<std::size_t>(now)] = 1;

@@ -252,10 +252,12 @@ private:
     /// In steps of contacts of rigid bodies, within which deformable ones and what they may touch
     /// have steps of their own.
     void advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course);
+    double step_apart(double shorter) const;
     void drift_apart(const MovingWalls<D>& walls, double t, double dt, Course& course);
     void step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course);
     void push_slow(double dt, Course& course);
     void push_fast(double t, double dt, Course& course);
+    void push_deformable(double dt, Course& course);
     /// Forces of contacts of a kind; makes bodies deformable that are struck.
     void touch(PairKind kind, double dt, Course& course);
     void show(PairKind kind) {
@@ -274,14 +276,26 @@ private:
     void prepare_contacts() {
         contact_ = {};
         rigid.add_to(contact_);
+        for (std::size_t c = 0; c < contact_.points.size(); ++c)
+            contact_.points.dust[c] = is_dust(static_cast<std::size_t>(contact_.points.body[c]));
         deformable.add_to(contact_, static_cast<std::int32_t>(rigid.size()));
-        const double margin = std::min(rigid.margin(), deformable.margin());
-        margin_ = std::isfinite(margin) ? margin : 0.0;
+        choose_margin();
         deformable_step_ = deformable.timestep();
         all_points_.resize(contact_.points.size());
         std::iota(all_points_.begin(), all_points_.end(), 0);
         show_bodies(all_points_);
     }
+    /// Dust that was born where there was little room is smaller than its mass: if contacts were
+    /// looked for whenever it has gone a part of its radius, that would take most of the time.
+    void choose_margin() {
+        constexpr double share = 0.3;  // of a radius
+        const double points = deformable.smallest_radius();
+        auto radius = [this](std::size_t k) { return share * rigid.shape(k).radius; };
+        auto reach = [&](std::size_t k) { return is_dust(k) ? rigid.gyration(k) : radius(k); };
+        margin_ = finite_or_none(std::min(rigid.smallest(reach), points));
+        longest_way_ = finite_or_none(0.25 * std::min(rigid.smallest(radius), points));
+    }
+    static double finite_or_none(double length) { return std::isfinite(length) ? length : 0.0; }
     void show_bodies(std::span<const std::int32_t> points) {
         rigid.show(contact_, points);
         deformable.show(contact_);
@@ -291,14 +305,14 @@ private:
         contacts_.find(contact_, margin_);
         find_companions();
     }
-    /// Also short against the margin of the pairs, at the speed of now and in a fall from rest.
+    /// Also short against the smallest bodies, at the speed of now and in a fall from rest.
     double contact_step() const { return std::min(longest_step(PairKind::all), deformable_step_); }
     /// The same of contacts of a kind alone.
     double longest_step(PairKind kind) const {
         const double fastest = std::max(deformable.max_speed(), rigid.max_speed()),
                      pull = norm(gravity_);
-        return std::min({contacts_.timestep(kind), 0.25 * margin_ / std::max(fastest, 1e-300),
-                         std::sqrt(0.25 * margin_ / std::max(pull, 1e-300))});
+        return std::min({contacts_.timestep(kind), longest_way_ / std::max(fastest, 1e-300),
+                         std::sqrt(longest_way_ / std::max(pull, 1e-300))});
     }
     /// That of what is deformable and of dust, and of what that may strike.
     double shorter_step() const {
@@ -342,7 +356,8 @@ private:
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     Array<std::int32_t> all_points_;
     double moved_ = 0.0;  // bound on the distance gone since contacts were looked for
-    double margin_ = 0.0;
+    double margin_ = 0.0;       // twice the distance after which they are looked for again
+    double longest_way_ = 0.0;  // in a step, after which no overlap is deep at once
     double deformable_step_ = std::numeric_limits<double>::infinity();  // stable [s]
 };
 

@@ -298,6 +298,7 @@ void Contacts<D>::accept_overlaps(const ContactBodies<D>& bodies, const NewPair&
         if (rows == 0 || !is_new(pairs_[k])) continue;
         const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
         for (std::size_t n = 0; n < std::min(overlaps.size(), rows); ++n) {
+            pushes_[k + n].touches = false, contacts_[k + n].overlap = 0.0;
             springs_[k + n] = {}, springs_[k + n][rest_overlap] = overlaps[n].depth;
             normals_[k + n] = have_met ? overlaps[n].normal : Vec<double, D>{};
         }

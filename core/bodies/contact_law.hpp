@@ -21,6 +21,7 @@ struct ContactSide {
     bool fixed, deformable;
     bool flat;           // touched on a facet
     double share = 1.0;  // of the spring of a point of a deformable body
+    bool dust = false;   // a few points that came off one
 };
 
 /// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it
@@ -85,12 +86,16 @@ public:
 
 private:
     /// Points of deformable bodies are only kept apart, by a penalty: a spring this many times as
-    /// stiff as the materials, without damping, resolved by this many steps.
-    static constexpr double penalty_factor = 2.0, penalty_steps = 5.0;
+    /// stiff as the materials, without damping.
+    static constexpr double penalty_factor = 2.0;
+    /// That resolve a contact of something as small as these points.
+    static constexpr double few_steps = 5.0;
 
     bool hertz() const { return D == 3 && options_.hertz; }
     double stiffness(const ContactLaw& law, const ContactProperties& a,
                      const ContactProperties& b) const;
+    double soft_stiffness(const ContactLaw& law) const;
+    double material_stiffness(const ContactLaw& law, double E) const;
 
     ContactOptions options_;
     Array<ContactProperties> materials_;
@@ -174,7 +179,7 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     law.zeta = damping_[first * materials_.size() + second];
     law.friction = 0.5 * (u.friction + v.friction);
     law.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
-    law.steps = penalty ? penalty_steps : options_.steps;
+    law.steps = penalty || a.dust || b.dust ? few_steps : options_.steps;
     if (penalty) {
         const double spacing = 2.0 * (b.flat ? a.radius : std::min(a.radius, b.radius));
         law.stiffness =
@@ -188,20 +193,29 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     return law;
 }
 
-/// E* of a Hertz contact, k of a linear one (eq. 47, or that of the material).
+/// E* of a Hertz contact, k of a linear one: that of the material, or eq. (47) where that is softer.
 template <int D>
 double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
                                  const ContactProperties& b) const {
-    const double radius = law.curvature();
+    const double of_material = material_stiffness(law, contact_modulus(a, b));
+    return options_.softened ? std::min(soft_stiffness(law), of_material) : of_material;
+}
+
+template <int D>
+double ContactLaws<D>::soft_stiffness(const ContactLaw& law) const {
     const double v = options_.speed, overlap = options_.overlap * law.diameter;
-    const double soft_k = law.mass * v * v / (overlap * overlap);
-    const double soft_E =
-        15.0 / 16.0 * law.mass * v * v / (std::sqrt(radius) * std::pow(overlap, 2.5));
-    if (options_.softened) return hertz() ? soft_E : soft_k;
-    const double E = contact_modulus(a, b);
+    if (hertz())
+        return 15.0 / 16.0 * law.mass * v * v /
+               (std::sqrt(law.curvature()) * std::pow(overlap, 2.5));
+    return law.mass * v * v / (overlap * overlap);
+}
+
+template <int D>
+double ContactLaws<D>::material_stiffness(const ContactLaw& law, double E) const {
     if (hertz()) return E;
     if constexpr (D == 2) return 0.25 * std::numbers::pi * E;  // of a line contact, per length
-    const double same = hertz_collision(E, radius, law.mass, v).overlap;
+    const double v = options_.speed,
+                 same = hertz_collision(E, law.curvature(), law.mass, v).overlap;
     return law.mass * v * v / (same * same);
 }
 

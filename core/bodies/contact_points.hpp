@@ -21,7 +21,7 @@ struct ContactPoints {
     Array<double> mass, diameter;  // of the body; overlaps are compared with the diameter
     Array<double> share;           // see ContactSide
     Array<std::int32_t> body, material;
-    Array<std::uint8_t> fixed, removed, deformable;
+    Array<std::uint8_t> fixed, removed, deformable, dust;
     Array<std::int32_t> surface;  // of which it is a sample, in ContactBodies; -1: of none
     // What the contacts do to them; torque about their own centre.
     Array<Vec<double, D>> force;
@@ -39,12 +39,12 @@ struct ContactPoints {
         diameter.push_back(side.diameter);
         body.push_back(of_body), material.push_back(side.material);
         fixed.push_back(side.fixed), removed.push_back(0), deformable.push_back(side.deformable);
-        share.push_back(side.share), surface.push_back(-1);
+        share.push_back(side.share), dust.push_back(side.dust), surface.push_back(-1);
     }
 
     ContactSide side(std::size_t k) const {
-        return {material[k],   radius[k],          mass[k], diameter[k],
-                fixed[k] != 0, deformable[k] != 0, false,   share[k]};
+        return {material[k],        radius[k], mass[k],  diameter[k], fixed[k] != 0,
+                deformable[k] != 0, false,     share[k], dust[k] != 0};
     }
 };
 

@@ -79,23 +79,28 @@ void find_ball_pairs(const ContactPoints<D>& points, const Domain<D>& domain, do
     }
 }
 
-/// The contact points in space, to be found by where they are.
+/// The contact points in space, to be found by where they are: those of a body that follow each
+/// other are near each other, and are found a few at a time.
 template <int D>
 class PointsInSpace {
 public:
     PointsInSpace(const ContactPoints<D>& points, const Domain<D>& domain) : domain_(domain) {
+        constexpr std::uint32_t longest = 16;
         Array<Box<D>> places;
-        for (std::size_t c = 0; c < points.size(); ++c) {
-            const Vec<double, D> x = wrapped(domain, points.position[c]);
-            places.push_back({x, x});
+        for (std::uint32_t c = 0; c < points.size(); ++c) {
+            const bool goes_on = c > 0 && points.body[c] == points.body[c - 1] &&
+                                 c - first_.back() < longest;
+            if (!goes_on) first_.push_back(c), places.push_back(Box<D>::nowhere());
+            places.back().add(wrapped(domain, points.position[c]));
             largest_ = std::max(largest_, points.radius[c]);
         }
+        first_.push_back(static_cast<std::uint32_t>(points.size()));
         tree_ = BoxTree<D>(places);
     }
 
     /// In rising order all points of which a part may be nearer to x than `distance`, and others.
     Array<std::uint32_t> near(const Vec<double, D>& x, double distance) const {
-        Array<std::uint32_t> found;
+        Array<std::uint32_t> runs, found;
         int images = 1;
         for (int axis = 0; axis < D; ++axis) images *= domain_.periodic[axis] ? 3 : 1;
         for (int image = 0; image < images; ++image) {
@@ -106,16 +111,19 @@ public:
                 rest /= 3;
             }
             double square = (distance + largest_) * (distance + largest_) * (1.0 + 1e-9);
-            tree_.visit_near(centre, square, [&](std::uint32_t c) { found.push_back(c); });
+            tree_.visit_near(centre, square, [&](std::uint32_t run) { runs.push_back(run); });
         }
-        std::sort(found.begin(), found.end());
-        found.erase(std::unique(found.begin(), found.end()), found.end());
+        std::sort(runs.begin(), runs.end());
+        runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+        for (const std::uint32_t run : runs)
+            for (std::uint32_t c = first_[run]; c < first_[run + 1]; ++c) found.push_back(c);
         return found;
     }
 
 private:
     const Domain<D>& domain_;
-    BoxTree<D> tree_;
+    Array<std::uint32_t> first_;  // of each run, and the end of the last
+    BoxTree<D> tree_;             // of the runs
     double largest_ = 0.0;
 };
 

@@ -159,6 +159,7 @@ private:
     void push_balls(const ContactBodies<D>& bodies, std::size_t k, double dt);
     /// The pair of row k does not touch there.
     void part(std::size_t k);
+    void turn_round(std::size_t k);
     /// Lists for each point, in rising order, the pairs that push it.
     void list_pushes(Selection& selection) const;
     void hand_out(const Selection& selection, ContactPoints<D>& points) const;
@@ -188,6 +189,7 @@ extern template class Contacts<3>;
 
 template <int D>
 void Contacts<D>::renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape) {
+    pushes_.resize(pairs_.size()), contacts_.resize(pairs_.size());
     std::size_t kept = 0;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const std::int32_t a = point[pairs_[k].first()], b = pairs_[k].with_shape()
@@ -196,9 +198,27 @@ void Contacts<D>::renumber(const Array<std::int32_t>& point, const Array<std::in
         if (a < 0 || b < 0) continue;
         pairs_[kept] = {a, pairs_[k].with_shape() ? -1 - b : b};
         springs_[kept] = springs_[k], normals_[kept] = normals_[k];
+        pushes_[kept] = pushes_[k], contacts_[kept] = contacts_[k];
+        if (!pairs_[kept].with_shape() && a > b) turn_round(kept);
         ++kept;
     }
     pairs_.resize(kept), springs_.resize(kept), normals_.resize(kept);
+    pushes_.resize(kept), contacts_.resize(kept);
+}
+
+/// Of two points the one with the lower number comes first. The stretch of rolling is that of the
+/// other's as well, since spin and normal both change their signs.
+template <int D>
+void Contacts<D>::turn_round(std::size_t k) {
+    std::swap(pairs_[k].a, pairs_[k].b);
+    std::swap(contacts_[k].body_a, contacts_[k].body_b);
+    normals_[k] = -1.0 * normals_[k];
+    for (int c = 0; c < 3; ++c) springs_[k][c] = -springs_[k][c];
+    Push& push = pushes_[k];
+    push.force = -1.0 * push.force;
+    std::swap(push.torque_a, push.torque_b);
+    push.overlap.normal = -1.0 * push.overlap.normal;
+    std::swap(push.overlap.lever_a, push.overlap.lever_b);
 }
 
 template <int D>

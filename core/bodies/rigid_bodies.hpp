@@ -114,12 +114,17 @@ public:
             return is_free(k) ? norm(states_[k].velocity) + shape(k).radius * norm(spin(k)) : 0.0;
         });
     }
-    /// How far bodies may go before contacts are looked for again [m]; infinite where none moves.
-    double margin() const {
-        double smallest = std::numeric_limits<double>::infinity();
+    /// The smallest length(k) of the bodies that may move; infinite without any.
+    template <class Length>
+    double smallest(const Length& length) const {
+        double least = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < size(); ++k)
-            if (!bodies_[k].fixed) smallest = std::min(smallest, 0.3 * shape(k).radius);
-        return smallest;
+            if (!bodies_[k].fixed) least = std::min(least, length(k));
+        return least;
+    }
+    /// Radius of gyration [m]: how far the mass of a body reaches, in 2-D and of balls.
+    double gyration(std::size_t k) const {
+        return std::sqrt(bodies_[k].inertia(2, 2) / bodies_[k].mass);
     }
     BodySums<D> sums() const {
         BodySums<D> sum;

@@ -40,7 +40,7 @@ struct WallCondition {
 /// How stiff contacts are, and what they are checked against.
 struct ContactOptions {
     bool hertz = false;     // in 3-D; discs touch along a line, whose spring is linear
-    bool softened = true;   // as stiff as `overlap` at `speed` asks, no stiffer
+    bool softened = true;   // as stiff as `overlap` at `speed` asks, if that is softer
     double overlap = 0.01;  // of the smaller diameter
     double speed = 1.0;     // largest speed at which bodies meet [m/s]
     double steps = 20.0;    // of a contact's time

@@ -59,6 +59,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity, double stable_step
     find_bonds();
     correct_gradients();
     if (bonds_.any()) find_spans();
+    sharpest_whole_ = sharpness_.empty() ? 0.0 : std::ranges::max(sharpness_);
     if (stable_step > 0.0)
         stable_step_ = stable_step;
     else
@@ -289,7 +290,7 @@ double TotalLagrangian<D>::timestep() const {
     if (!stepped_.any()) return std::numeric_limits<double>::infinity();
     double stiffening = 1.0;
     for (const std::uint32_t p : stepped_.points())
-        stiffening = max(stiffening, body_of(p).stiffening(deformation_[p]));
+        stiffening = max(stiffening, body_of(p).stiffening(deformation_[p]) * weakening(p));
     return courant * stable_step_ / stiffening;
 }
 

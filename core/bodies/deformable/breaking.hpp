@@ -32,7 +32,7 @@ void TotalLagrangian<D>::find_bonds() {
                                 entry & ListEntry::index_mask);
         });
     }
-    stress_.assign(size(), {}), spans_.assign(size(), 1);
+    stress_.assign(size(), {}), spans_.assign(size(), 1), sharpness_.assign(size(), 0.0);
 }
 
 /// After bonds were taken out.
@@ -42,8 +42,17 @@ void TotalLagrangian<D>::find_spans() {
     auto all = [](std::uint32_t) { return true; };
     if (spans_.empty()) return;
     stepped_.for_each([&](std::size_t p) {
-        spans_[p] = !body_of(p).breaks() || spans_space(bonds_.moment(p, point, all));
+        if (!body_of(p).breaks()) return;
+        spans_[p] = spans_space(bonds_.moment(p, point, all));
+        sharpness_[p] = spans_[p] ? bonds_.sharpness(p, point) : 0.0;
     });
+}
+
+/// By what part waves may be faster at a point than where all bonds are whole: gradients of few
+/// neighbours are sharper.
+template <int D>
+double TotalLagrangian<D>::weakening(std::size_t p) const {
+    return sharpest_whole_ > 0.0 ? max(1.0, sharpness_[p] / sharpest_whole_) : 1.0;
 }
 
 /// Point p as its bonds see it in a step.
@@ -100,7 +109,10 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     bonds_.advance(dt, point, body);
     bonds_.settle(
         point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
-        [this](std::size_t p, bool spans) { spans_[p] = spans; });
+        [&](std::size_t p, bool spans) {
+            spans_[p] = spans;
+            sharpness_[p] = spans ? bonds_.sharpness(p, point) : 0.0;
+        });
 }
 
 }  // namespace doseki

@@ -208,8 +208,8 @@ public:
             square = std::max(square, dot(solids_.v[p], solids_.v[p]));
         return std::sqrt(square);
     }
-    /// How far points may go before contacts are looked for again [m].
-    double margin() const {
+    /// The smallest of their points [m]; infinite without any.
+    double smallest_radius() const {
         double smallest = std::numeric_limits<double>::infinity();
         for (const std::uint32_t p : solids_.stepped().points())
             smallest = std::min(smallest, 0.5 * solids_.body_of(p).spacing);

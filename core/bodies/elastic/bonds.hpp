@@ -216,6 +216,10 @@ public:
     /// Of those to points j for which counts(j).
     template <class Point, class Counts>
     Mat<double, D> moment(std::size_t p, const Point& point, const Counts& counts) const;
+    /// Root of the sum of squares of what the places of a point and its neighbours weigh in its
+    /// gradients [1/m]: its square bounds the stiffness of a point, over that of the material.
+    template <class Point>
+    double sharpness(std::size_t p, const Point& point) const;
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
     /// only as those of two bodies. What the last step did to any bond is counted: `opening`.
     template <class Apart>

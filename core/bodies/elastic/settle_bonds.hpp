@@ -23,6 +23,25 @@ Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point, const Counts&
     return sum;
 }
 
+template <int D>
+template <class Point>
+double Bonds<D>::sharpness(std::size_t p, const Point& point) const {
+    const auto all = [](std::uint32_t) { return true; };
+    const Mat<double, D> B = inverse(moment(p, point, all), 0.0);
+    const BondPoint<D> own = point(p);
+    Vec<double, D> at_point{};
+    double square = 0.0;
+    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+        const BondEnds& ends = pairs_[bond_[k]];
+        if (state_[bond_[k]].whole <= 0.0) continue;
+        const BondPoint<D> other = point(ends.a == p ? ends.b : ends.a);
+        const Vec<double, D> weight =
+            (ends.weight * other.volume) * (B * (own.rest - other.rest));
+        square += dot(weight, weight), at_point = at_point + weight;
+    }
+    return std::sqrt(square + dot(at_point, at_point));
+}
+
 /// Of strain and springs of a point, Eqs. (80) and (83) with the bonds that there are at a moment.
 template <int D>
 template <class Point, class Body, class Place, class Counts>

@@ -241,7 +241,11 @@ public:
             number_points();
         }
         bonds_.serialise(archive);
-        if (archive.loads()) find_spans();
+        if (archive.loads()) {
+            stepped_.choose(size(), [](std::uint32_t) { return true; });
+            find_spans();
+            choose_stepped();
+        }
         archive("elastic_damping_work", damping_work_);
         expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
     }
@@ -300,6 +304,7 @@ private:
     // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
     void find_spans();
+    double weakening(std::size_t p) const;
     BondPoint<D> bond_point(std::size_t p) const;
     template <class F>
     void sum_bonded_forces(const F& take);
@@ -344,6 +349,8 @@ private:
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
     Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (120)
+    Array<double> sharpness_;              // of gradients there, where they do [1/m]
+    double sharpest_whole_ = 0.0;          // while all bonds are whole
     Array<Vec<double, D>> damping_force_;  // on each point, of both dampers [N], 2-D: [N/m]
     double damping_work_ = 0.0;
     bool springs_damp_ = false;

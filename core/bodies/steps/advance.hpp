@@ -64,7 +64,7 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
         contacts_.apply(contact_, PairKind::all, moved_, step);
         add_loads(PairKind::all, step);
         rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
-        if (!deformable.empty()) course.given = course.given + deformable.push(step, gravity_);
+        if (!deformable.empty()) push_deformable(step, course);
         rigid.push(gravity_, step);
         part_if_cracked(t + dt - left, step, course);
         drift(0.5 * step);
@@ -87,17 +87,22 @@ void Bodies<D>::find_companions() {
         (is_companion[k] ? companions_ : others_).push_back(k);
 }
 
+/// The longest of slow contacts, in each half of which are whole short ones.
+template <int D>
+double Bodies<D>::step_apart(double shorter) const {
+    const double longest = longest_step(PairKind::slow), halves = std::floor(0.5 * longest / shorter);
+    return halves >= 1.0 ? 2.0 * halves * shorter : std::min(longest, shorter);
+}
+
 /// Eq. (142): slow contacts push once, in the middle of a step, in each half of which what is
 /// deformable, dust and what they may touch have steps of their own (Tuckerman, Berne and Martyna,
 /// J. Chem. Phys. 97, 1992).
 template <int D>
 void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
-        const double longest = longest_step(PairKind::slow), shorter = shorter_step(),
-                     steps = steps_of(
-                         left, longest < 2.0 * shorter ? std::min(longest, shorter) : longest),
-                     step = left / steps, now = t + dt - left;
-        if (step < 2.0 * std::min(shorter, deformable.unstrained_timestep()))
+        const double shorter = shorter_step(), longest = step_apart(shorter),
+                     steps = steps_of(left, longest), step = left / steps, now = t + dt - left;
+        if (step <= std::min(shorter, deformable.unstrained_timestep()))
             step_at_once(walls, now, step, course);
         else {
             course.gravity_lag = 0.0;
@@ -159,8 +164,15 @@ void Bodies<D>::push_fast(double t, double dt, Course& course) {
     rigid.push({}, dt);
     if (!deformable.any_deforms()) return;
     deformable.collect(contact_);
-    course.given = course.given + deformable.push(dt, gravity_);
+    push_deformable(dt, course);
     part_if_cracked(t, dt, course);
+}
+
+/// What is pressed together becomes stiffer within a step of the run.
+template <int D>
+void Bodies<D>::push_deformable(double dt, Course& course) {
+    course.given = course.given + deformable.push(dt, gravity_);
+    deformable_step_ = deformable.timestep();
 }
 
 template <int D>

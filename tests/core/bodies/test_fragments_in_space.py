@@ -186,7 +186,7 @@ def drop(build, speed: float, axis: int = 2, strength: float = WEAK):
     falling = ball(centre=(0.0505 * down).tolist(), velocity=(-speed * down).tolist())
     simulation = build(falling, wall, strength=strength)
     energies = [energy(simulation)]
-    for end in np.linspace(0, 2e-3 * min(1, 5 / speed), 21)[1:]:
+    for end in np.linspace(0, 2e-3, 21)[1:]:
         simulation.advance(limit=end, pause=end, max_steps=10**9)
         energies.append(energy(simulation))
     parts, grains = simulation.fragments()["mass"], simulation.grains()
@@ -196,11 +196,11 @@ def drop(build, speed: float, axis: int = 2, strength: float = WEAK):
 
 
 def test_the_faster_a_ball_meets_a_floor_the_smaller_its_largest_part(build):
-    """And its energy never grows: 1 % is what speeds half a step ahead of forces make of it."""
+    """And its energy never grows."""
     largest = []
     for speed in (2.0, 4.0, 8.0):
         mass, energies = drop(build, speed)
-        assert energies.max() < 1.01 * energies[0]
+        assert energies.max() < (1 + 1e-9) * energies[0]
         assert energies[-1] < 0.9 * energies[0]
         largest.append(mass)
     assert largest[0] > 1.1 * largest[1] > 1.1**2 * largest[2]
