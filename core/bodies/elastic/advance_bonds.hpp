@@ -125,16 +125,19 @@ private:
         return i.spans ? i.B * rest_ : rest_;
     }
     /// By how much the stress across falls while the crack opens [Pa/m]: its own part of that, and
-    /// never less than that of all bonds around.
+    /// never less than that of all bonds around, which is more where few are left: the matrix of
+    /// these is up to 2 at whole edges.
     double stiffness(const Vec<double, D>& normal, const CrackSite& place) const {
         const double modulus = place.stiffness * body_.spacing;
-        double own = 0.0;
+        double own = 0.0, few = 1.0;
         for (const BondPoint<D>* i : {&a_, &b_}) {
+            if (!i->spans) continue;
             const Vec<double, D> corrected = corrected_rest(*i);
             const double square = dot(corrected, corrected);
-            if (i->spans) own += modulus * ends_.weight * i->volume * square + i->kappa;
+            own += modulus * ends_.weight * i->volume * square + i->kappa;
+            few = max(few, 0.5 * norm(i->B * normal));
         }
-        return max(place.stiffness, own / area(normal));
+        return max(few * place.stiffness, own / area(normal));
     }
     CrackSite site(const Vec<double, D>& normal) const {
         const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
