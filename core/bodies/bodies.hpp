@@ -285,17 +285,7 @@ private:
         std::iota(all_points_.begin(), all_points_.end(), 0);
         show_bodies(all_points_);
     }
-    /// Dust that was born where there was little room is smaller than its mass: if contacts were
-    /// looked for whenever it has gone a part of its radius, that would take most of the time.
-    void choose_margin() {
-        constexpr double share = 0.3;  // of a radius
-        const double points = deformable.smallest_radius();
-        auto radius = [this](std::size_t k) { return share * rigid.shape(k).radius; };
-        auto reach = [&](std::size_t k) { return is_dust(k) ? rigid.gyration(k) : radius(k); };
-        margin_ = finite_or_none(std::min(rigid.smallest(reach), points));
-        longest_way_ = finite_or_none(0.25 * std::min(rigid.smallest(radius), points));
-    }
-    static double finite_or_none(double length) { return std::isfinite(length) ? length : 0.0; }
+    void choose_margin();
     void show_bodies(std::span<const std::int32_t> points) {
         rigid.show(contact_, points);
         deformable.show(contact_);
@@ -355,7 +345,7 @@ private:
     std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     Array<std::int32_t> all_points_;
-    double moved_ = 0.0;  // bound on the distance gone since contacts were looked for
+    double moved_ = 0.0;        // bound on the distance gone since contacts were looked for
     double margin_ = 0.0;       // twice the distance after which they are looked for again
     double longest_way_ = 0.0;  // in a step, after which no overlap is deep at once
     double deformable_step_ = std::numeric_limits<double>::infinity();  // stable [s]

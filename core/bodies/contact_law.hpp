@@ -193,7 +193,8 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     return law;
 }
 
-/// E* of a Hertz contact, k of a linear one: that of the material, or eq. (47) where that is softer.
+/// E* of a Hertz contact, k of a linear one: that of the material, or eq. (47) where that is
+/// softer.
 template <int D>
 double ContactLaws<D>::stiffness(const ContactLaw& law, const ContactProperties& a,
                                  const ContactProperties& b) const {

@@ -88,8 +88,8 @@ public:
         constexpr std::uint32_t longest = 16;
         Array<Box<D>> places;
         for (std::uint32_t c = 0; c < points.size(); ++c) {
-            const bool goes_on = c > 0 && points.body[c] == points.body[c - 1] &&
-                                 c - first_.back() < longest;
+            const bool goes_on =
+                c > 0 && points.body[c] == points.body[c - 1] && c - first_.back() < longest;
             if (!goes_on) first_.push_back(c), places.push_back(Box<D>::nowhere());
             places.back().add(wrapped(domain, points.position[c]));
             largest_ = std::max(largest_, points.radius[c]);

@@ -35,8 +35,7 @@ double Bonds<D>::sharpness(std::size_t p, const Point& point) const {
         const BondEnds& ends = pairs_[bond_[k]];
         if (state_[bond_[k]].whole <= 0.0) continue;
         const BondPoint<D> other = point(ends.a == p ? ends.b : ends.a);
-        const Vec<double, D> weight =
-            (ends.weight * other.volume) * (B * (own.rest - other.rest));
+        const Vec<double, D> weight = (ends.weight * other.volume) * (B * (own.rest - other.rest));
         square += dot(weight, weight), at_point = at_point + weight;
     }
     return std::sqrt(square + dot(at_point, at_point));

@@ -72,6 +72,19 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
     }
 }
 
+/// Dust that was born where there was little room is smaller than its mass: if contacts were looked
+/// for whenever it has gone a part of its radius, that would take most of the time.
+template <int D>
+void Bodies<D>::choose_margin() {
+    constexpr double share = 0.3;  // of a radius
+    const double points = deformable.smallest_radius();
+    auto radius = [this](std::size_t k) { return share * rigid.shape(k).radius; };
+    auto reach = [&](std::size_t k) { return is_dust(k) ? rigid.gyration(k) : radius(k); };
+    auto finite_or_none = [](double length) { return std::isfinite(length) ? length : 0.0; };
+    margin_ = finite_or_none(std::min(rigid.smallest(reach), points));
+    longest_way_ = finite_or_none(0.25 * std::min(rigid.smallest(radius), points));
+}
+
 template <int D>
 void Bodies<D>::find_companions() {
     if (!breakable_.any()) return;
@@ -90,7 +103,8 @@ void Bodies<D>::find_companions() {
 /// The longest of slow contacts, in each half of which are whole short ones.
 template <int D>
 double Bodies<D>::step_apart(double shorter) const {
-    const double longest = longest_step(PairKind::slow), halves = std::floor(0.5 * longest / shorter);
+    const double longest = longest_step(PairKind::slow),
+                 halves = std::floor(0.5 * longest / shorter);
     return halves >= 1.0 ? 2.0 * halves * shorter : std::min(longest, shorter);
 }
 

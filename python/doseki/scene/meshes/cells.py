@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 from scipy.spatial import Delaunay
@@ -35,13 +37,16 @@ def cells_of(points: np.ndarray, outline: np.ndarray, spacing: float) -> Cells |
     triangles = Delaunay(places).simplices
     triangles = _anticlockwise(triangles, places)
     cells = list(_merged(triangles, places))
-    sides = {side for cell in cells for side in zip(cell, np.roll(cell, -1), strict=True)}
-    border = {(int(a), int(b)) for a, b in sides if (b, a) not in sides}
-    vertices = len(points) + np.arange(len(outline))
-    if border != {(int(a), int(b)) for a, b in zip(vertices, np.roll(vertices, -1), strict=True)}:
+    sides = {side for cell in cells for side in _sides(cell)}
+    vertices = list(range(len(points), len(places)))
+    if {(a, b) for a, b in sides if (b, a) not in sides} != set(_sides(vertices)):
         return None
     count = np.array([len(cell) for cell in cells], np.uint32)
-    return Cells(count, np.concatenate(cells).astype(np.uint32))
+    return Cells(count, np.fromiter(chain.from_iterable(cells), np.uint32))
+
+
+def _sides(corners: list[int]) -> Iterator[tuple[int, int]]:
+    return zip(corners, corners[1:] + corners[:1], strict=True)
 
 
 def _anticlockwise(triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
@@ -52,30 +57,40 @@ def _anticlockwise(triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
     return turned[np.abs(area) > FLAT]
 
 
-def _merged(triangles: np.ndarray, places: np.ndarray) -> Iterator[np.ndarray]:
-    """Polygons (k,) of the triangles with the same circumcentre, each around its middle."""
-    centre = _circumcentres(places[triangles])
+def _merged(triangles: np.ndarray, places: np.ndarray) -> Iterator[list[int]]:
+    """Polygons of the triangles with the same circumcentre, each around its middle."""
+    centre: list[list[float]] = _circumcentres(places[triangles]).tolist()
     across: dict[tuple[int, int], int] = {}
-    group = np.arange(len(triangles))
+    group = list(range(len(triangles)))
 
     def root(k: int) -> int:
         while group[k] != k:
-            k = int(group[k])
+            k = group[k]
         return k
 
     for k, corners in enumerate(triangles.tolist()):
-        for side in zip(corners, corners[1:] + corners[:1], strict=True):
+        for side in _sides(corners):
             other = across.get(side[::-1])
-            if other is not None and np.abs(centre[k] - centre[other]).max() < ALIKE:
+            if other is not None and max(_apart(centre[k], centre[other])) < ALIKE:
                 group[root(k)] = root(other)
             across[side] = k
-    members: dict[int, list[int]] = {}
-    for k in range(len(triangles)):
-        members.setdefault(root(k), []).append(k)
+    members: dict[int, set[int]] = {}
+    for k, corners in enumerate(triangles.tolist()):
+        members.setdefault(root(k), set()).update(corners)
+    where: list[list[float]] = places.tolist()
     for own in members.values():
-        corners = np.unique(triangles[own])
-        x, y = (places[corners] - places[corners].mean(axis=0)).T
-        yield corners[np.argsort(np.arctan2(y, x))]
+        yield _around_their_middle(sorted(own), where)
+
+
+def _apart(a: list[float], b: list[float]) -> tuple[float, float]:
+    return abs(a[0] - b[0]), abs(a[1] - b[1])
+
+
+def _around_their_middle(corners: list[int], where: list[list[float]]) -> list[int]:
+    """Anticlockwise."""
+    x = sum(where[k][0] for k in corners) / len(corners)
+    y = sum(where[k][1] for k in corners) / len(corners)
+    return sorted(corners, key=lambda k: math.atan2(where[k][1] - y, where[k][0] - x))
 
 
 def _circumcentres(corners: np.ndarray) -> np.ndarray:
