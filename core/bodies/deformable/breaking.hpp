@@ -43,9 +43,16 @@ void TotalLagrangian<D>::find_spans() {
     if (spans_.empty()) return;
     stepped_.for_each([&](std::size_t p) {
         if (!body_of(p).breaks()) return;
-        spans_[p] = spans_space(bonds_.moment(p, point, all));
-        sharpness_[p] = spans_[p] ? bonds_.sharpness(p, point) : 0.0;
+        take_shape(p, bonds_.moment(p, point, all));
     });
+}
+
+/// Of the bonds that are left of a point.
+template <int D>
+void TotalLagrangian<D>::take_shape(std::size_t p, const Mat<double, D>& shape) {
+    auto point = [this](std::size_t k) { return bond_point(k); };
+    spans_[p] = spans_space(shape);
+    sharpness_[p] = spans_[p] ? body_of(p).spacing * bonds_.sharpness(p, shape, point) : 0.0;
 }
 
 /// By what part waves may be faster at a point than where all bonds are whole: gradients of few
@@ -109,10 +116,7 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     bonds_.advance(dt, point, body);
     bonds_.settle(
         point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
-        [&](std::size_t p, bool spans) {
-            spans_[p] = spans;
-            sharpness_[p] = spans ? bonds_.sharpness(p, point) : 0.0;
-        });
+        [this](std::size_t p, const Mat<double, D>& shape) { take_shape(p, shape); });
 }
 
 }  // namespace doseki

@@ -216,10 +216,11 @@ public:
     /// Of those to points j for which counts(j).
     template <class Point, class Counts>
     Mat<double, D> moment(std::size_t p, const Point& point, const Counts& counts) const;
-    /// Root of the sum of squares of what the places of a point and its neighbours weigh in its
-    /// gradients [1/m]: its square bounds the stiffness of a point, over that of the material.
+    /// Root of the sum of squares of what the places of a point, whose moment is `shape`, and of
+    /// its neighbours weigh in its gradients [1/m], Eq. (146): its square bounds the stiffness of a
+    /// point, over that of the material.
     template <class Point>
-    double sharpness(std::size_t p, const Point& point) const;
+    double sharpness(std::size_t p, const Mat<double, D>& shape, const Point& point) const;
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
     /// only as those of two bodies. What the last step did to any bond is counted: `opening`.
     template <class Apart>
@@ -247,11 +248,11 @@ public:
     template <class Point, class Body>
     void advance(double dt, const Point& point, const Body& body);
     /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
-    /// share), the places after a share of a step; tells of the points that lost some whether the
-    /// space is spanned still: take_spans(p, spans).
-    template <class Point, class Body, class Place, class TakeSpans>
+    /// share), the places after a share of a step; tells of the points that lost some the moment of
+    /// those that are left: take_shape(p, moment).
+    template <class Point, class Body, class Place, class TakeShape>
     void settle(const Point& point, const Body& body, const Place& place,
-                const TakeSpans& take_spans);
+                const TakeShape& take_shape);
     bool settled(std::size_t p) const { return settled_[p] != 0; }
 
     void serialise(Archive& archive) {

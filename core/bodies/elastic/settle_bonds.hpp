@@ -25,9 +25,8 @@ Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point, const Counts&
 
 template <int D>
 template <class Point>
-double Bonds<D>::sharpness(std::size_t p, const Point& point) const {
-    const auto all = [](std::uint32_t) { return true; };
-    const Mat<double, D> B = inverse(moment(p, point, all), 0.0);
+double Bonds<D>::sharpness(std::size_t p, const Mat<double, D>& shape, const Point& point) const {
+    const Mat<double, D> B = inverse(shape, 0.0);
     const BondPoint<D> own = point(p);
     Vec<double, D> at_point{};
     double square = 0.0;
@@ -108,9 +107,9 @@ double Bonds<D>::energy_across(std::size_t p, Moment moment, const Point& point,
 }
 
 template <int D>
-template <class Point, class Body, class Place, class TakeSpans>
+template <class Point, class Body, class Place, class TakeShape>
 void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
-                      const TakeSpans& take_spans) {
+                      const TakeShape& take_shape) {
     if (change_.gone == 0) return;
     const auto all = [](std::uint32_t) { return true; };
     std::set<std::uint32_t> points;
@@ -119,11 +118,11 @@ void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
     for (const std::uint32_t p : points) {
         settled_[p] = 1;
         if (!point(p).spans) continue;
-        const bool spans = spans_space(moment(p, point, all));
+        const Mat<double, D> shape = moment(p, point, all);
         work_ += energy_across(p, Moment::before, point, body, place, all) -
                  first_halves(p, point, body);
-        if (spans) work_ -= energy_across(p, Moment::now, point, body, place, all);
-        take_spans(p, spans);
+        if (spans_space(shape)) work_ -= energy_across(p, Moment::now, point, body, place, all);
+        take_shape(p, shape);
     }
     for (const std::uint32_t n : stepped_)
         if (state_[n].whole < 0.0) state_[n].whole = 0.0, state_[n].change = {};

@@ -304,6 +304,7 @@ private:
     // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
     void find_spans();
+    void take_shape(std::size_t p, const Mat<double, D>& shape);
     double weakening(std::size_t p) const;
     BondPoint<D> bond_point(std::size_t p) const;
     template <class F>
@@ -349,7 +350,7 @@ private:
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
     Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (120)
-    Array<double> sharpness_;              // of gradients there, where they do [1/m]
+    Array<double> sharpness_;              // of gradients there, where they do, in spacings
     double sharpest_whole_ = 0.0;          // while all bonds are whole
     Array<Vec<double, D>> damping_force_;  // on each point, of both dampers [N], 2-D: [N/m]
     double damping_work_ = 0.0;

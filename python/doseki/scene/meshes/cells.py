@@ -71,7 +71,7 @@ def _merged(triangles: np.ndarray, places: np.ndarray) -> Iterator[list[int]]:
     for k, corners in enumerate(triangles.tolist()):
         for side in _sides(corners):
             other = across.get(side[::-1])
-            if other is not None and max(_apart(centre[k], centre[other])) < ALIKE:
+            if other is not None and _apart(centre[k], centre[other]) < ALIKE:
                 group[root(k)] = root(other)
             across[side] = k
     members: dict[int, set[int]] = {}
@@ -82,8 +82,9 @@ def _merged(triangles: np.ndarray, places: np.ndarray) -> Iterator[list[int]]:
         yield _around_their_middle(sorted(own), where)
 
 
-def _apart(a: list[float], b: list[float]) -> tuple[float, float]:
-    return abs(a[0] - b[0]), abs(a[1] - b[1])
+def _apart(a: list[float], b: list[float]) -> float:
+    """Along the axis along which they are farther apart."""
+    return max(abs(a[0] - b[0]), abs(a[1] - b[1]))
 
 
 def _around_their_middle(corners: list[int], where: list[list[float]]) -> list[int]:
