@@ -23,8 +23,8 @@ void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilog
 }
 
 template <int D>
-ElasticTerm<D> TotalLagrangian<D>::records() const {
-    return {motion_, solid_};
+ElasticRecords<D> TotalLagrangian<D>::records() const {
+    return {motion_, place_, solid_};
 }
 
 /// Shift along x that sets a body two supports beyond all before it.
@@ -47,13 +47,15 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity, double stable_step
     stepped_.choose(size(), [](std::uint32_t) { return true; });
     a.assign(size(), {}), load.assign(size(), {});
     deformation_.assign(size(), identity<double, D>());
-    motion_.resize(size()), solid_.resize(size()), damping_force_.assign(size(), {});
+    motion_.resize(size()), place_.resize(size()), solid_.resize(size()),
+        damping_force_.assign(size(), {});
     for (std::size_t p = 0; p < size(); ++p) {
         const DeformableBody& body = body_of(p);
         motion_[p] = {{v[p], mass(p), 1.0 / body.support()}, rest_[p].component};
         const double stiffness = body.hourglass * body.shear_modulus(),
                      viscosity = body.hourglass * body.viscosity();
-        solid_[p] = {rest_[p], volume(p), stiffness, viscosity, {}, {}, {}, {}, {}};
+        place_[p] = {rest_[p], volume(p)};
+        solid_[p] = {stiffness, viscosity, {}, {}, {}, {}, {}};
         springs_damp_ |= viscosity > 0.0;
     }
     find_bonds();
@@ -127,7 +129,7 @@ void TotalLagrangian<D>::update_point(std::size_t p,
 /// Over springs, those of bonds where there are any.
 template <int D>
 template <class Epilogue>
-void TotalLagrangian<D>::sum_springs(const ElasticTerm<D>& records,
+void TotalLagrangian<D>::sum_springs(const ElasticRecords<D>& records,
                                      const Epilogue& epilogue) const {
     if (bonds_.any())
         sum_over_pairs(Bonded<SpringTerm<D>>{{records}, bonds_.rows()}, epilogue);
@@ -154,7 +156,7 @@ template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
     stepped_.for_each([&](std::size_t p) {
-        solid_[p].x = x[p];
+        place_[p].x = x[p];
         motion_[p].v = v[p] + half_dt * a[p];
     });
     if (bonds_.any()) return sum_bonded_forces(take);
@@ -169,7 +171,7 @@ void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
 template <int D>
 void TotalLagrangian<D>::compute_accelerations(double half_dt, const Vec<double, D>& gravity) {
     sum_internal_forces(half_dt, [&](std::size_t p, const InternalForce<double, D>& force) {
-        damping_force_[p] = solid_[p].volume * force.damping;
+        damping_force_[p] = place_[p].volume * force.damping;
         a[p] = clamped_[p]
                    ? Vec<double, D>{}
                    : (1.0 / body_of(p).rho0) * force.all + (1.0 / mass(p)) * load[p] + gravity;
@@ -197,7 +199,7 @@ BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
         const Vec<double, D> way = dt * v[p] + (0.5 * dt * dt) * a[p];
         v[p] = v[p] + dt * a[p];
         if (clamped_[p]) return BodyStep<D>{};
-        const Vec<double, D> weight = (body_of(p).rho0 * solid_[p].volume) * gravity;
+        const Vec<double, D> weight = (body_of(p).rho0 * place_[p].volume) * gravity;
         return BodyStep<D>{dt * (load[p] + weight), dot(weight, way), dot(load[p], way)};
     });
     if (!std::isfinite(given.contact_work))  // no load times a way that is not finite is not

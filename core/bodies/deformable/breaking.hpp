@@ -65,9 +65,9 @@ double TotalLagrangian<D>::weakening(std::size_t p) const {
 /// Point p as its bonds see it in a step.
 template <int D>
 BondPoint<D> TotalLagrangian<D>::bond_point(std::size_t p) const {
-    return {rest_[p],         solid_[p].x,      v[p],
+    return {rest_[p],         place_[p].x,      v[p],
             deformation_[p],  correction_[p],   stress_[p],
-            solid_[p].volume, solid_[p].kappa,  number_[p],
+            place_[p].volume, solid_[p].kappa,  number_[p],
             spans_[p] != 0,   bonds_.settled(p)};
 }
 

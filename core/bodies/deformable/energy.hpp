@@ -14,12 +14,13 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
     ElasticEnergy sum;
     for (const double held : held_energy_) sum.strain += held;
     if (!stepped_.any()) return sum;
-    auto& [solid, energy, points] = energy_rows_;
-    solid.resize(size()), energy.resize(size()), points.resize(bonds_.any() ? size() : 0);
+    auto& [place, solid, energy, points] = energy_rows_;
+    place.resize(size()), solid.resize(size()), energy.resize(size());
+    points.resize(bonds_.any() ? size() : 0);
     stepped_.for_each([&](std::size_t p) {
-        solid[p] = solid_[p], solid[p].x = x[p] + ahead * v[p], energy[p] = {};
+        place[p] = {x[p] + ahead * v[p], place_[p].volume}, solid[p] = solid_[p], energy[p] = {};
     });
-    const ElasticTerm<D> records{motion_, solid};
+    const ElasticRecords<D> records{motion_, place, solid};
     auto strain = [&](std::size_t p, const Mat<double, D>& F) {
         const DeformableBody& body = body_of(p);
         solid[p].F = F, solid[p].kappa = body.hourglass * body.shear_modulus();
@@ -33,7 +34,7 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
             if (spans) strain(p, sums.now.place * B);
             const Mat<double, D>& F = solid[p].F;
             points[p] = bond_point(p);
-            points[p].x = solid[p].x, points[p].F = F, points[p].B = B;
+            points[p].x = place[p].x, points[p].F = F, points[p].B = B;
             points[p].P = body_of(p).stress(F), points[p].kappa = solid[p].kappa;
             points[p].spans = spans;
         };

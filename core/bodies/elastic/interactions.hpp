@@ -2,8 +2,6 @@
 // The sums of elastic solids as terms of the pair loop, which runs over pairs at rest: the
 // records' coordinates are the reference positions X.
 
-#include <span>
-
 #include "bodies/elastic/bonds.hpp"
 #include "bodies/elastic/records.hpp"
 #include "pairs/rows.hpp"
@@ -13,32 +11,28 @@
 
 namespace doseki {
 
-/// Common to all terms: no point of a solid is fixed to the pair loop, clamped ones included.
-template <int D>
-struct ElasticTerm {
+/// Common to all terms, which take point i as an Own and its neighbours as an Other. No point of a
+/// solid is fixed to the pair loop, clamped ones included.
+template <int D, template <class, int> class Own, template <class, int> class Other>
+struct ElasticTerm : ElasticRecords<D> {
     using Real = double;
     static constexpr int dim = D;
 
-    std::span<const MotionRecord<double, D>> motion;
-    std::span<const ElasticRecord<D>> solid;
-
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
-        using T = typename Rows::Number;
-        return ElasticPoint<T, D>{take<MotionPoint<T, D>>(motion, rows),
-                                  take<ElasticFields<T, D>>(solid, rows)};
+        return Own<typename Rows::Number, D>::of(*this, rows);
     }
     template <class T>
     DOSEKI_FN auto load_moving(OneRow<T> j) const {
-        return load(j);
+        return Other<T, D>::of(*this, j);
     }
     template <class T>
     DOSEKI_FN auto load_fixed(OneRow<T> j) const {
-        return load(j);
+        return Other<T, D>::of(*this, j);
     }
     template <class Sums, class T>
-    DOSEKI_FN void add_fixed(Sums&, const Pair<T, D>&, const ElasticPoint<T, D>&,
-                             const ElasticPoint<T, D>&) const {}
+    DOSEKI_FN void add_fixed(Sums&, const Pair<T, D>&, const Own<T, D>&, const Other<T, D>&) const {
+    }
 };
 
 template <class T, int D>
@@ -53,13 +47,13 @@ struct DeformationAccumulators {
 
 /// Eq. (80) before correction: the deformation gradient and its rate.
 template <int D>
-struct DeformationTerm : ElasticTerm<D> {
+struct DeformationTerm : ElasticTerm<D, PlacedPoint, PlacedPoint> {
     template <class T>
     using Accumulators = DeformationAccumulators<T, D>;
 
     template <class T>
-    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                       const ElasticPoint<T, D>& j) const {
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const PlacedPoint<T, D>& i,
+                       const PlacedPoint<T, D>& j) const {
         const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         add_velocity_gradient(sums.place, j.volume, i.x - j.x, F, pair.r_ij);
         add_velocity_gradient(sums.velocity, j.volume, i.v - j.v, F, pair.r_ij);
@@ -68,13 +62,13 @@ struct DeformationTerm : ElasticTerm<D> {
 
 /// What Eq. (83a) and the energy of the springs of Eq. (83) need.
 template <int D>
-struct SpringTerm : ElasticTerm<D> {
+struct SpringTerm : ElasticTerm<D, ElasticPoint, PlacedPoint> {
     template <class T>
     using Accumulators = MisfitMoments<T, D>;
 
     template <class T>
     DOSEKI_FN void add(MisfitMoments<T, D>& sums, const Pair<T, D>& pair,
-                       const ElasticPoint<T, D>& i, const ElasticPoint<T, D>& j) const {
+                       const ElasticPoint<T, D>& i, const PlacedPoint<T, D>& j) const {
         const T weight = -(j.volume * WendlandC2<D>::gradient_factor(pair.r, i.inverse_support));
         const Vec<T, D> rate = i.v - j.v - i.F_rate * pair.r_ij;
         sums.add(weight, i.x - j.x - i.F * pair.r_ij, rate);
@@ -94,7 +88,7 @@ struct InternalForce {
 
 /// Eqs. (83) and (83a).
 template <int D>
-struct InternalForceTerm : ElasticTerm<D> {
+struct InternalForceTerm : ElasticTerm<D, ElasticPoint, ElasticPoint> {
     template <class T>
     using Accumulators = InternalForce<T, D>;
 
@@ -117,11 +111,11 @@ struct InternalForceTerm : ElasticTerm<D> {
 // that bears nothing has no weight. Nothing else changes, Eq. (108).
 
 /// A pair as its bond has made it.
-template <class T, int D>
+template <class T, int D, class Point>
 struct BondedPair {
     Pair<T, D> pair;
-    ElasticPoint<T, D> j;
-    BondedPair(const BondFields<T, D>& bond, const Pair<T, D>& pair, const ElasticPoint<T, D>& j)
+    Point j;
+    BondedPair(const BondFields<T, D>& bond, const Pair<T, D>& pair, const Point& j)
         : pair{pair.r_ij + bond.jump, pair.r}, j(j) {
         this->j.volume *= bond.whole;
     }
@@ -135,10 +129,10 @@ struct Bonded : Term {
 
     BondRows<D> bonds;
 
-    template <class Sums, class T>
-    DOSEKI_FN void add(Sums& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                       const ElasticPoint<T, D>& j, PairEntry at) const {
-        const BondedPair<T, D> bonded(bonds.template load<T>(at), pair, j);
+    template <class Sums, class T, class Own, class Other>
+    DOSEKI_FN void add(Sums& sums, const Pair<T, D>& pair, const Own& i, const Other& j,
+                       PairEntry at) const {
+        const BondedPair bonded(bonds.template load<T>(at), pair, j);
         Term::add(sums, bonded.pair, i, bonded.j);
     }
 };
@@ -164,9 +158,9 @@ struct BondedDeformationTerm : DeformationTerm<D> {
     BondRows<D> bonds;
 
     template <class T>
-    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const ElasticPoint<T, D>& i,
-                       const ElasticPoint<T, D>& j, PairEntry at) const {
-        const BondedPair<T, D> bonded(bonds.template load<T>(at), pair, j);
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const PlacedPoint<T, D>& i,
+                       const PlacedPoint<T, D>& j, PairEntry at) const {
+        const BondedPair bonded(bonds.template load<T>(at), pair, j);
         DeformationTerm<D>::add(sums.now, bonded.pair, i, bonded.j);
         const T F = WendlandC2<D>::gradient_factor(pair.r, i.inverse_support);
         add_velocity_gradient(sums.shape, bonded.j.volume, bonded.pair.r_ij, F, bonded.pair.r_ij);

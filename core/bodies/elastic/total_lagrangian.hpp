@@ -20,7 +20,7 @@ namespace doseki {
 template <class T, int D>
 struct DeformationAccumulators;
 template <int D>
-struct ElasticTerm;
+struct ElasticRecords;
 template <int D>
 struct RigidMotion;
 
@@ -298,8 +298,8 @@ private:
     template <class Term, class Epilogue>
     void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
     template <class Epilogue>
-    void sum_springs(const ElasticTerm<D>& records, const Epilogue& epilogue) const;
-    ElasticTerm<D> records() const;
+    void sum_springs(const ElasticRecords<D>& records, const Epilogue& epilogue) const;
+    ElasticRecords<D> records() const;
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
@@ -324,6 +324,7 @@ private:
 
     /// Arrays for elastic_energy(), of which only the rows of stepped points are used.
     struct EnergyRows {
+        Array<ElasticPlaceRecord<D>> place;
         Array<ElasticRecord<D>> solid;
         Array<ElasticEnergy> energy;
         Array<BondPoint<D>> points;
@@ -346,6 +347,7 @@ private:
     Array<Mat<double, D>> correction_, deformation_;
     Neighbours<D> neighbours_;
     Array<MotionRecord<double, D>> motion_;
+    Array<ElasticPlaceRecord<D>> place_;
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
