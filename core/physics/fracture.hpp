@@ -8,13 +8,14 @@
 
 namespace doseki {
 
-/// Contract of a law of fracture: the tension that a site bears, whether a crack starts under a
-/// tension [Pa], how its damage grows
-/// in a time [s], what it still bears, and when it bears nothing.
+/// Contract of a law of fracture: the tension that a site bears and the one that all sites bear,
+/// whether a crack starts under a tension [Pa], how its damage grows in a time [s], what it still
+/// bears, and when it bears nothing.
 template <class Law, class T>
 concept FractureLaw =
     Named<Law> && requires(const Law& law, Crack& crack, const CrackSite& site, T number) {
         { law.strength(site) } -> std::same_as<T>;
+        { law.least_strength() } -> std::same_as<T>;
         { law.starts(number, site) } -> std::same_as<bool>;
         law.grow(crack, number, number, site);
         { law.traction(crack, site) } -> std::same_as<T>;

@@ -32,7 +32,8 @@ void TotalLagrangian<D>::find_bonds() {
                                 entry & ListEntry::index_mask);
         });
     }
-    stress_.assign(size(), {}), spans_.assign(size(), 1), sharpness_.assign(size(), 0.0);
+    stress_.assign(size(), {}), tension_.assign(size(), 0.0);
+    spans_.assign(size(), 1), sharpness_.assign(size(), 0.0);
 }
 
 /// After bonds were taken out.
@@ -79,7 +80,8 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
                                        const Mat<double, D>& shape) {
     const DeformableBody& body = body_of(p);
     if (!spans_[p] || !determines_strain(shape)) {
-        correction_[p] = {}, deformation_[p] = identity<double, D>(), stress_[p] = {};
+        correction_[p] = {}, deformation_[p] = identity<double, D>();
+        stress_[p] = {}, tension_[p] = 0.0;
         solid_[p].Q = solid_[p].Q_damping = solid_[p].F_rate = solid_[p].spin = {},
         solid_[p].F = deformation_[p];
         solid_[p].kappa = solid_[p].kappa_rate = 0.0;
@@ -90,6 +92,7 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     solid_[p].kappa_rate = body.hourglass * body.viscosity();
     update_point(p, sums);
     stress_[p] = stress(p);
+    tension_[p] = largest_principal(material_stress(deformation_[p], stress_[p])).value;
 }
 
 /// For the places and velocities in the records.
@@ -113,7 +116,7 @@ template <int D>
 void TotalLagrangian<D>::advance_bonds(double dt) {
     auto point = [this](std::size_t p) { return bond_point(p); };
     auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
-    bonds_.advance(dt, point, body);
+    bonds_.advance(dt, point, body, [this](std::size_t p) { return tension_[p]; });
     bonds_.settle(
         point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
         [this](std::size_t p, const Mat<double, D>& shape) { take_shape(p, shape); });

@@ -36,16 +36,26 @@ void Bonds<D>::add_code(std::size_t p, std::size_t points, std::uint32_t j) {
 
 /// Second Piola-Kirchhoff stress: of the material, so that it does not turn.
 template <int D>
+Sym<double, D> material_stress(const Mat<double, D>& F, const Mat<double, D>& P) {
+    return symmetric_part(inverse(F, 0.0) * P);
+}
+template <int D>
 Sym<double, D> material_stress(const BondPoint<D>& point) {
-    if (!point.spans) return {};
-    return symmetric_part(inverse(point.F, 0.0) * point.P);
+    return point.spans ? material_stress(point.F, point.P) : Sym<double, D>{};
 }
 
 /// Those at the points of a bond.
 template <int D>
 struct Beside {
     CrackTip<D> a{}, b{};
+
+    bool open() const { return a.open || b.open; }
 };
+
+/// Tension that every bond of a body bears [Pa].
+inline double least_strength(const DeformableBody& body) {
+    return with_value(body.law->fracture, [](const auto& law) { return law.least_strength(); });
+}
 
 /// One bond, its points, and what happens to it in a step.
 template <int D>
@@ -159,8 +169,7 @@ private:
         const double along = dot(normal, rest_);
         if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
         const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;
-        const double own = beside_.a.open || beside_.b.open ? dot(pull(), outward) / area(outward)
-                                                            : 0.0,
+        const double own = beside_.open() ? dot(pull(), outward) / area(outward) : 0.0,
                      tension = max(stress, own);
         const CrackSite place = site(outward);
         if (!with_value(body_.law->fracture,
@@ -236,8 +245,8 @@ private:
 };
 
 template <int D>
-template <class Point, class Body>
-void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
+template <class Point, class Body, class Tension>
+void Bonds<D>::advance(double dt, const Point& point, const Body& body, const Tension& tension) {
     for (const std::uint32_t n : stepped_) tip_[pairs_[n].a] = tip_[pairs_[n].b] = {};
     for (const std::uint32_t n : stepped_) {
         if (!(state_[n].opening > 0.0)) continue;
@@ -251,6 +260,10 @@ void Bonds<D>::advance(double dt, const Point& point, const Body& body) {
         BondState<D>& state = state_[stepped_[k]];
         if (state.whole == 0.0) return BondChange{};
         const Beside<D> beside{tip_[ends.a], tip_[ends.b]};
+        // The largest principal stress of a mean is at most the mean of those of its parts.
+        const double most = 0.5 * (tension(ends.a) + tension(ends.b));
+        if (!state.cracked() && !beside.open() && most < least_strength(body(ends.a)))
+            return BondChange{};
         return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state, beside)
             .take(dt);
     });

@@ -244,9 +244,10 @@ public:
     template <class Point, class Body>
     double opening(const Point& point, const Body& body) const;
 
-    /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody.
-    template <class Point, class Body>
-    void advance(double dt, const Point& point, const Body& body);
+    /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody, tension(p) the
+    /// largest principal value of its material_stress.
+    template <class Point, class Body, class Tension>
+    void advance(double dt, const Point& point, const Body& body, const Tension& tension);
     /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
     /// share), the places after a share of a step; tells of the points that lost some the moment of
     /// those that are left: take_shape(p, moment).

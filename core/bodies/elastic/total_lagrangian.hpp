@@ -351,6 +351,7 @@ private:
     Array<ElasticRecord<D>> solid_;
     Bonds<D> bonds_;
     Array<Mat<double, D>> stress_;         // of breakable bodies, without damping
+    Array<double> tension_;                // its largest principal value, of the material
     Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (120)
     Array<double> sharpness_;              // of gradients there, where they do, in spacings
     double sharpest_whole_ = 0.0;          // while all bonds are whole

@@ -23,6 +23,7 @@ struct Cohesive {
     T critical_opening() const { return T(2) * fracture_energy / tensile_strength; }
 
     T strength(const CrackSite&) const { return tensile_strength; }
+    T least_strength() const { return tensile_strength; }
     bool starts(T tension, const CrackSite&) const { return tension >= tensile_strength; }
     void grow(Crack& crack, T, T, const CrackSite&) const {
         crack.damage = std::min(T(1), crack.max_opening / critical_opening());

@@ -41,6 +41,7 @@ struct GradyKipp {
         const T own = site.young * std::pow(first / (weibull_k * site.volume), T(1) / weibull_m);
         return std::min(own, T(site.tip));
     }
+    T least_strength() const { return T(0); }
     bool starts(T tension, const CrackSite& site) const {
         return tension >= T(site.tip) || active_flaws(tension / site.young, site) > 0;
     }

@@ -14,6 +14,7 @@ struct Unbreakable {
     void members(F&&) {}
 
     T strength(const CrackSite&) const { return std::numeric_limits<T>::infinity(); }
+    T least_strength() const { return std::numeric_limits<T>::infinity(); }
     bool starts(T, const CrackSite&) const { return false; }
     void grow(Crack&, T, T, const CrackSite&) const {}
     T traction(const Crack&, const CrackSite&) const { return T(0); }
