@@ -173,6 +173,20 @@ def test_balls_part_with_their_restitution(tmp_path, dim, law, restitution):
     assert 0 < grains["worst_overlap"] < 0.01
 
 
+@pytest.mark.parametrize(("dim", "law"), [(2, "linear"), (3, "linear"), (3, "hertz")])
+@pytest.mark.parametrize(("young", "same"), [(1e5, True), (5e10, False)])
+def test_softened_contacts_are_never_stiffer_than_the_material(tmp_path, dim, law, young, same):
+    """Balls as soft as rubber meet as they do with `stiffness = "material"`; those of rock do not."""
+    speeds = []
+    for stiffness in ("softened", "material"):
+        text = TWO_BALLS.replace("[contact]", f'[contact]\nstiffness = "{stiffness}"')
+        text = text.replace("friction = 0", f"friction = 0\nyoung_modulus = {young:g}")
+        simulation = built(tmp_path, text, dim=dim, law=law, restitution=1.0)
+        speeds.append(to(simulation, 1e-4).grains()["velocity"][:, 0])
+    assert np.array_equal(*speeds) is same
+    assert 0 < speeds[0][1] < 3  # while they touch, or have touched
+
+
 def test_a_block_that_lands_flat_leaves_no_faster_than_it_came(tmp_path):
     grains = to(built(tmp_path, FLAT), 0.01).grains()
     (rebound,) = np.asarray(grains["velocity"])[~np.asarray(grains["fixed"]), 1]
