@@ -176,7 +176,7 @@ def test_balls_part_with_their_restitution(tmp_path, dim, law, restitution):
 @pytest.mark.parametrize(("dim", "law"), [(2, "linear"), (3, "linear"), (3, "hertz")])
 @pytest.mark.parametrize(("young", "same"), [(1e5, True), (5e10, False)])
 def test_softened_contacts_are_never_stiffer_than_the_material(tmp_path, dim, law, young, same):
-    """Balls as soft as rubber meet as they do with `stiffness = "material"`; those of rock do not."""
+    """Balls as soft as rubber meet as with `stiffness = "material"`; those of rock do not."""
     speeds = []
     for stiffness in ("softened", "material"):
         text = TWO_BALLS.replace("[contact]", f'[contact]\nstiffness = "{stiffness}"')
