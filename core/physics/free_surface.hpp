@@ -18,8 +18,8 @@ struct FreeSurfaceIndicator {
 
     double x, normalised_density;
 
-    /// Whether there are too few particles to tell how dense the fluid is.
-    bool is_spray() const { return x >= edge; }
+    /// Whether particles are so few that they are apart, each as dense as the liquid.
+    bool is_spray() const { return x >= alone; }
 
     /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.6 dp. The constants give 1 for
     /// the first two rows of a lattice under a flat surface, in 2-D and (to 0.6 %) in 3-D.

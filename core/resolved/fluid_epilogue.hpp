@@ -57,12 +57,9 @@ public:
         rates.density += records_[p].rho * edge_rate(sums.sliding_rate, sums.sliding_size);
         if (model_.options.flow.shifting && indicator.x < FreeSurfaceIndicator::surface)
             shift(p, sums, strain, rates);
-        if (!(is_void(p) && indicator.is_spray()))
-            relax_density(p, indicator.normalised_density, strain, rates);
-        if (is_void(p))
-            open_void(p, rates);
-        else
-            bound_tension(p, sums.at_body > 0.0, rates);
+        if (indicator.is_spray()) rates.density = std::min(0.0, rates.density);  // Eq. (147)
+        relax_density(p, indicator.normalised_density, strain, rates);
+        bound_tension(p, sums.at_body > 0.0, rates);
         summary(p).work.power += part_on_surface(p);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
@@ -93,11 +90,6 @@ private:
     /// As the next evaluation will see it.
     bool on_surface(std::size_t p) const {
         return state_.surface[p] > FreeSurfaceIndicator::surface;
-    }
-    bool is_void(std::size_t p) const { return state_.parted[p] > 0.0; }
-    /// Of a void: by how much its density would be less, had it not been bounded.
-    double opening(std::size_t p) const {
-        return is_void(p) ? (state_.parted[p] - 1.0) * rho0(p) : 0.0;
     }
     FlowSummary<D>& summary(std::size_t p) const {
         return summaries_[p / static_cast<std::size_t>(lanes<double>)];
@@ -205,8 +197,7 @@ private:
     void relax_density(std::size_t p, double normalised_density, double strain,
                        Rates& rates) const {
         constexpr double per_strain = 10.0;
-        const double rho = records_[p].rho - opening(p),
-                     sound = model_.constants.c / state_.smoothing_length[p];
+        const double rho = records_[p].rho, sound = model_.constants.c / state_.smoothing_length[p];
         const double rate = std::clamp(per_strain * strain, sound / density_relaxation_at_rest,
                                        sound / density_relaxation);
         rates.density += rate * (normalised_density * rho0(p) - rho);
@@ -221,19 +212,6 @@ private:
         rates.density = std::max(at_body ? missing / time : 0.0, rates.density);
     }
 
-    /// Eq. (147): a void remembers how far it has opened beyond its least density, and is no denser
-    /// before as much has come together.
-    void open_void(std::size_t p, Rates& rates) const {
-        constexpr double widest =
-            0.8;  // of the density at rest: a particle is never without itself
-        const bool opens = rates.density < 0.0 &&
-                           records_[p].rho <= model_.min_density[state_.tag[p].material].in_flow;
-        double& parted = state_.parted[p];
-        if (!opens && parted <= 1.0) return;
-        parted = std::clamp(parted - dt_ * rates.density / rho0(p), 1.0, 1.0 + widest);
-        rates.density = 0.0;
-    }
-
     /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
     /// meets again, until it has closed. Returns the power of the tension that is lost [W].
     double part_on_surface(std::size_t p) const {
@@ -241,7 +219,7 @@ private:
         const bool had_tension = pressure(p) < 0.0;
         if (rho >= rho0(p)) state_.parted[p] = 0.0;
         if (rho >= rho0(p) || !on_surface(p)) return 0.0;
-        state_.parted[p] = std::max(1.0, state_.parted[p]);
+        state_.parted[p] = 1.0;
         if (!had_tension || dt_ <= 0.0) return 0.0;
         const Material& material = model_.material(state_.tag[p]);
         return -state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy / dt_;

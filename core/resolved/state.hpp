@@ -20,11 +20,11 @@ struct ResolvedState : Particles<D> {
     /// Inverse moment of kernel gradients less the identity: zero near a free surface, and before a
     /// particle has been summed over.
     FluidField<Sym<double, D>> correction_excess;
-    FluidField<Vec<double, D>> shift;  // velocity relative to the fluid [m/s]
-    FluidField<double> surface;        // free-surface indicator
-    FluidField<double> parted;         // 1 or more: a void that has not closed, Eqs. (144), (147)
-    FluidField<double> mixing_length;  // [m]
-    FluidField<double> mean_pressure;  // over a time, where friction depends on it [Pa]
+    FluidField<Vec<double, D>> shift;     // velocity relative to the fluid [m/s]
+    FluidField<double> surface;           // free-surface indicator
+    FluidField<double> parted;            // 1: a void that has not closed, Eq. (144)
+    FluidField<double> mixing_length;     // [m]
+    FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
     FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
     bool has_voellmy_beds;                // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
