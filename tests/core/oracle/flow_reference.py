@@ -490,6 +490,8 @@ class FlowReference:
         strain = np.sqrt((self.L**2).sum(axis=(1, 2)))
         rate = RELAXATION_PER_STRAIN * strain
         self.relaxation = np.clip(rate, self.slowest, self.fastest)
+        spray = self.measure >= ALONE  # eq. 147: not compressed before its particles are together
+        self.density_rate = np.where(spray, np.minimum(self.density_rate, 0), self.density_rate)
         self.density_rate += self.relaxation * (self.filling * self.rho0 - self.rho)
         void = self.rho < LEAST_DENSITY * self.rho0
         self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
