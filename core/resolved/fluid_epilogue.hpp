@@ -44,7 +44,7 @@ public:
         if (!state_.is_free(p)) {
             state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
             push_of_layers(p, sums);
-            damp_sound(p, sums.at_body > 0.0);
+            damp_sound(p, is_vented(sums));
             return;
         }
         const Mat<double, D>& L = state_.velocity_gradient[p];
@@ -59,13 +59,13 @@ public:
             shift(p, sums, strain, rates);
         if (indicator.is_spray()) rates.density = std::min(0.0, rates.density);  // Eq. (147)
         relax_density(p, indicator.normalised_density, strain, rates);
-        bound_tension(p, sums.at_body > 0.0, rates);
+        bound_tension(p, is_vented(sums), rates);
         summary(p).work.power += part_on_surface(p);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
         summary(p).work.power += power_of_corrections(p, rates.density - of_pairs.density);
         limit_timestep(p);
-        damp_sound(p, sums.at_body > 0.0);
+        damp_sound(p, is_vented(sums));
     }
 
 private:
@@ -161,6 +161,13 @@ private:
         return {a, rho * sums.density_rate};
     }
 
+    /// Whether air comes in under tension: beside a body that moves, and where what has a free
+    /// surface slides past an edge of a wall.
+    bool is_vented(const Sums& sums) const {
+        return sums.at_body > 0.0 || (sums.max_surface > FreeSurfaceIndicator::surface &&
+                                      edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
+    }
+
     /// What shifting and the relaxation of density give to energies of compression and height [W].
     double power_of_corrections(std::size_t p, double density_rate) const {
         const FluidRecord<D>& record = records_[p];
@@ -204,12 +211,12 @@ private:
     }
 
     /// Below its least density a fluid does not expand any further.
-    void bound_tension(std::size_t p, bool at_body, Rates& rates) const {
-        const double least = model_.min_density[state_.tag[p].material].at(at_body);
+    void bound_tension(std::size_t p, bool vented, Rates& rates) const {
+        const double least = model_.min_density[state_.tag[p].material].at(vented);
         const double missing = least - records_[p].rho;
         if (missing <= 0.0) return;
         const double time = tension_release * state_.smoothing_length[p] / model_.constants.c;
-        rates.density = std::max(at_body ? missing / time : 0.0, rates.density);
+        rates.density = std::max(vented ? missing / time : 0.0, rates.density);
     }
 
     /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
@@ -227,14 +234,14 @@ private:
 
     /// For the next evaluation. It brings no tension that the liquid does not bear, none on a free
     /// surface.
-    void damp_sound(std::size_t p, bool at_body) const {
+    void damp_sound(std::size_t p, bool vented) const {
         const Material& material = model_.material(state_.tag[p]);
         const double rho = records_[p].rho, h = state_.smoothing_length[p],
                      divergence = trace(state_.velocity_gradient[p]);
         double added = damping_pressure(model_.options.flow.acoustic_damping, rho,
                                         model_.constants.c, h, divergence);
         if (added < 0.0) {
-            const double least = model_.min_density[state_.tag[p].material].at(at_body);
+            const double least = model_.min_density[state_.tag[p].material].at(vented);
             const double bound = thermodynamic_state(*material.laws, least).pressure;
             added = std::max(added, std::min(0.0, bound - pressure(p)));
         }

@@ -28,9 +28,10 @@ inline constexpr double bed_load_crossings = 1.5;
 /// under tension.
 struct MinDensity {
     double in_flow;
-    double at_bodies;  // that move: where they part, air comes in or water from the third dimension
+    double where_vented;  // at bodies that move: where they part, air or, in 2-D, water comes in
+                          // from the third dimension; and at edges of walls near a free surface
 
-    double at(bool body) const { return body ? at_bodies : in_flow; }
+    double at(bool vented) const { return vented ? where_vented : in_flow; }
     static MinDensity of(const Material& fluid) {
         auto density_at = [&fluid](double pressure) {
             const double rho0 = fluid.rho0;

@@ -27,6 +27,7 @@ LEAST_BETA = 0.05  # of the Riemann dissipation
 SMOOTH = 2.0  # times the approach that a resolved strain makes, below which that is no noise
 RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
 RELAXATION_PER_STRAIN = 10.0
+TENSION_RELEASE = 10.0  # h/c
 LEAST_DETERMINANT = 0.3  # of a moment, for corrected pressure
 LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
@@ -207,7 +208,7 @@ class FlowReference:
         """Of the acoustic damper: none on a surface, no tension that the liquid cannot bear."""
         divergence = np.trace(self.L, axis1=1, axis2=2)
         added = -self.options.acoustic_damping * self.rho * self.c * self.h * divergence
-        least = self._of_density(np.full_like(self.rho, LEAST_DENSITY))
+        least = self._of_density(np.where(self._vented(), 1.0, LEAST_DENSITY))
         added = np.maximum(added, np.minimum(0, least - (self.p - self.damping)))
         return np.where(self.surface > SURFACE, 0.0, added)
 
@@ -465,6 +466,7 @@ class FlowReference:
         rate = (weight * contact["sliding_dot_r"]).sum(axis=1)
         size = -(weight * contact["sliding_size"]).sum(axis=1)
         share = np.abs(rate) / np.maximum(size, 1e-300)
+        self.past_edge = share > EDGE_NOISE
         return rate * np.clip((share - EDGE_NOISE) / (EDGE_WHOLE - EDGE_NOISE), 0, 1)
 
     def _add_shift(self) -> None:
@@ -493,8 +495,15 @@ class FlowReference:
         spray = self.measure >= ALONE  # eq. 147: not compressed before its particles are together
         self.density_rate = np.where(spray, np.minimum(self.density_rate, 0), self.density_rate)
         self.density_rate += self.relaxation * (self.filling * self.rho0 - self.rho)
-        void = self.rho < LEAST_DENSITY * self.rho0
-        self.density_rate = np.where(void, np.maximum(self.density_rate, 0), self.density_rate)
+        vented = self._vented()
+        least = np.where(vented, 1.0, LEAST_DENSITY) * self.rho0
+        release = (least - self.rho) * self.c / (TENSION_RELEASE * self.h)
+        bounded = np.maximum(self.density_rate, np.where(vented, release, 0))
+        self.density_rate = np.where(self.rho < least, bounded, self.density_rate)
+
+    def _vented(self) -> np.ndarray:
+        """Where air comes in: what has a free surface slides past an edge of a wall."""
+        return self.past_edge & (self.nearby > SURFACE)
 
     def _set_timestep(self) -> None:
         speed = np.linalg.norm(self.v, axis=1)

@@ -10,6 +10,7 @@ import numpy as np
 from ...record.particles import FIXED, ParticleSet
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box
+from ..periodic import nearest_image, periods
 from ..shapes import EDGE, nearest_faces
 
 SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab with one wet face
@@ -28,8 +29,15 @@ class BoxWalls:
     def thin_axis(self) -> int | None:
         """The axis across which the box is a slab; None for a block."""
         thickness = (self.box.max - self.box.min) / self.scenario.dp
-        thin = np.flatnonzero(thickness < SLAB + 0.5)
+        thin = np.flatnonzero((thickness < SLAB + 0.5) & ~self._is_endless())
         return int(thin[0]) if len(thin) == 1 else None
+
+    def _is_endless(self) -> np.ndarray:
+        """Along which axes (dim,) it meets its own image, since it fills a period."""
+        period = periods(self.scenario)
+        along = np.abs(self.matrix.T @ period)  # exact where an axis of the box is a periodic one
+        aligned = np.isclose(np.abs(self.matrix), 1).any(axis=0) & (along > 0)
+        return aligned & (self.box.max - self.box.min > along - 0.5 * self.scenario.dp)
 
     def side_normal(self, axis: int) -> np.ndarray:
         """Unit normal of that side of a slab on which what moves lies."""
@@ -75,7 +83,8 @@ class BoxWalls:
         centre[axis] += 0.5 * side * self.scenario.dp
         centre = self._pivot + self.matrix @ (centre - self._pivot)
         fixed = self.particles.position[self.particles.motion == FIXED]
-        return bool((np.abs(fixed - centre).max(axis=1) < 0.76 * self.scenario.dp).any())
+        away = np.abs(nearest_image(fixed - centre, periods(self.scenario)))
+        return bool((away.max(axis=1) < 0.76 * self.scenario.dp).any())
 
     def _upright(self, position: np.ndarray) -> np.ndarray:
         """Positions as they would be in the box before its rotation."""
