@@ -101,6 +101,8 @@ public:
                 const Vec<double, D> turned = normal + motion->turning(normal, dt);
                 particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal, turned);
                 normal = turned;
+                for (auto* face : {&particles.wall.nearest, &particles.wall.second})
+                    (*face)[p] = (*face)[p] + motion->turning((*face)[p], dt);
             }
             return dot(step, step);
         });

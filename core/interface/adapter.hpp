@@ -43,6 +43,9 @@ public:
     void set_walls(const NamedValues& columns) override {
         ParticleTables<D>::set_walls(sim_.particles, columns);
     }
+    void set_edges(const NamedValues& columns) override {
+        ParticleTables<D>::set_edges(sim_.particles, columns);
+    }
     void set_faces(const NamedValues& columns) override {
         ParticleTables<D>::set_faces(sim_.particles, columns);
     }

@@ -71,6 +71,20 @@ void ParticleTables<D>::set_walls(Particles<D>& particles, const NamedValues& co
 }
 
 template <int D>
+void ParticleTables<D>::set_edges(Particles<D>& particles, const NamedValues& columns) {
+    ColumnReader column(columns, "edges");
+    const auto nearest = column.vectors<D>("nearest"), second = column.vectors<D>("second");
+    const auto depth = column.numbers<double>("depth");
+    column.finish();
+    if (column.rows() != particles.size())
+        throw std::invalid_argument("edges: one row for each particle");
+    if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
+    particles.wall.nearest.assign(nearest);
+    particles.wall.second.assign(second);
+    particles.wall.second_depth.assign(depth);
+}
+
+template <int D>
 void ParticleTables<D>::set_faces(Particles<D>& particles, const NamedValues& columns) {
     ColumnReader column(columns, "faces");
     const auto face = column.numbers<std::int32_t>("face");

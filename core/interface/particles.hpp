@@ -30,6 +30,7 @@ struct ParticleTables {
     /// Sets the particles from `first` on; returns the number after the largest id among them.
     static std::int64_t set(Particles<D>& particles, std::size_t first, const NamedValues& columns);
     static void set_walls(Particles<D>& particles, const NamedValues& columns);
+    static void set_edges(Particles<D>& particles, const NamedValues& columns);
     static void set_faces(Particles<D>& particles, const NamedValues& columns);
 
     /// Indices of the particles in the order of their ids.

@@ -41,7 +41,11 @@ struct WallState {
     WallField<Sym<double, D>>
         bend;                 // how the normal turns along the surface, where it curves [1/m]
     WallField<double> depth;  // below the surface of the wall [m]
-    WallField<double> cut;    // share of its volume, of a terrain's, that a body takes up
+    // Near an edge of the wall, else zero: normals of the two nearest faces, of which `normal` is
+    // the mean where both are as near, and the depth below the second one [m].
+    WallField<Vec<double, D>> nearest, second;
+    WallField<double> second_depth;
+    WallField<double> cut;            // share of its volume, of a terrain's, that a body takes up
     WallField<Vec<double, D>> force;  // of the fluid on it [N], 2-D: [N/m]
     WallField<double> pressure;       // of the fluid at its place [Pa]
     // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
@@ -59,6 +63,7 @@ struct WallState {
     void for_each_field(F&& f) {
         if (!in_use) return;
         f("normal", normal), f("wall_bend", bend), f("wall_depth", depth), f("wall_cut", cut);
+        f("wall_nearest", nearest), f("wall_second", second), f("wall_second_depth", second_depth);
         f("wall_force", force), f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_rows", rows);
         f("film_change", film_change), f("film_density", film_density),

@@ -27,6 +27,7 @@ public:
 
     void add_particles(const nb::kwargs& columns) { core_->add_particles(to_table(columns)); }
     void set_walls(const nb::kwargs& columns) { core_->set_walls(to_table(columns)); }
+    void set_edges(const nb::kwargs& columns) { core_->set_edges(to_table(columns)); }
     void set_faces(const nb::kwargs& columns) { core_->set_faces(to_table(columns)); }
     void add_shapes(const nb::list& shapes) { core_->add_shapes(to_tables(shapes)); }
     void add_rigid_bodies(const nb::dict& columns) { core_->add_rigid_bodies(to_table(columns)); }
@@ -142,6 +143,9 @@ void bind_setup(Class& c) {
                      "mass: numpy.ndarray, density: numpy.ndarray, smoothing_length: "
                      "numpy.ndarray, material: numpy.ndarray, body: numpy.ndarray, motion: "
                      "numpy.ndarray, id: numpy.ndarray) -> None"))
+        .def("set_edges", &P::set_edges,
+             nb::sig("def set_edges(self, *, nearest: numpy.ndarray, second: numpy.ndarray, "
+                     "depth: numpy.ndarray) -> None"))
         .def("set_faces", &P::set_faces,
              nb::sig("def set_faces(self, *, face: numpy.ndarray, area: numpy.ndarray, "
                      "rows: numpy.ndarray) -> None"))

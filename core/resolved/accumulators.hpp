@@ -2,6 +2,8 @@
 // What the resolved scheme sums over pairs, and what one pair adds: numbers in, numbers out, so
 // that one source serves packs on a processor and one thread for each particle on a device.
 
+#include <limits>
+
 #include "model/particles.hpp"
 #include "physics/riemann.hpp"
 #include "physics/viscosity.hpp"
@@ -84,17 +86,36 @@ struct WallContact {
     T made;          // by pressure beyond what approach does to the density, over V_i
 };
 
-/// Normal and part of gravity of the wall as a fluid particle sees it: those of the wall particle
-/// in front of its face; beyond an edge, the line between the two and no gravity. What lies on the
-/// face counts as in front, or rounding would choose.
+/// A wall particle as a fluid particle sees it.
 template <class T, int D>
-DOSEKI_FN WallPoint<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
-    WallPoint<T, D> seen = w;
-    const T face = number<T>(1 - 1e-4) * w.depth;
-    const T front = select(dot(r_iw, w.normal) > face, T(1), T(0)), beyond = (T(1) - front) / r;
-    for (int a = 0; a < D; ++a) seen.normal[a] = front * w.normal[a] + beyond * r_iw[a];
-    seen.g_normal = front * w.g_normal;
+struct FacedWall : WallPoint<T, D> {
+    T beyond_edge;  // 1: from before both of its faces
+};
+
+/// Normal, depth and part of gravity are those of the face that the fluid particle is in front of.
+/// Beyond an edge, in front of both faces, the way out leads between them from the edge. What is in
+/// front of neither takes the line between the two, and no gravity. What lies on a face counts as
+/// in front of it, or rounding would choose.
+template <class T, int D>
+DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
+    FacedWall<T, D> seen{w, T(0)};
+    const T on_face = number<T>(1 - 1e-4);
+    const T out = dot(r_iw, w.normal) - on_face * w.depth,
+            second_out = dot(r_iw, w.second) - on_face * w.second_depth;
+    const T front = select(out > T(0), T(1), T(0)), second = select(second_out > T(0), T(1), T(0));
+    const T both = front * second, first_alone = front - both, second_alone = second - both;
+    const T neither = T(1) - front - second_alone;
+    const Vec<T, D> from_edge = out * w.normal + second_out * w.second;
+    const T distance = sqrt(dot(from_edge, from_edge) + T(std::numeric_limits<double>::min()));
+    const T unit = both / distance, along = neither / r;
+    for (int a = 0; a < D; ++a)
+        seen.normal[a] = first_alone * w.normal[a] + second_alone * w.second[a] +
+                         unit * from_edge[a] + along * r_iw[a];
+    seen.depth = select(both > T(0), dot(r_iw, from_edge) / distance - distance,
+                        select(second_alone > T(0), w.second_depth, w.depth));
+    seen.g_normal = first_alone * w.g_normal + second_alone * w.second_g_normal;
     for (T& element : seen.bend.element) element = front * element;
+    seen.beyond_edge = both;
     return seen;
 }
 
@@ -103,15 +124,18 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
                                          const T& r, const T& F, const FluidPoint<T, D>& i,
                                          const WallPoint<T, D>& wall) {
     WallContact<T, D> contact;
-    const WallPoint<T, D> w = facing(wall, r_iw, r);
+    const FacedWall<T, D> w = facing(wall, r_iw, r);
     const Vec<T, D> v_iw = i.v - w.v;
     contact.r_dot_n = dot(r_iw, w.normal);
     contact.approach = -dot(v_iw, w.normal);
+    // An edge pushes what comes to it. It does not pull what goes off a face past it.
+    const T pushes = select(contact.approach < T(0), T(1) - w.beyond_edge, T(1));
+    contact.approach = pushes * contact.approach;
     const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
     const Vec<T, D> at_foot = normal_at_foot(w.normal, w.bend * r_iw);
     const T least =
         select(w.bound > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
-    const T solved = approach_pressure(T(-2) * dot(v_iw, at_foot), i.rho, c,
+    const T solved = approach_pressure(T(-2) * pushes * dot(v_iw, at_foot), i.rho, c,
                                        smooth_approach(i.resolved_strain, r));
     const T extra = max(solved, least);
     const Vec<T, D> across = contact.r_dot_n * at_foot;

@@ -125,18 +125,25 @@ void Resolved<D, Backend>::pack_fluid(State& state, std::size_t p, double half_d
 template <int D, class Backend>
 void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
     WallRecord<D>& record = wall_[p - fluid_count_];
-    const Vec<double, D>& normal = state.wall.normal[p];
-    record.normal = normal, record.bend = state.wall.bend[p];
+    const WallState<D>& wall = state.wall;
+    auto g_normal = [&](const Vec<double, D>& normal) {
+        return std::max(0.0, dot(state.acceleration[p] - model_->options.gravity, normal));
+    };
+    record.second = wall.second[p], record.second_depth = wall.second_depth[p];
+    record.second_g_normal = g_normal(record.second);
+    const bool at_edge = dot(record.second, record.second) > 0.0;
+    record.normal = at_edge ? wall.nearest[p] : wall.normal[p];
+    record.g_normal = g_normal(record.normal);
+    record.bend = wall.bend[p];
     record.traction = {};
     record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
-                                      : (1.0 - state.wall.cut[p]) * model_->spacing_power[D];
-    record.depth = state.wall.depth[p];
-    record.g_normal = std::max(0.0, dot(state.acceleration[p] - model_->options.gravity, normal));
+                                      : (1.0 - wall.cut[p]) * model_->spacing_power[D];
+    record.depth = wall.depth[p];
     record.no_slip = model_->wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
     record.bound = state.is_bound(p) ? 1.0 : 0.0;
-    record.face = state.wall.face[p], record.pressure = state.wall.pressure[p];
-    record.film_density = state.wall.film_density[p];
-    record.film_traction = state.wall.film_traction[p];
+    record.face = wall.face[p], record.pressure = wall.pressure[p];
+    record.film_density = wall.film_density[p];
+    record.film_traction = wall.film_traction[p];
 }
 
 /// Friction between grains takes the mean over the relaxation time of the density: sound that runs

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from ..record.particles import FIXED, ParticleSet, concatenate
 from ..scenario.model import Scenario
 from .build import particles_at_zero
+from .kinds.body import Body
 from .kinds.registry import bodies_of
 from .moved import Displacement
+from .shapes import Edges, no_edges
 
 
 def wall_geometry(
@@ -22,14 +27,34 @@ def wall_geometry(
     """
     normal, depth = np.zeros_like(particles.position), np.zeros(len(particles))
     made = _Made(scenario, particles, names)
+    for name, body, of_it in _fixed_bodies(scenario, particles, names):
+        facing, below = body.wall(made.position(name, of_it), made.around(name))
+        normal[of_it] = made.turned(name, facing)
+        depth[of_it] = below
+    return normal, depth
+
+
+def wall_edges(scenario: Scenario, particles: ParticleSet, names: list[str]) -> Edges:
+    """The two faces nearest to each particle of fixed bodies beside their edges, else zero."""
+    edges = no_edges(len(particles), scenario.dim)
+    made = _Made(scenario, particles, names)
+    for name, body, of_it in _fixed_bodies(scenario, particles, names):
+        own = body.edges(made.position(name, of_it), made.around(name))
+        edges.nearest[of_it] = made.turned(name, own.nearest)
+        edges.second[of_it] = made.turned(name, own.second)
+        edges.depth[of_it] = own.depth
+    return edges
+
+
+def _fixed_bodies(
+    scenario: Scenario, particles: ParticleSet, names: list[str]
+) -> Iterator[tuple[str, Body[Any], np.ndarray]]:
+    """Fixed bodies whose particles do not bring their own walls, and which particles are theirs."""
     for name, body in bodies_of(scenario).items():
         own = [names.index(each) for each in scenario.names_of_bodies(name)]
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
         if of_it.any() and not body.is_of_bodies:
-            facing, below = body.wall(made.position(name, of_it), made.around(name))
-            normal[of_it] = made.turned(name, facing)
-            depth[of_it] = below
-    return normal, depth
+            yield name, body, of_it
 
 
 class _Made:

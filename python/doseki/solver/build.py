@@ -25,7 +25,7 @@ from ..scene.checks.structures import structure_findings
 from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..scene.lattices import ROUNDING
-from ..scene.wall_normals import wall_geometry
+from ..scene.wall_normals import wall_edges, wall_geometry
 from ..util.finding import Finding
 from ..util.telling import Tell, say_nothing
 from .placed import Placed, origin_of
@@ -274,6 +274,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     depth[bodies.shaped] = bodies.depth[bodies.shaped]
     surface = {"normal": normal, "depth": depth, "curvature": bodies.curvature}
     simulation.set_walls(**{name: np.ascontiguousarray(v) for name, v in surface.items()})
+    simulation.set_edges(**wall_edges(scenario, particles, body_names)._asdict())
     if scenario.uplift and len(bodies):
         faces = contact_faces(scenario, particles, bodies, depth)
         simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)

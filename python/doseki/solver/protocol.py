@@ -305,6 +305,12 @@ class CoreSimulation(Simulation, Protocol):
         """
         ...
 
+    def set_edges(self, *, nearest: Floats, second: Floats, depth: Floats) -> None:
+        """Normals (N, dim) of the two faces nearest to wall particles beside edges, and the depth
+        (N,) below the second one, m; zero elsewhere.  After set_walls.
+        """
+        ...
+
     def set_faces(self, *, face: NDArray[np.int32], area: Floats, rows: Floats) -> None:
         """Faces (N,) between which water stands, their areas (N, dim), m2 (2-D: m), and the
         pressure force on all rows over that on the first (N,); after set_walls and before

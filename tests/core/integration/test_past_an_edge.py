@@ -82,6 +82,5 @@ def test_a_film_that_leaves_a_plate_flies_straight_on(tmp_path, dim, turn, sign,
     angle = np.radians(turn)
     along = velocity @ np.array([sign * np.cos(angle), sign * np.sin(angle)])
     across = velocity @ np.array([-np.sin(angle), np.cos(angle)])
-    print("RES", dim, thick, rows, turn, sign, along, across)
     assert along > 0.98 * SPEED
     assert abs(across) < 0.02 * SPEED  # a tenth where edges of walls hold water by suction

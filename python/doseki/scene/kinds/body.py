@@ -14,7 +14,7 @@ from ...scenario.values.expressions import ExpressionError, evaluate_at, is_expr
 from ...util.finding import Finding
 from ..bodies import ElasticBody
 from ..groups import Group, inside_bodies
-from ..shapes import Particles
+from ..shapes import Edges, Particles, no_edges
 
 T = TypeVar("T", bound=BodyTable)
 
@@ -139,3 +139,7 @@ class Body(Generic[T]):
         `position` are its particles, among all the `particles` of the scene.
         """
         raise self.error(": a wall of points needs its normal = [...] into the fluid")
+
+    def edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """The faces beside the edges of a fixed body, for its particles at `position` (N, dim)."""
+        return no_edges(len(position), self.dim)

@@ -8,7 +8,7 @@ from ...record.particles import ParticleSet
 from ...scenario.tables.bodies import Box
 from ..groups import Group
 from ..lattices import box_counts, box_lattice
-from ..shapes import box_shape
+from ..shapes import Edges, box_shape
 from ..wetting import covered_share
 from .box_walls import BoxWalls
 from .lattice import Lattice
@@ -70,8 +70,19 @@ class BoxBody(Lattice[Box]):
         self, position: np.ndarray, particles: ParticleSet
     ) -> tuple[np.ndarray, np.ndarray]:
         """See Shaped: a slab faces what moves, a block faces outwards."""
-        walls = BoxWalls(self.scenario, self.table, self.rotation, particles)
+        walls = self._walls(particles)
         axis = walls.thin_axis
         if axis is not None:
             return self.plane_wall(position, walls.side_normal(axis))
         return walls.nearest_face(position)
+
+    def edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """See Body: a slab and a wall that says where the fluid is have one face."""
+        walls = self._walls(particles)
+        plain = self.table.normal is not None or self.table.given("where") is not None
+        if plain or walls.thin_axis is not None:
+            return super().edges(position, particles)
+        return walls.edges(position)
+
+    def _walls(self, particles: ParticleSet) -> BoxWalls:
+        return BoxWalls(self.scenario, self.table, self.rotation, particles)

@@ -11,7 +11,7 @@ from ...record.particles import FIXED, ParticleSet
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box
 from ..periodic import nearest_image, periods
-from ..shapes import EDGE, nearest_faces
+from ..shapes import EDGE, Edges, beside_edges, nearest_faces
 
 SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab with one wet face
 
@@ -65,6 +65,14 @@ class BoxWalls:
 
     def nearest_face(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Normal and depth at each position below the nearest face that no wall covers."""
+        return nearest_faces(*self._below_faces(position), EDGE * self.scenario.dp)
+
+    def edges(self, position: np.ndarray) -> Edges:
+        """The two nearest faces that no wall covers."""
+        return beside_edges(*self._below_faces(position))
+
+    def _below_faces(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Depths (N, m) below the m faces that no wall covers, and their normals (m, dim)."""
         dim = self.scenario.dim
         upright = self._upright(position)
         faces = [(a, s) for a in range(dim) for s in (-1.0, 1.0) if not self._is_covered(a, s)]
@@ -74,7 +82,7 @@ class BoxWalls:
             [high[a] - upright[:, a] if s > 0 else upright[:, a] - low[a] for a, s in faces], axis=1
         )
         normals = np.array([s * self.matrix[:, a] for a, s in faces])
-        return nearest_faces(gaps, normals, EDGE * self.scenario.dp)
+        return gaps, normals
 
     def _is_covered(self, axis: int, side: float) -> bool:
         """Whether other walls lie against the middle of a face."""

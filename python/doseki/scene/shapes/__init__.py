@@ -9,7 +9,7 @@ from .ball import Ball
 from .convex import Convex
 from .making import ShapeError, box_shape, mesh_shape, polygon_shape
 from .mesh import MeshShape, Triangles, core_mesh
-from .particles import EDGE, Particles, nearest_faces
+from .particles import EDGE, Edges, Particles, beside_edges, nearest_faces, no_edges
 
 Shape = Ball | Convex | MeshShape
 
@@ -17,14 +17,17 @@ __all__ = [
     "EDGE",
     "Ball",
     "Convex",
+    "Edges",
     "MeshShape",
     "Particles",
     "Shape",
     "ShapeError",
     "Triangles",
+    "beside_edges",
     "box_shape",
     "core_mesh",
     "mesh_shape",
     "nearest_faces",
+    "no_edges",
     "polygon_shape",
 ]

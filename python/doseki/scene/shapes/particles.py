@@ -20,6 +20,14 @@ class Particles(NamedTuple):
     share: np.ndarray  # (N,) of the mass
 
 
+class Edges(NamedTuple):
+    """The two faces nearest to particles of a wall; zero where it has no edge."""
+
+    nearest: np.ndarray  # (N, dim), normal of the nearest one, outwards
+    second: np.ndarray  # (N, dim), that of the next one
+    depth: np.ndarray  # (N,) below the second one, m
+
+
 class Curve(NamedTuple):
     """What controls the uniform cubic B-spline that is the surface of a shape in 2-D."""
 
@@ -58,3 +66,17 @@ def nearest_faces(
     outwards = length > CANCEL * weight.sum(axis=1)
     unit = total / np.where(outwards, length, 1.0)[:, None]
     return np.where(outwards[:, None], unit, 0.0), depth
+
+
+def beside_edges(gaps: np.ndarray, normals: np.ndarray) -> Edges:
+    """The two nearest faces; `gaps` (N, m) to the faces, `normals` (m, dim) of them."""
+    rows, dim = len(gaps), normals.shape[1]
+    if len(normals) < 2:
+        return no_edges(rows, dim)
+    first, second = np.argsort(gaps, axis=1, kind="stable")[:, :2].T
+    return Edges(normals[first], normals[second], gaps[np.arange(rows), second])
+
+
+def no_edges(rows: int, dim: int) -> Edges:
+    """Of walls without edges, or whose edges are not known."""
+    return Edges(np.zeros((rows, dim)), np.zeros((rows, dim)), np.zeros(rows))
