@@ -11,8 +11,8 @@ WITHOUT_PLACES = {
     "checkpoint", "entries_per_particle", "failure", "force_terms", "forget_load_peak",
     "has_bodies", "interacting_pairs", "join", "loads", "neighbour_counts", "particle_arrays",
     "phase_seconds", "rates", "rebuilds", "restore", "restore_shared", "set_edges", "set_faces",
-    "set_stresses", "set_walls", "shares", "skin", "start", "steps", "time", "time_phases", "timestep", "totals",
-    "updates",
+    "set_stresses", "set_walls", "shares", "skin", "start", "steps", "time", "time_phases",
+    "timestep", "totals", "updates",
 }  # fmt: skip
 
 

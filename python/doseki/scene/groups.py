@@ -9,7 +9,7 @@ import numpy as np
 from ..scenario.kinematics import BREAKABLE, ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
 from .periodic import nearest_image, periods, wrapped
-from .shapes import MeshShape, Particles, Shape
+from .shapes import Convex, Edges, MeshShape, Particles, Shape, no_edges
 
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -102,6 +102,16 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
     order = np.argsort(owner, kind="stable")
     joined = [np.concatenate(arrays)[order] for arrays in zip(*parts, strict=True)]
     return Particles(*joined), owner[order]
+
+
+def edges_of(group: Group, position: np.ndarray) -> Edges:
+    """The two sides of a convex body nearest to each of its particles; `group` has no other."""
+    shape = group.shapes[0]
+    turn = matrices(group.orientation, position.shape[1])[0]
+    if not isinstance(shape, Convex):
+        return no_edges(*position.shape)
+    own = shape.edges((position - group.centre[0]) @ turn)
+    return Edges(own.nearest @ turn.T, own.second @ turn.T, own.depth)
 
 
 def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:

@@ -28,6 +28,8 @@ def wall_geometry(
     normal, depth = np.zeros_like(particles.position), np.zeros(len(particles))
     made = _Made(scenario, particles, names)
     for name, body, of_it in _fixed_bodies(scenario, particles, names):
+        if body.is_of_bodies:
+            continue
         facing, below = body.wall(made.position(name, of_it), made.around(name))
         normal[of_it] = made.turned(name, facing)
         depth[of_it] = below
@@ -49,11 +51,11 @@ def wall_edges(scenario: Scenario, particles: ParticleSet, names: list[str]) -> 
 def _fixed_bodies(
     scenario: Scenario, particles: ParticleSet, names: list[str]
 ) -> Iterator[tuple[str, Body[Any], np.ndarray]]:
-    """Fixed bodies whose particles do not bring their own walls, and which particles are theirs."""
+    """Fixed bodies, and which particles are theirs."""
     for name, body in bodies_of(scenario).items():
         own = [names.index(each) for each in scenario.names_of_bodies(name)]
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
-        if of_it.any() and not body.is_of_bodies:
+        if of_it.any():
             yield name, body, of_it
 
 

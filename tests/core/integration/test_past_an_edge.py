@@ -25,10 +25,10 @@ c = {{ value = "= cos(radians(turn))" }}
 s = {{ value = "= sin(radians(turn))" }}
 
 [body.plate]
-shape = "box"
 material = "aluminium"
 fixed = true
 wall = "free_slip"
+shape = "box"
 min = {plate[0]}
 max = {plate[1]}
 rotate = "= turn"
@@ -69,6 +69,36 @@ def film(dim: int, rows: int, turn: float, sign: int, thick: float) -> str:
     )
 
 
+def final_velocity(simulation):
+    """Mean of what moves, once the film has left the plate."""
+    simulation.advance(limit=0.2, pause=0.2, max_steps=10**6)
+    velocity = simulation.state()["velocity"][:, :2]
+    return velocity[np.linalg.norm(velocity, axis=1) > 0.1 * SPEED].mean(axis=0)
+
+
+POLYGON = """
+shape = "polygon"
+vertices = [[0, 0], [-0.4, 0], [-0.4, -0.1], [{foot}, -0.1]]
+"""
+BOX = """
+shape = "box"
+min = [-0.4, -0.1]
+max = [0.0, 0.0]
+"""
+
+
+@pytest.mark.parametrize("rows", [2, 6])
+@pytest.mark.parametrize("foot", [-0.06, 0.0, 0.06])
+def test_past_any_corner_of_a_polygon(tmp_path, foot, rows):
+    """Corners of 60, 90 and 120 degrees."""
+    text = film(2, rows, 0.0, 1, 0.1)
+    assert BOX in text
+    simulation = Flows(tmp_path)(text.replace(BOX, POLYGON.format(foot=foot)))
+    velocity = final_velocity(simulation)
+    assert velocity[0] > 0.98 * SPEED
+    assert abs(velocity[1]) < 0.02 * SPEED
+
+
 @pytest.mark.parametrize(
     ("dim", "turn", "sign"), [(2, 0.0, 1), (2, 0.0, -1), (2, 30.0, 1), (3, 0.0, 1)]
 )
@@ -76,9 +106,7 @@ def film(dim: int, rows: int, turn: float, sign: int, thick: float) -> str:
 @pytest.mark.parametrize("rows", [1, 2, 3, 6])
 def test_a_film_that_leaves_a_plate_flies_straight_on(tmp_path, dim, turn, sign, thick, rows):
     simulation = Flows(tmp_path)(film(dim, rows, turn, sign, thick))
-    simulation.advance(limit=0.2, pause=0.2, max_steps=10**6)
-    velocity = simulation.state()["velocity"][:, :2]
-    velocity = velocity[np.linalg.norm(velocity, axis=1) > 0.1 * SPEED].mean(axis=0)
+    velocity = final_velocity(simulation)
     angle = np.radians(turn)
     along = velocity @ np.array([sign * np.cos(angle), sign * np.sin(angle)])
     across = velocity @ np.array([-np.sin(angle), np.cos(angle)])

@@ -120,9 +120,9 @@ class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
     `particles` has the arrays of doseki's ParticleSet and `normal`, `depth`, `curvature` of its
-    walls; `materials` are mappings with law, rho0, speedsound, nu and, where they are not
-    newtonian, rheology and its parameters. All smoothing lengths are eta dp, all
-    fixed particles have no acceleration.
+    walls, and `nearest`, `second`, `second_depth` beside their edges; `materials` are mappings
+    with law, rho0, speedsound, nu and, where they are not newtonian, rheology and its parameters.
+    All smoothing lengths are eta dp, all fixed particles have no acceleration.
     """
 
     def __init__(
@@ -168,11 +168,13 @@ class FlowReference:
         self.x_w, self.v_w = particles.position[walls], particles.velocity[walls]
         self.normal, self.depth = particles.normal[walls], particles.depth[walls]
         self.curvature = particles.curvature[walls]
+        self.second, self.second_depth = particles.second[walls], particles.second_depth[walls]
+        at_edge = self.second.any(axis=1)
+        self.nearest = np.where(at_edge[:, None], particles.nearest[walls], self.normal)
         condition = [self.options.walls[k] for k in particles.body[walls]]
         self.stick = np.array([float(c["no_slip"]) for c in condition])
         self.ks = np.array([c["ks"] for c in condition])
         self.V_w = self.options.dp**self.dim
-        self.g_normal = np.maximum(0, -dot(self.gravity, self.normal))
 
     def start(self) -> FlowReference:
         """What the core does before its first step: two evaluations."""
@@ -277,22 +279,23 @@ class FlowReference:
     def _contact(self) -> dict[str, np.ndarray]:
         """What a fluid particle i and a wall particle w make of each other."""
         pairs, dp = self.fw, self.options.dp
-        in_front = dot(pairs.r_ij, self.normal[None]) > (1 - 1e-4) * self.depth
-        n = np.where(in_front[..., None], self.normal, pairs.r_ij / pairs.safe_r[..., None])
-        g_normal = np.where(in_front, self.g_normal, 0)
+        n, depth, g_normal, in_front, beyond_edge = self._faces()
         r_n, v = dot(pairs.r_ij, n), self.v[:, None] - self.v_w[None]
         approach = -dot(v, n)
+        pulled = beyond_edge & (approach < 0)
+        approach = np.where(pulled, 0, approach)
         # Pressure of the wall over that of i: gravity across it, the fluid's gradient along it.
         gradient = self.pressure_gradient[:, None]
         along = pairs.r_ij - r_n[..., None] * n
         excess = self.rho[:, None] * g_normal * r_n - dot(gradient, along)
         foot = self._normal_at_foot(n, in_front)
         smooth = self.resolved[:, None] * pairs.r
-        extra = self._dissipation(-2 * dot(v, foot), self.rho[:, None], smooth)
+        solved = np.where(pulled, 0, -2 * dot(v, foot))
+        extra = self._dissipation(solved, self.rho[:, None], smooth)
         across = r_n[..., None] * foot
         p = self.p[:, None] + 0.5 * excess
         corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
-        factor = self.stick * (1 + self.depth / np.maximum(r_n - self.depth, dp / 4))
+        factor = self.stick * (1 + depth / np.maximum(r_n - depth, dp / 4))
         sliding = v + approach[..., None] * n
         mu = (self.mu[:, None] * factor)[..., None]
         layer = 0.1 * self.rho[:, None] * np.linalg.norm(sliding, axis=-1) * dp
@@ -302,13 +305,34 @@ class FlowReference:
             "force": scale[..., None]
             * (p[..., None] * corrected_r + extra[..., None] * across - mu * sliding),
             "excess": excess,
-            "height": r_n - self.depth,
+            "height": r_n - depth,
             "v_dot_r": -2 * approach * dot(corrected_r, n),
             "sliding_dot_r": 2 * dot(sliding, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
             "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
             "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(across, v)),
         }
+
+    def _faces(self) -> tuple[np.ndarray, ...]:
+        """Normal, depth and part of gravity of a wall as seen by the fluid; whether that is in
+        front of the nearest face, and whether beyond the edge, in front of both.
+        """
+        r = self.fw.r_ij
+        out = dot(r, self.nearest) - (1 - 1e-4) * self.depth
+        second_out = dot(r, self.second) - (1 - 1e-4) * self.second_depth
+        front, second = out > 0, second_out > 0
+        beyond, second_alone = front & second, second & ~front
+        way = out[..., None] * self.nearest + second_out[..., None] * self.second
+        distance = np.linalg.norm(way, axis=-1)
+        way = way / np.where(beyond, distance, 1)[..., None]
+        n = np.where(front[..., None], self.nearest, r / self.fw.safe_r[..., None])
+        n = np.where(second_alone[..., None], self.second, n)
+        n = np.where(beyond[..., None], way, n)
+        depth = np.where(second_alone, self.second_depth, self.depth)
+        depth = np.where(beyond, dot(r, way) - distance, depth)
+        g_normal = np.where(front & ~beyond, -dot(self.gravity, self.nearest), 0)
+        g_normal = np.where(second_alone, -dot(self.gravity, self.second), g_normal)
+        return n, depth, np.maximum(g_normal, 0), front, beyond
 
     def _normal_at_foot(self, n: np.ndarray, in_front: np.ndarray) -> np.ndarray:
         """The wall's normal where the fluid particle stands over it; balls turn it."""

@@ -49,6 +49,7 @@ class Case:
     thinned: float = 0.0  # fraction of the fluid that is taken out
     thicker: float = 1.0  # factor of the viscosities
     rheology: dict[str, Any] = field(default_factory=dict)  # of the second fluid
+    edges: bool = False  # of the walls
 
     @property
     def materials(self) -> list[dict[str, Any]]:
@@ -61,6 +62,7 @@ class Case:
 CASES = {
     "open": Case(),
     "spray": Case(thinned=0.6),
+    "edges": Case(edges=True),
     "two fluids": Case(fluids=2),
     "free slip": Case(walls=(STICK, SLIP, SLIP)),
     "rough": Case(walls=(STICK, ROUGH, STICK)),
@@ -84,11 +86,16 @@ CASES = {
 }
 
 
+def unit(v: np.ndarray) -> np.ndarray:
+    """Vectors (N, dim) of length one; zero stays zero."""
+    return v / np.maximum(np.linalg.norm(v, axis=1), 1e-9)[:, None]
+
+
 def cloud(dim: int, case: Case) -> SimpleNamespace:
     """A jittered lattice in the unit box: two rows of floor, two rows of a side wall, fluid.
 
     Normals point anywhere around the true ones, so that pairs on both sides of a face occur, and
-    each particle has a curvature of its own.
+    each particle has a curvature of its own, or with `edges` a second face.
     """
     random, n = np.random.default_rng(7), ACROSS[dim]
     dp = 1 / n
@@ -106,6 +113,7 @@ def cloud(dim: int, case: Case) -> SimpleNamespace:
     material = np.where(fixed, 2, random.integers(0, case.fluids, len(x))).astype(np.int32)
     rho0 = np.array([m["rho0"] for m in MATERIALS])[material]
     h = case.options.get("eta", 1.3) * dp
+    edged = fixed & case.edges
     return SimpleNamespace(
         position=np.clip(x, 1e-9, 1 - 1e-9),
         velocity=case.speed * random.normal(0, 1, x.shape) * np.where(fixed, 0.2, 1)[:, None],
@@ -116,9 +124,12 @@ def cloud(dim: int, case: Case) -> SimpleNamespace:
         body=body.astype(np.int32),
         motion=fixed.astype(np.int32),
         id=np.arange(len(x), dtype=np.int64),
-        normal=toward / np.maximum(np.linalg.norm(toward, axis=1), 1e-9)[:, None],
+        normal=unit(toward),
         depth=np.where(fixed, depth, 0.0),
-        curvature=np.where(fixed, random.uniform(-0.2, 0.2, len(x)) / dp, 0.0),
+        curvature=np.where(fixed & ~edged, random.uniform(-0.2, 0.2, len(x)) / dp, 0.0),
+        nearest=unit(toward + 0.3 * random.normal(size=x.shape)) * edged[:, None],
+        second=unit(random.normal(size=x.shape)) * edged[:, None],
+        second_depth=np.where(edged, random.uniform(0, 1.5, len(x)) * dp, 0.0),
     )
 
 
@@ -148,8 +159,11 @@ def core_simulation(isa: str, dim: int, name: str, skin: float = 0.05) -> Any:
     materials = [core_table(**m, eos=ours["eos"]) for m in case.materials]
     simulation = load_core(isa).Simulation("resolved", dim, "double", materials, options)
     surface = {key: particles.pop(key) for key in ("normal", "depth", "curvature")}
+    nearest, second = particles.pop("nearest"), particles.pop("second")
+    second_depth = particles.pop("second_depth")
     simulation.add_particles(**particles)
     simulation.set_walls(**{key: np.ascontiguousarray(v) for key, v in surface.items()})
+    simulation.set_edges(nearest=nearest, second=second, depth=second_depth)
     simulation.start()
     return simulation
 

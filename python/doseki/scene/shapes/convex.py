@@ -10,7 +10,7 @@ import numpy as np
 
 from .frame import own_frame
 from .outline import BULGE, FLAT, Outline, outline_of
-from .particles import EDGE, Curve, Particles, alike, nearest_faces
+from .particles import EDGE, Curve, Edges, Particles, alike, beside_edges, nearest_faces
 
 SAME_DEPTH = 1e-6  # dp
 LEAST = 0.3  # of a particle's volume: particles that would have less are left out
@@ -79,6 +79,10 @@ class Convex:
         position = position - share @ position
         normal, depth = nearest_faces(self._gaps(position), self.planes[0], EDGE * dp)
         return Particles(position, normal, depth, np.zeros(len(depth)), share)
+
+    def edges(self, position: np.ndarray) -> Edges:
+        """The two sides nearest to each position (N, dim)."""
+        return beside_edges(self._gaps(position), self.planes[0])
 
     def elastic_particles(self, dp: float) -> Particles:
         """Those of a rigid body with equal shares."""
