@@ -63,6 +63,24 @@ DOSEKI_FN Mat<T, D> transposed(const Mat<T, D>& m) {
 }
 
 template <class T, int D>
+DOSEKI_FN Vec<T, D> row(const Mat<T, D>& m, int a) {
+    Vec<T, D> v;
+    for (int b = 0; b < D; ++b) v[b] = m(a, b);
+    return v;
+}
+
+/// Each row v of m as f(v).
+template <class T, int D, class F>
+Mat<T, D> each_row(const Mat<T, D>& m, F&& f) {
+    Mat<T, D> result;
+    for (int a = 0; a < D; ++a) {
+        const Vec<T, D> v = f(row(m, a));
+        for (int b = 0; b < D; ++b) result(a, b) = v[b];
+    }
+    return result;
+}
+
+template <class T, int D>
 DOSEKI_FN Mat<T, D> full(const Sym<T, D>& s) {
     Mat<T, D> result;
     for (int a = 0; a < D; ++a)

@@ -101,8 +101,9 @@ public:
                 const Vec<double, D> turned = normal + motion->turning(normal, dt);
                 particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal, turned);
                 normal = turned;
-                for (auto* face : {&particles.wall.nearest, &particles.wall.second})
-                    (*face)[p] = (*face)[p] + motion->turning((*face)[p], dt);
+                particles.wall.edge_normals[p] = each_row(
+                    particles.wall.edge_normals[p],
+                    [&](const Vec<double, D>& face) { return face + motion->turning(face, dt); });
             }
             return dot(step, step);
         });

@@ -31,7 +31,8 @@ public:
     virtual void add_particles(const NamedValues& columns) = 0;
     /// Normals, depths and curvatures of walls, for all particles in the order of adding.
     virtual void set_walls(const NamedValues& columns) = 0;
-    /// Both faces beside edges of walls, for all particles; after set_walls.
+    /// The nearest faces beside edges of walls, for all particles; after set_walls and before
+    /// bind_points.
     virtual void set_edges(const NamedValues& columns) = 0;
     /// Faces between which fluid stands though no particle fits, for all particles; after
     /// set_walls and before bind_points.

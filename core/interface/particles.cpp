@@ -73,15 +73,15 @@ void ParticleTables<D>::set_walls(Particles<D>& particles, const NamedValues& co
 template <int D>
 void ParticleTables<D>::set_edges(Particles<D>& particles, const NamedValues& columns) {
     ColumnReader column(columns, "edges");
-    const auto nearest = column.vectors<D>("nearest"), second = column.vectors<D>("second");
-    const auto depth = column.numbers<double>("depth");
+    const auto normals = column.numbers<double>("normals", D * D);
+    const auto depths = column.vectors<D>("depths");
     column.finish();
     if (column.rows() != particles.size())
         throw std::invalid_argument("edges: one row for each particle");
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
-    particles.wall.nearest.assign(nearest);
-    particles.wall.second.assign(second);
-    particles.wall.second_depth.assign(depth);
+    for (std::size_t p = 0; p < particles.size(); ++p)
+        std::copy_n(&normals[p * D * D], D * D, particles.wall.edge_normals[p].element.data());
+    particles.wall.edge_depths.assign(depths);
 }
 
 template <int D>

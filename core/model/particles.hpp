@@ -41,10 +41,10 @@ struct WallState {
     WallField<Sym<double, D>>
         bend;                 // how the normal turns along the surface, where it curves [1/m]
     WallField<double> depth;  // below the surface of the wall [m]
-    // Near an edge of the wall, else zero: normals of the two nearest faces, of which `normal` is
-    // the mean where both are as near, and the depth below the second one [m].
-    WallField<Vec<double, D>> nearest, second;
-    WallField<double> second_depth;
+    // Near an edge of the wall, else zero: normals of the nearest faces in rows, of which `normal`
+    // is the mean where they are as near, and the depths below them [m].
+    WallField<Mat<double, D>> edge_normals;
+    WallField<Vec<double, D>> edge_depths;
     WallField<double> cut;            // share of its volume, of a terrain's, that a body takes up
     WallField<Vec<double, D>> force;  // of the fluid on it [N], 2-D: [N/m]
     WallField<double> pressure;       // of the fluid at its place [Pa]
@@ -63,7 +63,7 @@ struct WallState {
     void for_each_field(F&& f) {
         if (!in_use) return;
         f("normal", normal), f("wall_bend", bend), f("wall_depth", depth), f("wall_cut", cut);
-        f("wall_nearest", nearest), f("wall_second", second), f("wall_second_depth", second_depth);
+        f("edge_normals", edge_normals), f("edge_depths", edge_depths);
         f("wall_force", force), f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_rows", rows);
         f("film_change", film_change), f("film_density", film_density),

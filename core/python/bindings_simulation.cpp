@@ -144,8 +144,8 @@ void bind_setup(Class& c) {
                      "numpy.ndarray, material: numpy.ndarray, body: numpy.ndarray, motion: "
                      "numpy.ndarray, id: numpy.ndarray) -> None"))
         .def("set_edges", &P::set_edges,
-             nb::sig("def set_edges(self, *, nearest: numpy.ndarray, second: numpy.ndarray, "
-                     "depth: numpy.ndarray) -> None"))
+             nb::sig(
+                 "def set_edges(self, *, normals: numpy.ndarray, depths: numpy.ndarray) -> None"))
         .def("set_faces", &P::set_faces,
              nb::sig("def set_faces(self, *, face: numpy.ndarray, area: numpy.ndarray, "
                      "rows: numpy.ndarray) -> None"))

@@ -80,76 +80,85 @@ struct WallContact {
     T excess;                                 // of the pressure at w over p_i
     T approach;                               // (v_i - v_w).(-n)
     T r_dot_n, corrected_r_dot_n;
+    T height;        // of i above the surface of the wall
     T along;         // part of (v_i - v_w).B_i r_iw along the face
     Vec<T, D> jump;  // v_i - velocity extrapolated to w
     T power;         // dissipated, over V_i
     T made;          // by pressure beyond what approach does to the density, over V_i
 };
 
-/// A wall particle as a fluid particle sees it.
+/// A wall as a fluid particle sees it from one of its particles.
 template <class T, int D>
-struct FacedWall : WallPoint<T, D> {
-    T beyond_edge;  // 1: from before both of its faces
+struct FacedWall {
+    Vec<T, D> normal;
+    T depth;        // of the wall particle below the surface [m]
+    T g_normal;     // see wall_excess_pressure
+    T in_front;     // 1: of one face or more
+    T beyond_edge;  // 1: of several
 };
 
 /// Normal, depth and part of gravity are those of the face that the fluid particle is in front of.
-/// Beyond an edge, in front of both faces, the way out leads between them from the edge. What is in
-/// front of neither takes the line between the two, and no gravity. What lies on a face counts as
-/// in front of it, or rounding would choose.
+/// Beyond an edge, in front of several, the way out leads between them from the edge. What is in
+/// front of none takes the line between the two, and no gravity. What lies on a face counts as in
+/// front of it, or rounding would choose.
 template <class T, int D>
 DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
-    FacedWall<T, D> seen{w, T(0)};
     const T on_face = number<T>(1 - 1e-4);
-    const T out = dot(r_iw, w.normal) - on_face * w.depth,
-            second_out = dot(r_iw, w.second) - on_face * w.second_depth;
-    const T front = select(out > T(0), T(1), T(0)), second = select(second_out > T(0), T(1), T(0));
-    const T both = front * second, first_alone = front - both, second_alone = second - both;
-    const T neither = T(1) - front - second_alone;
-    const Vec<T, D> from_edge = out * w.normal + second_out * w.second;
-    const T distance = sqrt(dot(from_edge, from_edge) + T(std::numeric_limits<double>::min()));
-    const T unit = both / distance, along = neither / r;
+    const Vec<T, D> height = w.faces * r_iw;
+    Vec<T, D> front, out;
+    T count(0);
+    for (int k = 0; k < D; ++k) {
+        const T above = height[k] - on_face * w.depths[k];
+        front[k] = select(above > T(0), T(1), T(0));
+        out[k] = front[k] * above, count += front[k];
+    }
+    const Mat<T, D> normals = transposed(w.faces);
+    FacedWall<T, D> seen;
+    seen.in_front = min(count, T(1));
+    seen.beyond_edge = select(count > T(1), T(1), T(0));
+    const T alone = seen.in_front - seen.beyond_edge, none = (T(1) - seen.in_front) / r;
+    const Vec<T, D> from_edge = normals * out, of_face = normals * front;
+    const T distance = sqrt(dot(from_edge, from_edge) + number<T>(1e-300));
+    const T unit = seen.beyond_edge / distance;
     for (int a = 0; a < D; ++a)
-        seen.normal[a] = first_alone * w.normal[a] + second_alone * w.second[a] +
-                         unit * from_edge[a] + along * r_iw[a];
-    seen.depth = select(both > T(0), dot(r_iw, from_edge) / distance - distance,
-                        select(second_alone > T(0), w.second_depth, w.depth));
-    seen.g_normal = first_alone * w.g_normal + second_alone * w.second_g_normal;
-    for (T& element : seen.bend.element) element = front * element;
-    seen.beyond_edge = both;
+        seen.normal[a] = alone * of_face[a] + unit * from_edge[a] + none * r_iw[a];
+    seen.depth = select(seen.beyond_edge > T(0), dot(r_iw, from_edge) / distance - distance,
+                        select(alone > T(0), dot(front, w.depths), w.depths[0]));
+    seen.g_normal = alone * dot(front, w.g_normal) + unit * dot(out, w.g_normal);
     return seen;
 }
 
 template <class T, int D>
 DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw,
                                          const T& r, const T& F, const FluidPoint<T, D>& i,
-                                         const WallPoint<T, D>& wall) {
+                                         const WallPoint<T, D>& w) {
     WallContact<T, D> contact;
-    const FacedWall<T, D> w = facing(wall, r_iw, r);
+    const FacedWall<T, D> seen = facing(w, r_iw, r);
     const Vec<T, D> v_iw = i.v - w.v;
-    contact.r_dot_n = dot(r_iw, w.normal);
-    contact.approach = -dot(v_iw, w.normal);
+    contact.r_dot_n = dot(r_iw, seen.normal), contact.height = contact.r_dot_n - seen.depth;
+    contact.approach = -dot(v_iw, seen.normal);
     // An edge pushes what comes to it. It does not pull what goes off a face past it.
-    const T pushes = select(contact.approach < T(0), T(1) - w.beyond_edge, T(1));
+    const T pushes = select(contact.approach < T(0), T(1) - seen.beyond_edge, T(1));
     contact.approach = pushes * contact.approach;
     const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
-    const Vec<T, D> at_foot = normal_at_foot(w.normal, w.bend * r_iw);
+    const Vec<T, D> at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
     const T least =
         select(w.bound > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
     const T solved = approach_pressure(T(-2) * pushes * dot(v_iw, at_foot), i.rho, c,
                                        smooth_approach(i.resolved_strain, r));
     const T extra = max(solved, least);
     const Vec<T, D> across = contact.r_dot_n * at_foot;
-    contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, w.g_normal, w.normal,
+    contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, seen.g_normal, seen.normal,
                                           contact.r_dot_n, r_iw);
     contact.corrected_r = i.correction * r_iw;
-    contact.corrected_r_dot_n = dot(contact.corrected_r, w.normal);
+    contact.corrected_r_dot_n = dot(contact.corrected_r, seen.normal);
     const T p = i.p + number<T>(0.5) * contact.excess;
-    const T no_slip = w.no_slip * no_slip_factor(w.depth, contact.r_dot_n - w.depth, min_distance);
-    const Vec<T, D> sliding = v_iw + contact.approach * w.normal;
+    const T no_slip = w.no_slip * no_slip_factor(seen.depth, contact.height, min_distance);
+    const Vec<T, D> sliding = v_iw + contact.approach * seen.normal;
     contact.along = dot(sliding, contact.corrected_r);
     const T shear =
         no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(sliding, sliding)), T(constants.dp));
-    contact.jump = shear * sliding - (T(2) * contact.approach) * w.normal;
+    contact.jump = shear * sliding - (T(2) * contact.approach) * seen.normal;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
     contact.pressure_force = (scale * p) * contact.corrected_r;
     contact.viscous_force = scale * (extra * across - mu_wall * sliding);
@@ -268,7 +277,7 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     }
     sums.weight += share;
     sums.density += share * j.rho;
-    sums.height += share * (contact.r_dot_n - w.depth);
+    sums.height += share * contact.height;
     sums.pressure += share * (j.p + contact.excess);
 }
 

@@ -126,19 +126,19 @@ template <int D, class Backend>
 void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
     WallRecord<D>& record = wall_[p - fluid_count_];
     const WallState<D>& wall = state.wall;
-    auto g_normal = [&](const Vec<double, D>& normal) {
-        return std::max(0.0, dot(state.acceleration[p] - model_->options.gravity, normal));
-    };
-    record.second = wall.second[p], record.second_depth = wall.second_depth[p];
-    record.second_g_normal = g_normal(record.second);
-    const bool at_edge = dot(record.second, record.second) > 0.0;
-    record.normal = at_edge ? wall.nearest[p] : wall.normal[p];
-    record.g_normal = g_normal(record.normal);
+    if (trace(wall.edge_normals[p] * transposed(wall.edge_normals[p])) > 0.0) {
+        record.faces = wall.edge_normals[p], record.depths = wall.edge_depths[p];
+    } else {
+        record.faces = {}, record.depths = {};
+        for (int a = 0; a < D; ++a) record.faces(0, a) = wall.normal[p][a];
+        record.depths[0] = wall.depth[p];
+    }
+    record.g_normal = record.faces * (state.acceleration[p] - model_->options.gravity);
+    for (int k = 0; k < D; ++k) record.g_normal[k] = std::max(0.0, record.g_normal[k]);
     record.bend = wall.bend[p];
     record.traction = {};
     record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
                                       : (1.0 - wall.cut[p]) * model_->spacing_power[D];
-    record.depth = wall.depth[p];
     record.no_slip = model_->wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
     record.bound = state.is_bound(p) ? 1.0 : 0.0;
     record.face = wall.face[p], record.pressure = wall.pressure[p];

@@ -28,24 +28,22 @@ struct FluidFields {
 /// What they need of a wall particle.
 template <class T, int D>
 struct WallFields {
-    Vec<T, D> normal;    // of the nearest face, into the fluid
-    Vec<T, D> second;    // that of the next one near an edge, else zero
+    Mat<T, D> faces;     // normals into the fluid, in rows: of one face, near edges of several
+    Vec<T, D> depths;    // below these faces [m]
+    Vec<T, D> g_normal;  // of each, see wall_excess_pressure
     Sym<T, D> bend;      // of the surface, see WallState
     Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
     T volume;
-    T depth, second_depth;        // below these faces [m]
-    T g_normal, second_g_normal;  // see wall_excess_pressure
-    T no_slip;                    // 1: no slip; 0: the wall pass has the friction
-    T bound;                      // 1: of a body that moves
+    T no_slip;  // 1: no slip; 0: the wall pass has the friction
+    T bound;    // 1: of a body that moves
     // Of the film between faces, see WallState:
     T face, pressure, film_density;
     Vec<T, D> film_traction;
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.normal...), f(self.second...), f(self.bend...), f(self.traction...);
-        f(self.volume...), f(self.depth...), f(self.second_depth...);
-        f(self.g_normal...), f(self.second_g_normal...), f(self.no_slip...), f(self.bound...),
+        f(self.faces...), f(self.depths...), f(self.g_normal...), f(self.bend...);
+        f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.bound...),
             f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_traction...);
     }

@@ -114,7 +114,7 @@ private:
     /// On a particle of the first row that is near enough to the fluid, Eq. (39).
     Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
                             const WallCondition& wall) const {
-        const bool is_first = records_[p - first_wall_].depth < model_.options.flow.dp;
+        const bool is_first = state_.wall.depth[p] < model_.options.flow.dp;
         if (!is_first || !(sums.weight > min_filled)) return {};
         const Vec<double, D> along = sliding(p, sums);
         const double rho = sums.density / sums.weight;

@@ -105,13 +105,13 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
 
 
 def edges_of(group: Group, position: np.ndarray) -> Edges:
-    """The two sides of a convex body nearest to each of its particles; `group` has no other."""
+    """The sides nearest to the particles of a convex body, the only one of its group."""
     shape = group.shapes[0]
     turn = matrices(group.orientation, position.shape[1])[0]
     if not isinstance(shape, Convex):
         return no_edges(*position.shape)
     own = shape.edges((position - group.centre[0]) @ turn)
-    return Edges(own.nearest @ turn.T, own.second @ turn.T, own.depth)
+    return Edges(own.normals @ turn.T, own.depths)
 
 
 def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:

@@ -37,14 +37,14 @@ def wall_geometry(
 
 
 def wall_edges(scenario: Scenario, particles: ParticleSet, names: list[str]) -> Edges:
-    """The two faces nearest to each particle of fixed bodies beside their edges, else zero."""
+    """The faces nearest to each particle of fixed bodies beside their edges, else zero."""
     edges = no_edges(len(particles), scenario.dim)
     made = _Made(scenario, particles, names)
     for name, body, of_it in _fixed_bodies(scenario, particles, names):
         own = body.edges(made.position(name, of_it), made.around(name))
-        edges.nearest[of_it] = made.turned(name, own.nearest)
-        edges.second[of_it] = made.turned(name, own.second)
-        edges.depth[of_it] = own.depth
+        turned = made.turned(name, own.normals.reshape(-1, scenario.dim))
+        edges.normals[of_it] = turned.reshape(own.normals.shape)
+        edges.depths[of_it] = own.depths
     return edges
 
 

@@ -274,7 +274,8 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     depth[bodies.shaped] = bodies.depth[bodies.shaped]
     surface = {"normal": normal, "depth": depth, "curvature": bodies.curvature}
     simulation.set_walls(**{name: np.ascontiguousarray(v) for name, v in surface.items()})
-    simulation.set_edges(**wall_edges(scenario, particles, body_names)._asdict())
+    edges = wall_edges(scenario, particles, body_names)
+    simulation.set_edges(normals=edges.normals.reshape(len(depth), -1), depths=edges.depths)
     if scenario.uplift and len(bodies):
         faces = contact_faces(scenario, particles, bodies, depth)
         simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)

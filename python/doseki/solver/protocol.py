@@ -305,9 +305,10 @@ class CoreSimulation(Simulation, Protocol):
         """
         ...
 
-    def set_edges(self, *, nearest: Floats, second: Floats, depth: Floats) -> None:
-        """Normals (N, dim) of the two faces nearest to wall particles beside edges, and the depth
-        (N,) below the second one, m; zero elsewhere.  After set_walls.
+    def set_edges(self, *, normals: Floats, depths: Floats) -> None:
+        """Of wall particles beside edges: normals (N, dim*dim), one after the other, of the
+        nearest faces, and depths (N, dim) below them, m; zero elsewhere.  After set_walls and
+        before bind_points.
         """
         ...
 

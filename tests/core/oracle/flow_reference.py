@@ -120,7 +120,7 @@ class FlowReference:
     """The right-hand side of the resolved scheme for a set of particles.
 
     `particles` has the arrays of doseki's ParticleSet and `normal`, `depth`, `curvature` of its
-    walls, and `nearest`, `second`, `second_depth` beside their edges; `materials` are mappings
+    walls, and `edge_normals`, `edge_depths` beside their edges; `materials` are mappings
     with law, rho0, speedsound, nu and, where they are not newtonian, rheology and its parameters.
     All smoothing lengths are eta dp, all fixed particles have no acceleration.
     """
@@ -168,9 +168,13 @@ class FlowReference:
         self.x_w, self.v_w = particles.position[walls], particles.velocity[walls]
         self.normal, self.depth = particles.normal[walls], particles.depth[walls]
         self.curvature = particles.curvature[walls]
-        self.second, self.second_depth = particles.second[walls], particles.second_depth[walls]
-        at_edge = self.second.any(axis=1)
-        self.nearest = np.where(at_edge[:, None], particles.nearest[walls], self.normal)
+        normals, depths = particles.edge_normals[walls], particles.edge_depths[walls]
+        self.faces = np.zeros_like(normals)  # their normals, in rows
+        self.faces[:, 0] = self.normal
+        at_edge = normals.any(axis=(1, 2))
+        self.faces[at_edge] = normals[at_edge]
+        self.depths = np.where(at_edge[:, None], depths, 0)
+        self.depths[~at_edge, 0] = self.depth[~at_edge]
         condition = [self.options.walls[k] for k in particles.body[walls]]
         self.stick = np.array([float(c["no_slip"]) for c in condition])
         self.ks = np.array([c["ks"] for c in condition])
@@ -315,24 +319,28 @@ class FlowReference:
 
     def _faces(self) -> tuple[np.ndarray, ...]:
         """Normal, depth and part of gravity of a wall as seen by the fluid; whether that is in
-        front of the nearest face, and whether beyond the edge, in front of both.
+        front of a face, and whether beyond an edge, in front of several.
         """
         r = self.fw.r_ij
-        out = dot(r, self.nearest) - (1 - 1e-4) * self.depth
-        second_out = dot(r, self.second) - (1 - 1e-4) * self.second_depth
-        front, second = out > 0, second_out > 0
-        beyond, second_alone = front & second, second & ~front
-        way = out[..., None] * self.nearest + second_out[..., None] * self.second
+        out = np.einsum("wka,iwa->iwk", self.faces, r) - (1 - 1e-4) * self.depths
+        front = out > 0
+        alone, beyond = front.sum(axis=-1) == 1, front.sum(axis=-1) > 1
+        way = np.einsum("iwk,wka->iwa", np.where(front, out, 0), self.faces)
         distance = np.linalg.norm(way, axis=-1)
         way = way / np.where(beyond, distance, 1)[..., None]
-        n = np.where(front[..., None], self.nearest, r / self.fw.safe_r[..., None])
-        n = np.where(second_alone[..., None], self.second, n)
+        own = front[..., None]
+        g = np.maximum(0, -self.faces @ self.gravity)
+        n = np.where(
+            alone[..., None], (own * self.faces).sum(axis=2), r / self.fw.safe_r[..., None]
+        )
         n = np.where(beyond[..., None], way, n)
-        depth = np.where(second_alone, self.second_depth, self.depth)
+        depth = np.where(alone, (front * self.depths).sum(axis=-1), self.depths[:, 0])
         depth = np.where(beyond, dot(r, way) - distance, depth)
-        g_normal = np.where(front & ~beyond, -dot(self.gravity, self.nearest), 0)
-        g_normal = np.where(second_alone, -dot(self.gravity, self.second), g_normal)
-        return n, depth, np.maximum(g_normal, 0), front, beyond
+        share = (
+            np.where(beyond[..., None], front * out, 0) / np.where(beyond, distance, 1)[..., None]
+        )
+        share = np.where(alone[..., None], front, share)
+        return n, depth, (share * g).sum(axis=-1), alone | beyond, beyond
 
     def _normal_at_foot(self, n: np.ndarray, in_front: np.ndarray) -> np.ndarray:
         """The wall's normal where the fluid particle stands over it; balls turn it."""

@@ -87,8 +87,8 @@ CASES = {
 
 
 def unit(v: np.ndarray) -> np.ndarray:
-    """Vectors (N, dim) of length one; zero stays zero."""
-    return v / np.maximum(np.linalg.norm(v, axis=1), 1e-9)[:, None]
+    """Vectors (..., dim) of length one; zero stays zero."""
+    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
 
 
 def cloud(dim: int, case: Case) -> SimpleNamespace:
@@ -127,9 +127,8 @@ def cloud(dim: int, case: Case) -> SimpleNamespace:
         normal=unit(toward),
         depth=np.where(fixed, depth, 0.0),
         curvature=np.where(fixed & ~edged, random.uniform(-0.2, 0.2, len(x)) / dp, 0.0),
-        nearest=unit(toward + 0.3 * random.normal(size=x.shape)) * edged[:, None],
-        second=unit(random.normal(size=x.shape)) * edged[:, None],
-        second_depth=np.where(edged, random.uniform(0, 1.5, len(x)) * dp, 0.0),
+        edge_normals=unit(random.normal(size=(len(x), dim, dim))) * edged[:, None, None],
+        edge_depths=random.uniform(0, 1.5, (len(x), dim)) * dp * edged[:, None],
     )
 
 
@@ -159,11 +158,10 @@ def core_simulation(isa: str, dim: int, name: str, skin: float = 0.05) -> Any:
     materials = [core_table(**m, eos=ours["eos"]) for m in case.materials]
     simulation = load_core(isa).Simulation("resolved", dim, "double", materials, options)
     surface = {key: particles.pop(key) for key in ("normal", "depth", "curvature")}
-    nearest, second = particles.pop("nearest"), particles.pop("second")
-    second_depth = particles.pop("second_depth")
+    normals, depths = particles.pop("edge_normals"), particles.pop("edge_depths")
     simulation.add_particles(**particles)
     simulation.set_walls(**{key: np.ascontiguousarray(v) for key, v in surface.items()})
-    simulation.set_edges(nearest=nearest, second=second, depth=second_depth)
+    simulation.set_edges(normals=normals.reshape(len(depths), -1), depths=depths)
     simulation.start()
     return simulation
 

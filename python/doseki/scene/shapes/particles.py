@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 EDGE = 0.1  # dp: what is farther from one face than from another by less lies along their edge
+ALIKE = 1e-6  # of a depth: faces that differ by less are as near
 CANCEL = 1e-6  # the mean of normals that is shorter has no direction
 
 
@@ -21,11 +22,10 @@ class Particles(NamedTuple):
 
 
 class Edges(NamedTuple):
-    """The two faces nearest to particles of a wall; zero where it has no edge."""
+    """The faces nearest to particles of a wall, at most `dim`; zero where it has no edge."""
 
-    nearest: np.ndarray  # (N, dim), normal of the nearest one, outwards
-    second: np.ndarray  # (N, dim), that of the next one
-    depth: np.ndarray  # (N,) below the second one, m
+    normals: np.ndarray  # (N, dim, dim), in rows, outwards
+    depths: np.ndarray  # (N, dim) below them, m
 
 
 class Curve(NamedTuple):
@@ -69,14 +69,22 @@ def nearest_faces(
 
 
 def beside_edges(gaps: np.ndarray, normals: np.ndarray) -> Edges:
-    """The two nearest faces; `gaps` (N, m) to the faces, `normals` (m, dim) of them."""
+    """The nearest faces; `gaps` (N, m) to the faces, `normals` (m, dim) of them.
+
+    Of faces that are as near none is chosen where there is no room for all of them.
+    """
     rows, dim = len(gaps), normals.shape[1]
-    if len(normals) < 2:
-        return no_edges(rows, dim)
-    first, second = np.argsort(gaps, axis=1, kind="stable")[:, :2].T
-    return Edges(normals[first], normals[second], gaps[np.arange(rows), second])
+    edges = no_edges(rows, dim)
+    most = min(dim, len(normals))
+    order = np.argsort(gaps, axis=1, kind="stable")
+    near = np.take_along_axis(gaps, order, axis=1)
+    next_one = near[:, most] if len(normals) > most else np.full(rows, np.inf)
+    chosen = near[:, :most] < (next_one * (1 - ALIKE))[:, None]
+    edges.normals[:, :most] = np.where(chosen[..., None], normals[order[:, :most]], 0.0)
+    edges.depths[:, :most] = np.where(chosen, near[:, :most], 0.0)
+    return edges
 
 
 def no_edges(rows: int, dim: int) -> Edges:
     """Of walls without edges, or whose edges are not known."""
-    return Edges(np.zeros((rows, dim)), np.zeros((rows, dim)), np.zeros(rows))
+    return Edges(np.zeros((rows, dim, dim)), np.zeros((rows, dim)))
