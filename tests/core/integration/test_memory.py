@@ -8,8 +8,9 @@ import pytest
 from ..flows import FILM, advance
 
 WALL_FIELDS = (
-    "normal", "wall_bend", "wall_depth", "wall_cut", "wall_force", "wall_pressure", "face",
-    "face_area", "face_rows", "film_change", "film_density", "film_traction", "body_kind", "point",
+    "normal", "wall_bend", "wall_depth", "edge_normals", "edge_depths", "wall_cut", "wall_force",
+    "wall_pressure", "face", "face_area", "face_rows", "film_change", "film_density",
+    "film_traction", "body_kind", "point",
 )  # fmt: skip
 FLOW_FIELDS = (
     "pressure_gradient", "velocity_gradient", "correction_excess", "shift", "surface",
@@ -20,7 +21,7 @@ COMMON_FIELDS = (
 )  # fmt: skip
 TAG = 16
 # Bytes of the records of a pass, of the place at the last build and its cell, of a list's entry.
-MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 136, 3: 200}, {2: 136, 3: 184}
+MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 136, 3: 200}, {2: 168, 3: 264}
 PLACE, ENTRY = {2: 24, 3: 32}, 2
 SPARE = 0.08  # of all: summaries, cells, blocks of lists
 

@@ -24,16 +24,18 @@ def splash(settings: tuple[str, ...]) -> tuple[float, float]:
         totals = simulation.totals()
         held = totals["kinetic_energy"] + totals["bulk_energy"] + totals["av_dissipation"]
         left.append(held - totals["gravity_work"] - totals["scheme_work"])
-        least = min(least, simulation.state()["pressure"].min())
+        state = simulation.state()
+        least = min(least, state["pressure"][state["motion"] == 0].min())
     return float(np.abs(np.diff(left)).max() / totals["gravity_work"]), -least
 
 
+# What is left behind a splash that meets the floor, in 3-D with a column of 12 particles, is a wave.
 @pytest.mark.parametrize(
-    "settings",
-    [("dp=0.03",), ("dp=0.03", *MIRRORED), ("dim=3", "dp=0.05")],
+    ("settings", "wave"),
+    [(("dp=0.03",), 15e3), (("dp=0.03", *MIRRORED), 15e3), (("dim=3", "dp=0.05"), 25e3)],
     ids=["2-D", "mirrored", "3-D"],
 )
-def test_spray_brings_no_tension(settings):
+def test_spray_brings_no_tension(settings, wave):
     made, tension = splash(settings)
-    assert made < 1e-4  # 3e-4 to 1e-3 where spray has the tension of its density
-    assert tension < 15e3  # 24 to 35 kPa
+    assert made < 1e-4  # 4e-4 to 1.5e-3 where spray has the tension of its density
+    assert tension < wave  # 34 to 36 kPa
