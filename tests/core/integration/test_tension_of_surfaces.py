@@ -29,7 +29,7 @@ def splash(settings: tuple[str, ...]) -> tuple[float, float]:
     return float(np.abs(np.diff(left)).max() / totals["gravity_work"]), -least
 
 
-# What is left behind a splash that meets the floor, in 3-D with a column of 12 particles, is a wave.
+# Behind a splash that meets the floor there is a wave, in 3-D of a column of 12 particles.
 @pytest.mark.parametrize(
     ("settings", "wave"),
     [(("dp=0.03",), 15e3), (("dp=0.03", *MIRRORED), 15e3), (("dim=3", "dp=0.05"), 25e3)],
