@@ -275,7 +275,9 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     surface = {"normal": normal, "depth": depth, "curvature": bodies.curvature}
     simulation.set_walls(**{name: np.ascontiguousarray(v) for name, v in surface.items()})
     edges = wall_edges(scenario, particles, body_names)
-    simulation.set_edges(normals=edges.normals.reshape(len(depth), scenario.dim**2), depths=edges.depths)
+    simulation.set_edges(
+        normals=edges.normals.reshape(len(depth), scenario.dim**2), depths=edges.depths
+    )
     if scenario.uplift and len(bodies):
         faces = contact_faces(scenario, particles, bodies, depth)
         simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)
