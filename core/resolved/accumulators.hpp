@@ -2,8 +2,6 @@
 // What the resolved scheme sums over pairs, and what one pair adds: numbers in, numbers out, so
 // that one source serves packs on a processor and one thread for each particle on a device.
 
-#include <limits>
-
 #include "model/particles.hpp"
 #include "physics/riemann.hpp"
 #include "physics/viscosity.hpp"

@@ -126,7 +126,8 @@ template <int D, class Backend>
 void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
     WallRecord<D>& record = wall_[p - fluid_count_];
     const WallState<D>& wall = state.wall;
-    if (trace(wall.edge_normals[p] * transposed(wall.edge_normals[p])) > 0.0) {
+    const Vec<double, D> nearest = row(wall.edge_normals[p], 0);
+    if (dot(nearest, nearest) > 0.0) {
         record.faces = wall.edge_normals[p], record.depths = wall.edge_depths[p];
     } else {
         record.faces = {}, record.depths = {};

@@ -86,6 +86,6 @@ def test_a_wall_of_points_needs_a_normal(write):
     tables = BLOCK + points + "position = [[0.5, -0.1], [0.6, -0.1]]\n"
     with pytest.raises(UserError, match=r"body\.p: a wall of points needs its normal"):
         wall_geometry(*built(write(top=FAST, tables=tables)))
-    normal, depth = wall_geometry(*built(write(top=FAST, tables=tables + "normal = [0, 2]\n")))
+    normal, depth, _ = wall_geometry(*built(write(top=FAST, tables=tables + "normal = [0, 2]\n")))
     assert normal[-1].tolist() == [0, 1]
     assert depth[-1] == pytest.approx(0.05)

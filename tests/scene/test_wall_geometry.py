@@ -54,7 +54,7 @@ def geometry(write):
 
     def of(name, tables):
         scenario, particles, names = built(write(top=FAST, tables=tables))
-        normal, depth = wall_geometry(scenario, particles, names)
+        normal, depth, _ = wall_geometry(scenario, particles, names)
         free = particles.motion == 0
         assert (normal[free] == 0).all()
         assert (depth[free] == 0).all()
@@ -208,7 +208,7 @@ pivot = [0, 0, 0]
     path = write(top=FAST, tables=tables)
     scenario = load_scenario(path, ["dim=3"])
     particles, names = build_bodies(scenario)
-    normal, depth = wall_geometry(scenario, particles, names)
+    normal, depth, _ = wall_geometry(scenario, particles, names)
     floor = particles.body == names.index("floor")
     up = np.array([np.sin(np.radians(20)), 0, np.cos(np.radians(20))])
     np.testing.assert_allclose(normal[floor], np.broadcast_to(up, (floor.sum(), 3)), atol=1e-12)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 
 from ..record.particles import FIXED, ParticleSet, concatenate
 from ..scenario.model import Scenario
 from .build import particles_at_zero
-from .kinds.body import Body
 from .kinds.registry import bodies_of
 from .moved import Displacement
 from .shapes import Edges, no_edges
@@ -18,45 +14,31 @@ from .shapes import Edges, no_edges
 
 def wall_geometry(
     scenario: Scenario, particles: ParticleSet, names: list[str]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Normals (N, dim) into the fluid and depths (N,) below it, m.
+) -> tuple[np.ndarray, np.ndarray, Edges]:
+    """Normals (N, dim) into the fluid, depths (N,) below it, m, and the faces beside edges.
 
-    Zero where not fixed, and for the fixed bodies whose particles bring their own.  `names` are
-    those that the field `body` of `particles` indexes.  Raises UserError for walls that do not say
-    where the fluid is.
+    Zero where not fixed; normals and depths also for the fixed bodies whose particles bring their
+    own.  `names` are those that the field `body` of `particles` indexes.  Raises UserError for
+    walls that do not say where the fluid is.
     """
     normal, depth = np.zeros_like(particles.position), np.zeros(len(particles))
-    made = _Made(scenario, particles, names)
-    for name, body, of_it in _fixed_bodies(scenario, particles, names):
-        if body.is_of_bodies:
-            continue
-        facing, below = body.wall(made.position(name, of_it), made.around(name))
-        normal[of_it] = made.turned(name, facing)
-        depth[of_it] = below
-    return normal, depth
-
-
-def wall_edges(scenario: Scenario, particles: ParticleSet, names: list[str]) -> Edges:
-    """The faces nearest to each particle of fixed bodies beside their edges, else zero."""
     edges = no_edges(len(particles), scenario.dim)
     made = _Made(scenario, particles, names)
-    for name, body, of_it in _fixed_bodies(scenario, particles, names):
-        own = body.edges(made.position(name, of_it), made.around(name))
-        turned = made.turned(name, own.normals.reshape(-1, scenario.dim))
-        edges.normals[of_it] = turned.reshape(own.normals.shape)
-        edges.depths[of_it] = own.depths
-    return edges
-
-
-def _fixed_bodies(
-    scenario: Scenario, particles: ParticleSet, names: list[str]
-) -> Iterator[tuple[str, Body[Any], np.ndarray]]:
-    """Fixed bodies, and which particles are theirs."""
     for name, body in bodies_of(scenario).items():
         own = [names.index(each) for each in scenario.names_of_bodies(name)]
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
-        if of_it.any():
-            yield name, body, of_it
+        if not of_it.any():
+            continue
+        place = made.position(name, of_it), made.around(name)
+        if not body.is_of_bodies:
+            facing, below = body.wall(*place)
+            normal[of_it] = made.turned(name, facing)
+            depth[of_it] = below
+        beside = body.edges(*place)
+        turned = made.turned(name, beside.normals.reshape(-1, scenario.dim))
+        edges.normals[of_it] = turned.reshape(beside.normals.shape)
+        edges.depths[of_it] = beside.depths
+    return normal, depth, edges
 
 
 class _Made:

@@ -1,4 +1,4 @@
-"""Films that slide off a plate fly straight on, Eq. (148)."""
+"""Films that slide off a plate fly straight on, Eqs. (148) and (149)."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def cloud(dim: int, case: Case) -> SimpleNamespace:
     """A jittered lattice in the unit box: two rows of floor, two rows of a side wall, fluid.
 
     Normals point anywhere around the true ones, so that pairs on both sides of a face occur, and
-    each particle has a curvature of its own, or with `edges` a second face.
+    each particle has a curvature of its own, or with `edges` several faces.
     """
     random, n = np.random.default_rng(7), ACROSS[dim]
     dp = 1 / n

@@ -76,12 +76,11 @@ class BoxBody(Lattice[Box]):
             return self.plane_wall(position, walls.side_normal(axis))
         return walls.nearest_face(position)
 
-    def edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
-        """See Body: a slab and a wall that says where the fluid is have one face."""
+    def shape_edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """See Shaped: a slab has one face."""
         walls = self._walls(particles)
-        plain = self.table.normal is not None or self.table.given("where") is not None
-        if plain or walls.thin_axis is not None:
-            return super().edges(position, particles)
+        if walls.thin_axis is not None:
+            return super().shape_edges(position, particles)
         return walls.edges(position)
 
     def _walls(self, particles: ParticleSet) -> BoxWalls:

@@ -68,7 +68,7 @@ class BoxWalls:
         return nearest_faces(*self._below_faces(position), EDGE * self.scenario.dp)
 
     def edges(self, position: np.ndarray) -> Edges:
-        """The two nearest faces that no wall covers."""
+        """The nearest faces that no wall covers."""
         return beside_edges(*self._below_faces(position))
 
     def _below_faces(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

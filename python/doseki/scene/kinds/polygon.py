@@ -26,6 +26,6 @@ class PolygonBody(Turned[Polygon]):
             raise self.error(f": {error}", "vertices") from None
         return self.single_group(shape, self.turned(centre[None, :], centre)[0], self.orientation)
 
-    def edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
-        """See Body."""
+    def shape_edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """See Shaped."""
         return edges_of(self.group(), position)

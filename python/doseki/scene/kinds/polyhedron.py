@@ -29,6 +29,6 @@ class PolyhedronBody(Turned[Polyhedron]):
         centre = centre if self.table.centre is None else self.table.centre
         return self.single_group(shape, self.turned(centre[None, :], centre)[0], self.orientation)
 
-    def edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
-        """See Body."""
+    def shape_edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """See Shaped."""
         return edges_of(self.group(), position)

@@ -14,7 +14,7 @@ from ..bodies import ElasticBody, ElasticSurface
 from ..groups import UPRIGHT, Group, matrices
 from ..meshes.cells import Cells, cells_of
 from ..periodic import wrapped
-from ..shapes import Particles, Shape
+from ..shapes import Edges, Particles, Shape
 from .body import Body
 
 S = TypeVar("S", bound=ShapedBody)
@@ -186,6 +186,16 @@ class Shaped(Body[S], Generic[S]):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Normal and depth at each position as the shape has them."""
         return super().wall(position, particles)
+
+    def edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """See Body: those of the shape, but of no wall that says itself where the fluid is."""
+        if self.table.normal is not None or self.table.given("where") is not None:
+            return super().edges(position, particles)
+        return self.shape_edges(position, particles)
+
+    def shape_edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
+        """The faces beside edges as the shape has them."""
+        return super().edges(position, particles)
 
     def plane_wall(self, position: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """A plane wall: its surface is half a spacing beyond the foremost particles."""

@@ -81,7 +81,7 @@ class Convex:
         return Particles(position, normal, depth, np.zeros(len(depth)), share)
 
     def edges(self, position: np.ndarray) -> Edges:
-        """The two sides nearest to each position (N, dim)."""
+        """The sides nearest to each position (N, dim)."""
         return beside_edges(self._gaps(position), self.planes[0])
 
     def elastic_particles(self, dp: float) -> Particles:
