@@ -39,6 +39,7 @@ template <int D>
 struct RigidBodyPoint {
     double body;
     Vec<double, D> offset, normal, area;
+    Mat<double, D> edge_normals;  // in rows
 
     std::size_t index() const { return static_cast<std::size_t>(body); }
 };

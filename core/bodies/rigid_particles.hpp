@@ -24,15 +24,16 @@ public:
               const Domain<D>& domain) {
         const RigidBodyState<D>& state = bodies.state(k);
         const Mat<double, 3> R = state.orientation.matrix();
+        auto back = [&R](const Vec<double, D>& v) { return rotated_back(R, v); };
         particles.set_point(p, BodyKind::rigid, points_.size());
-        points_.push_back(
-            {static_cast<double>(k),
-             rotated_back(R, nearest_image(domain, particles.position[p] - state.centre)),
-             rotated_back(R, particles.wall.normal[p]), rotated_back(R, particles.wall.area[p])});
+        points_.push_back({static_cast<double>(k),
+                           back(nearest_image(domain, particles.position[p] - state.centre)),
+                           back(particles.wall.normal[p]), back(particles.wall.area[p]),
+                           each_row(particles.wall.edge_normals[p], back)});
     }
     /// Adds a point of a body that is not turned, and returns its number.
     std::size_t add(std::size_t body, const Vec<double, D>& offset, const Vec<double, D>& normal) {
-        points_.push_back({static_cast<double>(body), offset, normal, {}});
+        points_.push_back({static_cast<double>(body), offset, normal, {}, {}});
         return points_.size() - 1;
     }
     bool has(const Particles<D>& particles, std::size_t p) const {
@@ -123,6 +124,8 @@ double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& b
             turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal);
         particles.wall.normal[p] = normal;
         particles.wall.area[p] = rotated(R[k], point.area);
+        particles.wall.edge_normals[p] =
+            each_row(point.edge_normals, [&](const Vec<double, D>& n) { return rotated(R[k], n); });
         particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
                                     turning_velocity(w[k], turning_velocity(w[k], lever));
         particles.velocity[p] = bodies.velocity(k, ahead) + turning_velocity(w_ahead[k], lever);

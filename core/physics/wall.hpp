@@ -6,14 +6,17 @@
 
 namespace doseki {
 
-/// Pressure of a wall particle minus that of one fluid particle i near it [Pa]: hydrostatic along
-/// the wall normal, rho_i g_n (r_iw.n), and the fluid's own pressure gradient along the wall. Using
-/// all of gravity instead would cancel part of the pull along a slope; using none of it along the
-/// wall would let water sink at the sides of a tank. `g_normal` = max(0, (g - a_w).(-n)).
+/// Pressure of a wall particle minus that of one fluid particle i near it [Pa], Eq. (36): weight of
+/// the fluid along the wall normal, rho_i g_n (r_iw.n), and the fluid's own pressure gradient along
+/// the wall. Using all of gravity instead would cancel part of the pull along a slope; using none
+/// of it along the wall would let water sink at the sides of a tank. `g_normal` = (g - a_w).(-n).
+/// Where gravity pulls off the wall its share takes p_i at most: no wall holds water up.
 template <class T, int D>
-DOSEKI_FN T wall_excess_pressure(const T& rho_i, const Vec<T, D>& gradient_i, const T& g_normal,
-                                 const Vec<T, D>& normal, const T& r_dot_n, const Vec<T, D>& r_iw) {
-    return (rho_i * g_normal + dot(gradient_i, normal)) * r_dot_n - dot(gradient_i, r_iw);
+DOSEKI_FN T wall_excess_pressure(const T& p_i, const T& rho_i, const Vec<T, D>& gradient_i,
+                                 const T& g_normal, const Vec<T, D>& normal, const T& r_dot_n,
+                                 const Vec<T, D>& r_iw) {
+    const T weight = max(rho_i * g_normal * r_dot_n, min(T(0), -p_i));
+    return weight + dot(gradient_i, normal) * r_dot_n - dot(gradient_i, r_iw);
 }
 
 /// Eq. (133): the rate over its density [1/s] at which fluid expands that slides past an edge of a

@@ -38,9 +38,9 @@ void bind_flow(nb::module_& m) {
                put(viscous_direction(form, v, dot(v, x), 1.0 / sqrt(dot(x, x)), x), out);
            });
     define(m, "wall_excess_pressure", 1,
-           [](const auto& in, auto& out) {  // rho, g_n, r.n, grad p, n, r
-               out[0] = wall_excess_pressure(in[0], vector<D>(in, 3), in[1], vector<D>(in, 3 + D),
-                                             in[2], vector<D>(in, 3 + 2 * D));
+           [](const auto& in, auto& out) {  // p, rho, g_n, r.n, grad p, n, r
+               out[0] = wall_excess_pressure(in[0], in[1], vector<D>(in, 4), in[2],
+                                             vector<D>(in, 4 + D), in[3], vector<D>(in, 4 + 2 * D));
            });
     define(m, "normal_at_foot", D, [](const auto& in, auto& out) {  // n, turn
         put(normal_at_foot(vector<D>(in, 0), vector<D>(in, D)), out);

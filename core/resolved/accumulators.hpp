@@ -146,8 +146,9 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
                                        smooth_approach(i.resolved_strain, r));
     const T extra = max(solved, least);
     const Vec<T, D> across = contact.r_dot_n * at_foot;
-    contact.excess = wall_excess_pressure(i.rho, i.pressure_gradient, seen.g_normal, seen.normal,
-                                          contact.r_dot_n, r_iw);
+    // The line to what is in front of no face is no normal: across it as well the fluid goes on.
+    contact.excess = wall_excess_pressure(i.p, i.rho, i.pressure_gradient, seen.g_normal,
+                                          seen.in_front * seen.normal, contact.r_dot_n, r_iw);
     contact.corrected_r = i.correction * r_iw;
     contact.corrected_r_dot_n = dot(contact.corrected_r, seen.normal);
     const T p = i.p + number<T>(0.5) * contact.excess;

@@ -135,7 +135,6 @@ void Resolved<D, Backend>::pack_wall(const State& state, std::size_t p) {
         record.depths[0] = wall.depth[p];
     }
     record.g_normal = record.faces * (state.acceleration[p] - model_->options.gravity);
-    for (int k = 0; k < D; ++k) record.g_normal[k] = std::max(0.0, record.g_normal[k]);
     record.bend = wall.bend[p];
     record.traction = {};
     record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]

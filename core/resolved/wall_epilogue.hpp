@@ -77,23 +77,27 @@ private:
         wall.film_change[p] = mean - before + film_inertia * wall.film_change[p];
         wall.pressure[p] = before + wall.film_change[p];
         wall.film_density[p] = (sums.density + sums.film_density) / weight;
-        wall.film_traction[p] = (-pressure_at_surface(p, opening_speed(p, sums)) /
-                                 std::max(sums.cover, model_.full_cover)) *
-                                hidden_area(p, sums);
+        wall.film_traction[p] = film_traction(p, sums);
         return sums.film_force;
     }
 
-    /// At which the faces around part from this one.
-    double opening_speed(std::size_t p, const WallAccumulators<double, D>& sums) const {
-        const Vec<double, D> around = (1.0 / sums.cover) * sums.face_velocity;
-        return dot(around - state_.velocity[p], state_.wall.normal[p]);
+    Vec<double, D> film_traction(std::size_t p, const WallAccumulators<double, D>& sums) const {
+        const Vec<double, D> hidden = hidden_area(p, sums);
+        const double size = std::sqrt(dot(hidden, hidden));
+        if (size == 0.0) return {};
+        const double pressure = pressure_at_surface(p, (1.0 / size) * hidden, sums);
+        return (-pressure / std::max(sums.cover, model_.full_cover)) * hidden;
     }
 
-    /// Faces that part stretch the film between them, or its pressure would do work on them that no
-    /// water brings. No film holds tension.
-    double pressure_at_surface(std::size_t p, double opening) const {
+    /// That of the film where it presses against the direction n. Faces that part stretch the film
+    /// between them, or its pressure would do work on them that no water brings. No film holds
+    /// tension.
+    double pressure_at_surface(std::size_t p, const Vec<double, D>& n,
+                               const WallAccumulators<double, D>& sums) const {
         const WallState<D>& wall = state_.wall;
-        const double slope = dot(model_.options.gravity, wall.normal[p]) * wall.depth[p];
+        const Vec<double, D> around = (1.0 / sums.cover) * sums.face_velocity;
+        const double opening = dot(around - state_.velocity[p], n);
+        const double slope = dot(model_.options.gravity, n) * wall.depth[p];
         return std::max(
             0.0, wall.pressure[p] + wall.film_density[p] * (slope - model_.constants.c * opening));
     }

@@ -51,7 +51,7 @@ def scene_of(write, tables, top=TOP, overrides=()):
 @pytest.mark.parametrize("across", [5, 8, 8.37, 12])
 def test_particles_of_a_ball(dim, across):
     ball = Ball(0.5 * across * 0.1, dim)
-    position, normal, depth, curvature, share = ball.particles(0.1)
+    position, normal, depth, curvature, share, _ = ball.particles(0.1)
     distance = np.linalg.norm(position, axis=1)
     assert distance.max() == pytest.approx(ball.radius - 0.05)
     assert depth == pytest.approx(ball.radius - distance)
@@ -81,7 +81,7 @@ def test_inertia_of_polygon_and_box():
     cuboid = box_shape(np.array([1.0, 2, 3]))
     assert np.diag(cuboid.inertia) == pytest.approx([13 / 12, 10 / 12, 5 / 12])
     assert len(cuboid.planes[0]) == 6
-    position, normal, depth, curvature, share = cuboid.particles(0.25)
+    position, normal, depth, curvature, share, _ = cuboid.particles(0.25)
     assert not curvature.any()
     assert share == pytest.approx([1 / (4 * 8 * 12)] * len(position))
     gaps = np.array([0.5, 1, 1.5]) - abs(position)

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from doseki.scene.shapes import Ball, Convex, Shape, box_shape, mesh_shape, polygon_shape
+from doseki.scene.shapes import (
+    Ball,
+    Convex,
+    Particles,
+    Shape,
+    box_shape,
+    mesh_shape,
+    polygon_shape,
+)
 
 DP = 1 / 6
 SINGLE = 1e-6  # what single precision, in which STL files hold numbers, leaves of lengths of 1
@@ -33,14 +41,22 @@ def assert_mapped(points, move, image=None, tolerance=1e-12):
 
     The first column are places; further ones of vectors are moved as well.
     """
-    moved = [column @ move.T if np.ndim(column) == 2 else column for column in points]
-    target = points if image is None else image
+    moved = [column @ move.T if np.ndim(column) == 2 else column for column in columns(points)]
+    target = columns(points if image is None else image)
     assert len(moved[0]) == len(target[0])
     distance, found = cKDTree(target[0]).query(moved[0])
     assert distance.max() < tolerance
     assert len(np.unique(found)) == len(found)
     for column, other in zip(moved[1:], target[1:], strict=True):
         np.testing.assert_allclose(column, other[found], atol=tolerance)
+
+
+def columns(points):
+    """Those of points; the faces beside edges, in whatever order, as vectors."""
+    if not isinstance(points, Particles):
+        return points
+    *own, edges = points
+    return [*own, edges.normals.sum(axis=1), (edges.depths[..., None] * edges.normals).sum(axis=1)]
 
 
 def regular(n: int) -> Convex:

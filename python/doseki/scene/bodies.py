@@ -41,8 +41,8 @@ class Bodies:
     """Bodies that move (first) and fixed ones that they touch; none where nothing moves.
 
     For each particle: `grain`, the index of its body or -1, and for those of bodies the outward
-    `normal`, the `depth` below the surface, m, and its `curvature`, 1/m; `shaped` tells which
-    particles have these.
+    `normal`, the `depth` below the surface, m, its `curvature`, 1/m, and the Edges; `shaped` tells
+    which particles have these.
     """
 
     groups: list[Group]
@@ -53,6 +53,8 @@ class Bodies:
     normal: np.ndarray  # (N, dim)
     depth: np.ndarray  # (N,)
     curvature: np.ndarray  # (N,)
+    edge_normals: np.ndarray  # (N, dim, dim)
+    edge_depths: np.ndarray  # (N, dim)
     elastic: list[ElasticBody] = field(default_factory=list)  # in `groups` only if `rigid_first`
 
     def __len__(self) -> int:

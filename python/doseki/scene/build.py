@@ -32,6 +32,7 @@ from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
 from .meshes.meeting import without_common
+from .shapes import no_edges
 
 BURIED = 0.5  # spacings in the ground that no flow gets to
 IN_THE_GROUND = 0.25  # spacings that particles may be nearer to a bed than those that rest on it
@@ -172,7 +173,7 @@ def _joined(
         still = group.fixed or group.elastic
         grain = np.full(len(owner), -1) if still else first[name] + owner
         shaped = np.ones(len(owner), bool)
-        surface = placed.normal, placed.depth, placed.curvature
+        surface = placed.normal, placed.depth, placed.curvature, *placed.edges
         tables.append(_PointTable(grain.astype(np.int32), shaped, *surface))
     particles = concatenate(sets, scenario.dim)
     table = _PointTable.joined(tables, scenario.dim)
@@ -198,14 +199,17 @@ class _PointTable(NamedTuple):
     normal: np.ndarray
     depth: np.ndarray
     curvature: np.ndarray
+    edge_normals: np.ndarray
+    edge_depths: np.ndarray
 
     @classmethod
     def of_loose(cls, particles: ParticleSet) -> _PointTable:
         """Of particles that are no parts of bodies."""
-        n = len(particles)
+        n, dim = len(particles), particles.dim
         none = np.full(n, -1, np.int32)
         plane = np.zeros(n)
-        return cls(none, np.zeros(n, bool), np.zeros((n, particles.dim)), plane, plane)
+        edges = no_edges(n, dim)
+        return cls(none, np.zeros(n, bool), np.zeros((n, dim)), plane, plane, *edges)
 
     @classmethod
     def joined(cls, tables: Iterable[_PointTable], dim: int) -> _PointTable:

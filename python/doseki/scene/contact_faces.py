@@ -14,6 +14,7 @@ from .bodies import Bodies
 from .periodic import nearest_image, periods
 
 NO_FACE, FIXED_FACE, FIRST_BODY = 0, 1, 2  # numbers of the core's faces
+SAME_WAY = 0.5  # cosine of the angle; corners of a cube lean by 0.58 to its faces
 
 
 class ContactFaces(NamedTuple):
@@ -101,17 +102,18 @@ class _Pairs(NamedTuple):
 
     def rows(self, area: np.ndarray, first: np.ndarray) -> np.ndarray:
         """1 + the areas of deeper particles over the own one, each at its neighbours in the first
-        row.
+        row that face the same way.
         """
-        size, total = np.linalg.norm(area, axis=1), np.zeros(self.particles)
-        below = [(self.i, self.j), (self.j, self.i)]  # deep one, one of the first row
-        for deep, top in below:
-            np.add.at(total, deep, np.where(first[top], -self.factor, 0.0))
-        total = np.where(total > 0, total, np.inf)
-        added = np.zeros(self.particles)
-        for deep, top in below:
-            taken = np.where(first[top] & ~first[deep], -self.factor * (size / total)[deep], 0.0)
-            np.add.at(added, top, taken)
+        size = np.linalg.norm(area, axis=1)
+        normal = area / np.where(size > 0, size, 1.0)[:, None]
+        deep, top = np.concatenate([self.i, self.j]), np.concatenate([self.j, self.i])
+        along = (normal[deep] * normal[top]).sum(axis=1)
+        faces = first[top] & ~first[deep] & (along > SAME_WAY)
+        deep, top, along = deep[faces], top[faces], along[faces]
+        share = -np.tile(self.factor, 2)[faces] * along
+        total, added = np.zeros(self.particles), np.zeros(self.particles)
+        np.add.at(total, deep, share * along)
+        np.add.at(added, top, share * (size[deep] / total[deep]))
         return 1 + added / np.where(first & (size > 0), size, np.inf)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from ..scenario.kinematics import BREAKABLE, ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
 from .periodic import nearest_image, periods, wrapped
-from .shapes import Convex, Edges, MeshShape, Particles, Shape, no_edges
+from .shapes import Edges, MeshShape, Particles, Shape
 
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -92,26 +93,39 @@ def particles_of(group: Group, spacing: float, dim: int) -> tuple[Particles, np.
     for k, shape in enumerate(group.shapes):
         own = _own_particles(group, shape, spacing)
         which = np.flatnonzero(group.shape == k)
-        turned = np.einsum("nab,pb->npa", turns[which], own.position)
-        normal = np.einsum("nab,pb->npa", turns[which], own.normal)
-        position = (group.centre[which][:, None, :] + turned).reshape(-1, dim)
-        alike = [np.tile(column, len(which)) for column in (own.depth, own.curvature, own.share)]
-        parts.append(Particles(position, normal.reshape(-1, dim), *alike))
+        parts.append(_placed(own, group.centre[which], turns[which]))
         owners.append(np.repeat(which, len(own.depth)))
     owner = np.concatenate(owners)
     order = np.argsort(owner, kind="stable")
-    joined = [np.concatenate(arrays)[order] for arrays in zip(*parts, strict=True)]
-    return Particles(*joined), owner[order]
+
+    def joined(column: Callable[[Particles], np.ndarray]) -> np.ndarray:
+        return np.concatenate([column(part) for part in parts])[order]
+
+    edges = Edges(joined(lambda part: part.edges.normals), joined(lambda part: part.edges.depths))
+    return Particles(
+        position=joined(lambda part: part.position),
+        normal=joined(lambda part: part.normal),
+        depth=joined(lambda part: part.depth),
+        curvature=joined(lambda part: part.curvature),
+        share=joined(lambda part: part.share),
+        edges=edges,
+    ), owner[order]
 
 
-def edges_of(group: Group, position: np.ndarray) -> Edges:
-    """The sides nearest to the particles of a convex body, the only one of its group."""
-    shape = group.shapes[0]
-    turn = matrices(group.orientation, position.shape[1])[0]
-    if not isinstance(shape, Convex):
-        return no_edges(*position.shape)
-    own = shape.edges((position - group.centre[0]) @ turn)
-    return Edges(own.normals @ turn.T, own.depths)
+def _placed(own: Particles, centre: np.ndarray, turn: np.ndarray) -> Particles:
+    """Those of n bodies with the same particles, at their centres (n, dim), turned by matrices."""
+    n, dim = centre.shape
+    position = centre[:, None, :] + np.einsum("nab,pb->npa", turn, own.position)
+    normal = np.einsum("nab,pb->npa", turn, own.normal)
+    faces = np.einsum("nab,pfb->npfa", turn, own.edges.normals)
+    return Particles(
+        position=position.reshape(-1, dim),
+        normal=normal.reshape(-1, dim),
+        depth=np.tile(own.depth, n),
+        curvature=np.tile(own.curvature, n),
+        share=np.tile(own.share, n),
+        edges=Edges(faces.reshape(-1, dim, dim), np.tile(own.edges.depths, (n, 1))),
+    )
 
 
 def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:

@@ -17,9 +17,9 @@ def wall_geometry(
 ) -> tuple[np.ndarray, np.ndarray, Edges]:
     """Normals (N, dim) into the fluid, depths (N,) below it, m, and the faces beside edges.
 
-    Zero where not fixed; normals and depths also for the fixed bodies whose particles bring their
-    own.  `names` are those that the field `body` of `particles` indexes.  Raises UserError for
-    walls that do not say where the fluid is.
+    Zero where not fixed, and for the fixed bodies whose particles bring their own.  `names` are
+    those that the field `body` of `particles` indexes.  Raises UserError for walls that do not say
+    where the fluid is.
     """
     normal, depth = np.zeros_like(particles.position), np.zeros(len(particles))
     edges = no_edges(len(particles), scenario.dim)
@@ -27,13 +27,12 @@ def wall_geometry(
     for name, body in bodies_of(scenario).items():
         own = [names.index(each) for each in scenario.names_of_bodies(name)]
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
-        if not of_it.any():
+        if body.is_of_bodies or not of_it.any():
             continue
         place = made.position(name, of_it), made.around(name)
-        if not body.is_of_bodies:
-            facing, below = body.wall(*place)
-            normal[of_it] = made.turned(name, facing)
-            depth[of_it] = below
+        facing, below = body.wall(*place)
+        normal[of_it] = made.turned(name, facing)
+        depth[of_it] = below
         beside = body.edges(*place)
         turned = made.turned(name, beside.normals.reshape(-1, scenario.dim))
         edges.normals[of_it] = turned.reshape(beside.normals.shape)

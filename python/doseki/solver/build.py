@@ -272,6 +272,8 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     normal, depth, edges = wall_geometry(scenario, particles, body_names)
     normal[bodies.shaped] = bodies.normal[bodies.shaped]
     depth[bodies.shaped] = bodies.depth[bodies.shaped]
+    edges.normals[bodies.shaped] = bodies.edge_normals[bodies.shaped]
+    edges.depths[bodies.shaped] = bodies.edge_depths[bodies.shaped]
     surface = {"normal": normal, "depth": depth, "curvature": bodies.curvature}
     simulation.set_walls(**{name: np.ascontiguousarray(v) for name, v in surface.items()})
     simulation.set_edges(

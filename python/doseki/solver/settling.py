@@ -20,6 +20,7 @@ from ..scene.groups import Group
 from ..scene.kinds.body import Body
 from ..scene.kinds.registry import body_of
 from ..scene.periodic import wrapped
+from ..scene.shapes import no_edges
 from ..util.finding import Finding
 from ..util.telling import Tell, say_nothing
 from .protocol import CoreSimulation
@@ -209,9 +210,8 @@ def _fill(
     none = np.zeros((1, dim))
     reach = np.array([first.shapes[first.shape[0]].reach])
     simulation.set_walls(normal=none, depth=reach, curvature=np.zeros(1))
-    still = Bodies(
-        groups, np.zeros((n, dim)), np.zeros((n, 3)), np.zeros(1, np.int32), none, none, none, none
-    )
+    surface = none, none, none, none, *no_edges(1, dim)
+    still = Bodies(groups, np.zeros((n, dim)), np.zeros((n, 3)), np.zeros(1, np.int32), *surface)
     add_bodies(simulation, scenario, still, names)
 
 

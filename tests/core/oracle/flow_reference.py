@@ -290,8 +290,9 @@ class FlowReference:
         approach = np.where(pulled, 0, approach)
         # Pressure of the wall over that of i: gravity across it, the fluid's gradient along it.
         gradient = self.pressure_gradient[:, None]
-        along = pairs.r_ij - r_n[..., None] * n
-        excess = self.rho[:, None] * g_normal * r_n - dot(gradient, along)
+        along = pairs.r_ij - (in_front * r_n)[..., None] * n
+        weight = self.rho[:, None] * g_normal * r_n
+        excess = np.maximum(weight, np.minimum(0, -self.p[:, None])) - dot(gradient, along)
         foot = self._normal_at_foot(n, in_front)
         smooth = self.resolved[:, None] * pairs.r
         solved = np.where(pulled, 0, -2 * dot(v, foot))
@@ -329,7 +330,7 @@ class FlowReference:
         distance = np.linalg.norm(way, axis=-1)
         way = way / np.where(beyond, distance, 1)[..., None]
         own = front[..., None]
-        g = np.maximum(0, -self.faces @ self.gravity)
+        g = -self.faces @ self.gravity
         n = np.where(
             alone[..., None], (own * self.faces).sum(axis=2), r / self.fw.safe_r[..., None]
         )

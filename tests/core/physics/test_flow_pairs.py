@@ -138,12 +138,23 @@ def test_wall_excess_pressure_is_hydrostatic_across_a_wall(point, dim, random):
     """Where gravity presses water onto the wall and the fluid is level along it."""
     normal, r = random.normal(size=(2, 40, dim))
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    g_n, r_n = random.uniform(0, 10, 40), (r * normal).sum(axis=1)
+    g_n, r_n = random.uniform(-10, 10, 40), (r * normal).sum(axis=1)
     gradient = -3.0 * normal  # across the wall: must not count
-    (p,) = point(
-        "wall_excess_pressure", RHO, g_n, r_n, *rows(gradient), *rows(normal), *rows(r), dim=dim
+    inputs = RHO, g_n, r_n, *rows(gradient), *rows(normal), *rows(r)
+    (deep,) = point("wall_excess_pressure", 1e6, *inputs, dim=dim)
+    np.testing.assert_allclose(deep, RHO * g_n * r_n, rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("p", [0.0, 300.0, -300.0])
+def test_no_wall_holds_water_up(point, p):
+    """Under a ceiling the pressure of the wall falls to zero, not below."""
+    gradient, normal, r = np.zeros(2), np.array([0.0, -1.0]), np.array([0.0, -0.1])
+    below, above = (
+        point("wall_excess_pressure", p, RHO, g_n, 0.1, *gradient, *normal, *r, dim=2)[0, 0]
+        for g_n in (-9.8, 9.8)
     )
-    np.testing.assert_allclose(p, RHO * g_n * r_n, rtol=1e-11, atol=1e-11)
+    assert p + below == pytest.approx(min(p, 0) if p < 980 else p - 980, abs=1e-9)
+    assert above == pytest.approx(980)
 
 
 def test_wall_excess_pressure_follows_the_fluid_along_a_wall(point, dim, random):
@@ -154,7 +165,10 @@ def test_wall_excess_pressure_follows_the_fluid_along_a_wall(point, dim, random)
     gradient[:, -1] = -RHO * 9.8
     r = random.normal(size=(40, dim))
     (p,) = point(
-        "wall_excess_pressure", RHO, 0.0, r[:, 0], *rows(gradient), *rows(normal), *rows(r), dim=dim
+        "wall_excess_pressure",
+        *(0.0, RHO, 0.0, r[:, 0]),
+        *(*rows(gradient), *rows(normal), *rows(r)),
+        dim=dim,
     )
     np.testing.assert_allclose(p, RHO * 9.8 * r[:, -1], rtol=1e-12)
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...record.particles import ParticleSet
 from ...scenario.tables.bodies import Polygon
-from ..groups import Group, edges_of
-from ..shapes import Edges, ShapeError, polygon_shape
+from ..groups import Group
+from ..shapes import ShapeError, polygon_shape
 from .lattice import Turned
 
 
@@ -25,7 +24,3 @@ class PolygonBody(Turned[Polygon]):
         except ShapeError as error:
             raise self.error(f": {error}", "vertices") from None
         return self.single_group(shape, self.turned(centre[None, :], centre)[0], self.orientation)
-
-    def shape_edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
-        """See Shaped."""
-        return edges_of(self.group(), position)

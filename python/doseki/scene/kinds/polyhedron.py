@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from ...record.particles import ParticleSet
 from ...scenario.model import file_of
 from ...scenario.tables.bodies import Polyhedron
-from ..groups import Group, edges_of
-from ..shapes import Edges, ShapeError, mesh_shape
+from ..groups import Group
+from ..shapes import ShapeError, mesh_shape
 from .lattice import Turned
 
 
@@ -28,7 +25,3 @@ class PolyhedronBody(Turned[Polyhedron]):
             raise self.error(f": {error}", "file") from None
         centre = centre if self.table.centre is None else self.table.centre
         return self.single_group(shape, self.turned(centre[None, :], centre)[0], self.orientation)
-
-    def shape_edges(self, position: np.ndarray, particles: ParticleSet) -> Edges:
-        """See Shaped."""
-        return edges_of(self.group(), position)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .frame import own_frame
 from .outline import BULGE, FLAT, Outline, outline_of
-from .particles import EDGE, Curve, Edges, Particles, alike, beside_edges, nearest_faces
+from .particles import EDGE, Curve, Particles, alike, beside_edges, nearest_faces, no_edges
 
 SAME_DEPTH = 1e-6  # dp
 LEAST = 0.3  # of a particle's volume: particles that would have less are left out
@@ -77,17 +77,16 @@ class Convex:
         share = _innermost(self._gaps(lattice).min(axis=1) / dp, number)
         position, share = lattice[share > 0], share[share > 0] / share.sum()
         position = position - share @ position
-        normal, depth = nearest_faces(self._gaps(position), self.planes[0], EDGE * dp)
-        return Particles(position, normal, depth, np.zeros(len(depth)), share)
-
-    def edges(self, position: np.ndarray) -> Edges:
-        """The sides nearest to each position (N, dim)."""
-        return beside_edges(self._gaps(position), self.planes[0])
+        gaps, normals = self._gaps(position), self.planes[0]
+        normal, depth = nearest_faces(gaps, normals, EDGE * dp)
+        plane, edges = np.zeros(len(depth)), beside_edges(gaps, normals)
+        return Particles(position, normal, depth, plane, share, edges)
 
     def elastic_particles(self, dp: float) -> Particles:
-        """Those of a rigid body with equal shares."""
+        """Those of a rigid body with equal shares, whose edges bend and are not known."""
         rigid = self.particles(dp)
-        return rigid._replace(share=alike(len(rigid.share)))
+        n = len(rigid.share)
+        return rigid._replace(share=alike(n), edges=no_edges(n, self.dim))
 
     def curve(self, dp: float) -> Curve:
         """The corners of a polygon, and vertices above the middles of particles along its sides."""
@@ -102,7 +101,9 @@ class Convex:
     def single(self) -> Particles:
         """One particle in the centre."""
         zero = np.zeros((1, self.dim))
-        return Particles(zero, zero.copy(), self._gaps(zero).min(axis=1), np.zeros(1), np.ones(1))
+        depth = self._gaps(zero).min(axis=1)
+        none = no_edges(1, self.dim)
+        return Particles(zero, zero.copy(), depth, np.zeros(1), np.ones(1), none)
 
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""

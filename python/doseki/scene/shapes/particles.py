@@ -11,6 +11,13 @@ ALIKE = 1e-6  # of a depth: faces that differ by less are as near
 CANCEL = 1e-6  # the mean of normals that is shorter has no direction
 
 
+class Edges(NamedTuple):
+    """The faces nearest to particles of a wall, at most `dim`; zero where it has no edge."""
+
+    normals: np.ndarray  # (N, dim, dim), in rows, outwards
+    depths: np.ndarray  # (N, dim) below them, m
+
+
 class Particles(NamedTuple):
     """Particles of a shape; those midway between opposite sides have no normal: zero."""
 
@@ -19,13 +26,7 @@ class Particles(NamedTuple):
     depth: np.ndarray  # (N,) below the surface, m
     curvature: np.ndarray  # (N,) of the surface, 1/m, alike all ways; 0 where it is plane
     share: np.ndarray  # (N,) of the mass
-
-
-class Edges(NamedTuple):
-    """The faces nearest to particles of a wall, at most `dim`; zero where it has no edge."""
-
-    normals: np.ndarray  # (N, dim, dim), in rows, outwards
-    depths: np.ndarray  # (N, dim) below them, m
+    edges: Edges
 
 
 class Curve(NamedTuple):
@@ -47,7 +48,8 @@ def from_centre(
     distance = np.linalg.norm(position, axis=1)
     normal = position / np.maximum(distance, 1e-300)[:, None]
     alike = np.full(len(position), curvature)
-    return Particles(position, normal, radius - distance, alike, share)
+    none = no_edges(*position.shape)
+    return Particles(position, normal, radius - distance, alike, share, none)
 
 
 def nearest_faces(

@@ -104,6 +104,7 @@ def case(name: str, title: str, control: Control) -> Case:
     )
 
 
+TOO_LOW = "body.step.max=['= width', '= rise - 0.5*dp']"
 LESS_TILTED = f"gravity=[{-9.81 * math.sin(math.radians(10))}, -9.66]"
 
 CASES = (
@@ -129,9 +130,9 @@ CASES = (
         "hydrostatic-step",
         "Water at rest in a tank with a step",
         Control(
-            "a step whose side faces upwards",
-            "KE / rho g H2",
-            lambda n: at_rest("hydrostatic-step")(n, "body.step.normal=[0, 1]"),
+            "a step half a spacing too low",
+            "L2(p) / rho g H",
+            lambda n: at_rest("hydrostatic-step")(n, TOO_LOW),
         ),
     ),
     case(
