@@ -225,8 +225,8 @@ private:
     struct Course {
         BodySums<D> before;  // of rigid bodies at its start, with those that have become one since
         BodyStep<D> given;   // to deformable bodies
-        double
-            gravity_lag{};  // time for which gravity has not acted yet on velocities of rigid ones
+        // Times for which the fluid, in half the step, and gravity have yet to act on rigid ones.
+        double flow_lag{}, gravity_lag{};
     };
     void start_breakable() {
         if (!breakable_.any()) return;

@@ -29,8 +29,7 @@ public:
         return shapes[static_cast<std::size_t>(bodies_[k].shape)];
     }
     bool is_free(std::size_t k) const { return !bodies_[k].fixed && !states_[k].is_removed(); }
-    /// Mean over the last step: within a step a body swings between the kicks of the fluid, and
-    /// its contacts with it.
+    /// Mean over the last step.
     const Vec<double, D>& contact_force(std::size_t k) const { return mean_contact_force_[k]; }
     Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
     /// Of the centre when the fluid will have acted for `ahead` more.
@@ -69,7 +68,8 @@ public:
 
     /// Half a step of the forces of the fluid.
     void kick(double half_dt);
-    void begin_step();
+    /// Begins a step of length dt after the first kick, whose force acts all through it instead.
+    void begin_step(double dt);
     /// Positions and orientations; returns the largest distance that a point of a surface goes.
     double drift(double dt) {
         return reduce(size(), 0.0, maximum, [&](std::size_t k) { return drift_one(k, dt); });
@@ -79,8 +79,11 @@ public:
         return reduce(which.size(), 0.0, maximum,
                       [&](std::size_t n) { return drift_one(which[n], dt); });
     }
-    /// Velocities, by gravity and contacts.
+    /// Velocities, by gravity, contacts and the fluid.
     void push(const Vec<double, D>& gravity, double dt);
+    void push_by_contacts(double dt);
+    /// By the forces that the fluid had when it was evaluated.
+    void push_by_flow(std::size_t k, double dt);
     /// How a body is turned within a step.
     Quaternion orientation(std::size_t k) const {
         return states_[k].orientation.turned(ball_turn_[k]);
@@ -316,56 +319,6 @@ void RigidBodies<D>::collect(const ContactBodies<D>& contact,
         contact_force_[k] = contact_force_[k] + solid.force;
         contact_torque_[k] = contact_torque_[k] + solid.torque;
     }
-}
-
-template <int D>
-void RigidBodies<D>::kick(double half_dt) {
-    for_each_particle(size(), [&](std::size_t k) {
-        if (!is_free(k)) return;
-        RigidBodyState<D>& state = states_[k];
-        state.velocity = state.velocity + (half_dt / bodies_[k].mass) * state.flow_force;
-        state.flow_impulse = state.flow_impulse + half_dt * state.flow_force;
-        state.angular_momentum = state.angular_momentum + half_dt * state.flow_torque;
-    });
-}
-
-template <int D>
-void RigidBodies<D>::begin_step() {
-    spin_before_ = spins(0.0);
-    velocity_before_.resize(size()), impulse_before_.resize(size());
-    ball_turn_.assign(size(), {});
-    for_each_particle(size(), [&](std::size_t k) {
-        velocity_before_[k] = states_[k].velocity;
-        impulse_before_[k] = states_[k].contact_impulse;
-    });
-}
-
-template <int D>
-void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
-    for_each_particle(size(), [&](std::size_t k) {
-        RigidBodyState<D>& state = states_[k];
-        state.contact_impulse = state.contact_impulse + dt * contact_force_[k];
-        if (!is_free(k)) return;
-        state.velocity =
-            state.velocity + dt * (gravity + (1.0 / bodies_[k].mass) * contact_force_[k]);
-        state.angular_momentum = state.angular_momentum + dt * contact_torque_[k];
-    });
-}
-
-template <int D>
-void RigidBodies<D>::end_step(double dt, double memory) {
-    for_each_particle(size(), [&](std::size_t k) {
-        RigidBodyState<D>& state = states_[k];
-        mean_contact_force_[k] = (1.0 / dt) * (state.contact_impulse - impulse_before_[k]);
-        if (!is_free(k)) return;
-        state.orientation = state.orientation.turned(ball_turn_[k]);
-        const Vec<double, D> mean = (1.0 / dt) * (state.velocity - velocity_before_[k]) +
-                                    (1.0 / bodies_[k].mass) * state.flow_force;
-        const double share = std::min(1.0, dt / memory);
-        state.acceleration = state.acceleration + share * (mean - state.acceleration);
-        state.spin_rate =
-            state.spin_rate + share * ((1.0 / dt) * (spin(k) - spin_before_[k]) - state.spin_rate);
-    });
 }
 
 template <int D>

@@ -5,40 +5,15 @@
 
 #include "bodies/bodies.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
+#include "bodies/steps/rigid_steps.hpp"
 
 namespace doseki {
 
 template <int D>
-double RigidBodies<D>::drift_one(std::size_t k, double dt) {
-    if (!is_free(k)) return 0.0;
-    RigidBodyState<D>& state = states_[k];
-    const Vec3 turn = dt * spin(k);
-    const double distance = dt * norm(state.velocity);
-    state.centre = state.centre + dt * state.velocity;
-    if (shape(k).is_ball()) {
-        ball_turn_[k] = ball_turn_[k] + turn;
-        return distance;
-    }
-    state.orientation = state.orientation.turned(turn);
-    return distance + shape(k).radius * norm(turn);
-}
-
-template <int D>
-void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
-                              const Vec<double, D>& velocity, const Quaternion& orientation,
-                              const Vec3& angular_momentum) {
-    RigidBodyState<D>& state = states_[k];
-    state.removed = 0.0, state.centre = centre, state.velocity = velocity;
-    state.orientation = orientation, state.angular_momentum = angular_momentum;
-    state.acceleration = {}, state.spin_rate = {}, state.flow_force = {}, state.flow_torque = {};
-    ball_turn_[k] = {};
-}
-
-template <int D>
 BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return {};
-    Course course{rigid.sums(), {}};
-    rigid.begin_step(), deformable.begin_step();
+    Course course{rigid.sums(), {}, 0.5 * dt};
+    rigid.begin_step(dt), deformable.begin_step();
     deformable_step_ = deformable.timestep();
     if (breakable_.any())
         advance_apart(walls, t, dt, course);
@@ -170,12 +145,13 @@ template <int D>
 void Bodies<D>::push_slow(double dt, Course& course) {
     touch(PairKind::slow, dt, course);
     rigid.push(gravity_, dt);
+    course.flow_lag -= dt;
 }
 
 template <int D>
 void Bodies<D>::push_fast(double t, double dt, Course& course) {
     touch(PairKind::fast, dt, course);
-    rigid.push({}, dt);
+    rigid.push_by_contacts(dt);
     if (!deformable.any_deforms()) return;
     deformable.collect(contact_);
     push_deformable(dt, course);
@@ -216,6 +192,7 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
     for (const std::size_t n : struck) {
         RigidBodyState<D>& state = rigid.state(breakable_[n].rigid);
         state.velocity = state.velocity + course.gravity_lag * gravity_;
+        rigid.push_by_flow(breakable_[n].rigid, course.flow_lag);
     }
     const BodySums<D> had = rigid.sums();
     const double kinetic = deformable.kinetic_energy();
