@@ -82,6 +82,7 @@ public:
     /// Velocities, by gravity, contacts and the fluid.
     void push(const Vec<double, D>& gravity, double dt);
     void push_by_contacts(double dt);
+    void push_by_contacts(std::size_t k, double dt);
     /// By the forces that the fluid had when it was evaluated.
     void push_by_flow(std::size_t k, double dt);
     /// How a body is turned within a step.

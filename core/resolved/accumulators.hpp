@@ -3,6 +3,7 @@
 // that one source serves packs on a processor and one thread for each particle on a device.
 
 #include "model/particles.hpp"
+#include "physics/free_surface.hpp"
 #include "physics/riemann.hpp"
 #include "physics/viscosity.hpp"
 #include "physics/wall.hpp"
@@ -140,8 +141,11 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.approach = pushes * contact.approach;
     const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
     const Vec<T, D> at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
+    // Air comes in on a free surface and at bodies that move: a wall pulls at what leaves it no
+    // harder than pores do.
+    const T vented = select(i.surface > T(FreeSurfaceIndicator::surface), T(1), w.bound);
     const T least =
-        select(w.bound > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
+        select(vented > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
     const T solved = approach_pressure(T(-2) * pushes * dot(v_iw, at_foot), i.rho, c,
                                        smooth_approach(i.resolved_strain, r));
     const T extra = max(solved, least);

@@ -56,8 +56,8 @@ void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
 
 template <int D>
 void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
-    push_by_contacts(dt);
     for_each_particle(size(), [&](std::size_t k) {
+        push_by_contacts(k, dt);
         if (!is_free(k)) return;
         states_[k].velocity = states_[k].velocity + dt * gravity;
         push_by_flow(k, dt);
@@ -66,13 +66,16 @@ void RigidBodies<D>::push(const Vec<double, D>& gravity, double dt) {
 
 template <int D>
 void RigidBodies<D>::push_by_contacts(double dt) {
-    for_each_particle(size(), [&](std::size_t k) {
-        RigidBodyState<D>& state = states_[k];
-        state.contact_impulse = state.contact_impulse + dt * contact_force_[k];
-        if (!is_free(k)) return;
-        state.velocity = state.velocity + (dt / bodies_[k].mass) * contact_force_[k];
-        state.angular_momentum = state.angular_momentum + dt * contact_torque_[k];
-    });
+    for_each_particle(size(), [&](std::size_t k) { push_by_contacts(k, dt); });
+}
+
+template <int D>
+void RigidBodies<D>::push_by_contacts(std::size_t k, double dt) {
+    RigidBodyState<D>& state = states_[k];
+    state.contact_impulse = state.contact_impulse + dt * contact_force_[k];
+    if (!is_free(k)) return;
+    state.velocity = state.velocity + (dt / bodies_[k].mass) * contact_force_[k];
+    state.angular_momentum = state.angular_momentum + dt * contact_torque_[k];
 }
 
 template <int D>

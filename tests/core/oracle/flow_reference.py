@@ -297,6 +297,8 @@ class FlowReference:
         smooth = self.resolved[:, None] * pairs.r
         solved = np.where(pulled, 0, -2 * dot(v, foot))
         extra = self._dissipation(solved, self.rho[:, None], smooth)
+        vented = (self.surface > SURFACE)[:, None]
+        extra = np.where(vented, np.maximum(extra, np.minimum(0, -self.p[:, None])), extra)
         across = r_n[..., None] * foot
         p = self.p[:, None] + 0.5 * excess
         corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
