@@ -131,6 +131,18 @@ def test_regular_polygons(n):
         assert_mapped(particles, move)
 
 
+@pytest.mark.parametrize("n", [3, 4, 6, 8, 16])
+def test_faces_beside_an_edge_differ_by_fifty_degrees(n):
+    """A particle below sides that lean less has the mean of them."""
+    _, normal, _, _, _, edges = regular(n).particles(DP)
+    first, second = edges.normals[:, 0], edges.normals[:, 1]
+    beside = np.any(second != 0, axis=1)
+    assert beside.any()
+    assert (first * second).sum(axis=1)[beside].max() < np.cos(np.radians(50))
+    if n >= 8:
+        np.testing.assert_allclose(first[beside], normal[beside], atol=1e-12)
+
+
 def test_the_part_of_a_lattice_that_a_slope_cuts_is_shared():
     """Half of each cell on the long side of a right triangle is inside."""
     shape, _ = polygon_shape(np.array([[0, 0], [1, 0], [0, 1.0]]))

@@ -69,7 +69,7 @@ class BoxWalls:
 
     def edges(self, position: np.ndarray) -> Edges:
         """The nearest faces that no wall covers."""
-        return beside_edges(*self._below_faces(position))
+        return beside_edges(*self._below_faces(position), EDGE * self.scenario.dp)
 
     def _below_faces(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Depths (N, m) below the m faces that no wall covers, and their normals (m, dim)."""

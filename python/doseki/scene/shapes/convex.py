@@ -79,7 +79,7 @@ class Convex:
         position = position - share @ position
         gaps, normals = self._gaps(position), self.planes[0]
         normal, depth = nearest_faces(gaps, normals, EDGE * dp)
-        plane, edges = np.zeros(len(depth)), beside_edges(gaps, normals)
+        plane, edges = np.zeros(len(depth)), beside_edges(gaps, normals, EDGE * dp)
         return Particles(position, normal, depth, plane, share, edges)
 
     def elastic_particles(self, dp: float) -> Particles:

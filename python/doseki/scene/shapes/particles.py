@@ -8,6 +8,7 @@ import numpy as np
 
 EDGE = 0.1  # dp: what is farther from one face than from another by less lies along their edge
 ALIKE = 1e-6  # of a depth: faces that differ by less are as near
+SMOOTH = 0.64  # cosine of 50 degrees, by which normals beside an edge differ at least
 CANCEL = 1e-6  # the mean of normals that is shorter has no direction
 
 
@@ -61,30 +62,50 @@ def nearest_faces(
     along an edge the normal is the mean of two, in a corner of three.  One that is farther by
     `width` counts no more.
     """
-    depth = gaps.min(axis=1)
-    weight = np.maximum(1 - (gaps - depth[:, None]) / width, 0)
+    return _mean(_nearness(gaps, width), normals), gaps.min(axis=1)
+
+
+def beside_edges(gaps: np.ndarray, normals: np.ndarray, width: float) -> Edges:
+    """The nearest faces, as in `nearest_faces`; zero where there is but one.
+
+    Faces that lean to each other by less than an edge does are a smooth surface, as that of a
+    boulder is; the mean of those that are as near stands for it.  Of faces that are as near none is
+    chosen where there is no room for all of them.
+    """
+    rows, dim = len(gaps), normals.shape[1]
+    edges, most = no_edges(rows, dim), min(dim, len(normals))
+    order = np.argsort(gaps, axis=1, kind="stable")
+    smooth = normals @ normals.T > SMOOTH
+    found = np.zeros((rows, most + 1, dim))
+    found[:, 0] = _mean(_nearness(gaps, width) * smooth[order[:, 0]], normals)
+    depths = np.full((rows, most + 1), np.inf)
+    depths[:, 0] = gaps.min(axis=1)
+    number = np.ones(rows, int)
+    for face in order[:, 1:].T:
+        lean = np.einsum("nkd,nd->nk", found, normals[face])
+        new = np.flatnonzero((lean.max(axis=1) < SMOOTH) & (number <= most))
+        found[new, number[new]] = normals[face[new]]
+        depths[new, number[new]] = gaps[new, face[new]]
+        number[new] += 1
+    chosen = depths[:, :most] < (depths[:, most] * (1 - ALIKE))[:, None]
+    chosen &= (number > 1)[:, None] & np.isfinite(depths[:, :most])
+    edges.normals[:, :most] = np.where(chosen[..., None], found[:, :most], 0.0)
+    edges.depths[:, :most] = np.where(chosen, depths[:, :most], 0.0)
+    return edges
+
+
+def _nearness(gaps: np.ndarray, width: float) -> np.ndarray:
+    """Weights (N, m) of faces: 1 for the nearest, 0 for one that is farther by `width`."""
+    return np.maximum(1 - (gaps - gaps.min(axis=1)[:, None]) / width, 0)
+
+
+def _mean(weight: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Unit vectors (N, dim) along weighted sums of normals; zero where these cancel."""
     total = weight @ normals
     length = np.linalg.norm(total, axis=1)
     outwards = length > CANCEL * weight.sum(axis=1)
     unit = total / np.where(outwards, length, 1.0)[:, None]
-    return np.where(outwards[:, None], unit, 0.0), depth
-
-
-def beside_edges(gaps: np.ndarray, normals: np.ndarray) -> Edges:
-    """The nearest faces; `gaps` (N, m) to the faces, `normals` (m, dim) of them.
-
-    Of faces that are as near none is chosen where there is no room for all of them.
-    """
-    rows, dim = len(gaps), normals.shape[1]
-    edges = no_edges(rows, dim)
-    most = min(dim, len(normals))
-    order = np.argsort(gaps, axis=1, kind="stable")
-    near = np.take_along_axis(gaps, order, axis=1)
-    next_one = near[:, most] if len(normals) > most else np.full(rows, np.inf)
-    chosen = near[:, :most] < (next_one * (1 - ALIKE))[:, None]
-    edges.normals[:, :most] = np.where(chosen[..., None], normals[order[:, :most]], 0.0)
-    edges.depths[:, :most] = np.where(chosen, near[:, :most], 0.0)
-    return edges
+    return np.where(outwards[:, None], unit, 0.0)
 
 
 def no_edges(rows: int, dim: int) -> Edges:
