@@ -126,6 +126,6 @@ CASES = (
         "sphere-in-thick-oil",
         "A sphere settles in oil, Re 1.5",
         THICK,
-        "at 4 across its drag is an eighth too low, and at first it is too fast by 0.4 of its late speed",
+        "at 4 across its drag is an eighth too low, and it starts too fast",
     ),
 )
