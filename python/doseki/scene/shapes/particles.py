@@ -87,6 +87,8 @@ def beside_edges(gaps: np.ndarray, normals: np.ndarray, width: float) -> Edges:
         found[new, number[new]] = normals[face[new]]
         depths[new, number[new]] = gaps[new, face[new]]
         number[new] += 1
+        if (number > most).all():
+            break
     chosen = depths[:, :most] < (depths[:, most] * (1 - ALIKE))[:, None]
     chosen &= (number > 1)[:, None] & np.isfinite(depths[:, :most])
     edges.normals[:, :most] = np.where(chosen[..., None], found[:, :most], 0.0)
