@@ -46,6 +46,22 @@ DOSEKI_FN constexpr void for_each_number(F& f, First& first, Rest&... rest) {
         f(first, rest...);
 }
 
+struct AssignNumber {
+    template <class T, class Number>
+    DOSEKI_FN void operator()(T& to, const Number& from) const {
+        to = static_cast<T>(from);
+    }
+};
+
+/// A packed struct in other numbers.
+template <class To, class From>
+DOSEKI_FN To converted(const From& from) {
+    To to;
+    const AssignNumber assign;
+    for_each_number(assign, to, from);
+    return to;
+}
+
 struct CountNumbers {
     std::size_t count = 0;
     template <class Number>

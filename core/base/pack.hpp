@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #if defined(__CUDACC__)
 // A device has no packs: T is double or float, one thread for each particle.
@@ -44,6 +45,15 @@ DOSEKI_FN T number(double literal) {
         return T(static_cast<typename T::value_type>(literal));
     else
         return static_cast<T>(literal);
+}
+
+/// The least positive number of T's precision: keeps a division harmless, changes no sum.
+template <class T>
+DOSEKI_FN T least_number() {
+    if constexpr (requires { typename T::value_type; })
+        return T(std::numeric_limits<typename T::value_type>::min());
+    else
+        return std::numeric_limits<T>::min();
 }
 
 /// `mask ? yes : no`, lane by lane; the scalar overload makes one source serve both.

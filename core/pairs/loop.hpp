@@ -41,7 +41,7 @@ public:
         Pair<Lanes, D> pair;
         pair.r_ij = from(x_j, unit);
         // A floor far below any spacing keeps the pair of a particle with itself harmless.
-        pair.r = sqrt(max(dot(pair.r_ij, pair.r_ij), Lanes(std::numeric_limits<real>::min())));
+        pair.r = sqrt(max(dot(pair.r_ij, pair.r_ij), least_number<Lanes>()));
         return pair;
     }
 

@@ -21,19 +21,9 @@ struct OneRow {
     DOSEKI_FN OneRow counted_from(std::uint32_t first) const { return {j - first}; }
 };
 
-struct AssignNumber {
-    template <class T, class Number>
-    DOSEKI_FN void operator()(T& to, const Number& from) const {
-        to = from;
-    }
-};
-
 template <class Point, class Record, class T>
 DOSEKI_FN Point take(std::span<const Record> records, OneRow<T> row) {
-    Point point;
-    const AssignNumber assign;
-    for_each_number(assign, point, records[row.j]);
-    return point;
+    return converted<Point>(records[row.j]);
 }
 
 #if !defined(__CUDACC__)

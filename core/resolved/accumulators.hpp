@@ -117,7 +117,7 @@ DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw
     seen.beyond_edge = select(count > T(1), T(1), T(0));
     const T alone = seen.in_front - seen.beyond_edge, none = (T(1) - seen.in_front) / r;
     const Vec<T, D> from_edge = normals * out, of_face = normals * front;
-    const T distance = sqrt(dot(from_edge, from_edge) + number<T>(1e-300));
+    const T distance = sqrt(dot(from_edge, from_edge) + least_number<T>());
     const T unit = seen.beyond_edge / distance;
     for (int a = 0; a < D; ++a)
         seen.normal[a] = alone * of_face[a] + unit * from_edge[a] + none * r_iw[a];
@@ -139,13 +139,13 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     // An edge pushes what comes to it. It does not pull what goes off a face past it.
     const T pushes = select(contact.approach < T(0), T(1) - seen.beyond_edge, T(1));
     contact.approach = pushes * contact.approach;
-    const T c = T(constants.c), min_distance = number<T>(0.25 * constants.dp);
+    const T c = number<T>(constants.c), min_distance = number<T>(0.25 * constants.dp);
     const Vec<T, D> at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
     // Air comes in on a free surface and at bodies that move: a wall pulls at what leaves it no
     // harder than pores do.
-    const T vented = select(i.surface > T(FreeSurfaceIndicator::surface), T(1), w.bound);
+    const T vented = select(i.surface > number<T>(FreeSurfaceIndicator::surface), T(1), w.bound);
     const T least =
-        select(vented > T(0), min(T(0), T(-constants.suction) - i.p), T(-c * c) * i.rho);
+        select(vented > T(0), min(T(0), number<T>(-constants.suction) - i.p), T(-c * c) * i.rho);
     const T solved = approach_pressure(T(-2) * pushes * dot(v_iw, at_foot), i.rho, c,
                                        smooth_approach(i.resolved_strain, r));
     const T extra = max(solved, least);
@@ -160,7 +160,7 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     const Vec<T, D> sliding = v_iw + contact.approach * seen.normal;
     contact.along = dot(sliding, contact.corrected_r);
     const T shear =
-        no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(sliding, sliding)), T(constants.dp));
+        no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(sliding, sliding)), number<T>(constants.dp));
     contact.jump = shear * sliding - (T(2) * contact.approach) * seen.normal;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
     contact.pressure_force = (scale * p) * contact.corrected_r;
@@ -200,8 +200,8 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
                          const T& inverse_support, const Pair<T, D>& pair,
                          const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
-    const T half = number<T>(0.5), c = T(constants.c);
-    const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+    const T half = number<T>(0.5), c = number<T>(constants.c);
+    const T F = number<T>(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
             VF = j.volume * F;
     const Vec<T, D> v_ij = i.v - j.v;
     const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
@@ -214,10 +214,11 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
                                       smooth_approach(resolved, pair.r));
     const Vec<T, D> corrected_r = j.correction * pair.r_ij;
     const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
-    const ViscousForm<T> form{T(constants.form.along_jump), T(constants.form.along_pair)};
+    const ViscousForm<T> form{number<T>(constants.form.along_jump),
+                              number<T>(constants.form.along_pair)};
     const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, inverse_r, pair.r_ij);
     const T W = Kernel::value(pair.r, inverse_support);
-    const T exchange = half * T(constants.exchange) * rho * j.volume * W;
+    const T exchange = half * number<T>(constants.exchange) * rho * j.volume * W;
     for (int a = 0; a < D; ++a) {
         sums.force[a] -= VF * (extra * pair.r_ij[a] - mu * viscous[a]);
         const T exchanged = exchange * (i.carried[a] - j.carried[a]);
@@ -241,7 +242,7 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
                         const T& inverse_support, const Pair<T, D>& pair, const FluidPoint<T, D>& i,
                         const WallPoint<T, D>& w) {
-    const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+    const T F = number<T>(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
             VF = w.volume * F;
     const T W = Kernel::value(pair.r, inverse_support);
     const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
@@ -268,7 +269,7 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstants& constants,
                                  const T& inverse_support, const Pair<T, D>& pair,
                                  const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
-    const T F = T(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+    const T F = number<T>(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
             W = Kernel::value(pair.r, inverse_support);
     const Vec<T, D> r_jw = T(-1) * pair.r_ij;
     const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);
@@ -290,12 +291,12 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& gravity,
                         const T& inverse_support, const Pair<T, D>& pair, const WallPoint<T, D>& w,
                         const WallPoint<T, D>& v) {
-    const T none = T(Face::none), body = T(Face::first_body);
+    const T none = number<T>(Face::none), body = number<T>(Face::first_body);
     const T apart = select(w.face != v.face && w.face != none && v.face != none, T(1), T(0));
     const T W = apart * Kernel::value(pair.r, inverse_support), share = v.volume * W;
     T head = v.pressure;
     for (int a = 0; a < D; ++a) {
-        head += v.film_density * T(gravity[a]) * pair.r_ij[a];
+        head += v.film_density * number<T>(gravity[a]) * pair.r_ij[a];
         sums.face_velocity[a] += share * v.v[a];
     }
     sums.cover += share;

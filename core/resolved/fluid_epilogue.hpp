@@ -12,13 +12,13 @@ namespace doseki {
 
 /// What the scheme makes of the sums of a fluid particle: gradients, free-surface indicator,
 /// acceleration, rate of density, shifting velocity and timestep.
-template <int D>
+template <class real, int D>
 class FluidEpilogue {
 public:
     using Sums = FluidAccumulators<double, D>;
 
     /// `dt`: since the evaluation before.
-    FluidEpilogue(const ResolvedModel<D>& model, std::span<const FluidRecord<D>> records,
+    FluidEpilogue(const ResolvedModel<D>& model, std::span<const FluidRecord<real, D>> records,
                   std::size_t fluid_count, std::span<FlowSummary<D>> summaries,
                   ResolvedState<D>& state, double dt)
         : model_(model),
@@ -30,21 +30,22 @@ public:
 
     void operator()(std::size_t p, const Sums& sums) const {
         if (p >= fluid_count_) return;  // a wall particle in the last cluster of fluid
+        const Summed at{p, sums, fields(p)};
         const Mat<double, D> B = inverse_moment(sums.moment);
-        correct_gradients(p, sums, B);
-        const FreeSurfaceIndicator indicator = free_surface(p, sums);
+        correct_gradients(at, B);
+        const FreeSurfaceIndicator indicator = free_surface(at);
         state_.surface[p] = indicator.x;
-        state_.correction_excess[p] = correction_excess(p, sums, B);
+        state_.correction_excess[p] = correction_excess(at, B);
         state_.shift[p] = {};
-        summary(p).fault.note_density(records_[p].rho, rho0(p), p);
+        summary(p).fault.note_density(at.fields.rho, rho0(p), p);
         summary(p).power +=
-            records_[p].volume * (sums.power - dot(sums.traction, predicted_velocity(p)) +
+            at.fields.volume * (sums.power - dot(sums.traction, predicted_velocity(p)) +
                                   state_.damping_pressure[p] * sums.density_rate);
-        summary(p).work.power += records_[p].volume * sums.made_power;
+        summary(p).work.power += at.fields.volume * sums.made_power;
         if (!state_.is_free(p)) {
             state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
-            push_of_layers(p, sums);
-            damp_sound(p, is_vented(sums));
+            push_of_layers(at);
+            damp_sound(at);
             return;
         }
         const Mat<double, D>& L = state_.velocity_gradient[p];
@@ -52,20 +53,20 @@ public:
         for (double element : L.element) square += element * element;
         const double strain = std::sqrt(square);
 
-        const Rates of_pairs = momentum_and_continuity(p, sums);
+        const Rates of_pairs = momentum_and_continuity(at);
         Rates rates = of_pairs;
-        rates.density += records_[p].rho * edge_rate(sums.sliding_rate, sums.sliding_size);
+        rates.density += at.fields.rho * edge_rate(sums.sliding_rate, sums.sliding_size);
         if (model_.options.flow.shifting && indicator.x < FreeSurfaceIndicator::surface)
-            shift(p, sums, strain, rates);
+            shift(at, strain, rates);
         if (indicator.is_spray()) rates.density = std::min(0.0, rates.density);  // Eq. (147)
-        relax_density(p, indicator.normalised_density, strain, rates);
-        bound_tension(p, is_vented(sums), rates);
-        summary(p).work.power += part_on_surface(p);
+        relax_density(at, indicator.normalised_density, strain, rates);
+        bound_tension(at, rates);
+        summary(p).work.power += part_on_surface(at);
         state_.acceleration[p] = rates.acceleration;
         state_.density_rate[p] = rates.density;
-        summary(p).work.power += power_of_corrections(p, rates.density - of_pairs.density);
-        limit_timestep(p);
-        damp_sound(p, is_vented(sums));
+        summary(p).work.power += power_of_corrections(at, rates.density - of_pairs.density);
+        limit_timestep(at);
+        damp_sound(at);
     }
 
 private:
@@ -75,14 +76,29 @@ private:
     /// a closing gap.
     static constexpr double max_shift = 0.05;
 
+    /// A particle, its sums, and what they have seen of it.
+    struct Summed {
+        std::size_t p;
+        const Sums& sums;
+        FluidFields<double, D> fields;
+    };
     struct Rates {
         Vec<double, D> acceleration;
         double density;
     };
 
+    /// With the density of the state, which has more digits than pairs may see.
+    FluidFields<double, D> fields(std::size_t p) const {
+        auto fields = converted<FluidFields<double, D>>(records_[p]);
+        fields.rho = state_.density[p] + (0.5 * dt_) * state_.density_rate[p];
+        return fields;
+    }
+
     double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
     /// Without what damps sound.
-    double pressure(std::size_t p) const { return records_[p].p - state_.damping_pressure[p]; }
+    double pressure(const Summed& at) const {
+        return at.fields.p - state_.damping_pressure[at.p];
+    }
     /// That the sums have seen; `state_` has the acceleration of the evaluation before.
     Vec<double, D> predicted_velocity(std::size_t p) const {
         return state_.velocity[p] + (0.5 * dt_) * state_.acceleration[p];
@@ -92,22 +108,22 @@ private:
         return state_.surface[p] > FreeSurfaceIndicator::surface;
     }
     FlowSummary<D>& summary(std::size_t p) const {
-        return summaries_[p / static_cast<std::size_t>(lanes<double>)];
+        return summaries_[p / static_cast<std::size_t>(lanes<real>)];
     }
 
     /// Gradients of first order: those of the kernel times B, the inverse of their moment.
-    void correct_gradients(std::size_t p, const Sums& sums, const Mat<double, D>& B) const {
+    void correct_gradients(const Summed& at, const Mat<double, D>& B) const {
         auto corrected = [&B](const Vec<double, D>& raw) {
             Vec<double, D> v;
             for (int a = 0; a < D; ++a)
                 for (int b = 0; b < D; ++b) v[a] += B(a, b) * raw[b];
             return v;
         };
-        state_.pressure_gradient[p] = company(p, sums) * corrected(sums.pressure_gradient);
-        Mat<double, D>& L = state_.velocity_gradient[p];
+        state_.pressure_gradient[at.p] = company(at) * corrected(at.sums.pressure_gradient);
+        Mat<double, D>& L = state_.velocity_gradient[at.p];
         for (int a = 0; a < D; ++a) {
             Vec<double, D> row;
-            for (int b = 0; b < D; ++b) row[b] = sums.velocity_gradient(a, b);
+            for (int b = 0; b < D; ++b) row[b] = at.sums.velocity_gradient(a, b);
             row = corrected(row);
             for (int b = 0; b < D; ++b) L(a, b) = row[b];
         }
@@ -116,22 +132,21 @@ private:
     /// Eq. (131), 0 for a particle that sees no other fluid. What walls say of the pressure along
     /// them is what it told them a step before: alone with a wall it would keep its gradient for
     /// ever, on a ridge add to it, and be driven along by it.
-    double company(std::size_t p, const Sums& sums) const {
+    double company(const Summed& at) const {
         constexpr double enough = 0.05;  // of the sum on a lattice; one neighbour adds 0.07 or more
         const double own =
-            records_[p].rest_volume / model_.spacing_power[D] * model_.own_concentration;
-        return std::clamp((sums.concentration - own) / (enough * model_.lattice_concentration), 0.0,
+            at.fields.rest_volume / model_.spacing_power[D] * model_.own_concentration;
+        return std::clamp((at.sums.concentration - own) / (enough * model_.lattice_concentration), 0.0,
                           1.0);
     }
 
     /// None near a free surface, where there is little pressure and the inverse is large. Bounded,
     /// or a few particles in a hole would shorten the step of all (Eq. 41).
-    Sym<double, D> correction_excess(std::size_t p, const Sums& sums,
-                                     const Mat<double, D>& B) const {
+    Sym<double, D> correction_excess(const Summed& at, const Mat<double, D>& B) const {
         constexpr double min_determinant = 0.3;  // of the moment
         constexpr double max_excess = 0.5;
         const bool corrected =
-            std::max(sums.max_surface, state_.surface[p]) < FreeSurfaceIndicator::surface &&
+            std::max(at.sums.max_surface, state_.surface[at.p]) < FreeSurfaceIndicator::surface &&
             B(0, 0) > 0.0 && min_determinant * determinant(B) < 1.0;
         if (!corrected) return {};
         Sym<double, D> excess = symmetric_part(B - identity<double, D>());
@@ -140,90 +155,93 @@ private:
         return excess;
     }
 
-    FreeSurfaceIndicator free_surface(std::size_t p, const Sums& sums) const {
-        const Vec<double, D>& gradient = sums.concentration_gradient;
+    FreeSurfaceIndicator free_surface(const Summed& at) const {
+        const Vec<double, D>& gradient = at.sums.concentration_gradient;
         const double slope = std::sqrt(dot(gradient, gradient));
         return FreeSurfaceIndicator::of(
-            (sums.concentration + sums.wall_share) / model_.lattice_concentration,
-            model_.kernel_support() * state_.smoothing_length[p] * slope,
+            (at.sums.concentration + at.sums.wall_share) / model_.lattice_concentration,
+            model_.kernel_support() * state_.smoothing_length[at.p] * slope,
             model_.options.flow.wide_kernel);
     }
 
     /// Over the particle's volume.
-    Vec<double, D> force_of_pairs(std::size_t p, const Sums& sums) const {
-        return pressure_force(sums, records_[p]) + 2.0 * sums.force + sums.traction;
+    Vec<double, D> force_of_pairs(const Summed& at) const {
+        return pressure_force(at.sums, at.fields) + 2.0 * at.sums.force + at.sums.traction;
     }
 
-    Rates momentum_and_continuity(std::size_t p, const Sums& sums) const {
-        const double rho = records_[p].rho, B = model_.options.attraction;
-        Vec<double, D> a = (1.0 / rho) * force_of_pairs(p, sums) + model_.options.gravity;
-        a = a - B * B * state_.position[p];
-        return {a, rho * sums.density_rate};
+    Rates momentum_and_continuity(const Summed& at) const {
+        const double rho = at.fields.rho, B = model_.options.attraction;
+        Vec<double, D> a = (1.0 / rho) * force_of_pairs(at) + model_.options.gravity;
+        a = a - B * B * state_.position[at.p];
+        return {a, rho * at.sums.density_rate};
     }
 
     /// Whether air comes in under tension: beside a body that moves, and where what has a free
     /// surface slides past an edge of a wall.
-    bool is_vented(const Sums& sums) const {
+    bool is_vented(const Summed& at) const {
+        const Sums& sums = at.sums;
         return sums.at_body > 0.0 || (sums.max_surface > FreeSurfaceIndicator::surface &&
                                       edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
     }
 
     /// What shifting and the relaxation of density give to energies of compression and height [W].
-    double power_of_corrections(std::size_t p, double density_rate) const {
-        const FluidRecord<D>& record = records_[p];
-        return record.volume * pressure(p) / record.rho * density_rate -
-               state_.mass[p] * dot(model_.options.gravity, state_.shift[p]);
+    double power_of_corrections(const Summed& at, double density_rate) const {
+        return at.fields.volume * pressure(at) / at.fields.rho * density_rate -
+               state_.mass[at.p] * dot(model_.options.gravity, state_.shift[at.p]);
     }
 
     /// A driven particle hands on the force and the rate of density that it is kept up against.
-    void push_of_layers(std::size_t p, const Sums& sums) const {
-        const Vec<double, D> force = records_[p].volume * force_of_pairs(p, sums);
-        SchemeWork<D>& work = summary(p).work;
+    void push_of_layers(const Summed& at) const {
+        const Vec<double, D> force = at.fields.volume * force_of_pairs(at);
+        SchemeWork<D>& work = summary(at.p).work;
         work.layer_force = work.layer_force - force;
-        work.layer_power -=
-            dot(force, state_.velocity[p]) + records_[p].volume * pressure(p) * sums.density_rate;
+        work.layer_power -= dot(force, state_.velocity[at.p]) +
+                            at.fields.volume * pressure(at) * at.sums.density_rate;
     }
 
     /// Moves the particle relative to the fluid, and its density with it. Pairs see to its
     /// velocity.
-    void shift(std::size_t p, const Sums& sums, double strain, Rates& rates) const {
+    void shift(const Summed& at, double strain, Rates& rates) const {
+        const Sums& sums = at.sums;
         const double c = model_.constants.c;
         Vec<double, D> velocity =
-            shifting_velocity(sums.concentration_gradient, strain, state_.smoothing_length[p]);
+            shifting_velocity(sums.concentration_gradient, strain, state_.smoothing_length[at.p]);
         if (sums.max_surface > FreeSurfaceIndicator::surface)
             velocity = tangential(velocity, sums.surface_gradient);
         const double fastest = max_shift * c, speed = std::sqrt(dot(velocity, velocity));
         if (speed > fastest) velocity = (fastest / speed) * velocity;
-        state_.shift[p] = velocity;
-        rates.density += dot(state_.pressure_gradient[p], velocity) / (c * c);
+        state_.shift[at.p] = velocity;
+        rates.density += dot(state_.pressure_gradient[at.p], velocity) / (c * c);
     }
 
     /// What continuity sums up over many steps forgets how far apart particles are: the density
     /// goes towards the one that their arrangement says, and the faster the more the flow disturbs
     /// it.
-    void relax_density(std::size_t p, double normalised_density, double strain,
+    void relax_density(const Summed& at, double normalised_density, double strain,
                        Rates& rates) const {
         constexpr double per_strain = 10.0;
-        const double rho = records_[p].rho, sound = model_.constants.c / state_.smoothing_length[p];
+        const double rho = at.fields.rho, sound = model_.constants.c / state_.smoothing_length[at.p];
         const double rate = std::clamp(per_strain * strain, sound / density_relaxation_at_rest,
                                        sound / density_relaxation);
-        rates.density += rate * (normalised_density * rho0(p) - rho);
+        rates.density += rate * (normalised_density * rho0(at.p) - rho);
     }
 
     /// Below its least density a fluid does not expand any further.
-    void bound_tension(std::size_t p, bool vented, Rates& rates) const {
-        const double least = model_.min_density[state_.tag[p].material].at(vented);
-        const double missing = least - records_[p].rho;
+    void bound_tension(const Summed& at, Rates& rates) const {
+        const bool vented = is_vented(at);
+        const double least = model_.min_density[state_.tag[at.p].material].at(vented);
+        const double missing = least - at.fields.rho;
         if (missing <= 0.0) return;
-        const double time = tension_release * state_.smoothing_length[p] / model_.constants.c;
+        const double time = tension_release * state_.smoothing_length[at.p] / model_.constants.c;
         rates.density = std::max(vented ? missing / time : 0.0, rates.density);
     }
 
     /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
     /// meets again, until it has closed. Returns the power of the tension that is lost [W].
-    double part_on_surface(std::size_t p) const {
-        const double rho = records_[p].rho;
-        const bool had_tension = pressure(p) < 0.0;
+    double part_on_surface(const Summed& at) const {
+        const std::size_t p = at.p;
+        const double rho = at.fields.rho;
+        const bool had_tension = pressure(at) < 0.0;
         if (rho >= rho0(p)) state_.parted[p] = 0.0;
         if (rho >= rho0(p) || !on_surface(p)) return 0.0;
         state_.parted[p] = 1.0;
@@ -234,24 +252,26 @@ private:
 
     /// For the next evaluation. It brings no tension that the liquid does not bear, none on a free
     /// surface.
-    void damp_sound(std::size_t p, bool vented) const {
+    void damp_sound(const Summed& at) const {
+        const std::size_t p = at.p;
         const Material& material = model_.material(state_.tag[p]);
-        const double rho = records_[p].rho, h = state_.smoothing_length[p],
+        const double rho = at.fields.rho, h = state_.smoothing_length[p],
                      divergence = trace(state_.velocity_gradient[p]);
         double added = damping_pressure(model_.options.flow.acoustic_damping, rho,
                                         model_.constants.c, h, divergence);
         if (added < 0.0) {
-            const double least = model_.min_density[state_.tag[p].material].at(vented);
+            const double least = model_.min_density[state_.tag[p].material].at(is_vented(at));
             const double bound = thermodynamic_state(*material.laws, least).pressure;
-            added = std::max(added, std::min(0.0, bound - pressure(p)));
+            added = std::max(added, std::min(0.0, bound - pressure(at)));
         }
         state_.damping_pressure[p] = on_surface(p) ? 0.0 : added;
     }
 
-    void limit_timestep(std::size_t p) const {
+    void limit_timestep(const Summed& at) const {
+        const std::size_t p = at.p;
         const Vec<double, D>&a = state_.acceleration[p], &v = state_.velocity[p];
         const double dt =
-            FlowTimestep::of(model_.options, records_[p], state_.smoothing_length[p],
+            FlowTimestep::of(model_.options, at.fields, state_.smoothing_length[p],
                              std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), model_.constants.c)
                 .smallest();
         FlowSummary<D>& of_cluster = summary(p);
@@ -261,7 +281,7 @@ private:
     }
 
     const ResolvedModel<D>& model_;
-    std::span<const FluidRecord<D>> records_;
+    std::span<const FluidRecord<real, D>> records_;
     std::size_t fluid_count_;
     std::span<FlowSummary<D>> summaries_;
     ResolvedState<D>& state_;

@@ -13,22 +13,22 @@
 namespace doseki {
 
 /// What the sums over fluid particles read.
-template <int D, class Backend>
+template <int D, class real, class Backend>
 struct FluidPass {
     const typename Backend::template Lists<D>& lists;
-    CoordinateFrame<double, D> frame;
-    FlowRecords<D> records;
+    CoordinateFrame<real, D> frame;
+    FlowRecords<real, D> records;
     const ResolvedModel<D>& model;
 
     /// The sums of particle p over these records, with the walls of its list or without.
     template <class Kernel>
-    FluidAccumulators<double, D> sums_of(std::size_t p, const FlowRecords<D>& given,
+    FluidAccumulators<double, D> sums_of(std::size_t p, const FlowRecords<real, D>& given,
                                          bool walls) const {
         const std::size_t cluster = p / static_cast<std::size_t>(Backend::width);
         const ClusterList all = lists.clusters()[cluster], list = walls ? all : all.without_fixed();
         FluidAccumulators<double, D> found{};
         Backend::sum_pairs(lists, {{&list, 1}, records.motion, frame, {.first_cluster = cluster}},
-                           FluidTerm<Kernel, D>{given, model.constants},
+                           FluidTerm<Kernel, real, D>{given, model.constants},
                            [&](std::size_t q, const FluidAccumulators<double, D>& sums) {
                                if (q == p) found = sums;
                            });
@@ -39,21 +39,21 @@ struct FluidPass {
     /// exchange among fluids, and what walls do.
     template <class Kernel>
     ForceTerms<D> pair_forces(std::size_t p) const {
-        Array<FluidRecord<D>> changed(records.fluid_fields.begin(), records.fluid_fields.end());
-        const FluidRecord<D>& record = records.fluid_fields[p];
+        Array<FluidRecord<real, D>> changed(records.fluid_fields.begin(), records.fluid_fields.end());
+        const auto record = converted<FluidFields<double, D>>(records.fluid_fields[p]);
         const auto force = [&](const FluidAccumulators<double, D>& sums) {
             return (1.0 / record.rho) * (pressure_force(sums, record) + 2.0 * sums.force);
         };
         const auto fluid_force = [&] {
-            FlowRecords<D> given = records;
+            FlowRecords<real, D> given = records;
             given.fluid_fields = changed;
             return force(sums_of<Kernel>(p, given, false));
         };
         const auto all = sums_of<Kernel>(p, records, true);
         const Vec<double, D> fluid = fluid_force();
-        for (FluidRecord<D>& other : changed) other.carried = {};
+        for (FluidRecord<real, D>& other : changed) other.carried = {};
         const Vec<double, D> unshifted = fluid_force();
-        for (FluidRecord<D>& other : changed) other.mu = 0.0;
+        for (FluidRecord<real, D>& other : changed) other.mu = 0;
         const Vec<double, D> pressure = fluid_force();
         ForceTerms<D> terms;
         terms.acceleration = {
@@ -67,8 +67,8 @@ struct FluidPass {
 };
 
 /// Eqs. (27) and (41) of particle p.
-template <int D, class Backend>
-ForceTerms<D> force_terms(const FluidPass<D, Backend>& pass, const ResolvedState<D>& state,
+template <int D, class real, class Backend>
+ForceTerms<D> force_terms(const FluidPass<D, real, Backend>& pass, const ResolvedState<D>& state,
                           std::size_t p) {
     const Options<D>& options = pass.model.options;
     ForceTerms<D> terms = options.flow.wide_kernel ? pass.template pair_forces<WendlandC6<D>>(p)
@@ -79,8 +79,9 @@ ForceTerms<D> force_terms(const FluidPass<D, Backend>& pass, const ResolvedState
         terms.acceleration.emplace_back("attraction", -attraction * state.position[p]);
     const Vec<double, D> a = state.acceleration[p], v = state.velocity[p];
 
+    const auto record = converted<FluidFields<double, D>>(pass.records.fluid_fields[p]);
     const auto limits =
-        FlowTimestep::of(options, pass.records.fluid_fields[p], state.smoothing_length[p],
+        FlowTimestep::of(options, record, state.smoothing_length[p],
                          std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), pass.model.constants.c);
     terms.timestep = {{"the sound speed", limits.acoustic},
                       {"the acceleration", limits.forced},

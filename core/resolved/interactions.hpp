@@ -11,17 +11,20 @@ namespace doseki {
 /// Where the records of a step lie. Fluid particles come first in storage, wall particles after
 /// them, and then ghosts of either kind, whose records have the same places in these arrays:
 /// `fluid` has a gap where wall particles are.
-template <int D>
+template <class real, int D>
 struct FlowRecords {
-    std::span<const MotionRecord<double, D>> motion;
-    std::span<const FluidRecord<D>> fluid_fields;
-    std::span<const WallRecord<D>> wall_fields;
+    std::span<const MotionRecord<real, D>> motion;
+    std::span<const FluidRecord<real, D>> fluid_fields;
+    std::span<const WallRecord<real, D>> wall_fields;
     std::uint32_t fluid_count, count;  // without ghosts
-    double inverse_support;
+    real inverse_support;
 
     std::uint32_t first_wall() const { return fluid_count; }
     /// From which distance on kernels are zero, whatever the rounding [m].
-    double reach() const { return (1.0 + 1e-12) / inverse_support; }
+    real reach() const {
+        constexpr real rounding = std::is_same_v<real, double> ? 1e-12 : 1e-6;
+        return (1 + rounding) / inverse_support;
+    }
 
     template <class Rows>
     DOSEKI_FN auto fluid(Rows rows) const {
@@ -39,17 +42,17 @@ struct FlowRecords {
 };
 
 /// Everything that a fluid particle sums, in one pass.
-template <class Kernel, int D>
+template <class Kernel, class real, int D>
 struct FluidTerm {
-    using Real = double;
+    using Real = real;
     static constexpr int dim = D;
     template <class T>
     using Accumulators = FluidAccumulators<T, D>;
 
-    FlowRecords<D> records;
+    FlowRecords<real, D> records;
     FlowConstants constants;
 
-    double reach() const { return records.reach(); }
+    real reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
@@ -77,18 +80,18 @@ struct FluidTerm {
 };
 
 /// What a wall particle sums of the fluid and the other faces around it.
-template <class Kernel, int D>
+template <class Kernel, class real, int D>
 struct WallTerm {
-    using Real = double;
+    using Real = real;
     static constexpr int dim = D;
     template <class T>
     using Accumulators = WallAccumulators<T, D>;
 
-    FlowRecords<D> records;
+    FlowRecords<real, D> records;
     FlowConstants constants;
     Vec<double, D> gravity;
 
-    double reach() const { return records.reach(); }
+    real reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {

@@ -49,10 +49,10 @@ struct WallFields {
     }
 };
 
-template <int D>
-using FluidRecord = FluidFields<double, D>;
-template <int D>
-using WallRecord = WallFields<double, D>;
+template <class real, int D>
+using FluidRecord = FluidFields<real, D>;
+template <class real, int D>
+using WallRecord = WallFields<real, D>;
 
 /// Particle i or j of a pair.
 template <class T, int D>

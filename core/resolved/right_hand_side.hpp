@@ -19,7 +19,7 @@
 
 namespace doseki {
 
-template <int D>
+template <class real, int D>
 struct FlowRecords;
 template <int D>
 struct ResolvedModel;
@@ -29,10 +29,10 @@ struct ResolvedModel;
 /// step before where a pair needs them; a timestep is short against what they describe. How it is
 /// evaluated is in resolved/evaluate.hpp, which a unit of its own compiles: who steps a run need
 /// not see the physics.
-template <int D, class BackendOf = Cpu<double>>
+template <int D, class real, class BackendOf = Cpu<real>>
 class Resolved {
 public:
-    using Real = double;
+    using Real = real;
     using Backend = BackendOf;
     using Lists = typename Backend::template Lists<D>;
     using State = ResolvedState<D>;
@@ -71,8 +71,8 @@ public:
     const Fault& fault() const { return fault_; }
     std::int64_t limiting_particle() const { return limiting_; }
     const Array<Material>& materials() const;
-    std::span<const MotionRecord<double, D>> motion_records() const { return motion_; }
-    const CoordinateFrame<double, D>& frame() const { return frame_; }
+    std::span<const MotionRecord<real, D>> motion_records() const { return motion_; }
+    const CoordinateFrame<real, D>& frame() const { return frame_; }
     Deviator<double, D> deviator(const State&, std::size_t) const { return {}; }
     double shear_energy(const State&, std::size_t) const { return 0.0; }
 
@@ -97,27 +97,27 @@ private:
     /// ranks.
     static constexpr std::int64_t depth_interval = 8;
 
-    FlowRecords<D> records(const State& state) const;
+    FlowRecords<real, D> records(const State& state) const;
     void set_mixing_lengths(State& state, const Lists& lists, const Ranks& ranks);
     void pack(State& state, const Halo<D>& halo, double half_dt);
     void pack_fluid(State& state, std::size_t p, double half_dt);
     void pack_wall(const State& state, std::size_t p);
-    void update_mean_pressure(State& state, std::size_t p, double dt);
+    void update_mean_pressure(State& state, std::size_t p, double pressure, double dt);
     template <class Kernel>
     void sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
-    void sum_walls(State& state, const Lists& lists, const FlowRecords<D>& records, double dt);
+    void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records, double dt);
     template <class Kernel>
-    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<D>& records,
+    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<real, D>& records,
                    double dt);
-    bool has_wet_walls(const FlowRecords<D>& records) const;
+    bool has_wet_walls(const FlowRecords<real, D>& records) const;
     void reduce_summaries();
 
     std::shared_ptr<const ResolvedModel<D>> model_;
-    CoordinateFrame<double, D> frame_;
-    Field<MotionRecord<double, D>> motion_;
-    Field<FluidRecord<D>> fluid_;
-    Field<WallRecord<D>> wall_;  // the first is that of particle fluid_count_
+    CoordinateFrame<real, D> frame_;
+    Field<MotionRecord<real, D>> motion_;
+    Field<FluidRecord<real, D>> fluid_;
+    Field<WallRecord<real, D>> wall_;  // the first is that of particle fluid_count_
     Field<FlowSummary<D>> summary_;
     PhaseTimer phases_;
     std::size_t fluid_count_ = 0;

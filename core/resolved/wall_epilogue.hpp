@@ -11,11 +11,11 @@ namespace doseki {
 
 /// What the scheme makes of the sums of a wall particle: force, pressure and, on a rough bed or
 /// Voellmy's, the friction that fluid particles near it share.
-template <int D>
+template <class real, int D>
 class WallEpilogue {
 public:
     /// `dt`: since the evaluation before.
-    WallEpilogue(const ResolvedModel<D>& model, std::span<WallRecord<D>> records,
+    WallEpilogue(const ResolvedModel<D>& model, std::span<WallRecord<real, D>> records,
                  std::size_t first_wall, std::span<FlowSummary<D>> summaries,
                  ResolvedState<D>& state, double dt)
         : model_(model),
@@ -28,11 +28,11 @@ public:
     void operator()(std::size_t p, const WallAccumulators<double, D>& sums) const {
         if (p < first_wall_) return;  // a fluid particle in the first cluster of walls
         WallState<D>& wall = state_.wall;
-        WallRecord<D>& record = records_[p - first_wall_];
+        WallRecord<real, D>& record = records_[p - first_wall_];
         Vec<double, D> force = sums.force;
         const double before = wall.pressure[p];
         wall.pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
-        FlowSummary<D>& summary = summaries_[p / static_cast<std::size_t>(lanes<double>)];
+        FlowSummary<D>& summary = summaries_[p / static_cast<std::size_t>(lanes<real>)];
         if (wall.face[p] != Face::none) {
             const Vec<double, D> film = film_force(p, sums, before);
             force = force + film;
@@ -43,7 +43,7 @@ public:
         if (condition.has_friction()) {
             const Vec<double, D> drag =
                 condition.voellmy ? voellmy_drag(p, sums, condition) : bed_drag(p, sums, condition);
-            if (dot(drag, drag) > 0.0) record.traction = (-1.0 / sums.weight) * drag;
+            if (dot(drag, drag) > 0.0) record.traction = converted<Vec<real, D>>((-1.0 / sums.weight) * drag);
             force = force + drag;
             // What the fluid loses by friction and a bed that moves does not get.
             summary.power -= dot(drag, state_.velocity[p]);
@@ -59,6 +59,8 @@ private:
     /// like a wave. By the mean of its surroundings alone it would creep in, the more slowly the
     /// longer the steps are.
     static constexpr double film_inertia = 0.5;
+
+    double volume(std::size_t p) const { return records_[p - first_wall_].volume; }
 
     /// The film goes towards the pressure of the fluid and of the faces around it as they were a
     /// step `before`, Eq. (137). Air has none; where a face sees hardly anything, that is what is
@@ -105,7 +107,7 @@ private:
     /// Of the face of a body, that neither its own particles nor fluid particles take up.
     Vec<double, D> hidden_area(std::size_t p, const WallAccumulators<double, D>& sums) const {
         const Vec<double, D>& all = state_.wall.area[p];
-        const Vec<double, D> hidden = all - records_[p - first_wall_].volume * sums.area;
+        const Vec<double, D> hidden = all - volume(p) * sums.area;
         return dot(hidden, all) > 0.0 ? state_.wall.rows[p] * hidden : Vec<double, D>{};
     }
 
@@ -134,7 +136,7 @@ private:
                                 const WallCondition& wall) const {
         const Vec<double, D>& n = state_.wall.normal[p];
         Vec<double, D>& slip = state_.bed_slip[p];
-        const double area = records_[p - first_wall_].volume * dot(sums.area, n);
+        const double area = volume(p) * dot(sums.area, n);
         if (!(sums.weight > min_weight) || !(area > 0.0)) {
             state_.bed_load[p] = 0.0;
             return slip = {};
@@ -164,7 +166,7 @@ private:
     }
 
     const ResolvedModel<D>& model_;
-    std::span<WallRecord<D>> records_;
+    std::span<WallRecord<real, D>> records_;
     std::size_t first_wall_;
     std::span<FlowSummary<D>> summaries_;
     ResolvedState<D>& state_;

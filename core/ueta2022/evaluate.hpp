@@ -7,6 +7,7 @@
 #include "base/poison.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
+#include "ranks/common_frame.hpp"
 #include "ueta2022/force_terms.hpp"
 #include "ueta2022/interactions.hpp"
 #include "ueta2022/model.hpp"
@@ -45,17 +46,7 @@ void Ueta2022<D, real, Backend>::pack_motion(State& particles, const Halo<D>& ha
     const auto timing = phases_.measure(Phase::pack);
     const std::size_t n = particles.size();
     motion_.resize(n + halo.ghosts());
-    if constexpr (std::is_same_v<real, float>) {
-        std::array<double, 2 * D> far;  // -low, high
-        far.fill(-std::numeric_limits<double>::max());
-        for (const auto& x : particles.position)
-            for (int a = 0; a < D; ++a)
-                far[a] = max(far[a], -x[a]), far[D + a] = max(far[D + a], x[a]);
-        halo.ranks.largest(far);
-        Vec<double, D> low, high;
-        for (int a = 0; a < D; ++a) low[a] = -far[a], high[a] = far[D + a];
-        frame_ = CoordinateFrame<real, D>::covering(low, high);
-    }
+    frame_ = common_frame<real, D>(particles.position, halo.ranks);
     const double h0 = n > 0 ? particles.smoothing_length[0] : 0.0;
     const bool equal = Backend::reduce(n, true, std::logical_and{}, [&](std::size_t p) {
         MotionRecord<real, D>& record = motion_[p];

@@ -59,7 +59,7 @@ class Case:
     def lanes(self) -> int:
         """Particles that share one list."""
         lanes = load_core(self.isa).lanes
-        return 2 * lanes if self.precision == "float" and lanes > 1 else lanes
+        return 2 * lanes if self.precision == "mixed" and lanes > 1 else lanes
 
 
 def clocked(threads: int, run: Callable[[], None]) -> tuple[float, float]:

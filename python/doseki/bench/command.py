@@ -27,7 +27,7 @@ SIZES = (4_000, 10_000, 100_000, 1_000_000)
 QUICK_SIZES = (4_000, 10_000, 100_000)
 COMPARED_SIZE, QUICK_COMPARED_SIZE = 100_000, 10_000  # where instruction sets are compared
 SMALLEST = 1_000  # particles
-PRECISIONS = ("double", "float")
+PRECISIONS = ("double", "mixed")
 ROUNDS, QUICK_ROUNDS = 5, 3
 LIVES_PER_ROUND = 4  # of the lists, at most
 ROUND_SECONDS = 0.1  # at least, unless the lists' lives are up
@@ -214,8 +214,6 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
     flows = _chosen_flows(options, quick)
     scheme = (_words("--scheme", options["--scheme"], SCHEMES) or [UETA2022])[0]
     precisions = _words("--precision", options["--precision"], PRECISIONS) or list(PRECISIONS)
-    if scheme == RESOLVED:
-        precisions = ["double"]
     return Plan(
         scheme=scheme,
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],

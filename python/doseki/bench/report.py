@@ -22,7 +22,7 @@ LARGE, FLUME_SIZE = 100_000, 4_000
 LEAST_UPDATES = {UETA2022: {2: 3.0e6, 3: 0.9e6}, RESOLVED: {2: 5.0e6, 3: 1.5e6}}
 LEAST_BARE_FRACTION = 0.5
 LEAST_OVER_SCALAR = {"v4": 2.5, "v3": 1.8}
-LEAST_FLOAT_OVER_DOUBLE = 1.5
+LEAST_MIXED_OVER_DOUBLE = 1.5
 LEAST_TWO_THREADS, LEAST_TWO_THREADS_FLUME = 1.9, 1.6
 EXPONENT_TOLERANCE = 0.05
 GROWTH_FROM = 10_000  # particles
@@ -128,10 +128,10 @@ def _ratio_checks(rows: Sequence[Row], isa: str) -> Iterator[Check]:
         if isa in LEAST_OVER_SCALAR:
             bound = LEAST_OVER_SCALAR[isa]
             yield Check(f"{isa} over scalar, {_label(ours)}", _ratio(ours, other), bound)
-    for ours, other in _pairs_of_rows(rows, "precision", "float", "double"):
+    for ours, other in _pairs_of_rows(rows, "precision", "mixed", "double"):
         if ours["threads"] == 1 and ours["n"] >= LARGE:
-            bound = LEAST_FLOAT_OVER_DOUBLE
-            yield Check(f"float over double, {_label(ours)}", _ratio(ours, other), bound)
+            bound = LEAST_MIXED_OVER_DOUBLE
+            yield Check(f"mixed over double, {_label(ours)}", _ratio(ours, other), bound)
     for ours, other in _pairs_of_rows(rows, "threads", 2, 1):
         bound = LEAST_TWO_THREADS if ours["n"] >= LARGE else LEAST_TWO_THREADS_FLUME
         if ours["precision"] == "double" and (ours["n"] >= LARGE or ours["n"] == FLUME_SIZE):

@@ -63,7 +63,7 @@ def bench(
     ] = None,
     dims: Annotated[str | None, typer.Option(metavar="2,3", help="Dimensions.")] = None,
     precision: Annotated[
-        str | None, typer.Option(metavar="double,float", help="Of the pairs.")
+        str | None, typer.Option(metavar="double,mixed", help="Of the pairs.")
     ] = None,
     threads: Annotated[
         str | None, typer.Option(metavar="T,...", help="Threads.", show_default="1, 2, all")

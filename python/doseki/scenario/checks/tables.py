@@ -97,10 +97,6 @@ def _check_effective_stress(scenario: Scenario) -> None:
 
 def _check_resolved(scenario: Scenario) -> None:
     """What the resolved scheme needs or cannot do."""
-    if scenario.precision != "double":
-        raise scenario.where.error(
-            ("precision",), 'precision: the resolved scheme runs in "double"'
-        )
     if not scenario.model_fields_set & {"xi", "xi_height", "speed_max"}:
         raise scenario.where.error(
             ("scheme",),

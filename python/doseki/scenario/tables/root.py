@@ -19,6 +19,7 @@ from ..values.types import (
     NonNegative,
     Position,
     Positive,
+    Precision,
     Skin,
     Speed,
     Title,
@@ -86,8 +87,8 @@ class ScenarioTable(Table):
     speed_max: Speed | None = Field(
         None, description="highest speed expected, m/s: sound speed 10 times that; excludes xi"
     )
-    precision: Annotated[Literal["double", "float"], OF_UETA2022] = Field(
-        "double", description="of the pair arithmetic"
+    precision: Precision = Field(
+        "double", description="of the pair arithmetic; mixed: single, of a state in double"
     )
     gravity: Acceleration | None = Field(None, description="m/s2; excludes slope")
     slope: Angle | None = Field(None, ge=-90, le=90, description="degrees; excludes gravity")

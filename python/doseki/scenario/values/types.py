@@ -158,6 +158,11 @@ def _digest(value: str) -> str:
     return value
 
 
+def _precision(value: object) -> object:
+    """Files of version 0.1 call it float."""
+    return "mixed" if value == "float" else value
+
+
 def _entries(count: int) -> AfterValidator:
     def check(vector: list[Any]) -> list[Any]:
         if len(vector) != count:
@@ -197,6 +202,7 @@ Bound = Annotated[
     BeforeValidator(_bound),
     AfterValidator(_not_nan),
 ]
+Precision = Annotated[Literal["double", "mixed"], BeforeValidator(_precision)]
 MaterialName = Annotated[str, RefersTo("material")]
 BodyNames = Annotated[list[str], RefersTo("body"), Field(min_length=1)]
 GaugeName = Annotated[str, RefersTo("gauge")]
