@@ -62,6 +62,38 @@ DOSEKI_FN To converted(const From& from) {
     return to;
 }
 
+/// A member that takes the largest of what it is given; all others are sums.
+template <class T>
+struct Largest {
+    T value{};
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.value...);
+    }
+    DOSEKI_FN void take(const T& other) { value = max(value, other); }
+};
+
+struct AddMembers {
+    template <class Member>
+    DOSEKI_FN void operator()(Member& to, const Member& from) const {
+        if constexpr (HasMembers<Member>)
+            Member::members(*this, to, from);
+        else
+            to += from;
+    }
+    template <class T>
+    DOSEKI_FN void operator()(Largest<T>& to, const Largest<T>& from) const {
+        to.take(from.value);
+    }
+};
+
+/// Adds what another object of a packed struct has summed.
+template <class S>
+DOSEKI_FN void add_members(S& to, const S& from) {
+    AddMembers{}(to, from);
+}
+
 struct CountNumbers {
     std::size_t count = 0;
     template <class Number>

@@ -1,8 +1,10 @@
 #pragma once
-// Which records a pair term reads: one neighbour j in all lanes, or W particles i, one in each.
+// Which records a pair term reads: W particles i, one in each lane, or one neighbour j in all lanes;
+// where particles are taken in groups, those of a group in turn, or a neighbour for each turn.
 // take<Point>(records, rows) makes a Point of them, whatever its members are.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -27,8 +29,8 @@ DOSEKI_FN Point take(std::span<const Record> records, OneRow<T> row) {
 }
 
 #if !defined(__CUDACC__)
-/// W consecutive rows, one in each lane; lanes beyond the limits repeat the row there.
-template <class real>
+/// `period` consecutive rows, one in each lane and then again; beyond the limits, the row there.
+template <class real, int period = lanes<real>>
 struct LaneRows {
     using Number = Pack<real>;
     std::uint32_t first, lowest, highest, base = 0;
@@ -38,9 +40,56 @@ struct LaneRows {
     }
     LaneRows counted_from(std::uint32_t number) const { return {first, lowest, highest, number}; }
     std::uint32_t operator[](std::size_t lane) const {
-        return std::clamp(first + static_cast<std::uint32_t>(lane), lowest, highest) - base;
+        return std::clamp(first + static_cast<std::uint32_t>(lane % period), lowest, highest) - base;
     }
 };
+
+/// How many particles share the neighbours that are picked out for them, and how many of these
+/// neighbours are summed at once, side by side. Fewer particles have less in reach that is in reach
+/// of one alone; more neighbours at once take more loads.
+template <class real>
+inline constexpr int group_size = std::min(std::is_same_v<real, double> ? 4 : 8, lanes<real>);
+template <class real>
+inline constexpr int abreast = lanes<real> / group_size<real>;
+
+/// Number of the group of lanes that each lane is of.
+template <class real>
+Pack<real> lane_group() {
+    return Pack<real>([](int lane) { return static_cast<real>(lane / group_size<real>); });
+}
+
+/// Rows of several neighbours, each in one group of lanes.
+template <class real>
+struct RowsAbreast {
+    using Number = Pack<real>;
+    std::array<std::uint32_t, abreast<real>> j;
+
+    RowsAbreast counted_from(std::uint32_t first) const {
+        RowsAbreast rows;
+        for (std::size_t k = 0; k < j.size(); ++k) rows.j[k] = j[k] - first;
+        return rows;
+    }
+};
+
+struct FillGroups {
+    template <class Lanes, class First, class... Number>
+    DOSEKI_FN void operator()(Lanes& to, const First& first, const Number&... others) const {
+        using real = typename Lanes::value_type;
+        to = Lanes(first);
+        [[maybe_unused]] real group(0);
+        (..., (stdx::where(lane_group<real>() > group, to) = Lanes(others), ++group));
+    }
+};
+
+template <class Point, class Record, class real>
+DOSEKI_FN Point take(std::span<const Record> records, const RowsAbreast<real>& rows) {
+    Point point;
+    const FillGroups fill;
+    [&]<std::size_t... k>(std::index_sequence<k...>) {
+        for_each_number(fill, point, records[rows.j[k]]...);
+    }(std::make_index_sequence<static_cast<std::size_t>(abreast<real>)>{});
+    return point;
+}
 
 struct FillLanes {
     template <class Lanes, class... Number>
@@ -50,8 +99,8 @@ struct FillLanes {
     }
 };
 
-template <class Point, class Record, class real>
-Point take(std::span<const Record> records, const LaneRows<real>& rows) {
+template <class Point, class Record, class real, int period>
+Point take(std::span<const Record> records, const LaneRows<real, period>& rows) {
     Point point;
     const FillLanes fill;
     [&]<std::size_t... lane>(std::index_sequence<lane...>) {

@@ -36,8 +36,8 @@ struct FluidAccumulators {
     Sym<T, D> moment;
     T concentration{};  // sum of rest volumes times W
     T wall_share{};     // of walls in it
-    T max_surface{};    // of the neighbours' free-surface indicators
-    T at_body{};        // 1: one that moves is in reach
+    Largest<T> surface;  // of the neighbours' free-surface indicators
+    Largest<T> at_body;  // 1: one that moves is in reach
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
@@ -46,7 +46,7 @@ struct FluidAccumulators {
         f(self.pressure_gradient...), f(self.concentration_gradient...);
         f(self.surface_gradient...), f(self.corrected_gradient...), f(self.velocity_gradient...);
         f(self.moment...), f(self.concentration...), f(self.wall_share...);
-        f(self.max_surface...), f(self.at_body...);
+        f(self.surface...), f(self.at_body...);
     }
 };
 
@@ -234,7 +234,7 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
     const T surface = j.surface - i.surface;
     for (int a = 0; a < D; ++a) sums.surface_gradient[a] += surface * (VF * pair.r_ij[a]);
     sums.concentration += j.rest_volume * W;
-    sums.max_surface = max(sums.max_surface, select(F < T(0), j.surface, T(0)));
+    sums.surface.take(select(F < T(0), j.surface, T(0)));
 }
 
 /// What a wall particle w adds to a fluid particle i.
@@ -260,7 +260,7 @@ DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& cons
     sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(v_iw, v_iw));
     add_gradients(sums, pair.r_ij, VF, -contact.excess, contact.jump);
     sums.wall_share += w.volume * W;
-    sums.at_body = max(sums.at_body, select(F < T(0), w.bound, T(0)));
+    sums.at_body.take(select(F < T(0), w.bound, T(0)));
 }
 
 /// What a fluid particle j adds to a wall particle w. `pair` points from the fluid particle j

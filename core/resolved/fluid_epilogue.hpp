@@ -146,7 +146,7 @@ private:
         constexpr double min_determinant = 0.3;  // of the moment
         constexpr double max_excess = 0.5;
         const bool corrected =
-            std::max(at.sums.max_surface, state_.surface[at.p]) < FreeSurfaceIndicator::surface &&
+            std::max(at.sums.surface.value, state_.surface[at.p]) < FreeSurfaceIndicator::surface &&
             B(0, 0) > 0.0 && min_determinant * determinant(B) < 1.0;
         if (!corrected) return {};
         Sym<double, D> excess = symmetric_part(B - identity<double, D>());
@@ -180,7 +180,7 @@ private:
     /// surface slides past an edge of a wall.
     bool is_vented(const Summed& at) const {
         const Sums& sums = at.sums;
-        return sums.at_body > 0.0 || (sums.max_surface > FreeSurfaceIndicator::surface &&
+        return sums.at_body.value > 0.0 || (sums.surface.value > FreeSurfaceIndicator::surface &&
                                       edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
     }
 
@@ -206,7 +206,7 @@ private:
         const double c = model_.constants.c;
         Vec<double, D> velocity =
             shifting_velocity(sums.concentration_gradient, strain, state_.smoothing_length[at.p]);
-        if (sums.max_surface > FreeSurfaceIndicator::surface)
+        if (sums.surface.value > FreeSurfaceIndicator::surface)
             velocity = tangential(velocity, sums.surface_gradient);
         const double fastest = max_shift * c, speed = std::sqrt(dot(velocity, velocity));
         if (speed > fastest) velocity = (fastest / speed) * velocity;

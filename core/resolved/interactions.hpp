@@ -58,12 +58,12 @@ struct FluidTerm {
     DOSEKI_FN auto load(Rows rows) const {
         return records.fluid(rows.within(0, records.fluid_count - 1));
     }
-    template <class T>
-    DOSEKI_FN auto load_moving(OneRow<T> j) const {
+    template <class Rows>
+    DOSEKI_FN auto load_moving(Rows j) const {
         return records.fluid(j);
     }
-    template <class T>
-    DOSEKI_FN auto load_fixed(OneRow<T> j) const {
+    template <class Rows>
+    DOSEKI_FN auto load_fixed(Rows j) const {
         return records.wall(j);
     }
 
@@ -97,12 +97,12 @@ struct WallTerm {
     DOSEKI_FN auto load(Rows rows) const {
         return records.wall(rows.within(records.first_wall(), records.count - 1));
     }
-    template <class T>
-    DOSEKI_FN auto load_moving(OneRow<T> j) const {
+    template <class Rows>
+    DOSEKI_FN auto load_moving(Rows j) const {
         return records.fluid(j);
     }
-    template <class T>
-    DOSEKI_FN auto load_fixed(OneRow<T> j) const {
+    template <class Rows>
+    DOSEKI_FN auto load_fixed(Rows j) const {
         return records.wall(j);
     }
 
