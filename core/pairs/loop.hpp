@@ -65,8 +65,9 @@ void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const Clus
     constexpr std::uint32_t width = lanes<real>;
     const PairLoop<Term> loop{records, image_shifts(neighbours, frame),
                               static_cast<real>(frame.unit), term};
-    Array<GroupSums<Term>> grouped(KnowsItsReach<Term> ? static_cast<std::size_t>(thread_count()) : 0,
-                                   GroupSums<Term>(clusters));
+    Array<GroupSums<Term>> grouped(
+        KnowsItsReach<Term> ? static_cast<std::size_t>(thread_count()) : 0,
+        GroupSums<Term>(clusters));
     const std::size_t tasks = options.only ? options.only->size() : clusters.size();
     for_each_task(tasks, 16, [&](std::size_t thread, std::size_t task) {
         const std::size_t c = options.only ? (*options.only)[task] : task;

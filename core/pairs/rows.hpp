@@ -1,7 +1,7 @@
 #pragma once
-// Which records a pair term reads: W particles i, one in each lane, or one neighbour j in all lanes;
-// where particles are taken in groups, those of a group in turn, or a neighbour for each turn.
-// take<Point>(records, rows) makes a Point of them, whatever its members are.
+// Which records a pair term reads: W particles i, one in each lane, or one neighbour j in all
+// lanes; where particles are taken in groups, those of a group in turn, or a neighbour for each
+// turn. take<Point>(records, rows) makes a Point of them, whatever its members are.
 
 #include <algorithm>
 #include <array>
@@ -40,7 +40,8 @@ struct LaneRows {
     }
     LaneRows counted_from(std::uint32_t number) const { return {first, lowest, highest, number}; }
     std::uint32_t operator[](std::size_t lane) const {
-        return std::clamp(first + static_cast<std::uint32_t>(lane % period), lowest, highest) - base;
+        return std::clamp(first + static_cast<std::uint32_t>(lane % period), lowest, highest) -
+               base;
     }
 };
 

@@ -34,8 +34,8 @@ struct FluidAccumulators {
     Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
     Mat<T, D> velocity_gradient;
     Sym<T, D> moment;
-    T concentration{};  // sum of rest volumes times W
-    T wall_share{};     // of walls in it
+    T concentration{};   // sum of rest volumes times W
+    T wall_share{};      // of walls in it
     Largest<T> surface;  // of the neighbours' free-surface indicators
     Largest<T> at_body;  // 1: one that moves is in reach
 
@@ -201,7 +201,8 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
                          const T& inverse_support, const Pair<T, D>& pair,
                          const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
     const T half = number<T>(0.5), c = number<T>(constants.c);
-    const T F = number<T>(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+    const T F = number<T>(constants.gradient_scale) *
+                Kernel::gradient_factor(pair.r, inverse_support),
             VF = j.volume * F;
     const Vec<T, D> v_ij = i.v - j.v;
     const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
@@ -242,7 +243,8 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
                         const T& inverse_support, const Pair<T, D>& pair, const FluidPoint<T, D>& i,
                         const WallPoint<T, D>& w) {
-    const T F = number<T>(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+    const T F = number<T>(constants.gradient_scale) *
+                Kernel::gradient_factor(pair.r, inverse_support),
             VF = w.volume * F;
     const T W = Kernel::value(pair.r, inverse_support);
     const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
@@ -269,7 +271,8 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstants& constants,
                                  const T& inverse_support, const Pair<T, D>& pair,
                                  const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
-    const T F = number<T>(constants.gradient_scale) * Kernel::gradient_factor(pair.r, inverse_support),
+    const T F = number<T>(constants.gradient_scale) *
+                Kernel::gradient_factor(pair.r, inverse_support),
             W = Kernel::value(pair.r, inverse_support);
     const Vec<T, D> r_jw = T(-1) * pair.r_ij;
     const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);

@@ -22,8 +22,8 @@ Resolved<D, real, Backend>::Resolved(Array<Material> materials, const Options<D>
     : model_(std::make_shared<const ResolvedModel<D>>(std::move(materials), options)) {}
 
 template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt,
-                                    bool) {
+void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo,
+                                          double half_dt, bool) {
     fluid_count_ = lists.moving();
     if (steps_since_depths_ == 0 && model_->options.flow.turbulence == Turbulence::mixing_length)
         set_mixing_lengths(state, lists, halo.ranks);
@@ -42,8 +42,8 @@ void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo
 template <int D, class real, class Backend>
 FlowRecords<real, D> Resolved<D, real, Backend>::records(const State& state) const {
     const std::size_t count = state.size();
-    const auto inverse_support = static_cast<real>(
-        1.0 / (kernel_support() * (count > 0 ? state.smoothing_length[0] : 1.0)));
+    const auto inverse_support =
+        static_cast<real>(1.0 / (kernel_support() * (count > 0 ? state.smoothing_length[0] : 1.0)));
     return {motion_,
             fluid_,
             wall_,
@@ -55,7 +55,7 @@ FlowRecords<real, D> Resolved<D, real, Backend>::records(const State& state) con
 /// In columns of about four spacings, such that whole ones fill a period.
 template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::set_mixing_lengths(State& state, const Lists& lists,
-                                              const Ranks& ranks) {
+                                                    const Ranks& ranks) {
     const FlowOptions& flow = model_->options.flow;
     Vec<double, D - 1> width;
     for (int a = 0; a < D - 1; ++a) {
@@ -157,7 +157,7 @@ void Resolved<D, real, Backend>::pack_wall(const State& state, std::size_t p) {
 /// to and fro is no load on a contact. What never had a pressure takes the first it gets.
 template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::update_mean_pressure(State& state, std::size_t p, double pressure,
-                                                double dt) {
+                                                      double dt) {
     double& mean = state.mean_pressure[p];
     const double share =
         dt * model_->constants.c / (density_relaxation * state.smoothing_length[p]);
@@ -168,7 +168,8 @@ void Resolved<D, real, Backend>::update_mean_pressure(State& state, std::size_t 
 /// beds, come.
 template <int D, class real, class Backend>
 template <class Kernel>
-void Resolved<D, real, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt) {
+void Resolved<D, real, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo,
+                                         double dt) {
     const std::size_t first_ghost_wall = fluid_count_;
     halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
                 halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
@@ -200,23 +201,23 @@ bool Resolved<D, real, Backend>::has_wet_walls(const FlowRecords<real, D>& recor
 template <int D, class real, class Backend>
 template <class Kernel>
 void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
-                                     const FlowRecords<real, D>& records, double dt) {
+                                           const FlowRecords<real, D>& records, double dt) {
     const auto timing = phases_.measure(Phase::pass_1);
     if (!has_wet_walls(records)) {
         std::ranges::fill(state.wall.force.stored(), Vec<double, D>{});
         return;
     }
     const std::size_t first = fluid_count_ / Backend::width;
-    Backend::sum_pairs(lists,
-                       {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},
-                       WallTerm<Kernel, real, D>{records, model_->constants, model_->options.gravity},
-                       WallEpilogue<real, D>(*model_, wall_, fluid_count_, summary_, state, dt));
+    Backend::sum_pairs(
+        lists, {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},
+        WallTerm<Kernel, real, D>{records, model_->constants, model_->options.gravity},
+        WallEpilogue<real, D>(*model_, wall_, fluid_count_, summary_, state, dt));
 }
 
 template <int D, class real, class Backend>
 template <class Kernel>
 void Resolved<D, real, Backend>::sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
-                                     const FlowRecords<real, D>& records, double dt) {
+                                           const FlowRecords<real, D>& records, double dt) {
     const FluidTerm<Kernel, real, D> term{records, model_->constants};
     const FluidEpilogue<real, D> epilogue(*model_, fluid_, fluid_count_, summary_, state, dt);
     const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
@@ -245,8 +246,8 @@ void Resolved<D, real, Backend>::reduce_summaries() {
 }
 
 template <int D, class real, class Backend>
-ForceTerms<D> Resolved<D, real, Backend>::force_terms(const State& state, const Lists& lists, Halo<D>&,
-                                                std::int64_t p) const {
+ForceTerms<D> Resolved<D, real, Backend>::force_terms(const State& state, const Lists& lists,
+                                                      Halo<D>&, std::int64_t p) const {
     if (p < 0 || !state.is_free(static_cast<std::size_t>(p)) ||
         static_cast<std::size_t>(p) >= fluid_count_)
         return {};
@@ -256,7 +257,7 @@ ForceTerms<D> Resolved<D, real, Backend>::force_terms(const State& state, const 
 
 template <int D, class real, class Backend>
 ThermodynamicState<double> Resolved<D, real, Backend>::equation_of_state(const State& state,
-                                                                   std::size_t p) const {
+                                                                         std::size_t p) const {
     if (state.is_wall(p)) return {state.wall.pressure[p], model_->constants.c, 0.0};
     const Material& material = model_->material(state.tag[p]);
     const auto at = thermodynamic_state(*material.laws, state.density[p]);

@@ -40,7 +40,7 @@ public:
         summary(p).fault.note_density(at.fields.rho, rho0(p), p);
         summary(p).power +=
             at.fields.volume * (sums.power - dot(sums.traction, predicted_velocity(p)) +
-                                  state_.damping_pressure[p] * sums.density_rate);
+                                state_.damping_pressure[p] * sums.density_rate);
         summary(p).work.power += at.fields.volume * sums.made_power;
         if (!state_.is_free(p)) {
             state_.acceleration[p] = {}, state_.density_rate[p] = 0.0;
@@ -96,9 +96,7 @@ private:
 
     double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
     /// Without what damps sound.
-    double pressure(const Summed& at) const {
-        return at.fields.p - state_.damping_pressure[at.p];
-    }
+    double pressure(const Summed& at) const { return at.fields.p - state_.damping_pressure[at.p]; }
     /// That the sums have seen; `state_` has the acceleration of the evaluation before.
     Vec<double, D> predicted_velocity(std::size_t p) const {
         return state_.velocity[p] + (0.5 * dt_) * state_.acceleration[p];
@@ -136,8 +134,8 @@ private:
         constexpr double enough = 0.05;  // of the sum on a lattice; one neighbour adds 0.07 or more
         const double own =
             at.fields.rest_volume / model_.spacing_power[D] * model_.own_concentration;
-        return std::clamp((at.sums.concentration - own) / (enough * model_.lattice_concentration), 0.0,
-                          1.0);
+        return std::clamp((at.sums.concentration - own) / (enough * model_.lattice_concentration),
+                          0.0, 1.0);
     }
 
     /// None near a free surface, where there is little pressure and the inverse is large. Bounded,
@@ -181,7 +179,7 @@ private:
     bool is_vented(const Summed& at) const {
         const Sums& sums = at.sums;
         return sums.at_body.value > 0.0 || (sums.surface.value > FreeSurfaceIndicator::surface &&
-                                      edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
+                                            edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
     }
 
     /// What shifting and the relaxation of density give to energies of compression and height [W].
@@ -220,7 +218,8 @@ private:
     void relax_density(const Summed& at, double normalised_density, double strain,
                        Rates& rates) const {
         constexpr double per_strain = 10.0;
-        const double rho = at.fields.rho, sound = model_.constants.c / state_.smoothing_length[at.p];
+        const double rho = at.fields.rho,
+                     sound = model_.constants.c / state_.smoothing_length[at.p];
         const double rate = std::clamp(per_strain * strain, sound / density_relaxation_at_rest,
                                        sound / density_relaxation);
         rates.density += rate * (normalised_density * rho0(at.p) - rho);

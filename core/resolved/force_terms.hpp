@@ -39,7 +39,8 @@ struct FluidPass {
     /// exchange among fluids, and what walls do.
     template <class Kernel>
     ForceTerms<D> pair_forces(std::size_t p) const {
-        Array<FluidRecord<real, D>> changed(records.fluid_fields.begin(), records.fluid_fields.end());
+        Array<FluidRecord<real, D>> changed(records.fluid_fields.begin(),
+                                            records.fluid_fields.end());
         const auto record = converted<FluidFields<double, D>>(records.fluid_fields[p]);
         const auto force = [&](const FluidAccumulators<double, D>& sums) {
             return (1.0 / record.rho) * (pressure_force(sums, record) + 2.0 * sums.force);
@@ -81,8 +82,8 @@ ForceTerms<D> force_terms(const FluidPass<D, real, Backend>& pass, const Resolve
 
     const auto record = converted<FluidFields<double, D>>(pass.records.fluid_fields[p]);
     const auto limits =
-        FlowTimestep::of(options, record, state.smoothing_length[p],
-                         std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), pass.model.constants.c);
+        FlowTimestep::of(options, record, state.smoothing_length[p], std::sqrt(dot(v, v)),
+                         std::sqrt(dot(a, a)), pass.model.constants.c);
     terms.timestep = {{"the sound speed", limits.acoustic},
                       {"the acceleration", limits.forced},
                       {"the viscosity", limits.viscous}};

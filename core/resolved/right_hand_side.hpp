@@ -106,10 +106,11 @@ private:
     template <class Kernel>
     void sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
-    void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records, double dt);
-    template <class Kernel>
-    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo, const FlowRecords<real, D>& records,
+    void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records,
                    double dt);
+    template <class Kernel>
+    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
+                   const FlowRecords<real, D>& records, double dt);
     bool has_wet_walls(const FlowRecords<real, D>& records) const;
     void reduce_summaries();
 

@@ -27,8 +27,8 @@ struct FlowTimestep {
 
     /// Of a fluid particle: speed and size of its acceleration, sound speed c at rest.
     template <int D>
-    static FlowTimestep of(const Options<D>& options, const FluidFields<double, D>& record, double h,
-                           double speed, double acceleration, double c) {
+    static FlowTimestep of(const Options<D>& options, const FluidFields<double, D>& record,
+                           double h, double speed, double acceleration, double c) {
         return {options.cflnumber * h / (c * row_norm(record.correction) + speed),
                 force_timestep(h, acceleration, options.cfl_force),
                 0.125 * h * h * record.rho / std::max(record.mu, 1e-300)};

@@ -43,7 +43,8 @@ public:
         if (condition.has_friction()) {
             const Vec<double, D> drag =
                 condition.voellmy ? voellmy_drag(p, sums, condition) : bed_drag(p, sums, condition);
-            if (dot(drag, drag) > 0.0) record.traction = converted<Vec<real, D>>((-1.0 / sums.weight) * drag);
+            if (dot(drag, drag) > 0.0)
+                record.traction = converted<Vec<real, D>>((-1.0 / sums.weight) * drag);
             force = force + drag;
             // What the fluid loses by friction and a bed that moves does not get.
             summary.power -= dot(drag, state_.velocity[p]);

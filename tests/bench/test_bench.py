@@ -32,7 +32,7 @@ def short_rounds(monkeypatch):
 def test_json_is_a_list_of_rows(capsys):
     main_ends([*TINY, "--dims", "2", "--json"])
     rows = json.loads(capsys.readouterr().out)
-    assert {(row["precision"], row["n"]) for row in rows} == {("double", 1000), ("float", 1000)}
+    assert {(row["precision"], row["n"]) for row in rows} == {("double", 1000), ("mixed", 1000)}
     for row in rows:
         assert row.keys() >= KEYS
         assert sum(row["phases"].values()) == pytest.approx(1)
@@ -74,7 +74,7 @@ def main_ends(arguments):
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("precision", ["double", "float"])
+@pytest.mark.parametrize("precision", ["double", "mixed"])
 def test_pairs_are_those_within_support(dim, precision):
     isa = available_instruction_sets()[0]
     simulation = make_simulation(Case(dim, 1000, precision, 1, isa))
@@ -122,7 +122,7 @@ def test_targets_compare_rows_that_differ_in_one_thing():
     rows = [
         made_up_row(n=10**5),
         made_up_row(n=10**5, isa="scalar", updates_per_s=2.5e5),
-        made_up_row(n=10**5, precision="float", updates_per_s=2e6),
+        made_up_row(n=10**5, precision="mixed", updates_per_s=2e6),
         made_up_row(n=10**5, threads=2, updates_per_s=1.5e6),
     ]
     values = {check.name.split(",")[0]: check.value for check in bench_report.checks(rows)}

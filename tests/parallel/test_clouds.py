@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 # Sums of some hundred terms in another order; a float has 6e-8.
-ROUNDING = {"double": 1e-12, "float": 1e-5}
+ROUNDING = {"double": 1e-12, "mixed": 1e-5}
 
 
 def assert_same(found, ranks):

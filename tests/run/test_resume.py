@@ -51,10 +51,10 @@ def test_stop_and_resume(channel_file, uninterrupted, tmp_path):
 @pytest.mark.parametrize(
     ("dim", "precision", "h_mode"),
     [
-        (2, "float", "constant"),
+        (2, "mixed", "constant"),
         (2, "double", "eq10"),
         (3, "double", "constant"),
-        (3, "float", "eq10"),
+        (3, "mixed", "eq10"),
     ],
 )
 def test_every_mode_resumes_to_the_same_bits(tmp_path, dim, precision, h_mode):

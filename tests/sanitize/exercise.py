@@ -208,9 +208,9 @@ def exercise(scenario, steps, more=5):
 
 MODES = (
     (2, "double", "eq10"),
-    (2, "float", "constant"),
+    (2, "mixed", "constant"),
     (3, "double", "constant"),
-    (3, "float", "eq10"),
+    (3, "mixed", "eq10"),
 )
 STEPS = {2: 40, 3: 12}  # by dimension
 threads, size, site = int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3])

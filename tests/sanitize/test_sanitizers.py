@@ -164,7 +164,7 @@ print(digest.hexdigest())
         ["film,flume,hang", "precision=float"],
         ["film,dambreak", "scheme=resolved", "speed_max=3"],
     ],
-    ids=["double", "float", "resolved"],
+    ids=["double", "mixed", "resolved"],
 )
 def test_poisoned_records_survive_no_pass_and_change_no_bit(arguments):
     """NaN in every output before each pass: all of it is overwritten before it is read."""

@@ -110,7 +110,7 @@ def test_walls_face_as_they_have_turned(tank, later):
 
 @pytest.mark.parametrize(
     ("dim", "precision"),
-    [(2, "double"), (2, "float"), pytest.param(3, "double", marks=pytest.mark.minutes)],
+    [(2, "double"), (2, "mixed"), pytest.param(3, "double", marks=pytest.mark.minutes)],
 )
 def test_strength_inflows_and_outflows_carry_over(tmp_path, dim, precision):
     text = channel_text(dim, precision)

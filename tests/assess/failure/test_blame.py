@@ -28,7 +28,7 @@ SCHEMES = {
 }
 MODES = [
     ("ueta2022", 'h_mode = "eq10"'),
-    ("ueta2022", 'precision = "float"'),
+    ("ueta2022", 'precision = "mixed"'),
     ("ueta2022", ""),
     ("resolved", ""),
 ]
@@ -43,7 +43,7 @@ BROKEN = {
 IDS = [0, 35, 36, 77]  # at a corner, inside, its neighbour in the same cluster, at a side
 
 
-@pytest.fixture(params=MODES, ids=["grown", "float", "double", "resolved"])
+@pytest.fixture(params=MODES, ids=["grown", "mixed", "double", "resolved"])
 def block(request, tmp_path, dim):
     """A resting block of water, some 100 particles, and its scenario and bodies."""
     scheme, more = request.param

@@ -20,7 +20,7 @@ def total(terms):
     return sum(terms["acceleration"].values())
 
 
-@pytest.mark.parametrize("precision", ["double", "float"])
+@pytest.mark.parametrize("precision", ["double", "mixed"])
 @pytest.mark.parametrize("name", ["film", "hang"])
 def test_terms_add_up_to_the_acceleration(name, precision):
     simulation = started(load_scenario(name, ["skin=0", f"precision={precision}"]), 300)

@@ -36,7 +36,7 @@ def assert_close(state, expected, tolerance):
         assert error < tolerance, f"{field}: {error:.2g}"
 
 
-@pytest.mark.parametrize("precision", ["double", "float"])
+@pytest.mark.parametrize("precision", ["double", "mixed"])
 def test_threads_change_no_bit(core, simulate, dim, precision):
     across = {2: 20, 3: 8}[dim]
     states = []
@@ -76,7 +76,7 @@ def test_instruction_set_changes_only_rounding(any_core, dim):
 def test_single_precision_is_close_to_double(simulate, dim):
     """Pair sums in float: 1e-7 a step, a few parts in 1e4 of the stress after a collision."""
     expected = collision(simulate, dim).state()
-    assert_close(collision(simulate, dim, precision="float").state(), expected, 1e-3)
+    assert_close(collision(simulate, dim, precision="mixed").state(), expected, 1e-3)
 
 
 def test_single_precision_does_not_depend_on_the_place(simulate, dim):
@@ -84,7 +84,7 @@ def test_single_precision_does_not_depend_on_the_place(simulate, dim):
     grains = colliding_grains(dim)
     states = [
         run_to(
-            simulate(grains.position + place, grains.velocity, alpha=1.0, precision="float"), 1e-3
+            simulate(grains.position + place, grains.velocity, alpha=1.0, precision="mixed"), 1e-3
         ).state()
         for place in (0.0, 1024.0)
     ]

@@ -14,7 +14,7 @@ SETTINGS = ["diameter=0.004", "flume_length=3.5", "load_start=1.5", "strength=tr
 
 
 @pytest.mark.minutes
-@pytest.mark.parametrize("precision", ["double", "float"])
+@pytest.mark.parametrize("precision", ["double", "mixed"])
 def test_threads_change_no_bit_of_the_flume(core, precision):
     scenario = load_scenario("flume", [*SETTINGS, f"precision={precision}"])
     states = []

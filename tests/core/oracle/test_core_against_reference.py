@@ -136,8 +136,8 @@ def test_rates_in_double(isa: str, dim: int, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", STEPPED)
-def test_rates_in_float(isa: str, dim: int, name: str) -> None:
-    compare_rates(make_core(isa, dim, name, "float"), reference_rates(dim, name), 2e-5)
+def test_rates_in_mixed_precision(isa: str, dim: int, name: str) -> None:
+    compare_rates(make_core(isa, dim, name, "mixed"), reference_rates(dim, name), 2e-5)
 
 
 @pytest.mark.parametrize("name", STEPPED)

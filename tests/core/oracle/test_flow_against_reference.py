@@ -26,7 +26,7 @@ ACROSS = {2: 14, 3: 8}  # particles along each side of the unit box
 STICK = {"no_slip": True, "ks": 0.0}
 SLIP = {"no_slip": False, "ks": 0.0}
 ROUGH = {"no_slip": False, "ks": 0.02}
-TOLERANCE = 1e-10
+TOLERANCE, MIXED_TOLERANCE = 1e-10, 2e-5
 SLURRY = {
     "rheology": "herschel_bulkley", "yield_stress": 500.0, "consistency": 40.0, "flow_index": 0.6,
     "regularisation": 0.5, "viscosity_max": 90.0,
@@ -141,7 +141,9 @@ def reference(dim: int, name: str) -> FlowReference:
     return FlowReference(cloud(dim, case), case.materials, GRAVITY[-dim:], options).start()
 
 
-def core_simulation(isa: str, dim: int, name: str, skin: float = 0.05) -> Any:
+def core_simulation(
+    isa: str, dim: int, name: str, skin: float = 0.05, precision: str = "double"
+) -> Any:
     """The core's simulation of a case, started."""
     case, particles = CASES[name], vars(cloud(dim, CASES[name]))
     ours = asdict(reference(dim, name).options)
@@ -156,7 +158,7 @@ def core_simulation(isa: str, dim: int, name: str, skin: float = 0.05) -> Any:
     options |= {"domain_min": [0.0] * dim, "domain_max": [1.0] * dim}
     options["periodic"] = [axis in case.periodic for axis in "xyz"[:dim]]
     materials = [core_table(**m, eos=ours["eos"]) for m in case.materials]
-    simulation = load_core(isa).Simulation("resolved", dim, "double", materials, options)
+    simulation = load_core(isa).Simulation("resolved", dim, precision, materials, options)
     surface = {key: particles.pop(key) for key in ("normal", "depth", "curvature")}
     normals, depths = particles.pop("edge_normals"), particles.pop("edge_depths")
     simulation.add_particles(**particles)
@@ -166,9 +168,11 @@ def core_simulation(isa: str, dim: int, name: str, skin: float = 0.05) -> Any:
     return simulation
 
 
-def assert_close(actual: np.ndarray, expected: np.ndarray, name: str) -> None:
-    """Equal up to TOLERANCE of the largest value."""
-    atol = TOLERANCE * np.abs(expected).max()
+def assert_close(
+    actual: np.ndarray, expected: np.ndarray, name: str, tolerance: float = TOLERANCE
+) -> None:
+    """Equal up to a tolerance of the largest value."""
+    atol = tolerance * np.abs(expected).max()
     np.testing.assert_allclose(actual, expected, rtol=0, atol=atol, err_msg=name)
 
 
@@ -184,20 +188,34 @@ def dim(request: pytest.FixtureRequest) -> int:
     return request.param
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_rates(isa: str, dim: int, name: str) -> None:
-    ours, core = reference(dim, name), core_simulation(isa, dim, name)
+def compare_rates(core: Any, ours: FlowReference, tolerance: float) -> None:
+    """Asserts equal rates, gradients, pressures and time step."""
     rates, state, fluid = core.rates(), core.state(), ours.fluid
-    assert_close(rates["acceleration"][fluid], ours.acceleration, "acceleration")
-    assert_close(rates["density_rate"][fluid], ours.density_rate, "density rate")
-    assert rates["timestep"] == pytest.approx(ours.timestep, rel=TOLERANCE)
-    assert rates["av_power"] == pytest.approx(ours.power, rel=TOLERANCE)
-    assert_close(state["velocity_gradient"][fluid], ours.L, "velocity gradient")
-    assert_close(state["surface"][fluid], ours.surface, "surface")
-    assert_close(state["force"][~fluid], ours.wall_force, "force on walls")
-    assert_close(state["pressure"][~fluid], ours.wall_pressure, "pressure of walls")
+    expected = (
+        (rates["acceleration"][fluid], ours.acceleration, "acceleration"),
+        (rates["density_rate"][fluid], ours.density_rate, "density rate"),
+        (state["velocity_gradient"][fluid], ours.L, "velocity gradient"),
+        (state["surface"][fluid], ours.surface, "surface"),
+        (state["force"][~fluid], ours.wall_force, "force on walls"),
+        (state["pressure"][~fluid], ours.wall_pressure, "pressure of walls"),
+    )
+    for actual, values, name in expected:
+        assert_close(actual, values, name, tolerance)
+    assert rates["timestep"] == pytest.approx(ours.timestep, rel=tolerance)
+    assert rates["av_power"] == pytest.approx(ours.power, rel=tolerance)
     assert (rates["acceleration"][~fluid] == 0).all()
     assert (rates["density_rate"][~fluid] == 0).all()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_rates(isa: str, dim: int, name: str) -> None:
+    compare_rates(core_simulation(isa, dim, name), reference(dim, name), TOLERANCE)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_rates_in_mixed_precision(isa: str, dim: int, name: str) -> None:
+    core = core_simulation(isa, dim, name, precision="mixed")
+    compare_rates(core, reference(dim, name), MIXED_TOLERANCE)
 
 
 @pytest.mark.parametrize("skin", [0.0, 0.6])

@@ -89,7 +89,7 @@ def compare(dim: int, precision: str, periodic: bool, h_ratio: float, h_mode: st
 if __name__ == "__main__":
     os.environ["DOSEKI_DECOMPOSITION"] = sys.argv[1]
     load_core().set_threads(1)
-    every = product((2, 3), ("double", "float"), (False, True), (1.0, 3.0), ("constant",))
+    every = product((2, 3), ("double", "mixed"), (False, True), (1.0, 3.0), ("constant",))
     found = [compare(*case) for case in every]
     found += [compare(dim, "double", False, 1.0, "eq10") for dim in (2, 3)]
     if COMM.rank == 0:

@@ -26,7 +26,7 @@ ROOT = {
     "relax": ["0.01"],
     "uplift": ["false"],
     "speed_max": ["8"],
-    "precision": ["float"],
+    "precision": ["mixed"],
     "gravity": ["[1, {zeros}-5]"],
     "slope": ["10"],
     "g": ["5 with slope=10", "5 with gravity=[0, {zeros}0]; xi_height=0.3"],
