@@ -12,7 +12,7 @@ from doseki.cli.main import main
 from doseki.scenario.load import load_scenario
 
 SMALL = Flow("small", "dambreak", ("scheme=resolved", "dp== column_height/12"), 2e-3, 2e-3)
-NO_OPTIONS = dict.fromkeys((*bench.OF_BLOCK, "--threads", "--flows"))
+NO_OPTIONS = dict.fromkeys((*bench.OF_BLOCK, "--precision", "--threads", "--flows"))
 
 
 def bench_ends(*options: str) -> int:
@@ -29,7 +29,9 @@ def _small(monkeypatch):
 
 @pytest.mark.usefixtures("_small")
 def test_rows_of_a_flow(capsys):
-    assert bench_ends("--flows", "small", "--threads", "1,2", "--json") == 0
+    assert (
+        bench_ends("--flows", "small", "--threads", "1,2", "--precision", "double", "--json") == 0
+    )
     alone, both = json.loads(capsys.readouterr().out)
     assert (alone["threads"], both["threads"]) == (1, 2)
     assert alone["efficiency"] == pytest.approx(1)
@@ -43,9 +45,19 @@ def test_rows_of_a_flow(capsys):
 
 
 @pytest.mark.usefixtures("_small")
+def test_precisions_take_turns(capsys):
+    assert bench_ends("--flows", "small", "--threads", "1", "--json") == 0
+    double, mixed = json.loads(capsys.readouterr().out)
+    assert (double["precision"], mixed["precision"]) == ("double", "mixed")
+    assert double["efficiency"] == mixed["efficiency"] == pytest.approx(1)
+    assert mixed["bytes_per_particle"] < 0.9 * double["bytes_per_particle"]
+
+
+@pytest.mark.usefixtures("_small")
 def test_tables_of_a_flow(capsys):
-    assert bench_ends("--flows", "small", "--threads", "1") == 0
+    assert bench_ends("--flows", "small", "--threads", "1", "--precision", "mixed") == 0
     text = capsys.readouterr().out
+    assert "| mixed |" in " ".join(text.split())
     assert "| flow s/s |" in text
     assert "list_build" in text
     assert "M pairs/s/core" not in text, "the block was not asked for"
@@ -64,6 +76,7 @@ def test_flows_follow_the_block_unless_something_is_chosen():
     assert list(bench.make_plan(NO_OPTIONS, quick=False).flows) == list(FLOWS)
     assert not bench.make_plan(NO_OPTIONS, quick=True).flows
     assert not bench.make_plan(NO_OPTIONS | {"--sizes": "1e4"}, quick=False).flows
+    assert not bench.make_plan(NO_OPTIONS | {"--precision": "mixed"}, quick=False).flows
     plan = bench.make_plan(NO_OPTIONS | {"--flows": "flume,tumbler"}, quick=False)
     assert (list(plan.flows), plan.block) == (["flume", "tumbler"], False)
     assert list(bench.make_plan(NO_OPTIONS | {"--flows": "all"}, quick=False).flows) == list(FLOWS)

@@ -21,7 +21,7 @@ WALL = ROCK.replace("min = [0, 0]", "min = [0, -0.5]").replace("[1, 0.5]", "[1, 
     ("top", "tables", "parts"),
     [
         (RESOLVED, BLOCK, ["line 5", "needs the highest speed", "speed_max (m/s)", "xi"]),
-        (FAST + '\nprecision = "float"', BLOCK, ["line 7", "precision", 'runs in "double"']),
+        (FAST + '\nprecision = "single"', BLOCK, ["precision = 'single'", "'double'", "'mixed'"]),
         (
             FAST,
             BLOCK + ROCK + "jitter = 0.1\n",

@@ -15,7 +15,7 @@ from typing import Any
 
 from ..compiled import available_instruction_sets, load_core
 from ..errors import ResourceError, UserError
-from ..scenario.schemes import RESOLVED, UETA2022
+from ..scenario.schemes import UETA2022
 from ..solver.protocol import CoreSimulation
 from ..util.cores import allowed_cores, shared_cores
 from ..version import version
@@ -32,7 +32,7 @@ ROUNDS, QUICK_ROUNDS = 5, 3
 LIVES_PER_ROUND = 4  # of the lists, at most
 ROUND_SECONDS = 0.1  # at least, unless the lists' lives are up
 BARE_SECONDS = 0.05
-OF_BLOCK = ("--sizes", "--dims", "--precision", "--isa", "--scheme")
+OF_BLOCK = ("--sizes", "--dims", "--isa", "--scheme")
 
 Row = dict[str, Any]
 
@@ -229,10 +229,11 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
 
 def _chosen_flows(options: Mapping[str, str | None], quick: bool) -> list[str]:
     """All of them beside the block, unless options choose something of either."""
-    of_block = [name for name in OF_BLOCK if options[name] is not None]
     text = options["--flows"]
     if text is None:
-        return [] if quick or of_block else list(FLOWS)
+        chosen = [*OF_BLOCK, "--precision"]
+        return [] if quick or any(options[name] is not None for name in chosen) else list(FLOWS)
+    of_block = [name for name in OF_BLOCK if options[name] is not None]
     if quick or of_block:
         option = "--quick" if quick else of_block[0]
         raise UserError(f"{option} goes with the block of particles, not with --flows")
@@ -273,7 +274,7 @@ def bench_command(plan: Plan, as_json: bool, history: Path | None) -> None:
             f"doseki bench: {group[0]['dim']}-D, {group[0]['n']} particles timed", file=sys.stderr
         )
     flows: list[Row] = []
-    for group in time_flows(plan.flows, plan.threads or default_threads()):
+    for group in time_flows(plan.flows, plan.precisions, plan.threads or default_threads()):
         flows += group
         print(f"doseki bench: {group[0]['flow']} timed", file=sys.stderr)
     if as_json:

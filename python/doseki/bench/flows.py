@@ -56,8 +56,10 @@ def run_until(simulation: CoreSimulation, instant: float) -> None:
 
 @dataclass
 class Clocked:
-    """What has been measured of a flow on some threads."""
+    """What has been measured of a flow in some precision on some threads."""
 
+    simulation: CoreSimulation
+    precision: str
     threads: int
     flow_rates: list[float] = field(default_factory=list)  # s of flow per s
     core_shares: list[float] = field(default_factory=list)  # processor time / (time x threads)
@@ -68,8 +70,9 @@ class Clocked:
     updates: int = 0
     flow_time: float = 0.0
 
-    def run_window(self, simulation: CoreSimulation, window: float) -> None:
+    def run_window(self, window: float) -> None:
         """Adds one measurement."""
+        simulation = self.simulation
         load_core().set_threads(self.threads)
         steps, rebuilds, updates = simulation.steps, simulation.rebuilds, simulation.updates
         start = simulation.time
@@ -86,11 +89,13 @@ class Clocked:
         self.rebuilds += simulation.rebuilds - rebuilds
         self.updates += simulation.updates - updates
 
-    def row(self, flow: Flow, simulation: CoreSimulation, alone: float | None) -> Row:
+    def row(self, flow: Flow, alone: float | None) -> Row:
         """The result; `alone` is the rate of one thread, where it was measured."""
+        simulation = self.simulation
         rate, total = median(self.flow_rates), sum(self.phases.values())
         return {
             "flow": flow.name,
+            "precision": self.precision,
             "n": len(simulation),
             "threads": self.threads,
             "flow_seconds_per_second": rate,
@@ -106,36 +111,51 @@ class Clocked:
         }
 
 
-def developed(flow: Flow, threads: int) -> CoreSimulation:
+def developed(flow: Flow, precision: str, threads: int) -> CoreSimulation:
     """Its simulation, run until it is timed."""
     load_core().set_threads(threads)
-    simulation, _names = build_simulation(load_scenario(flow.scenario, flow.settings))
+    settings = (*flow.settings, f"precision={precision}")
+    simulation, _names = build_simulation(load_scenario(flow.scenario, settings))
     run_until(simulation, flow.developed)
     return simulation
 
 
-def time_flow(flow: Flow, threads: Sequence[int]) -> list[Row]:
-    """One row for each number of threads. They take turns, so that all see the same flow and what
-    disturbs the machine disturbs them alike.
+def time_flow(flow: Flow, precisions: Sequence[str], threads: Sequence[int]) -> list[Row]:
+    """One row for each precision and number of threads. They take turns, so that all see the same
+    flow and what disturbs the machine disturbs them alike.
     """
-    simulation = developed(flow, max(threads))
-    clocks = [Clocked(count) for count in threads]
+    clocks: list[Clocked] = []
+    for precision in precisions:
+        simulation = developed(flow, precision, max(threads))
+        clocks += [Clocked(simulation, precision, count) for count in threads]
     for _ in range(ROUNDS):
         for clock in clocks:
-            clock.run_window(simulation, flow.window)
-    alone = next((median(clock.flow_rates) for clock in clocks if clock.threads == 1), None)
-    return [clock.row(flow, simulation, alone) for clock in clocks]
+            clock.run_window(flow.window)
+    alone = {clock.precision: median(clock.flow_rates) for clock in clocks if clock.threads == 1}
+    return [clock.row(flow, alone.get(clock.precision)) for clock in clocks]
 
 
-def time_flows(names: Sequence[str], threads: Sequence[int]) -> Iterator[list[Row]]:
+def time_flows(
+    names: Sequence[str], precisions: Sequence[str], threads: Sequence[int]
+) -> Iterator[list[Row]]:
     """The rows of one flow after another."""
     for name in names:
-        yield time_flow(FLOWS[name], threads)
+        yield time_flow(FLOWS[name], precisions, threads)
 
 
 def flow_table(rows: Sequence[Row]) -> str:
     """How many seconds of flow a second brings."""
-    header = ["flow", "N", "threads", "flow s/s", "+-", "cores had", "efficiency", "M updates/s"]
+    header = [
+        "flow",
+        "N",
+        "precision",
+        "threads",
+        "flow s/s",
+        "+-",
+        "cores had",
+        "efficiency",
+        "M updates/s",
+    ]
     header += ["step, us", "steps per list", "skin", "bytes/particle"]
     return markdown_table(
         header,
@@ -143,6 +163,7 @@ def flow_table(rows: Sequence[Row]) -> str:
             [
                 row["flow"],
                 str(row["n"]),
+                row["precision"],
                 str(row["threads"]),
                 f"{row['flow_seconds_per_second']:.3g}",
                 f"{50 * row['spread']:.0f} %",
@@ -163,10 +184,15 @@ def flow_phase_table(rows: Sequence[Row]) -> str:
     """Share of each phase in the time of a step, %."""
     phases = list(rows[0]["phases"])
     lines = [
-        [row["flow"], str(row["threads"]), *(f"{100 * row['phases'][p]:.1f}" for p in phases)]
+        [
+            row["flow"],
+            row["precision"],
+            str(row["threads"]),
+            *(f"{100 * row['phases'][p]:.1f}" for p in phases),
+        ]
         for row in rows
     ]
-    return markdown_table(["flow", "threads", *phases], lines)
+    return markdown_table(["flow", "precision", "threads", *phases], lines)
 
 
 def print_flows(rows: Sequence[Row]) -> None:

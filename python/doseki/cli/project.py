@@ -13,6 +13,7 @@ from ..errors import UserError
 from .options import Threads, free_directory
 
 Tier = StrEnum("Tier", ["coarse", "full"])
+Precision = StrEnum("Precision", ["double", "mixed"])
 
 
 class Dimensions(StrEnum):
@@ -128,6 +129,10 @@ def validate(
         ),
     ] = None,
     threads: Threads = None,
+    precision: Annotated[
+        Precision | None,
+        typer.Option(help="Of the pair arithmetic of all cases.", show_default="the scenarios'"),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
     only_list: Annotated[bool, typer.Option("--list", help="List the cases and stop.")] = False,
 ) -> None:
@@ -143,11 +148,12 @@ def validate(
             typer.echo(f"{case.name:28} {case.title}")
         return
     directory = output or free_directory("validation")
+    how = {"tier": tier.value} | ({"precision": precision.value} if precision else {})
     results = validate_cases(
-        cases, tier.value, directory, threads, lambda text: typer.echo(text, err=True)
+        cases, how, directory, threads, lambda text: typer.echo(text, err=True)
     )
     if as_json:
-        typer.echo(json.dumps(report.report_table(results, tier.value)))
+        typer.echo(json.dumps(report.report_table(results, how)))
     else:
         typer.echo(report.table_text(results))
         for line in report.remarks(results):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from ..solver.build import load_core
@@ -11,16 +11,21 @@ from .case import Case
 from .judging import Result, validate_case
 from .picture import draw_result
 from .report import write_report
+from .running import in_precision
 
 
 def validate(
     cases: Sequence[Case],
-    tier: str,
+    how: Mapping[str, str],
     directory: Path,
     threads: int | None = None,
     tell: Callable[[str], None] = lambda _: None,
 ) -> list[Result]:
-    """Run the cases one after another; the report is whole after each of them."""
+    """Run the cases one after another; the report is whole after each of them.
+
+    `how`: what is asked of all of them, the `tier` and, where it is not that of the scenarios, the
+    `precision`.
+    """
     with clear_errors(directory):
         directory.mkdir(parents=True, exist_ok=True)
     core = load_core()
@@ -29,13 +34,14 @@ def validate(
     results, pictures = [], {}
     try:
         for case in cases:
-            result = validate_case(case, tier, tell)
+            with in_precision(how.get("precision")):
+                result = validate_case(case, how["tier"], tell)
             results.append(result)
             if result.outcomes:
                 pictures[case.name] = f"{case.name}.png"
                 with clear_errors(directory / pictures[case.name]):
                     draw_result(result, directory / pictures[case.name])
-            write_report(directory, results, tier, pictures)
+            write_report(directory, results, how, pictures)
     finally:
         core.set_threads(before)
     return results

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -68,10 +68,10 @@ def summary_line(results: Sequence[Result]) -> str:
     return f"{len(results)} cases: " + ", ".join(f"{n} {word}" for word, n in counts.items())
 
 
-def report_table(results: Sequence[Result], tier: str) -> dict[str, Any]:
-    """The report as JSON holds it."""
+def report_table(results: Sequence[Result], how: Mapping[str, str]) -> dict[str, Any]:
+    """The report as JSON holds it; `how`: what was asked of all cases, such as the tier."""
     table = {
-        "tier": tier,
+        **how,
         "passed": not failed(results),
         "cases": [_case_table(result) for result in results],
     }
@@ -90,9 +90,10 @@ def _case_table(result: Result) -> dict[str, Any]:
     }
 
 
-def markdown(results: Sequence[Result], tier: str, pictures: dict[str, str]) -> str:
+def markdown(results: Sequence[Result], how: Mapping[str, str], pictures: dict[str, str]) -> str:
     """The report as a page: the table, then each case with its reasons and its picture."""
-    parts = ["# Validation", f"Tier: {tier}. {summary_line(results)}.", table_text(results)]
+    asked = ", ".join(f"{key}: {value}" for key, value in how.items()).capitalize()
+    parts = ["# Validation", f"{asked}. {summary_line(results)}.", table_text(results)]
     for result in results:
         case = result.case
         parts.append(f"## {case.name}: {case.title}")
@@ -115,9 +116,9 @@ def remarks(results: Sequence[Result]) -> list[str]:
 
 
 def write_report(
-    directory: Path, results: Sequence[Result], tier: str, pictures: dict[str, str]
+    directory: Path, results: Sequence[Result], how: Mapping[str, str], pictures: dict[str, str]
 ) -> None:
     """validation.json and validation.md."""
-    text = json.dumps(report_table(results, tier), indent=1) + "\n"
+    text = json.dumps(report_table(results, how), indent=1) + "\n"
     write_whole_text(directory / "validation.json", text)
-    write_whole_text(directory / "validation.md", markdown(results, tier, pictures))
+    write_whole_text(directory / "validation.md", markdown(results, how, pictures))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +22,18 @@ CASES = Path(__file__).resolve().parent / "cases"
 
 State = dict[str, np.ndarray]
 
+_overrides_of_all: ContextVar[tuple[str, ...]] = ContextVar("overrides of all", default=())
+
+
+@contextmanager
+def in_precision(precision: str | None) -> Iterator[None]:
+    """All scenarios within run in this precision; None: in that which they name."""
+    token = _overrides_of_all.set((f"precision={precision}",) if precision else ())
+    try:
+        yield
+    finally:
+        _overrides_of_all.reset(token)
+
 
 class Running:
     """A scenario with overrides, to be advanced and looked at."""
@@ -27,7 +41,7 @@ class Running:
     def __init__(self, name: str, *overrides: str) -> None:
         """`name` is that of a scenario in a folder of cases/, else of a shipped one."""
         own = next(CASES.glob(f"*/{name}.toml"), None)
-        self.scenario = load_scenario(str(own or name), overrides)
+        self.scenario = load_scenario(str(own or name), (*_overrides_of_all.get(), *overrides))
         self.simulation, self.body_names = build_simulation(self.scenario)
         gauges = build_gauges(self.scenario, self.body_names)
         self.sensors: dict[str, Sensor] = build_sensors(gauges)
