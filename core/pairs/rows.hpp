@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "base/members.hpp"
@@ -46,8 +47,9 @@ struct LaneRows {
 };
 
 /// How many particles share the neighbours that are picked out for them, and how many of these
-/// neighbours are summed at once, side by side. Fewer particles have less in reach that is in reach
-/// of one alone; more neighbours at once take more loads.
+/// neighbours are summed at once, side by side. The fewer the particles, the more of what is in
+/// reach of one is in reach of all; the more neighbours at once, the more loads. Measured in
+/// docs/decisions/0054-neighbours-side-by-side.md.
 template <class real>
 inline constexpr int group_size = std::min(std::is_same_v<real, double> ? 4 : 8, lanes<real>);
 template <class real>

@@ -115,6 +115,19 @@ def test_bodies_move_as_on_one_rank(tank):
                 assert np.abs(mine[name] - yours[name]).max() < 1e-6 * scale, name
 
 
+def test_mixed_precision_on_two_ranks(command, tmp_path):
+    """Ranks share one frame for the places in single precision."""
+    (tmp_path / "tank.toml").write_text(TANK)
+    words = ["--no-figures", "--threads", 1, "--set", "precision=mixed", "--set", "time_max=0.01"]
+    for ranks in (1, 2):
+        done = command(ranks, "run", tmp_path / "tank.toml", "-o", tmp_path / str(ranks), *words)
+        assert done.returncode == 0, done.stderr
+    mine, yours = (doseki.load(tmp_path / ranks)[-1] for ranks in "12")
+    for name in ("position", "velocity", "density"):
+        difference = np.abs(mine[name] - yours[name]).max()
+        assert difference < 1e-3 * np.abs(mine[name]).max(), name
+
+
 def test_bodies_did_meet_water_and_each_other(tank):
     """Otherwise the test above says little."""
     first, last = tank["1"][0], tank["1"][-1]

@@ -161,10 +161,11 @@ print(digest.hexdigest())
     "arguments",
     [
         ["film,flume,hang", "precision=double"],
-        ["film,flume,hang", "precision=float"],
+        ["film,flume,hang", "precision=mixed"],
         ["film,dambreak", "scheme=resolved", "speed_max=3"],
+        ["film,dambreak", "scheme=resolved", "speed_max=3", "precision=mixed"],
     ],
-    ids=["double", "mixed", "resolved"],
+    ids=["double", "mixed", "resolved", "resolved, mixed"],
 )
 def test_poisoned_records_survive_no_pass_and_change_no_bit(arguments):
     """NaN in every output before each pass: all of it is overwritten before it is read."""

@@ -31,6 +31,7 @@ MODES = [
     ("ueta2022", 'precision = "mixed"'),
     ("ueta2022", ""),
     ("resolved", ""),
+    ("resolved", 'precision = "mixed"'),
 ]
 BROKEN = {
     "velocity not a number": ("velocity", np.nan, "not_finite"),
@@ -43,7 +44,7 @@ BROKEN = {
 IDS = [0, 35, 36, 77]  # at a corner, inside, its neighbour in the same cluster, at a side
 
 
-@pytest.fixture(params=MODES, ids=["grown", "mixed", "double", "resolved"])
+@pytest.fixture(params=MODES, ids=["grown", "mixed", "double", "resolved", "resolved, mixed"])
 def block(request, tmp_path, dim):
     """A resting block of water, some 100 particles, and its scenario and bodies."""
     scheme, more = request.param

@@ -10,6 +10,7 @@ from ..instruction_sets import INSTRUCTION_SETS
 
 STEPS = 120
 PERIOD = 0.2  # of FILM in 2-D, m
+PRECISIONS = ("double", "mixed")
 
 
 def result(simulation):
@@ -22,24 +23,26 @@ def channel(flows, *settings, **options):
     return flows(CHANNEL, *settings, **options)
 
 
+@pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize(
     ("text", "dp"), [(CHANNEL, 0.004), (FILM.format(dim=3), 0.0075)], ids=["channel", "film in 3-D"]
 )
-def test_threads_change_no_bit(core, flows, text, dp):
+def test_threads_change_no_bit(core, flows, text, dp, precision):
     results = []
     for threads in (1, 2, 4):
         core.set_threads(threads)
-        simulation = advance(flows(text, f"dp={dp}"), STEPS // 2)
+        simulation = advance(flows(text, f"dp={dp}", f"precision={precision}"), STEPS // 2)
         assert len(simulation) > 2048  # below, some loops stay on one thread
         results.append(result(simulation))
     for other in results[1:]:
         assert_same_bits(results[0], other)
 
 
+@pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("steps", [0, 1, STEPS])
-def test_a_restored_run_goes_on_with_the_same_bits(core, flows, steps):
-    straight = advance(channel(flows), steps)
-    again = flows.empty(CHANNEL)
+def test_a_restored_run_goes_on_with_the_same_bits(core, flows, steps, precision):
+    straight = advance(channel(flows, f"precision={precision}"), steps)
+    again = flows.empty(CHANNEL, f"precision={precision}")
     assert again.restore(straight.checkpoint())
     assert_same_bits(straight.checkpoint(), again.checkpoint())
     for simulation in (straight, again):
@@ -72,11 +75,38 @@ def test_margin_of_the_lists_changes_only_rounding(core, flows, text, skin):
     expected, state = (
         advance(flows(text, f"skin={margin}"), STEPS // 2).state() for margin in (0.1, skin)
     )
-    # When a particle comes back at the other side of the period is up to the lists.
     moved = state["position"] - expected["position"]
-    moved[:, 0] -= PERIOD * np.round(moved[:, 0] / PERIOD)
-    np.testing.assert_allclose(moved, 0, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(unperiodic(moved), 0, rtol=0, atol=1e-11)
     np.testing.assert_allclose(state["velocity"], expected["velocity"], rtol=0, atol=1e-9)
+
+
+def unperiodic(moved):
+    """When a particle comes back at the other side of the period is up to the lists."""
+    moved[:, 0] -= PERIOD * np.round(moved[:, 0] / PERIOD)
+    return moved
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_mixed_precision_changes_only_rounding(flows, dim):
+    """That of single precision, after some tens of steps."""
+    text = FILM.format(dim=dim)
+    double, mixed = (
+        advance(flows(text, f"precision={kind}"), STEPS // 3).state() for kind in PRECISIONS
+    )
+    moved = mixed["position"] - double["position"]
+    np.testing.assert_allclose(unperiodic(moved), 0, rtol=0, atol=1e-6 * 0.01)
+    np.testing.assert_allclose(mixed["velocity"], double["velocity"], rtol=0, atol=1e-5)
+    np.testing.assert_allclose(mixed["density"], double["density"], rtol=1e-6)
+    assert not np.array_equal(mixed["velocity"], double["velocity"])
+
+
+def test_a_double_run_goes_on_in_mixed_precision(flows):
+    double = advance(flows(CHANNEL), STEPS)
+    mixed = flows.empty(CHANNEL, "precision=mixed")
+    assert mixed.restore(double.checkpoint())
+    one, other = (advance(simulation, 10).state() for simulation in (double, mixed))
+    np.testing.assert_array_equal(one["id"], other["id"])
+    np.testing.assert_allclose(one["velocity"], other["velocity"], rtol=0, atol=1e-4)
 
 
 @pytest.mark.parametrize("kernel", ["wendland_c2", "wendland_c6"])

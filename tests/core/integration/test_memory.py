@@ -20,26 +20,27 @@ COMMON_FIELDS = (
     "position", "velocity", "acceleration", "density", "density_rate", "mass", "smoothing_length",
 )  # fmt: skip
 TAG = 16
-# Bytes of the records of a pass, of the place at the last build and its cell, of a list's entry.
+# Bytes of the records of a pass in double, half of them in single; of the place at the last build and its cell, of a list's entry.
 MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 136, 3: 200}, {2: 168, 3: 264}
 PLACE, ENTRY = {2: 24, 3: 32}, 2
 SPARE = 0.08  # of all: summaries, cells, blocks of lists
 
 
+@pytest.mark.parametrize(("precision", "part"), [("double", 1.0), ("mixed", 0.5)])
 @pytest.mark.parametrize("dim", [2, 3])
-def test_walls_and_flow_take_only_what_is_theirs(core, flows, dim):
+def test_walls_and_flow_take_only_what_is_theirs(core, flows, dim, precision, part):
     """On one thread: each has blocks of lists of its own."""
-    run = advance(flows(FILM.format(dim=dim)), 20)
+    run = advance(flows(FILM.format(dim=dim), f"precision={precision}"), 20)
     saved, walls = run.checkpoint(), run.state()["motion"] != 0
     n, n_walls = len(walls), int(walls.sum())
 
     def row(names):
         return sum(np.asarray(saved[name]).nbytes / n for name in names)
 
-    everyone = row(COMMON_FIELDS) + TAG + MOTION_RECORD[dim] + PLACE[dim]
+    everyone = row(COMMON_FIELDS) + TAG + part * MOTION_RECORD[dim] + PLACE[dim]
     expected = n * (everyone + ENTRY * run.entries_per_particle)
-    expected += (n - n_walls) * (row(FLOW_FIELDS) + FLOW_RECORD[dim])
-    expected += n_walls * (row(WALL_FIELDS) + WALL_RECORD[dim])
+    expected += (n - n_walls) * (row(FLOW_FIELDS) + part * FLOW_RECORD[dim])
+    expected += n_walls * (row(WALL_FIELDS) + part * WALL_RECORD[dim])
     assert expected <= n * run.bytes_per_particle < (1 + SPARE) * expected
     # What it would be if all had everything is far outside.
     both = n_walls * row(FLOW_FIELDS) + (n - n_walls) * row(WALL_FIELDS)
