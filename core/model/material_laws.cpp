@@ -8,6 +8,10 @@ ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws, double 
     return thermodynamic_state(laws.eos, rho);
 }
 
+double pressure_at(const MaterialLaws& laws, double rho) {
+    return thermodynamic_state(laws.eos, rho).pressure;
+}
+
 double density_of(const MaterialLaws& laws, double pressure, double low, double high) {
     return density_of(laws.eos, pressure, low, high);
 }

@@ -14,6 +14,8 @@ struct MaterialLaws;
 inline constexpr double least_relative_density = 0.98;
 
 ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws, double rho);
+/// Its pressure alone [Pa], without what its energy takes to work out.
+double pressure_at(const MaterialLaws& laws, double rho);
 /// Density at which the equation of state has this pressure; `low` or `high` where that lies beyond
 /// them.
 double density_of(const MaterialLaws& laws, double pressure, double low, double high);

@@ -108,8 +108,8 @@ void Resolved<D, real, Backend>::pack_fluid(State& state, std::size_t p, double 
     record.rho = rho;
     record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
     record.surface = state.surface[p];
-    record.p = model_->without_surface_tension(thermodynamic_state(*material.laws, rho).pressure,
-                                               record.surface, state.parted[p]);
+    record.p = model_->without_surface_tension(pressure_at(*material.laws, rho), record.surface,
+                                               state.parted[p]);
     update_mean_pressure(state, p, record.p, 2.0 * half_dt);
     record.p += state.damping_pressure[p];
     const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};

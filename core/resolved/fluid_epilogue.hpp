@@ -260,7 +260,7 @@ private:
                                         model_.constants.c, h, divergence);
         if (added < 0.0) {
             const double least = model_.min_density[state_.tag[p].material].at(is_vented(at));
-            const double bound = thermodynamic_state(*material.laws, least).pressure;
+            const double bound = pressure_at(*material.laws, least);
             added = std::max(added, std::min(0.0, bound - pressure(at)));
         }
         state_.damping_pressure[p] = on_surface(p) ? 0.0 : added;

@@ -20,7 +20,8 @@ COMMON_FIELDS = (
     "position", "velocity", "acceleration", "density", "density_rate", "mass", "smoothing_length",
 )  # fmt: skip
 TAG = 16
-# Bytes of the records of a pass in double, half of them in single; of the place at the last build and its cell, of a list's entry.
+# Bytes of the records of a pass in double, half of them in single; of the place at the last
+# build and its cell, of an entry of a list.
 MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 136, 3: 200}, {2: 168, 3: 264}
 PLACE, ENTRY = {2: 24, 3: 32}, 2
 SPARE = 0.08  # of all: summaries, cells, blocks of lists
