@@ -9,7 +9,6 @@
 #include "base/parallel.hpp"
 #include "base/phase_timer.hpp"
 #include "pairs/groups.hpp"
-#include "pairs/lane_positions.hpp"
 
 namespace doseki {
 

@@ -9,7 +9,7 @@
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/cpu.hpp"
-#include "pairs/skin.hpp"
+#include "pairs/list_wear.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"

@@ -11,7 +11,7 @@
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
-#include "pairs/skin.hpp"
+#include "pairs/list_wear.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 
