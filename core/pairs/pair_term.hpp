@@ -36,8 +36,10 @@ template <class Term>
 concept SeesEntries = requires { typename Term::SeesEntries; };
 
 /// A term that says from which distance [m] on a pair adds nothing at all. The loop leaves out the
-/// neighbours that are out of reach of all particles of a cluster, so that a wide margin of the
-/// lists costs no more than their distances.
+/// neighbours that are out of reach of all particles of a group, so that a wide margin of the
+/// lists costs no more than their distances, and sums several of the others at once
+/// (pairs/groups.hpp). Such a term loads neighbours from RowsAbreast as well as from OneRow, and
+/// those of its members that are no sums are a Largest.
 template <class Term>
 concept KnowsItsReach = requires(const Term& term) {
     { term.reach() } -> std::same_as<typename Term::Real>;
