@@ -127,5 +127,5 @@ def test_targets_compare_rows_that_differ_in_one_thing():
     ]
     values = {check.name.split(",")[0]: check.value for check in bench_report.checks(rows)}
     assert values["v4 over scalar"] == pytest.approx(4)
-    assert values["float over double"] == pytest.approx(2)
+    assert values["mixed over double"] == pytest.approx(2)
     assert values["2 threads over 1"] == pytest.approx(1.5)

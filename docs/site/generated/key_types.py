@@ -30,7 +30,14 @@ CHECKED = {
     "_known_quantities": "list of names of quantities",
     "_one_per_axis": "list of whole numbers, one for each axis",
 }
-SILENT = {"_bound", "_not_nan", "_not_zero", "_one_line", "_precision", "array"}  # that change no words
+SILENT = {
+    "_bound",
+    "_not_nan",
+    "_not_zero",
+    "_one_line",
+    "_precision",
+    "array",
+}  # that change no words
 
 
 @dataclass

@@ -103,10 +103,10 @@ def test_mixed_precision_changes_only_rounding(flows, dim):
 def test_a_double_run_goes_on_in_mixed_precision(flows):
     double = advance(flows(CHANNEL), STEPS)
     mixed = flows.empty(CHANNEL, "precision=mixed")
-    assert mixed.restore(double.checkpoint())
+    assert not mixed.restore(double.checkpoint()), "lists of other lanes are made anew"
     one, other = (advance(simulation, 10).state() for simulation in (double, mixed))
     np.testing.assert_array_equal(one["id"], other["id"])
-    np.testing.assert_allclose(one["velocity"], other["velocity"], rtol=0, atol=1e-4)
+    np.testing.assert_allclose(one["velocity"], other["velocity"], rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("kernel", ["wendland_c2", "wendland_c6"])
