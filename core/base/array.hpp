@@ -6,13 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.hpp"
+
 namespace doseki {
 
 /// Values in a row that their owner adds and drops. Where they lie is decided here alone; who only
 /// reads or changes elements takes a span.
 template <class T>
-class Array : private std::vector<T> {
-    using Storage = std::vector<T>;
+class Array : private std::vector<T, Memory<T>> {
+    using Storage = std::vector<T, Memory<T>>;
 
 public:
     using typename Storage::value_type;

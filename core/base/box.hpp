@@ -11,18 +11,20 @@ template <int D>
 struct Box {
     Vec<double, D> low, high;
 
-    static Box nowhere() {
+    DOSEKI_DEVICE_FN static Box nowhere() {
         Box box;
-        box.low.component.fill(std::numeric_limits<double>::infinity());
-        box.high.component.fill(-std::numeric_limits<double>::infinity());
+        for (int a = 0; a < D; ++a) {
+            box.low[a] = std::numeric_limits<double>::infinity();
+            box.high[a] = -std::numeric_limits<double>::infinity();
+        }
         return box;
     }
 
-    bool is_empty() const { return low[0] > high[0]; }
-    Vec<double, D> size() const { return high - low; }
+    DOSEKI_DEVICE_FN bool is_empty() const { return low[0] > high[0]; }
+    DOSEKI_DEVICE_FN Vec<double, D> size() const { return high - low; }
 
-    void add(const Vec<double, D>& x) { add(Box{x, x}); }
-    void add(const Box& other) {
+    DOSEKI_DEVICE_FN void add(const Vec<double, D>& x) { add(Box{x, x}); }
+    DOSEKI_DEVICE_FN void add(const Box& other) {
         for (int a = 0; a < D; ++a) {
             low[a] = std::min(low[a], other.low[a]);
             high[a] = std::max(high[a], other.high[a]);

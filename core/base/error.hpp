@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace doseki {
 
@@ -47,7 +48,7 @@ inline void expect_fit(bool good, const char* name) {
 /// The same for an index into `count` elements.
 template <class Index>
 void expect_index(Index index, std::size_t count, const char* name) {
-    expect_fit(index >= 0 && static_cast<std::size_t>(index) < count, name);
+    expect_fit(std::cmp_greater_equal(index, 0) && std::cmp_less(index, count), name);
 }
 
 }  // namespace doseki

@@ -4,32 +4,39 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/parallel.hpp"
+#include "base/bulk.hpp"
 
 namespace doseki {
 namespace {
 
-/// `from` is element `first`. Elements of a size that is known here are copied by a few
-/// instructions.
-template <std::size_t size>
-void gather(std::byte* to, const std::byte* from, std::size_t first,
-            std::span<const std::uint32_t> order) {
-    for_each_particle(order.size(), [=](std::size_t k) {
-        std::memcpy(to + k * size, from + (order[k] - first) * size, size);
-    });
-}
+/// Copies an element from where it was; `from` is element `first`.
+template <class Size>
+struct MoveElement {
+    Size size;
+    std::byte* to;
+    const std::byte* from;
+    std::size_t first;
+    std::span<const std::uint32_t> order;
 
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        std::memcpy(to + k * size, from + (order[k] - first) * size, size);
+    }
+};
+
+/// Elements of a size that is known here are copied by a few instructions.
 void gather(std::size_t size, std::byte* to, const std::byte* from, std::size_t first,
             std::span<const std::uint32_t> order) {
+    auto copy = [&](auto size_of_one) {
+        bulk::for_each(order.size(),
+                       MoveElement<decltype(size_of_one)>{size_of_one, to, from, first, order});
+        return true;
+    };
     const bool is_done = [&]<std::size_t... doubles>(std::index_sequence<doubles...>) {
         return ((size == (doubles + 1) * sizeof(double) &&
-                 (gather<(doubles + 1) * sizeof(double)>(to, from, first, order), true)) ||
+                 copy(std::integral_constant<std::size_t, (doubles + 1) * sizeof(double)>{})) ||
                 ...);
     }(std::make_index_sequence<9>());
-    if (is_done) return;
-    for_each_particle(order.size(), [=](std::size_t k) {
-        std::memcpy(to + k * size, from + (order[k] - first) * size, size);
-    });
+    if (!is_done) copy(size);
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/memory.hpp"
+
 namespace doseki {
 
 /// Which particles a quantity is of: all, walls alone, or all but walls. Storage has those that are
@@ -26,7 +28,7 @@ class FieldMemory {
 public:
     FieldMemory(std::size_t element_size, FieldOf of) : element_size_(element_size), of_(of) {}
 
-    std::size_t size() const { return size_; }
+    DOSEKI_DEVICE_FN std::size_t size() const { return size_; }
     std::size_t element_size() const { return element_size_; }
     FieldOf of() const { return of_; }
     /// Null where the element is not stored.
@@ -42,7 +44,7 @@ public:
     void reorder(std::span<const std::uint32_t> order, Places kept);
 
 protected:
-    std::vector<std::byte> bytes_;
+    std::vector<std::byte, Memory<std::byte>> bytes_;
     std::size_t size_ = 0, first_ = 0, stored_ = 0;
 
 private:
@@ -62,10 +64,10 @@ public:
     Field() : FieldMemory(sizeof(T), FieldOf::all) {}
 
     bool empty() const { return size() == 0; }
-    T* data() { return reinterpret_cast<T*>(bytes_.data()); }
-    const T* data() const { return reinterpret_cast<const T*>(bytes_.data()); }
-    T& operator[](std::size_t p) { return data()[p]; }
-    const T& operator[](std::size_t p) const { return data()[p]; }
+    DOSEKI_DEVICE_FN T* data() { return reinterpret_cast<T*>(bytes_.data()); }
+    DOSEKI_DEVICE_FN const T* data() const { return reinterpret_cast<const T*>(bytes_.data()); }
+    DOSEKI_DEVICE_FN T& operator[](std::size_t p) { return data()[p]; }
+    DOSEKI_DEVICE_FN const T& operator[](std::size_t p) const { return data()[p]; }
     T* begin() { return data(); }
     T* end() { return data() + size(); }
     const T* begin() const { return data(); }
@@ -83,6 +85,16 @@ public:
 
 [[noreturn]] void fail_on_missing_element();
 
+/// The same, on a device as well, which stops there.
+DOSEKI_DEVICE_FN inline void expect_element(bool is_there) {
+    if (is_there) return;
+#if defined(__CUDA_ARCH__)
+    __trap();
+#else
+    fail_on_missing_element();
+#endif
+}
+
 /// One quantity of some of the particles. Whoever reads it may ask for all: it is zero elsewhere.
 template <class T, FieldOf kind>
 class PartField : public FieldMemory {
@@ -94,12 +106,12 @@ public:
     PartField() : FieldMemory(sizeof(T), kind) {}
 
     /// Throws std::logic_error where the particle is not of those that have it.
-    T& operator[](std::size_t p) {
-        if (!(p - first_ < stored_)) fail_on_missing_element();
+    DOSEKI_DEVICE_FN T& operator[](std::size_t p) {
+        expect_element(p - first_ < stored_);
         return data()[p - first_];
     }
-    const T& operator[](std::size_t p) const {
-        return p - first_ < stored_ ? data()[p - first_] : zero;
+    DOSEKI_DEVICE_FN const T& operator[](std::size_t p) const {
+        return p - first_ < stored_ ? data()[p - first_] : zero_;
     }
     std::span<T> stored() { return {data(), stored_}; }
     std::span<const T> stored() const { return {data(), stored_}; }
@@ -110,9 +122,10 @@ public:
     }
 
 private:
-    static constexpr T zero{};
-    T* data() { return reinterpret_cast<T*>(bytes_.data()); }
-    const T* data() const { return reinterpret_cast<const T*>(bytes_.data()); }
+    DOSEKI_DEVICE_FN T* data() { return reinterpret_cast<T*>(bytes_.data()); }
+    DOSEKI_DEVICE_FN const T* data() const { return reinterpret_cast<const T*>(bytes_.data()); }
+
+    T zero_{};
 };
 
 template <class T>

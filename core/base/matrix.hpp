@@ -71,7 +71,7 @@ DOSEKI_FN Vec<T, D> row(const Mat<T, D>& m, int a) {
 
 /// Each row v of m as f(v).
 template <class T, int D, class F>
-Mat<T, D> each_row(const Mat<T, D>& m, F&& f) {
+DOSEKI_DEVICE_FN Mat<T, D> each_row(const Mat<T, D>& m, F&& f) {
     Mat<T, D> result;
     for (int a = 0; a < D; ++a) {
         const Vec<T, D> v = f(row(m, a));
@@ -128,7 +128,7 @@ DOSEKI_FN T determinant(const Mat<T, D>& m) {
 
 /// Inverse; zero where the determinant is not above `min_determinant`.
 template <int D>
-Mat<double, D> inverse(const Mat<double, D>& m, double min_determinant) {
+DOSEKI_DEVICE_FN Mat<double, D> inverse(const Mat<double, D>& m, double min_determinant) {
     const Mat<double, D> c = cofactors(m);
     const double det = determinant(m, c);
     Mat<double, D> result{};

@@ -9,11 +9,14 @@
 #if defined(__CUDACC__)
 // A device has no packs: T is double or float, one thread for each particle.
 #define DOSEKI_FN __host__ __device__ inline
+#define DOSEKI_DEVICE_FN __host__ __device__
 #else
 #include <experimental/simd>
 // Compilers think a pair term of sixty operations too large to inline; a call per pair costs half
 // the speed.
 #define DOSEKI_FN [[gnu::always_inline]] inline
+// What a device calls as well, and compilers inline where they like.
+#define DOSEKI_DEVICE_FN
 #endif
 
 namespace doseki {
@@ -31,6 +34,12 @@ using Pack = stdx::native_simd<real>;
 
 template <class real>
 inline constexpr int lanes = static_cast<int>(Pack<real>::size());
+#else
+template <class real>
+using Pack = real;
+
+template <class real>
+inline constexpr int lanes = 1;
 #endif
 
 using std::abs;

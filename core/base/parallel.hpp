@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include "base/array.hpp"
@@ -56,8 +57,37 @@ Value reduce(std::size_t count, Value start, Combine&& combine, F&& f) {
     return result;
 }
 
-/// Combines to the larger one; other ways are std::plus and std::logical_and.
-inline constexpr auto maximum = [](const auto& a, const auto& b) { return std::max(a, b); };
+/// The elements of a row, for reduce().
+template <class T>
+struct ElementOf {
+    std::span<const T> elements;
+    DOSEKI_DEVICE_FN const T& operator()(std::size_t k) const { return elements[k]; }
+};
+
+struct Maximum {
+    template <class T>
+    DOSEKI_DEVICE_FN T operator()(const T& a, const T& b) const {
+        return std::max(a, b);
+    }
+};
+struct Join {
+    template <class T>
+    DOSEKI_DEVICE_FN T operator()(T one, const T& other) const {
+        one.add(other);
+        return one;
+    }
+};
+/// Sets the elements of a row to what they are at first.
+template <class T>
+struct ClearElement {
+    std::span<T> elements;
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const { elements[k] = T{}; }
+};
+
+/// Ways to combine two values, as std::plus and std::logical_and are: to the larger one, and to one
+/// that the other was added to.
+inline constexpr Maximum maximum;
+inline constexpr Join joined;
 
 /// Calls f(thread, k) for k = 0 ... count - 1, each much work of unequal size, handed out in
 /// chunks. `thread` is below thread_count(): f may keep something for each.

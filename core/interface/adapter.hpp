@@ -263,15 +263,11 @@ public:
         int width = 0;
         archive("lanes", width);
         sim_.serialise(archive);
-        if (exchange_ || width == 0) {
-            sim_.renew_order();
-            return false;
-        }
-        if (width == sim_.scheme().width()) {
+        if (!exchange_ && width == sim_.scheme().width()) {
             sim_.expect_lists();
             return true;
         }
-        sim_.renew_lists();
+        sim_.renew_order();
         return false;
     }
 

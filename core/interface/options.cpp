@@ -16,7 +16,7 @@ Material read_material(const NamedValues& table, const std::string& place) {
     read("rho0", m.rho0), read("speedsound", m.c0);
     MaterialLaws laws{};
     read.law("eos", laws.eos), read.law("rheology", laws.rheology);
-    m.laws = std::make_shared<const MaterialLaws>(laws);
+    m.laws = Shared<const MaterialLaws>::make(laws);
     read("cavitation_pressure", m.cavitation_pressure);
     read("air_entry_suction", m.air_entry_suction);
     read("shear_modulus", m.shear_modulus), read("yield_strength", m.yield_strength);

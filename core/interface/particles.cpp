@@ -109,7 +109,8 @@ Array<std::size_t> ParticleTables<D>::id_order(const Particles<D>& particles) {
 
 template <int D>
 Array<std::size_t> ParticleTables<D>::inside(const Particles<D>& particles,
-                                             const Array<double>& low, const Array<double>& high) {
+                                             std::span<const double> low,
+                                             std::span<const double> high) {
     const Outflow<D> box = BoundaryTables<D>::outflow(low, high);
     Array<std::size_t> found;
     for (std::size_t p = 0; p < particles.size(); ++p)

@@ -36,8 +36,8 @@ struct ParticleTables {
     /// Indices of the particles in the order of their ids.
     static Array<std::size_t> id_order(const Particles<D>& particles);
     /// The same of those in a box.
-    static Array<std::size_t> inside(const Particles<D>& particles, const Array<double>& low,
-                                     const Array<double>& high);
+    static Array<std::size_t> inside(const Particles<D>& particles, std::span<const double> low,
+                                     std::span<const double> high);
     /// Columns of the particles in `order` that gauges read.
     static NamedValues sample(const Particles<D>& particles, const Array<std::size_t>& order,
                               const PointStates<D>& states);

@@ -1,13 +1,13 @@
 // Simulations, compiled once for all schemes.
 
+#include "device/lists_of_build.hpp"
 #include "interface/adapter.hpp"
-#include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
 namespace {
 
-const SimulationKind plane(2, Adapter<Neighbours<2>>::make);
-const SimulationKind solid(3, Adapter<Neighbours<3>>::make);
+const SimulationKind plane(2, Adapter<ListsOfBuild<2>>::make);
+const SimulationKind solid(3, Adapter<ListsOfBuild<3>>::make);
 
 }  // namespace
 }  // namespace doseki

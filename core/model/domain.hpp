@@ -12,7 +12,7 @@ struct Domain {
     Vec<double, D> low{}, high{};
     std::array<bool, D> periodic{};
 
-    double length(int a) const { return high[a] - low[a]; }
+    DOSEKI_DEVICE_FN double length(int a) const { return high[a] - low[a]; }
     bool any_periodic() const {
         for (bool p : periodic)
             if (p) return true;
@@ -30,7 +30,7 @@ Vec<double, D> nearest_image(const Domain<D>& domain, Vec<double, D> r) {
 
 /// The image inside the domain.
 template <int D>
-Vec<double, D> wrapped(const Domain<D>& domain, Vec<double, D> x) {
+DOSEKI_DEVICE_FN Vec<double, D> wrapped(const Domain<D>& domain, Vec<double, D> x) {
     for (int c = 0; c < D; ++c)
         if (domain.periodic[c])
             x[c] -= domain.length(c) * std::floor((x[c] - domain.low[c]) / domain.length(c));

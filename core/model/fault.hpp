@@ -2,12 +2,14 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/pack.hpp"
+
 namespace doseki {
 
 /// Abort limits of the density over that at rest.
 inline constexpr double min_compression = 0.1, max_compression = 10.0;
 
-inline bool is_absurd(double rho, double rho0) {
+DOSEKI_DEVICE_FN inline bool is_absurd(double rho, double rho0) {
     return !(rho > min_compression * rho0 && rho < max_compression * rho0);
 }
 
@@ -19,17 +21,17 @@ struct Fault {
     Rank rank = none;
     std::int64_t particle = -1;
 
-    void note(Rank found, std::size_t p) {
+    DOSEKI_DEVICE_FN void note(Rank found, std::size_t p) {
         if (found > rank) rank = found, particle = static_cast<std::int64_t>(p);
     }
-    void note_density(double rho, double rho0, std::size_t p) {
+    DOSEKI_DEVICE_FN void note_density(double rho, double rho0, std::size_t p) {
         if (is_absurd(rho, rho0)) note(density, p);
     }
-    void note_right_hand_side(double sum, std::size_t p) {
+    DOSEKI_DEVICE_FN void note_right_hand_side(double sum, std::size_t p) {
         if (!std::isfinite(sum)) note(right_hand_side, p);
     }
-    void merge(const Fault& later) {
-        if (later.rank > rank) *this = later;
+    DOSEKI_DEVICE_FN void merge(const Fault& later) {
+        if (later.rank > rank || (later.rank == rank && later.particle < particle)) *this = later;
     }
 };
 

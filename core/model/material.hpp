@@ -1,7 +1,7 @@
 #pragma once
-#include <memory>
 #include <string>
 
+#include "base/memory.hpp"
 #include "model/contact_properties.hpp"
 
 namespace doseki {
@@ -17,7 +17,7 @@ struct Material {
     double rho0;  // [kg/m^3]
     double c0;    // [m/s]
     /// Apart, so that only what evaluates a law is compiled anew when one changes.
-    std::shared_ptr<const MaterialLaws> laws;
+    Shared<const MaterialLaws> laws;
     double cavitation_pressure;  // of fluids: gauge pressure at which they tear [Pa]
     double air_entry_suction;    // of fluids: suction that pores hold until air enters [Pa]
     // Of solids; no yield strength, cohesion or friction angle: never yields.

@@ -4,11 +4,12 @@
 
 namespace doseki {
 
-ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws, double rho) {
+DOSEKI_DEVICE_FN ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws,
+                                                                double rho) {
     return thermodynamic_state(laws.eos, rho);
 }
 
-double pressure_at(const MaterialLaws& laws, double rho) {
+DOSEKI_DEVICE_FN double pressure_at(const MaterialLaws& laws, double rho) {
     return thermodynamic_state(laws.eos, rho).pressure;
 }
 
@@ -16,7 +17,7 @@ double density_of(const MaterialLaws& laws, double pressure, double low, double 
     return density_of(laws.eos, pressure, low, high);
 }
 
-double viscosity(const MaterialLaws& laws, const ShearState<double>& state) {
+DOSEKI_DEVICE_FN double viscosity(const MaterialLaws& laws, const ShearState<double>& state) {
     return viscosity(laws.rheology, state);
 }
 

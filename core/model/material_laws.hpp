@@ -13,14 +13,15 @@ struct MaterialLaws;
 /// of weak compressibility.
 inline constexpr double least_relative_density = 0.98;
 
-ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws, double rho);
+DOSEKI_DEVICE_FN ThermodynamicState<double> thermodynamic_state(const MaterialLaws& laws,
+                                                                double rho);
 /// Its pressure alone [Pa], without what its energy takes to work out.
-double pressure_at(const MaterialLaws& laws, double rho);
+DOSEKI_DEVICE_FN double pressure_at(const MaterialLaws& laws, double rho);
 /// Density at which the equation of state has this pressure; `low` or `high` where that lies beyond
 /// them.
 double density_of(const MaterialLaws& laws, double pressure, double low, double high);
 /// Of the fluid itself, without turbulence [Pa s].
-double viscosity(const MaterialLaws& laws, const ShearState<double>& state);
+DOSEKI_DEVICE_FN double viscosity(const MaterialLaws& laws, const ShearState<double>& state);
 /// Whether the viscosity varies by orders of magnitude beside a plug, so that pairs take harmonic
 /// means.
 bool has_yield_stress(const MaterialLaws& laws);

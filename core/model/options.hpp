@@ -27,7 +27,7 @@ struct WallCondition {
     double turbulent_xi = std::numeric_limits<double>::infinity();  // [m/s^2]
     double effective_share = 1.0;  // of the normal stress, that grains carry and not pore water
 
-    bool has_friction() const { return ks > 0.0 || voellmy; }
+    DOSEKI_DEVICE_FN bool has_friction() const { return ks > 0.0 || voellmy; }
 
     template <class F>
     void members(F&& f) {

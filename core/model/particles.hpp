@@ -103,11 +103,11 @@ struct Particles {
 
     std::size_t size() const { return tag.size(); }
 
-    bool is_free(std::size_t p) const { return tag[p].motion == Motion::free; }
-    bool is_fixed(std::size_t p) const { return tag[p].motion == Motion::fixed; }
-    bool is_bound(std::size_t p) const { return tag[p].motion == Motion::bound; }
+    DOSEKI_DEVICE_FN bool is_free(std::size_t p) const { return tag[p].motion == Motion::free; }
+    DOSEKI_DEVICE_FN bool is_fixed(std::size_t p) const { return tag[p].motion == Motion::fixed; }
+    DOSEKI_DEVICE_FN bool is_bound(std::size_t p) const { return tag[p].motion == Motion::bound; }
     /// One that fluid meets as it meets a wall.
-    bool is_wall(std::size_t p) const { return is_fixed(p) || is_bound(p); }
+    DOSEKI_DEVICE_FN bool is_wall(std::size_t p) const { return is_fixed(p) || is_bound(p); }
     /// Whether particle p is a point of a body of that kind.
     bool is_point_of(std::size_t p, BodyKind kind) const {
         return wall.in_use && is_bound(p) && wall.body_kind[p] == kind;
@@ -155,28 +155,6 @@ struct StateOf final : State {
 template <int D>
 void resize(Particles<D>& particles, std::size_t n) {
     for (const NamedField& field : particles.fields()) field.memory->resize(n);
-}
-
-/// From the first to the last place that has a particle of which `is_one` holds.
-template <class F>
-Places places_of(std::span<const std::uint32_t> order, const F& is_one) {
-    const auto first = std::find_if(order.begin(), order.end(), is_one);
-    const auto last = std::find_if(order.rbegin(), std::make_reverse_iterator(first), is_one);
-    return {static_cast<std::size_t>(first - order.begin()),
-            static_cast<std::size_t>(last.base() - order.begin())};
-}
-
-/// New particle k is old particle order[k]; particles not named are gone.
-template <int D>
-void reorder(Particles<D>& particles, std::span<const std::uint32_t> order) {
-    const Places all{0, order.size()},
-        walls = places_of(order, [&](std::uint32_t p) { return particles.is_wall(p); }),
-        others = places_of(order, [&](std::uint32_t p) { return !particles.is_wall(p); });
-    for (const NamedField& field : particles.fields()) {
-        const FieldOf of = field.memory->of();
-        field.memory->reorder(
-            order, of == FieldOf::walls ? walls : (of == FieldOf::others ? others : all));
-    }
 }
 
 }  // namespace doseki

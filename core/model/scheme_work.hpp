@@ -11,7 +11,7 @@ struct SchemeWork {
     double layer_power = 0.0;      // of what drives those layers [W]
     double power = 0.0;  // that shifting, the relaxation of density, walls and films make [W]
 
-    void add(const SchemeWork& other) {
+    DOSEKI_DEVICE_FN void add(const SchemeWork& other) {
         layer_force = layer_force + other.layer_force;
         layer_power += other.layer_power, power += other.power;
     }

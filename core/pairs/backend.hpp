@@ -8,7 +8,7 @@
 
 #include "base/array.hpp"
 #include "pairs/count_term.hpp"
-#include "pairs/loop.hpp"
+#include "pairs/pairs_to_sum.hpp"
 
 namespace doseki {
 
@@ -21,15 +21,6 @@ struct ParticlesToSort {
     std::span<const std::uint8_t> is_near;  // to other ranks; empty: none is
 };
 
-/// Between which particles a sum runs: clusters of lists and the records they refer to.
-template <class real, int D>
-struct PairsToSum {
-    std::span<const ClusterList> clusters;
-    std::span<const MotionRecord<real, D>> records;
-    CoordinateFrame<real, D> frame;
-    PairLoopOptions options;
-};
-
 template <class B, int D>
 concept SortsAndLists = requires(typename B::template Lists<D> lists, ParticlesToSort<D> particles,
                                  double skin, std::span<const std::int32_t> faces) {
@@ -38,8 +29,10 @@ concept SortsAndLists = requires(typename B::template Lists<D> lists, ParticlesT
 };
 
 template <class B, int D>
-concept SumsPairs = requires(const typename B::template Lists<D>& lists,
-                             const PairsToSum<typename B::Real, D>& pairs,
+using PairsOf = PairsToSum<typename B::Real, D, typename B::template Lists<D>::List>;
+
+template <class B, int D>
+concept SumsPairs = requires(const typename B::template Lists<D>& lists, const PairsOf<B, D>& pairs,
                              const CountTerm<typename B::Real, D>& term,
                              void (*epilogue)(std::size_t, const NeighbourCounts<double>&)) {
     B::sum_pairs(lists, pairs, term, epilogue);
@@ -51,6 +44,26 @@ concept LoopsOverParticles =
         B::for_each_particle(count, f);
         { B::reduce(count, 0.0, maximum, value) } -> std::same_as<double>;
     };
+
+/// An epilogue that keeps the sums of one particle.
+template <class Sums>
+struct KeepSums {
+    std::size_t particle;
+    Sums* kept;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const Sums& sums) const {
+        if (p == particle) *kept = sums;
+    }
+};
+
+/// The sums of particle p, which is of the clusters that are given.
+template <class B, class Lists, class Pairs, class Term>
+auto sums_of_particle(const Lists& lists, const Pairs& pairs, const Term& term, std::size_t p) {
+    using Sums = typename Term::template Accumulators<double>;
+    Array<Sums> kept(1);
+    B::sum_pairs(lists, pairs, term, KeepSums<Sums>{p, kept.data()});
+    return kept[0];
+}
 
 /// `Real` is the number of pair sums; `width` how many particles share a list.
 template <class B, int D>

@@ -1,7 +1,8 @@
 #pragma once
 #include "base/array.hpp"
-#include "base/parallel.hpp"
+#include "base/bulk.hpp"
 #include "pairs/backend.hpp"
+#include "pairs/loop.hpp"
 #include "pairs/neighbour_lists.hpp"
 
 namespace doseki {
@@ -29,8 +30,9 @@ struct Cpu {
 
     /// Sums a term over pairs and calls epilogue(p, sums) for each particle of the clusters.
     template <class Term, class Epilogue>
-    static void sum_pairs(const Lists<Term::dim>& lists, const PairsToSum<real, Term::dim>& pairs,
-                          const Term& term, const Epilogue& epilogue) {
+    static void sum_pairs(const Lists<Term::dim>& lists,
+                          const PairsToSum<real, Term::dim, ClusterList>& pairs, const Term& term,
+                          const Epilogue& epilogue) {
         auto sum = [&]<bool periodic>() {
             for_each_pair<periodic>(lists, pairs.clusters, pairs.records, pairs.frame, term,
                                     epilogue, pairs.options);
@@ -42,12 +44,12 @@ struct Cpu {
     }
 
     template <class F>
-    static void for_each_particle(std::size_t count, F&& f) {
-        doseki::for_each_particle(count, f);
+    static void for_each_particle(std::size_t count, const F& f) {
+        bulk::for_each(count, f);
     }
     template <class Value, class Combine, class F>
-    static Value reduce(std::size_t count, Value start, Combine&& combine, F&& f) {
-        return doseki::reduce(count, start, combine, f);
+    static Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
+        return bulk::reduce(count, start, combine, f);
     }
 };
 

@@ -10,6 +10,7 @@
 #include "base/array.hpp"
 #include "pairs/neighbour_lists.hpp"
 #include "pairs/pair_term.hpp"
+#include "pairs/pairs_to_sum.hpp"
 
 namespace doseki {
 
@@ -45,46 +46,17 @@ private:
     std::array<CoordinateLanes, D> x_;
 };
 
-/// A floor far below any spacing keeps the pair of a particle with itself harmless.
-template <class Lanes, int D>
-DOSEKI_FN Pair<Lanes, D> pair_of(const Vec<Lanes, D>& r_ij) {
-    return {r_ij, sqrt(max(dot(r_ij, r_ij), least_number<Lanes>()))};
-}
-
-/// Image shifts in units of the records' coordinates.
-template <class real, int D>
-Array<std::array<Coordinate<real>, D>> image_shifts(const Neighbours<D>& neighbours,
-                                                    const CoordinateFrame<real, D>& frame) {
-    Array<std::array<Coordinate<real>, D>> shifts;
-    for (const auto& shift : neighbours.image_shifts()) {
-        std::array<Coordinate<real>, D> units;
-        for (int a = 0; a < D; ++a) units[a] = static_cast<Coordinate<real>>(shift[a] / frame.unit);
-        shifts.push_back(units);
-    }
-    return shifts;
-}
-
 /// What all clusters of one loop share.
 template <class Term>
-struct PairLoop {
+struct PairLoop : NeighbourPlaces<typename Term::Real, Term::dim> {
     using real = typename Term::Real;
     static constexpr int D = Term::dim;
 
-    std::span<const MotionRecord<real, D>> records;
-    Array<std::array<Coordinate<real>, D>> shifts;
-    real unit;
     const Term& term;
 
-    /// The last particle that has a record.
-    std::uint32_t last() const { return static_cast<std::uint32_t>(records.size() - 1); }
-    /// Of the neighbour that an entry names.
-    template <bool periodic>
-    DOSEKI_FN std::array<Coordinate<real>, D> position(std::uint32_t entry) const {
-        auto x = records[entry & ListEntry::index_mask].x;
-        if constexpr (periodic)
-            for (int a = 0; a < D; ++a) x[a] += shifts[entry >> ListEntry::index_bits][a];
-        return x;
-    }
+    PairLoop(const NeighbourPlaces<real, D>& places, const Term& given)
+        : NeighbourPlaces<real, D>(places), term(given) {}
+
     /// Of as many neighbours as there are groups of lanes, each in one of them.
     template <bool periodic>
     DOSEKI_FN auto positions(const std::uint32_t* entries) const {
@@ -92,7 +64,7 @@ struct PairLoop {
         std::array<Lanes, D> x;
         [&]<std::size_t... k>(std::index_sequence<k...>) {
             const std::array<std::array<Coordinate<real>, D>, sizeof...(k)> of{
-                position<periodic>(entries[k])...};
+                this->template position<periodic>(entries[k])...};
             for (int a = 0; a < D; ++a) FillGroups{}(x[a], of[k][a]...);
         }(std::make_index_sequence<static_cast<std::size_t>(abreast<real>)>{});
         return x;

@@ -46,13 +46,6 @@ template <bool periodic, class Term>
     return sums;
 }
 
-struct PairLoopOptions {
-    bool skip_empty = false;        // particles without any neighbour have no epilogue either
-    std::size_t first_cluster = 0;  // number of the first cluster that is given
-    PhaseTimer* sampled = nullptr;  // times the epilogue of some clusters
-    const Array<std::uint32_t>* only = nullptr;  // numbers of those that are summed; none: all
-};
-
 template <bool periodic, class Term, class Epilogue>
 void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const ClusterList> clusters,
                    std::span<const MotionRecord<typename Term::Real, Term::dim>> records,
@@ -62,8 +55,8 @@ void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const Clus
     using real = typename Term::Real;
     using Sums = AccumulatorsOf<Term, double>;
     constexpr std::uint32_t width = lanes<real>;
-    const PairLoop<Term> loop{records, image_shifts(neighbours, frame),
-                              static_cast<real>(frame.unit), term};
+    const auto shifts = image_shifts(neighbours, frame);
+    const PairLoop<Term> loop({records, shifts, static_cast<real>(frame.unit)}, term);
     Array<GroupSums<Term>> grouped(
         KnowsItsReach<Term> ? static_cast<std::size_t>(thread_count()) : 0,
         GroupSums<Term>(clusters));

@@ -6,6 +6,17 @@
 
 namespace doseki {
 
+/// An epilogue that keeps how many neighbours a particle has. A cluster that holds moving and fixed
+/// particles lists fixed ones for both.
+struct KeepCounts {
+    double* of_particle;
+    std::size_t moving;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const NeighbourCounts<double>& count) const {
+        of_particle[p] = count.moving + (p < moving ? count.fixed : 0.0);
+    }
+};
+
 /// How many pairs the records of a scheme have.
 template <class Scheme>
 class PairCounter {
@@ -13,6 +24,7 @@ public:
     using Real = typename Scheme::Real;
     using Backend = typename Scheme::Backend;
     using Lists = typename Backend::template Lists<Scheme::dim>;
+    using List = typename Lists::List;
     using Records = std::span<const MotionRecord<Real, Scheme::dim>>;
 
     PairCounter(const Scheme& scheme, const Lists& lists) : scheme_(scheme), lists_(lists) {}
@@ -23,20 +35,17 @@ public:
     /// Neighbours within support of each particle, ghosts left out.
     Array<double> counts() const { return counts(lists_.clusters(), scheme_.motion_records()); }
 
-    double count(std::span<const ClusterList> clusters, Records records) const {
+    double count(std::span<const List> clusters, Records records) const {
         double total = 0.0;
         for (double count : counts(clusters, records)) total += count;
         return total;
     }
 
-    Array<double> counts(std::span<const ClusterList> clusters, Records records) const {
+    Array<double> counts(std::span<const List> clusters, Records records) const {
         Array<double> of_particle(records.size());
-        // A cluster that holds moving and fixed particles lists fixed ones for both.
-        auto keep = [&](std::size_t p, const NeighbourCounts<double>& count) {
-            of_particle[p] = count.moving + (p < lists_.moving() ? count.fixed : 0.0);
-        };
         Backend::sum_pairs(lists_, {clusters, records, scheme_.frame(), {}},
-                           CountTerm<Real, Scheme::dim>{records}, keep);
+                           CountTerm<Real, Scheme::dim>{records},
+                           KeepCounts{of_particle.data(), lists_.moving()});
         return of_particle;
     }
 

@@ -59,6 +59,7 @@ template <class Term>
 concept HasAccumulators =
     requires { typename AccumulatorsOf<Term>; } && HasMembers<AccumulatorsOf<Term>>;
 
+#if !defined(__CUDACC__)
 template <class Term>
 concept LoadsParticles =
     requires(const Term& term, LaneRows<typename Term::Real> i) { term.load(i); };
@@ -134,5 +135,6 @@ constexpr bool check_pair_term() {
     }
     return true;
 }
+#endif
 
 }  // namespace doseki

@@ -31,7 +31,7 @@ struct CoordinateFrame {
         return frame;
     }
 
-    Coordinate<real> coordinate(double x, int a) const {
+    DOSEKI_DEVICE_FN Coordinate<real> coordinate(double x, int a) const {
         if constexpr (std::is_same_v<real, double>)
             return x;
         else

@@ -20,6 +20,9 @@ struct OneRow {
     using Number = T;
     std::uint32_t j;
 
+    DOSEKI_FN OneRow within(std::uint32_t low, std::uint32_t high) const {
+        return {std::clamp(j, low, high)};
+    }
     /// The same of an array whose first record is number `first`.
     DOSEKI_FN OneRow counted_from(std::uint32_t first) const { return {j - first}; }
 };

@@ -15,29 +15,19 @@ void Neighbours<D>::fill_steps(const Grid& grid, const Bounds& bounds, double ra
                                Scratch& scratch) const {
     std::uint32_t weight = 1;
     for (int a = 0; a < D; ++a, weight *= 3) {
-        const std::int64_t low = cell_of(grid, bounds.low[a] - radius, a);
-        std::int64_t high = cell_of(grid, bounds.high[a] + radius, a);
+        const std::int64_t low = grid.cell_of(bounds.low[a] - radius, a);
+        std::int64_t high = grid.cell_of(bounds.high[a] + radius, a);
         // Around a wrapped table once is everything; twice would list particles twice.
-        if (!domain_.periodic[a]) high = std::min(high, low + grid.cells[a] - 1);
+        if (!grid.periodic[a]) high = std::min(high, low + grid.cells[a] - 1);
         scratch.steps[a].clear();
         for (std::int64_t cell = low; cell <= high; ++cell) {
-            const std::int64_t wrapped = wrap(grid, cell, a);
+            const std::int64_t wrapped = grid.wrap(cell, a);
             // Cell n of a periodic direction is cell 0 seen one box further.
-            const std::int64_t turns = domain_.periodic[a] ? (cell - wrapped) / grid.cells[a] : 0;
-            scratch.steps[a].push_back({grid.key_part[a][static_cast<std::size_t>(wrapped)],
-                                        weight * static_cast<std::uint32_t>(turns + 1)});
+            const std::int64_t turns = grid.periodic[a] ? (cell - wrapped) / grid.cells[a] : 0;
+            scratch.steps[a].push_back(
+                {grid.key_along(wrapped, a), weight * static_cast<std::uint32_t>(turns + 1)});
         }
     }
-}
-
-/// Whether none of the particles of a class can be within `radius` of the bounds.
-template <int D>
-bool Neighbours<D>::is_beyond(const Grid& grid, const Bounds& bounds, double radius) const {
-    for (int a = 0; a < D; ++a)
-        if (!domain_.periodic[a] && (grid.bounds.low[a] > bounds.high[a] + radius ||
-                                     grid.bounds.high[a] < bounds.low[a] - radius))
-            return true;
-    return false;
 }
 
 template <int D>
@@ -46,13 +36,14 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
                            std::span<const Vec<double, D>> position,
                            std::span<const double> support, Scratch& scratch) const {
     using Lanes = stdx::fixed_size_simd<double, width>;
-    const auto last = static_cast<std::uint32_t>(size_ - 1);
+    const auto last = static_cast<std::uint32_t>(this->size() - 1);
     Vec<Lanes, D> x;
     for (int a = 0; a < D; ++a)
         x[a] = Lanes([&](auto l) { return position[std::min<std::uint32_t>(first + l, last)][a]; });
     const auto reach =
         Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
 
+    const std::span<const Vec<double, D>> shifts(this->image_shifts());
     auto meets = [&](int lane, std::uint32_t j) {
         const std::int32_t own = scratch.faces[std::min<std::uint32_t>(
                                first + static_cast<std::uint32_t>(lane), last)],
@@ -60,7 +51,7 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
         return own != 0 && other != 0 && own != other;
     };
     auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
-        const Vec<double, D>& shift = image_shift_[image];
+        const Vec<double, D>& shift = shifts[image];
         const std::uint32_t code = image << ListEntry::index_bits, cell = grid.place(key);
         for (std::uint32_t j = grid.cell_start[cell]; j < grid.cell_start[cell + 1]; ++j) {
             Lanes square = 0.0;
@@ -83,7 +74,7 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
         }
     };
     const double radius = std::max(part.bounds.support, grid.support) + skin;
-    if (is_beyond(grid, part.bounds, radius)) return;
+    if (grid.is_beyond(part.bounds.low, part.bounds.high, radius)) return;
     fill_steps(grid, part.bounds, radius, scratch);
     const auto& steps = scratch.steps;
     for (const CellStep& y : steps[1])
@@ -115,7 +106,7 @@ void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
                           std::span<const double> support, double skin,
                           std::span<const std::int32_t> faces) {
     const auto in_cluster = static_cast<std::size_t>(width);
-    const std::size_t n = size_, count = (n + in_cluster - 1) / in_cluster;
+    const std::size_t n = this->size(), count = (n + in_cluster - 1) / in_cluster;
     clusters_.assign(count, {});
     storage_.resize(static_cast<std::size_t>(thread_count()));
     for (ListStorage& storage : storage_) storage.clear();
@@ -127,7 +118,7 @@ void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
         find_parts(position, support, first, std::min(n, first + in_cluster), scratch.parts);
         auto search_grids = [&](bool fixed) {
             for (const Part& part : scratch.parts)
-                for (const Grid& grid : grids_)
+                for (const Grid& grid : this->grids())
                     if (grid.fixed == fixed)
                         search_cells(width, grid, part, static_cast<std::uint32_t>(first), skin,
                                      position, support, scratch);
@@ -139,7 +130,7 @@ void Neighbours<D>::build(int width, std::span<const Vec<double, D>> position,
         const bool any_face = std::any_of(faces.begin() + std::min(first, faces.size()),
                                           faces.begin() + std::min(end, faces.size()),
                                           [](std::int32_t face) { return face != 0; });
-        if (first < moving_)
+        if (first < this->moving())
             search_grids(true);
         else if (any_face) {
             scratch.faces = faces;

@@ -50,8 +50,9 @@ inline double contact_damping(bool hertz, double zeta, double stiffness, double 
 /// A spring that slides at a limit: friction (eq. 49), and the resistance to rolling (eq. 50).
 /// `stretch` is carried from step to step; it is cut to what the limit can hold.
 template <int D>
-Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& speed, double dt,
-                              double stiffness, double damping, double limit) {
+DOSEKI_DEVICE_FN Vec<double, D> sliding_spring(Vec<double, D>& stretch, const Vec<double, D>& speed,
+                                               double dt, double stiffness, double damping,
+                                               double limit) {
     stretch = stretch + dt * speed;
     Vec<double, D> force = -stiffness * stretch - damping * speed;
     const double size = std::sqrt(dot(force, force));

@@ -19,13 +19,14 @@ struct FreeSurfaceIndicator {
     double x, normalised_density;
 
     /// Whether particles are so few that they are apart, each as dense as the liquid.
-    bool is_spray() const { return x >= alone; }
+    DOSEKI_DEVICE_FN bool is_spray() const { return x >= alone; }
 
     /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.6 dp. The constants give 1 for
     /// the first two rows of a lattice under a flat surface, in 2-D and (to 0.6 %) in 3-D.
-    static FreeSurfaceIndicator of(double concentration, double scaled_gradient, bool wide) {
+    DOSEKI_DEVICE_FN static FreeSurfaceIndicator of(double concentration, double scaled_gradient,
+                                                    bool wide) {
         if (concentration < min_concentration) return {alone, 1.0};
-        const double x = std::min(scaled_gradient / concentration, alone);
+        const double x = std::min(scaled_gradient / concentration, double{alone});
         const double a = wide ? 0.045 : 0.053, b = wide ? 0.047 : 0.086;
         return {x, x < edge ? concentration * (1.0 + x * (a + x * b)) : 1.0};
     }
@@ -55,7 +56,7 @@ LatticeSums lattice_sums(double dp, double support) {
 
 /// Inverse of a symmetric moment matrix; zero where particles do not span the space.
 template <int D>
-Mat<double, D> inverse_moment(const Sym<double, D>& m) {
+DOSEKI_DEVICE_FN Mat<double, D> inverse_moment(const Sym<double, D>& m) {
     constexpr double min_determinant = 0.05;
     return inverse(full(m), min_determinant);
 }
@@ -64,8 +65,8 @@ Mat<double, D> inverse_moment(const Sym<double, D>& m) {
 /// Phys. 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 10 h |L|: what disorder the flow
 /// makes in the time 1/|L| is undone in about that time, however fast the frame moves.
 template <int D>
-Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration, double rate,
-                                 double h) {
+DOSEKI_DEVICE_FN Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration,
+                                                  double rate, double h) {
     constexpr double strength = 80.0, max_speed = 10.0;
     const double length = std::sqrt(dot(gradient_of_concentration, gradient_of_concentration));
     if (!(length > 0.0)) return {};
@@ -75,7 +76,7 @@ Vec<double, D> shifting_velocity(const Vec<double, D>& gradient_of_concentration
 
 /// v without its part along the direction of `normal` (of any length).
 template <int D>
-Vec<double, D> tangential(const Vec<double, D>& v, const Vec<double, D>& normal) {
+DOSEKI_DEVICE_FN Vec<double, D> tangential(const Vec<double, D>& v, const Vec<double, D>& normal) {
     const double square = dot(normal, normal);
     return square > 0.0 ? v - (dot(v, normal) / square) * normal : v;
 }

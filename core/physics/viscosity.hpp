@@ -31,14 +31,15 @@ DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
 
 /// Eq. (136): pressure [Pa] of a bulk viscosity alpha rho c h, which damps sound (Sun, Pilloton,
 /// Antuono & Colagrossi, J. Comput. Phys. 483, 2023). `divergence` of the velocity [1/s].
-inline double damping_pressure(double alpha, double rho, double c, double h, double divergence) {
+DOSEKI_DEVICE_FN inline double damping_pressure(double alpha, double rho, double c, double h,
+                                                double divergence) {
     return -alpha * rho * c * h * divergence;
 }
 
 /// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress
 /// rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile. At least
 /// `min_length`; z: height over the bed, d: depth.
-inline double mixing_length(double z, double d, double min_length) {
+DOSEKI_DEVICE_FN inline double mixing_length(double z, double d, double min_length) {
     constexpr double von_karman = 0.40;
     const double inside = d > 0.0 ? std::clamp(z / d, 0.0, 1.0) : 0.0;
     return std::max(min_length, von_karman * inside * d * std::sqrt(1.0 - inside));

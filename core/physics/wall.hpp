@@ -24,7 +24,7 @@ DOSEKI_FN T wall_excess_pressure(const T& p_i, const T& rho_i, const Vec<T, D>& 
 /// the sum over wall particles; along a plane face it is nothing but the lattice of the wall and
 /// the noise of the fluid, which would brake what slides. `size` is the rate if all of them pulled
 /// the same way.
-inline double edge_rate(double rate, double size) {
+DOSEKI_DEVICE_FN inline double edge_rate(double rate, double size) {
     constexpr double noise = 0.15, edge = 0.3;  // of the size
     if (!(std::abs(rate) > noise * size)) return 0.0;
     return rate * std::min((std::abs(rate) / size - noise) / (edge - noise), 1.0);
@@ -86,7 +86,7 @@ DOSEKI_FN T resolved_shear(const T& mu, const T& rho, const T& speed, const T& d
 /// Stress that a rough bed takes from water of velocity |u| at height z: tau = rho (u kappa/ln(1 +
 /// z/z0))^2 with z0 = ks/30 (Nikuradse's logarithmic law, regular at the bed). Returns tau/|u|^2
 /// [kg/m^3].
-inline double bed_friction(double rho, double z, double ks) {
+DOSEKI_DEVICE_FN inline double bed_friction(double rho, double z, double ks) {
     constexpr double von_karman = 0.40;
     const double root = von_karman / std::log1p(30.0 * std::max(z, ks / 30.0) / ks);
     return rho * root * root;
@@ -95,8 +95,8 @@ inline double bed_friction(double rho, double z, double ks) {
 /// Stress that Voellmy's bed takes from what slides over it at a speed |u| under the effective
 /// normal stress `normal_stress` (Voellmy, Schweiz. Bauzeitung 73, 1955): tau = mu sigma' + rho g
 /// u^2/xi [Pa]. An infinite xi leaves Coulomb's friction alone.
-inline double voellmy_stress(double mu, double normal_stress, double rho, double g, double speed,
-                             double xi) {
+DOSEKI_DEVICE_FN inline double voellmy_stress(double mu, double normal_stress, double rho, double g,
+                                              double speed, double xi) {
     return mu * std::max(0.0, normal_stress) + rho * g * speed * speed / xi;
 }
 
@@ -108,7 +108,7 @@ struct BedSpring {
     double stiffness;  // [Pa/m]
     double damping;    // [Pa s/m]
 
-    static BedSpring of(double rho, double c, double dp) {
+    DOSEKI_DEVICE_FN static BedSpring of(double rho, double c, double dp) {
         return {kappa * rho * c * c / dp, 2.0 * zeta * std::sqrt(kappa) * rho * c};
     }
 };

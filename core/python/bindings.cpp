@@ -1,9 +1,11 @@
 // The compiled module.
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "device/card.hpp"
 
 namespace nb = nanobind;
 
@@ -23,4 +25,8 @@ NB_MODULE(DOSEKI_MODULE, m) {
     bind_mesh(m);
     bind_physics(m);
     bind_terrain(m);
+#if defined(DOSEKI_CUDA)
+    m.def("card_problem", &doseki::card_problem);
+    m.def("card_name", &doseki::card_name);
+#endif
 }

@@ -27,10 +27,10 @@ struct WordCosts {
 /// What each particle costs [s], from the time that pairs and everything else have taken and the
 /// lengths of the lists; equal shares before there are any. `cost_model(ListWords, PassSeconds)` is
 /// the scheme's: it knows which pass is over which particles.
-template <class CostModel>
-Array<double> particle_costs(std::span<const ClusterList> clusters, std::size_t width,
-                             std::size_t moving, std::size_t count, const PhaseTimer& phases,
-                             int threads, const CostModel& cost_model) {
+template <class List, class CostModel>
+Array<double> particle_costs(std::span<const List> clusters, std::size_t width, std::size_t moving,
+                             std::size_t count, const PhaseTimer& phases, int threads,
+                             const CostModel& cost_model) {
     Array<double> costs(count, 1.0);
     if (clusters.empty()) return costs;
     ListWords words;

@@ -146,11 +146,11 @@ extern template class Halo<3>;
 
 /// Calls `sum(clusters, number of the first)` for those without ghosts in their lists, then, once
 /// the ghosts' records have come, for the others; for all at once where nothing is on its way.
-template <int D, class Sum>
-void while_ghosts_come(Halo<D>& halo, const Neighbours<D>& neighbours,
-                       std::span<const ClusterList> clusters, std::size_t width, const Sum& sum) {
+template <int D, class List, class Sum>
+void while_ghosts_come(Halo<D>& halo, const SortedCells<D>& cells, std::span<const List> clusters,
+                       std::size_t width, const Sum& sum) {
     if (!halo.is_in_flight()) return sum(clusters, 0);
-    const std::size_t inner = std::min(neighbours.inner() / width, clusters.size());
+    const std::size_t inner = std::min(cells.inner() / width, clusters.size());
     sum(clusters.first(inner), 0);
     halo.finish();
     sum(clusters.subspan(inner), inner);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/array.hpp"
+#include "cells/sweeps.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
 

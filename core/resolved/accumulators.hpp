@@ -176,8 +176,8 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
 /// arXiv:2406.02576). Pairs conserve momentum, and an arrangement of particles under pressure
 /// resists no shear, as it does with B = 1: its stress is that of p times the moment of gradients.
 template <int D>
-Vec<double, D> pressure_force(const FluidAccumulators<double, D>& sums,
-                              const FluidFields<double, D>& i) {
+DOSEKI_DEVICE_FN Vec<double, D> pressure_force(const FluidAccumulators<double, D>& sums,
+                                               const FluidFields<double, D>& i) {
     const Vec<double, D> of_neighbours = sums.pressure_gradient + i.p * sums.concentration_gradient;
     return -1.0 * (i.correction * of_neighbours + i.p * sums.corrected_gradient);
 }

@@ -12,6 +12,7 @@
 #include "resolved/force_terms.hpp"
 #include "resolved/interactions.hpp"
 #include "resolved/model.hpp"
+#include "resolved/packing.hpp"
 #include "resolved/right_hand_side.hpp"
 #include "resolved/wall_epilogue.hpp"
 
@@ -19,7 +20,7 @@ namespace doseki {
 
 template <int D, class real, class Backend>
 Resolved<D, real, Backend>::Resolved(Array<Material> materials, const Options<D>& options)
-    : model_(std::make_shared<const ResolvedModel<D>>(std::move(materials), options)) {}
+    : model_(Shared<const ResolvedModel<D>>::make(std::move(materials), options)) {}
 
 template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo,
@@ -66,7 +67,7 @@ void Resolved<D, real, Backend>::set_mixing_lengths(State& state, const Lists& l
     }
     const FlowDepth<D> depth(state, fluid_count_, width, ranks);
     const double min_length = flow.smagorinsky * flow.dp;
-    Backend::for_each_particle(fluid_count_, [&](std::size_t p) {
+    for_each_particle(fluid_count_, [&](std::size_t p) {
         state.mixing_length[p] = depth.mixing_length(state.position[p], min_length);
     });
 }
@@ -79,89 +80,11 @@ void Resolved<D, real, Backend>::pack(State& state, const Halo<D>& halo, double 
     frame_ = common_frame<real, D>(state.position, halo.ranks);
     motion_.resize(n + ghosts), wall_.resize(n - fluid_count_ + ghosts);
     fluid_.resize(moving > 0 ? n + moving : fluid_count_);
-    summary_.assign((n + Backend::width - 1) / Backend::width, {});
+    summary_.resize((n + Backend::width - 1) / Backend::width);
+    Backend::for_each_particle(summary_.size(), ClearElement<FlowSummary<D>>{summary_});
     if (is_poisoned_run()) poison<real>(motion_), poison<real>(fluid_), poison<real>(wall_);
-    Backend::for_each_particle(n, [&](std::size_t p) {
-        MotionRecord<real, D>& record = motion_[p];
-        const bool wall = p >= fluid_count_;
-        for (int a = 0; a < D; ++a) {
-            record.x[a] = frame_.coordinate(state.position[p][a], a);
-            record.v[a] = static_cast<real>(state.velocity[p][a] +
-                                            (wall ? 0.0 : half_dt * state.acceleration[p][a]));
-        }
-        record.mass = static_cast<real>(state.mass[p]);
-        record.inverse_support =
-            static_cast<real>(1.0 / (kernel_support() * state.smoothing_length[p]));
-        if (wall)
-            pack_wall(state, p);
-        else
-            pack_fluid(state, p, half_dt);
-    });
-}
-
-template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::pack_fluid(State& state, std::size_t p, double half_dt) {
-    FluidFields<double, D> record;
-    const Material& material = model_->material(state.tag[p]);
-    const Mat<double, D>& L = state.velocity_gradient[p];
-    const double rho = state.density[p] + half_dt * state.density_rate[p];
-    record.rho = rho;
-    record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
-    record.surface = state.surface[p];
-    record.p = model_->without_surface_tension(pressure_at(*material.laws, rho), record.surface,
-                                               state.parted[p]);
-    update_mean_pressure(state, p, record.p, 2.0 * half_dt);
-    record.p += state.damping_pressure[p];
-    const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
-    const double mu = viscosity(*material.laws, sheared), h = state.smoothing_length[p];
-    record.mu = mu + rho * model_->eddy_viscosity(state, p);
-    // The outermost particles need all of what damps noise.
-    record.resolved_strain = record.surface > FreeSurfaceIndicator::surface
-                                 ? 0.0
-                                 : sheared.rate * resolved_shear(mu, rho, sheared.rate * h, h);
-    for (int a = 0; a < D; ++a)
-        for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
-    record.pressure_gradient = state.pressure_gradient[p];
-    record.correction = state.correction_excess[p];
-    for (int a = 0; a < D; ++a) record.correction(a, a) += 1.0;
-    record.carried = L * state.shift[p];
-    fluid_[p] = converted<FluidRecord<real, D>>(record);
-}
-
-template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::pack_wall(const State& state, std::size_t p) {
-    WallFields<double, D> record;
-    const WallState<D>& wall = state.wall;
-    const Vec<double, D> nearest = row(wall.edge_normals[p], 0);
-    if (dot(nearest, nearest) > 0.0) {
-        record.faces = wall.edge_normals[p], record.depths = wall.edge_depths[p];
-    } else {
-        record.faces = {}, record.depths = {};
-        for (int a = 0; a < D; ++a) record.faces(0, a) = wall.normal[p][a];
-        record.depths[0] = wall.depth[p];
-    }
-    record.g_normal = record.faces * (state.acceleration[p] - model_->options.gravity);
-    record.bend = wall.bend[p];
-    record.traction = {};
-    record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
-                                      : (1.0 - wall.cut[p]) * model_->spacing_power[D];
-    record.no_slip = model_->wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
-    record.bound = state.is_bound(p) ? 1.0 : 0.0;
-    record.face = wall.face[p], record.pressure = wall.pressure[p];
-    record.film_density = wall.film_density[p];
-    record.film_traction = wall.film_traction[p];
-    wall_[p - fluid_count_] = converted<WallRecord<real, D>>(record);
-}
-
-/// Friction between grains takes the mean over the relaxation time of the density: sound that runs
-/// to and fro is no load on a contact. What never had a pressure takes the first it gets.
-template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::update_mean_pressure(State& state, std::size_t p, double pressure,
-                                                      double dt) {
-    double& mean = state.mean_pressure[p];
-    const double share =
-        dt * model_->constants.c / (density_relaxation * state.smoothing_length[p]);
-    mean = mean == 0.0 ? pressure : mean + std::min(share, 1.0) * (pressure - mean);
+    Backend::for_each_particle(n, FlowPacker<real, D>{*model_, state, motion_, fluid_, wall_,
+                                                      fluid_count_, frame_, half_dt});
 }
 
 /// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their
@@ -222,7 +145,7 @@ void Resolved<D, real, Backend>::sum_fluid(State& state, const Lists& lists, Hal
     const FluidEpilogue<real, D> epilogue(*model_, fluid_, fluid_count_, summary_, state, dt);
     const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
     while_ghosts_come(halo, lists, lists.clusters().first(clusters), Backend::width,
-                      [&](std::span<const ClusterList> part, std::size_t first) {
+                      [&](std::span<const typename Lists::List> part, std::size_t first) {
                           const auto timing = phases_.measure(Phase::pass_2);
                           Backend::sum_pairs(lists,
                                              {part, motion_, frame_, {.first_cluster = first}},
@@ -234,15 +157,12 @@ template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::reduce_summaries() {
     // What enters next may be the first fluid there is.
     const Options<D>& options = model_->options;
-    timestep_ = options.cflnumber * options.eta * options.flow.dp / model_->constants.c;
-    power_ = 0.0, work_ = {};
-    fault_ = {}, limiting_ = -1;
-    for (const FlowSummary<D>& summary : summary_) {
-        if (summary.timestep < timestep_)
-            timestep_ = summary.timestep, limiting_ = summary.limiting;
-        power_ += summary.power, work_.add(summary.work);
-        fault_.merge(summary.fault);
-    }
+    FlowSummary<D> total;
+    total.timestep = options.cflnumber * options.eta * options.flow.dp / model_->constants.c;
+    total.add(Backend::reduce(summary_.size(), FlowSummary<D>{}, joined,
+                              ElementOf<FlowSummary<D>>{summary_}));
+    timestep_ = total.timestep, limiting_ = total.limiting;
+    power_ = total.power, work_ = total.work, fault_ = total.fault;
 }
 
 template <int D, class real, class Backend>

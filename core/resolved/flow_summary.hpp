@@ -9,7 +9,7 @@
 
 namespace doseki {
 
-/// What a cluster adds to the totals of an evaluation, reduced in the order of clusters.
+/// What a cluster adds to the totals of an evaluation.
 template <int D>
 struct FlowSummary {
     double timestep = std::numeric_limits<double>::max();
@@ -17,6 +17,16 @@ struct FlowSummary {
     SchemeWork<D> work;
     Fault fault;
     std::int64_t limiting = -1;
+
+    DOSEKI_DEVICE_FN void limit(double dt, std::int64_t particle) {
+        if (dt < timestep || (dt == timestep && particle < limiting))
+            timestep = dt, limiting = particle;
+    }
+    DOSEKI_DEVICE_FN void add(const FlowSummary& other) {
+        limit(other.timestep, other.limiting);
+        power += other.power, work.add(other.work);
+        fault.merge(other.fault);
+    }
 };
 
 }  // namespace doseki

@@ -28,7 +28,7 @@ public:
           state_(state),
           dt_(dt) {}
 
-    void operator()(std::size_t p, const Sums& sums) const {
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const Sums& sums) const {
         if (p >= fluid_count_) return;  // a wall particle in the last cluster of fluid
         const Summed at{p, sums, fields(p)};
         const Mat<double, D> B = inverse_moment(sums.moment);
@@ -88,29 +88,33 @@ private:
     };
 
     /// With the density of the state, which has more digits than pairs may see.
-    FluidFields<double, D> fields(std::size_t p) const {
+    DOSEKI_DEVICE_FN FluidFields<double, D> fields(std::size_t p) const {
         auto fields = converted<FluidFields<double, D>>(records_[p]);
         fields.rho = state_.density[p] + (0.5 * dt_) * state_.density_rate[p];
         return fields;
     }
 
-    double rho0(std::size_t p) const { return model_.material(state_.tag[p]).rho0; }
+    DOSEKI_DEVICE_FN double rho0(std::size_t p) const {
+        return model_.material(state_.tag[p]).rho0;
+    }
     /// Without what damps sound.
-    double pressure(const Summed& at) const { return at.fields.p - state_.damping_pressure[at.p]; }
+    DOSEKI_DEVICE_FN double pressure(const Summed& at) const {
+        return at.fields.p - state_.damping_pressure[at.p];
+    }
     /// That the sums have seen; `state_` has the acceleration of the evaluation before.
-    Vec<double, D> predicted_velocity(std::size_t p) const {
+    DOSEKI_DEVICE_FN Vec<double, D> predicted_velocity(std::size_t p) const {
         return state_.velocity[p] + (0.5 * dt_) * state_.acceleration[p];
     }
     /// As the next evaluation will see it.
-    bool on_surface(std::size_t p) const {
+    DOSEKI_DEVICE_FN bool on_surface(std::size_t p) const {
         return state_.surface[p] > FreeSurfaceIndicator::surface;
     }
-    FlowSummary<D>& summary(std::size_t p) const {
+    DOSEKI_DEVICE_FN FlowSummary<D>& summary(std::size_t p) const {
         return summaries_[p / static_cast<std::size_t>(lanes<real>)];
     }
 
     /// Gradients of first order: those of the kernel times B, the inverse of their moment.
-    void correct_gradients(const Summed& at, const Mat<double, D>& B) const {
+    DOSEKI_DEVICE_FN void correct_gradients(const Summed& at, const Mat<double, D>& B) const {
         auto corrected = [&B](const Vec<double, D>& raw) {
             Vec<double, D> v;
             for (int a = 0; a < D; ++a)
@@ -130,7 +134,7 @@ private:
     /// Eq. (131), 0 for a particle that sees no other fluid. What walls say of the pressure along
     /// them is what it told them a step before: alone with a wall it would keep its gradient for
     /// ever, on a ridge add to it, and be driven along by it.
-    double company(const Summed& at) const {
+    DOSEKI_DEVICE_FN double company(const Summed& at) const {
         constexpr double enough = 0.05;  // of the sum on a lattice; one neighbour adds 0.07 or more
         const double own =
             at.fields.rest_volume / model_.spacing_power[D] * model_.own_concentration;
@@ -140,7 +144,8 @@ private:
 
     /// None near a free surface, where there is little pressure and the inverse is large. Bounded,
     /// or a few particles in a hole would shorten the step of all (Eq. 41).
-    Sym<double, D> correction_excess(const Summed& at, const Mat<double, D>& B) const {
+    DOSEKI_DEVICE_FN Sym<double, D> correction_excess(const Summed& at,
+                                                      const Mat<double, D>& B) const {
         constexpr double min_determinant = 0.3;  // of the moment
         constexpr double max_excess = 0.5;
         const bool corrected =
@@ -153,7 +158,7 @@ private:
         return excess;
     }
 
-    FreeSurfaceIndicator free_surface(const Summed& at) const {
+    DOSEKI_DEVICE_FN FreeSurfaceIndicator free_surface(const Summed& at) const {
         const Vec<double, D>& gradient = at.sums.concentration_gradient;
         const double slope = std::sqrt(dot(gradient, gradient));
         return FreeSurfaceIndicator::of(
@@ -163,11 +168,11 @@ private:
     }
 
     /// Over the particle's volume.
-    Vec<double, D> force_of_pairs(const Summed& at) const {
+    DOSEKI_DEVICE_FN Vec<double, D> force_of_pairs(const Summed& at) const {
         return pressure_force(at.sums, at.fields) + 2.0 * at.sums.force + at.sums.traction;
     }
 
-    Rates momentum_and_continuity(const Summed& at) const {
+    DOSEKI_DEVICE_FN Rates momentum_and_continuity(const Summed& at) const {
         const double rho = at.fields.rho, B = model_.options.attraction;
         Vec<double, D> a = (1.0 / rho) * force_of_pairs(at) + model_.options.gravity;
         a = a - B * B * state_.position[at.p];
@@ -176,20 +181,20 @@ private:
 
     /// Whether air comes in under tension: beside a body that moves, and where what has a free
     /// surface slides past an edge of a wall.
-    bool is_vented(const Summed& at) const {
+    DOSEKI_DEVICE_FN bool is_vented(const Summed& at) const {
         const Sums& sums = at.sums;
         return sums.at_body.value > 0.0 || (sums.surface.value > FreeSurfaceIndicator::surface &&
                                             edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
     }
 
     /// What shifting and the relaxation of density give to energies of compression and height [W].
-    double power_of_corrections(const Summed& at, double density_rate) const {
+    DOSEKI_DEVICE_FN double power_of_corrections(const Summed& at, double density_rate) const {
         return at.fields.volume * pressure(at) / at.fields.rho * density_rate -
                state_.mass[at.p] * dot(model_.options.gravity, state_.shift[at.p]);
     }
 
     /// A driven particle hands on the force and the rate of density that it is kept up against.
-    void push_of_layers(const Summed& at) const {
+    DOSEKI_DEVICE_FN void push_of_layers(const Summed& at) const {
         const Vec<double, D> force = at.fields.volume * force_of_pairs(at);
         SchemeWork<D>& work = summary(at.p).work;
         work.layer_force = work.layer_force - force;
@@ -199,7 +204,7 @@ private:
 
     /// Moves the particle relative to the fluid, and its density with it. Pairs see to its
     /// velocity.
-    void shift(const Summed& at, double strain, Rates& rates) const {
+    DOSEKI_DEVICE_FN void shift(const Summed& at, double strain, Rates& rates) const {
         const Sums& sums = at.sums;
         const double c = model_.constants.c;
         Vec<double, D> velocity =
@@ -215,8 +220,8 @@ private:
     /// What continuity sums up over many steps forgets how far apart particles are: the density
     /// goes towards the one that their arrangement says, and the faster the more the flow disturbs
     /// it.
-    void relax_density(const Summed& at, double normalised_density, double strain,
-                       Rates& rates) const {
+    DOSEKI_DEVICE_FN void relax_density(const Summed& at, double normalised_density, double strain,
+                                        Rates& rates) const {
         constexpr double per_strain = 10.0;
         const double rho = at.fields.rho,
                      sound = model_.constants.c / state_.smoothing_length[at.p];
@@ -226,7 +231,7 @@ private:
     }
 
     /// Below its least density a fluid does not expand any further.
-    void bound_tension(const Summed& at, Rates& rates) const {
+    DOSEKI_DEVICE_FN void bound_tension(const Summed& at, Rates& rates) const {
         const bool vented = is_vented(at);
         const double least = model_.min_density[state_.tag[at.p].material].at(vented);
         const double missing = least - at.fields.rho;
@@ -237,7 +242,7 @@ private:
 
     /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
     /// meets again, until it has closed. Returns the power of the tension that is lost [W].
-    double part_on_surface(const Summed& at) const {
+    DOSEKI_DEVICE_FN double part_on_surface(const Summed& at) const {
         const std::size_t p = at.p;
         const double rho = at.fields.rho;
         const bool had_tension = pressure(at) < 0.0;
@@ -251,7 +256,7 @@ private:
 
     /// For the next evaluation. It brings no tension that the liquid does not bear, none on a free
     /// surface.
-    void damp_sound(const Summed& at) const {
+    DOSEKI_DEVICE_FN void damp_sound(const Summed& at) const {
         const std::size_t p = at.p;
         const Material& material = model_.material(state_.tag[p]);
         const double rho = at.fields.rho, h = state_.smoothing_length[p],
@@ -266,7 +271,7 @@ private:
         state_.damping_pressure[p] = on_surface(p) ? 0.0 : added;
     }
 
-    void limit_timestep(const Summed& at) const {
+    DOSEKI_DEVICE_FN void limit_timestep(const Summed& at) const {
         const std::size_t p = at.p;
         const Vec<double, D>&a = state_.acceleration[p], &v = state_.velocity[p];
         const double dt =
@@ -274,8 +279,7 @@ private:
                              std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), model_.constants.c)
                 .smallest();
         FlowSummary<D>& of_cluster = summary(p);
-        if (dt < of_cluster.timestep)
-            of_cluster.timestep = dt, of_cluster.limiting = static_cast<std::int64_t>(p);
+        of_cluster.limit(dt, static_cast<std::int64_t>(p));
         of_cluster.fault.note_right_hand_side(dot(a, a) + state_.density_rate[p], p);
     }
 

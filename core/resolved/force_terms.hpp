@@ -25,14 +25,12 @@ struct FluidPass {
     FluidAccumulators<double, D> sums_of(std::size_t p, const FlowRecords<real, D>& given,
                                          bool walls) const {
         const std::size_t cluster = p / static_cast<std::size_t>(Backend::width);
-        const ClusterList all = lists.clusters()[cluster], list = walls ? all : all.without_fixed();
-        FluidAccumulators<double, D> found{};
-        Backend::sum_pairs(lists, {{&list, 1}, records.motion, frame, {.first_cluster = cluster}},
-                           FluidTerm<Kernel, real, D>{given, model.constants},
-                           [&](std::size_t q, const FluidAccumulators<double, D>& sums) {
-                               if (q == p) found = sums;
-                           });
-        return found;
+        const auto all = lists.clusters()[cluster];
+        const Array<typename Backend::template Lists<D>::List> list{walls ? all
+                                                                          : all.without_fixed()};
+        const PairsOf<Backend, D> pairs{list, records.motion, frame, {.first_cluster = cluster}};
+        return sums_of_particle<Backend>(lists, pairs,
+                                         FluidTerm<Kernel, real, D>{given, model.constants}, p);
     }
 
     /// Terms of Eq. (27) for particle p: pressure, viscosity and what shifting makes neighbours

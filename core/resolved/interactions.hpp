@@ -19,9 +19,9 @@ struct FlowRecords {
     std::uint32_t fluid_count, count;  // without ghosts
     real inverse_support;
 
-    std::uint32_t first_wall() const { return fluid_count; }
+    DOSEKI_DEVICE_FN std::uint32_t first_wall() const { return fluid_count; }
     /// From which distance on kernels are zero, whatever the rounding [m].
-    real reach() const {
+    DOSEKI_DEVICE_FN real reach() const {
         constexpr real rounding = std::is_same_v<real, double> ? 1e-12 : 1e-6;
         return (1 + rounding) / inverse_support;
     }
@@ -52,7 +52,7 @@ struct FluidTerm {
     FlowRecords<real, D> records;
     FlowConstants constants;
 
-    real reach() const { return records.reach(); }
+    DOSEKI_DEVICE_FN real reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
@@ -91,7 +91,7 @@ struct WallTerm {
     FlowConstants constants;
     Vec<double, D> gravity;
 
-    real reach() const { return records.reach(); }
+    DOSEKI_DEVICE_FN real reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {

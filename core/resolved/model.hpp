@@ -31,7 +31,7 @@ struct MinDensity {
     double where_vented;  // at bodies that move: where they part, air or, in 2-D, water comes in
                           // from the third dimension; and at edges of walls near a free surface
 
-    double at(bool vented) const { return vented ? where_vented : in_flow; }
+    DOSEKI_DEVICE_FN double at(bool vented) const { return vented ? where_vented : in_flow; }
     static MinDensity of(const Material& fluid) {
         auto density_at = [&fluid](double pressure) {
             const double rho0 = fluid.rho0;
@@ -79,12 +79,14 @@ struct ResolvedModel {
                                               : ViscousForm<double>{1.0, 0.0};
     }
 
-    double kernel_support() const {
+    DOSEKI_DEVICE_FN double kernel_support() const {
         return options.flow.wide_kernel ? WendlandC6<D>::support : WendlandC2<D>::support;
     }
-    const Material& material(const Tag& tag) const { return materials[tag.material]; }
-    const WallCondition& wall_condition(const Tag& tag) const {
-        return options.flow.walls.at(static_cast<std::size_t>(tag.body));
+    DOSEKI_DEVICE_FN const Material& material(const Tag& tag) const {
+        return materials[tag.material];
+    }
+    DOSEKI_DEVICE_FN const WallCondition& wall_condition(const Tag& tag) const {
+        return options.flow.walls[static_cast<std::size_t>(tag.body)];
     }
     bool has_bed_friction() const {
         return std::any_of(options.flow.walls.begin(), options.flow.walls.end(),
@@ -92,12 +94,13 @@ struct ResolvedModel {
     }
 
     /// Tension holds inside; a free surface takes none, and what has parted there none either.
-    static double without_surface_tension(double p, double surface, double parted) {
+    DOSEKI_DEVICE_FN static double without_surface_tension(double p, double surface,
+                                                           double parted) {
         return surface > FreeSurfaceIndicator::surface || parted > 0.0 ? std::max(0.0, p) : p;
     }
 
     /// rho l^2 |D| of Smagorinsky, or of Prandtl's mixing length, over rho [m^2/s].
-    double eddy_viscosity(const ResolvedState<D>& state, std::size_t p) const {
+    DOSEKI_DEVICE_FN double eddy_viscosity(const ResolvedState<D>& state, std::size_t p) const {
         const FlowOptions& flow = options.flow;
         if (flow.turbulence == Turbulence::none) return 0.0;
         const double l = flow.turbulence == Turbulence::mixing_length ? state.mixing_length[p]

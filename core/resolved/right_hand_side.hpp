@@ -1,15 +1,14 @@
 #pragma once
-#include <memory>
 #include <span>
 
 #include "base/array.hpp"
 #include "base/phase_timer.hpp"
+#include "cells/list_wear.hpp"
+#include "device/backend_of_build.hpp"
 #include "model/force_terms.hpp"
 #include "model/material.hpp"
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
-#include "pairs/cpu.hpp"
-#include "pairs/list_wear.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -29,7 +28,7 @@ struct ResolvedModel;
 /// step before where a pair needs them; a timestep is short against what they describe. How it is
 /// evaluated is in resolved/evaluate.hpp, which a unit of its own compiles: who steps a run need
 /// not see the physics.
-template <int D, class real, class BackendOf = Cpu<real>>
+template <int D, class real, class BackendOf = BackendOfBuild<real>>
 class Resolved {
 public:
     using Real = real;
@@ -100,9 +99,6 @@ private:
     FlowRecords<real, D> records(const State& state) const;
     void set_mixing_lengths(State& state, const Lists& lists, const Ranks& ranks);
     void pack(State& state, const Halo<D>& halo, double half_dt);
-    void pack_fluid(State& state, std::size_t p, double half_dt);
-    void pack_wall(const State& state, std::size_t p);
-    void update_mean_pressure(State& state, std::size_t p, double pressure, double dt);
     template <class Kernel>
     void sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
@@ -114,7 +110,7 @@ private:
     bool has_wet_walls(const FlowRecords<real, D>& records) const;
     void reduce_summaries();
 
-    std::shared_ptr<const ResolvedModel<D>> model_;
+    Shared<const ResolvedModel<D>> model_;
     CoordinateFrame<real, D> frame_;
     Field<MotionRecord<real, D>> motion_;
     Field<FluidRecord<real, D>> fluid_;

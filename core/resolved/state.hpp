@@ -48,9 +48,11 @@ struct ResolvedState : Particles<D> {
 
     /// It counts as one of the surface, which takes no tension, until it has been summed over.
     void enter(std::size_t p) override { surface[p] = 1.0; }
-    void kick(std::size_t, double) {}
+    DOSEKI_DEVICE_FN void kick(std::size_t, double) {}
     /// With which a particle moves.
-    Vec<double, D> transport_velocity(std::size_t p) const { return this->velocity[p] + shift[p]; }
+    DOSEKI_DEVICE_FN Vec<double, D> transport_velocity(std::size_t p) const {
+        return this->velocity[p] + shift[p];
+    }
 
     /// The density of a wall particle means nothing.
     bool has_density(std::size_t p) const { return !this->is_wall(p); }

@@ -10,7 +10,7 @@ namespace doseki {
 
 /// Bound on what a matrix makes of the length of a vector: its largest sum of sizes along a row.
 template <int D>
-double row_norm(const Sym<double, D>& matrix) {
+DOSEKI_DEVICE_FN double row_norm(const Sym<double, D>& matrix) {
     double largest = 0.0;
     for (int a = 0; a < D; ++a) {
         double sum = 0.0;
@@ -27,13 +27,14 @@ struct FlowTimestep {
 
     /// Of a fluid particle: speed and size of its acceleration, sound speed c at rest.
     template <int D>
-    static FlowTimestep of(const Options<D>& options, const FluidFields<double, D>& record,
-                           double h, double speed, double acceleration, double c) {
+    DOSEKI_DEVICE_FN static FlowTimestep of(const Options<D>& options,
+                                            const FluidFields<double, D>& record, double h,
+                                            double speed, double acceleration, double c) {
         return {options.cflnumber * h / (c * row_norm(record.correction) + speed),
                 force_timestep(h, acceleration, options.cfl_force),
                 0.125 * h * h * record.rho / std::max(record.mu, 1e-300)};
     }
-    double smallest() const { return std::min({acoustic, forced, viscous}); }
+    DOSEKI_DEVICE_FN double smallest() const { return std::min({acoustic, forced, viscous}); }
 };
 
 }  // namespace doseki

@@ -25,7 +25,7 @@ public:
           state_(state),
           dt_(dt) {}
 
-    void operator()(std::size_t p, const WallAccumulators<double, D>& sums) const {
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const WallAccumulators<double, D>& sums) const {
         if (p < first_wall_) return;  // a fluid particle in the first cluster of walls
         WallState<D>& wall = state_.wall;
         WallRecord<real, D>& record = records_[p - first_wall_];
@@ -61,13 +61,14 @@ private:
     /// longer the steps are.
     static constexpr double film_inertia = 0.5;
 
-    double volume(std::size_t p) const { return records_[p - first_wall_].volume; }
+    DOSEKI_DEVICE_FN double volume(std::size_t p) const { return records_[p - first_wall_].volume; }
 
     /// The film goes towards the pressure of the fluid and of the faces around it as they were a
     /// step `before`, Eq. (137). Air has none; where a face sees hardly anything, that is what is
     /// there.
-    Vec<double, D> film_force(std::size_t p, const WallAccumulators<double, D>& sums,
-                              double before) const {
+    DOSEKI_DEVICE_FN Vec<double, D> film_force(std::size_t p,
+                                               const WallAccumulators<double, D>& sums,
+                                               double before) const {
         WallState<D>& wall = state_.wall;
         wall.film_density[p] = sums.weight > 0.0 ? sums.density / sums.weight : 0.0;
         wall.film_traction[p] = {};
@@ -84,7 +85,8 @@ private:
         return sums.film_force;
     }
 
-    Vec<double, D> film_traction(std::size_t p, const WallAccumulators<double, D>& sums) const {
+    DOSEKI_DEVICE_FN Vec<double, D> film_traction(std::size_t p,
+                                                  const WallAccumulators<double, D>& sums) const {
         const Vec<double, D> hidden = hidden_area(p, sums);
         const double size = std::sqrt(dot(hidden, hidden));
         if (size == 0.0) return {};
@@ -95,8 +97,8 @@ private:
     /// That of the film where it presses against the direction n. Faces that part stretch the film
     /// between them, or its pressure would do work on them that no water brings. No film holds
     /// tension.
-    double pressure_at_surface(std::size_t p, const Vec<double, D>& n,
-                               const WallAccumulators<double, D>& sums) const {
+    DOSEKI_DEVICE_FN double pressure_at_surface(std::size_t p, const Vec<double, D>& n,
+                                                const WallAccumulators<double, D>& sums) const {
         const WallState<D>& wall = state_.wall;
         const Vec<double, D> around = (1.0 / sums.cover) * sums.face_velocity;
         const double opening = dot(around - state_.velocity[p], n);
@@ -106,21 +108,23 @@ private:
     }
 
     /// Of the face of a body, that neither its own particles nor fluid particles take up.
-    Vec<double, D> hidden_area(std::size_t p, const WallAccumulators<double, D>& sums) const {
+    DOSEKI_DEVICE_FN Vec<double, D> hidden_area(std::size_t p,
+                                                const WallAccumulators<double, D>& sums) const {
         const Vec<double, D>& all = state_.wall.area[p];
         const Vec<double, D> hidden = all - volume(p) * sums.area;
         return dot(hidden, all) > 0.0 ? state_.wall.rows[p] * hidden : Vec<double, D>{};
     }
 
     /// Velocity along the wall of the fluid around against it.
-    Vec<double, D> sliding(std::size_t p, const WallAccumulators<double, D>& sums) const {
+    DOSEKI_DEVICE_FN Vec<double, D> sliding(std::size_t p,
+                                            const WallAccumulators<double, D>& sums) const {
         const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - state_.velocity[p];
         return tangential(u, state_.wall.normal[p]);
     }
 
     /// On a particle of the first row that is near enough to the fluid, Eq. (39).
-    Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
-                            const WallCondition& wall) const {
+    DOSEKI_DEVICE_FN Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
+                                             const WallCondition& wall) const {
         const bool is_first = state_.wall.depth[p] < model_.options.flow.dp;
         if (!is_first || !(sums.weight > min_filled)) return {};
         const Vec<double, D> along = sliding(p, sums);
@@ -133,8 +137,9 @@ private:
     /// Eqs. (92) and (93). Each row takes the friction of the force that the fluid presses on it
     /// with, so that friction belongs to the whole weight of what lies on the bed, whatever its
     /// depth is and wherever it ends.
-    Vec<double, D> voellmy_drag(std::size_t p, const WallAccumulators<double, D>& sums,
-                                const WallCondition& wall) const {
+    DOSEKI_DEVICE_FN Vec<double, D> voellmy_drag(std::size_t p,
+                                                 const WallAccumulators<double, D>& sums,
+                                                 const WallCondition& wall) const {
         const Vec<double, D>& n = state_.wall.normal[p];
         Vec<double, D>& slip = state_.bed_slip[p];
         const double area = volume(p) * dot(sums.area, n);
@@ -158,7 +163,7 @@ private:
 
     /// Eq. (107); `weight` is that of the fluid [N/m^3]. Friction that followed each wave of sound
     /// would drive the waves along the bed until they lift the fluid off it.
-    double mean_load(std::size_t p, double pressed, double weight) const {
+    DOSEKI_DEVICE_FN double mean_load(std::size_t p, double pressed, double weight) const {
         double& load = state_.bed_load[p];
         const double depth = weight > 0.0 ? load / weight : 0.0,
                      time = bed_load_crossings * depth / model_.constants.c;

@@ -1,5 +1,4 @@
 #pragma once
-#include "base/parallel.hpp"
 #include "model/body_step.hpp"
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
@@ -12,8 +11,19 @@ struct Weight {
     double mass = 0.0;
     Vec<double, D> momentum{};
 
-    Weight operator+(const Weight& other) const {
+    DOSEKI_DEVICE_FN Weight operator+(const Weight& other) const {
         return {mass + other.mass, momentum + other.momentum};
+    }
+};
+
+/// Of the fluid on fixed walls: force, and power where these have a velocity.
+template <int D>
+struct WallPush {
+    Vec<double, D> force{};
+    double power = 0.0;
+
+    DOSEKI_DEVICE_FN WallPush operator+(const WallPush& other) const {
+        return {force + other.force, power + other.power};
     }
 };
 
@@ -30,9 +40,7 @@ struct Account {
     double parting_work = 0.0;  // that bodies lost when parts came off them [J]
 
     /// Half a step of the forces on walls and of `scheme`, before the step or after it.
-    void add_forces(const Particles<D>& particles, const SchemeWork<D>& scheme, double half_dt) {
-        const Push push = reduce(particles.size(), Push{}, std::plus<Push>{},
-                                 [&particles](std::size_t p) { return push_of(particles, p); });
+    void add_forces(const WallPush<D>& push, const SchemeWork<D>& scheme, double half_dt) {
         impulse = impulse + half_dt * (scheme.layer_force - push.force);
         wall_work += half_dt * (scheme.layer_power - push.power);
         scheme_work += half_dt * scheme.power;
@@ -48,21 +56,6 @@ struct Account {
         impulse = impulse + step.impulse;
         gravity_work += step.gravity_work, contact_work += step.contact_work;
         parting_work += step.parting_work;
-    }
-
-private:
-    struct Push {  // of the fluid on fixed walls
-        Vec<double, D> force{};
-        double power = 0.0;
-
-        Push operator+(const Push& other) const {
-            return {force + other.force, power + other.power};
-        }
-    };
-
-    static Push push_of(const Particles<D>& particles, std::size_t p) {
-        if (!particles.is_fixed(p) || !particles.wall.in_use) return {};
-        return {particles.wall.force[p], dot(particles.wall.force[p], particles.velocity[p])};
     }
 };
 

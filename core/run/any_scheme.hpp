@@ -9,6 +9,7 @@
 
 #include "base/array.hpp"
 #include "base/phase_timer.hpp"
+#include "cells/list_wear.hpp"
 #include "model/archive.hpp"
 #include "model/fault.hpp"
 #include "model/force_terms.hpp"
@@ -17,7 +18,6 @@
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
-#include "pairs/list_wear.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
@@ -48,6 +48,7 @@ public:
     virtual double drift(double dt) = 0;
     /// Of the free particles.
     virtual Weight<D> weight() const = 0;
+    virtual WallPush<D> wall_push() const = 0;
 
     virtual int width() const = 0;
     virtual Array<std::uint32_t> sort(Lists& lists, const ParticlesToSort<D>& particles) = 0;

@@ -31,21 +31,6 @@ FailureSite first_site(const Ranks& ranks, const FailureSite& own);
 std::string described(const FailureSite& site, int dimensions, double time, std::int64_t step,
                       const Array<Material>& materials);
 
-/// Index of the first particle that is lost, -1 for none: outside the world, or a whole box away
-/// from a domain that is given.
-template <int D>
-std::int64_t lost_particle(const Particles<D>& particles, const Domain<D>& domain) {
-    for (std::size_t p = 0; p < particles.size(); ++p)
-        for (int a = 0; a < D; ++a) {
-            const double x = particles.position[p][a], length = domain.length(a);
-            const bool bounded = !domain.periodic[a] && length > 0.0;
-            const bool strayed =
-                bounded && (x < domain.low[a] - length || x > domain.high[a] + length);
-            if (!(std::abs(x) < 1e9) || strayed) return static_cast<std::int64_t>(p);
-        }
-    return -1;
-}
-
 template <int D>
 std::int64_t fastest_particle(const Particles<D>& particles) {
     std::size_t fastest = 0;

@@ -7,33 +7,17 @@
 
 #include "base/array.hpp"
 #include "base/phase_timer.hpp"
+#include "cells/list_wear.hpp"
+#include "cells/sweeps.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "pairs/backend.hpp"
-#include "pairs/list_wear.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "ranks/migration.hpp"
 #include "run/any_scheme.hpp"
 
 namespace doseki {
-
-/// Support radii of particles [m], as large as they may become before the next sort.
-template <class Lists>
-Array<double> support_radii(AnyScheme<Lists>& scheme, const Options<Lists::dim>& options) {
-    const auto& particles = scheme.particles();
-    Array<double> support(particles.size());
-    const bool grows = options.h_mode == SmoothingLengthMode::eq10;
-    for (std::size_t p = 0; p < support.size(); ++p) {
-        double h = particles.smoothing_length[p];
-        if (grows) {
-            const double rho0 = scheme.materials()[particles.tag[p].material].rho0;
-            h = max(h, 1.25 * options.eta * std::pow(particles.mass[p] / rho0, 1.0 / Lists::dim));
-        }
-        support[p] = scheme.kernel_support() * h;
-    }
-    return support;
-}
 
 /// The neighbour lists of a run and what keeps them true: the skin, how far particles have gone
 /// since the last build, and the ghosts of other ranks. Lists hold as long as no two particles can
@@ -116,11 +100,6 @@ public:
     }
 
 private:
-    static Array<std::uint8_t> wall_flags(const State& state) {
-        Array<std::uint8_t> fixed(state.size());
-        for (std::size_t p = 0; p < state.size(); ++p) fixed[p] = state.is_wall(p);
-        return fixed;
-    }
     /// Whether walls of any rank have faces that may meet.
     bool faces_meet(const State& state) const {
         const auto faces = state.wall.face.stored();
@@ -185,9 +164,7 @@ void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64
                               PhaseTimer& phases) {
     Array<double> support = supports();
     const Array<std::uint8_t> fixed = wall_flags(state);
-    const double own_support = support.empty() ? std::numeric_limits<double>::max()
-                                               : *std::min_element(support.begin(), support.end());
-    min_support_ = halo_.ranks.smallest(own_support);
+    min_support_ = halo_.ranks.smallest(range_of(support).smallest);
     const bool faces_meet = this->faces_meet(state);
     skin_ = cheapest_skin(min_support_, steps);
     skin_width_ = skin_ * min_support_;
@@ -211,9 +188,7 @@ void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64
     const Field<std::int32_t> faces = faces_meet ? faces_with_ghosts(state) : Field<std::int32_t>{};
     scheme_.build_lists(lists_, position, std::span<const double>(support), skin_width_,
                         std::span<const std::int32_t>(faces));
-    if (halo_.alone())
-        wear_.start(state.position,
-                    skin_width_ + *std::max_element(support.begin(), support.end()));
+    if (halo_.alone()) wear_.start(state.position, skin_width_ + range_of(support).largest);
     moved_ = 0.0, approach_ = 0.0, news_ = true, rebuild_step_ = steps;
     ++rebuilds_;
 }

@@ -16,7 +16,7 @@ template <class SchemeOf>
 using ListsOf = typename SchemeOf::Backend::template Lists<SchemeOf::dim>;
 
 template <class SchemeOf>
-class RunningScheme final : public AnyScheme<ListsOf<SchemeOf>> {
+class RunningScheme final : public AnyScheme<ListsOf<SchemeOf>>, public InDeviceMemory {
     static_assert(Scheme<SchemeOf>, "see run/scheme.hpp for what a scheme must have");
     static constexpr int D = SchemeOf::dim;
     using Lists = ListsOf<SchemeOf>;
@@ -40,9 +40,11 @@ public:
             if (state_.has_strength) own.deviatoric_stress = &state_.deviatoric_stress;
         return own;
     }
-    void kick(double half_dt) override { doseki::kick(state(), half_dt); }
-    double drift(double dt) override { return doseki::drift(state(), dt); }
-    Weight<D> weight() const override { return doseki::weight(state()); }
+    void kick(double half_dt) override { doseki::kick<Backend>(state(), half_dt); }
+    double drift(double dt) override { return doseki::drift<Backend>(state(), dt); }
+    Weight<D> weight() const override { return doseki::weight<Backend>(state()); }
+
+    WallPush<D> wall_push() const override { return doseki::wall_push<Backend>(state()); }
 
     int width() const override { return Backend::width; }
     Array<std::uint32_t> sort(Lists& lists, const ParticlesToSort<D>& particles) override {

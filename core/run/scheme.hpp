@@ -3,7 +3,9 @@
 // it keeps of particles and says what happens to that at each point of a step.
 
 #include "base/array.hpp"
+#include "base/named.hpp"
 #include "base/phase_timer.hpp"
+#include "cells/list_wear.hpp"
 #include "model/fault.hpp"
 #include "model/force_terms.hpp"
 #include "model/material.hpp"
@@ -11,7 +13,6 @@
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
-#include "pairs/list_wear.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 
@@ -23,7 +24,7 @@ concept SchemeState =
     std::derived_from<State, Particles<State::dim>> &&
     std::constructible_from<StateOf<State>, const Array<Material>&, const Options<State::dim>&> &&
     requires(State& state, const State& known, std::size_t p, double dt) {
-        state.for_each_field([](const char*, auto&) {});
+        state.for_each_field(IgnoreNamed{});
         state.enter(p);     // a particle that an inflow has just added
         state.kick(p, dt);  // the scheme's own fields, over half a step
         { known.transport_velocity(p) } -> std::same_as<Vec<double, State::dim>>;

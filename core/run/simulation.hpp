@@ -84,7 +84,8 @@ public:
         bodies.set_velocities(particles, 0.0);
         remove_outflow();
         look_at_terrain();
-        renew_lists();
+        rebuild_lists();
+        for (int n = 0; n < scheme_->first_evaluations(); ++n) evaluate(0.0);
     }
 
     /// Steps until `limit` (met exactly), or returns early at the first step at or past `pause`, or
@@ -122,17 +123,11 @@ public:
         lists_.serialise_lists(archive, particles);
     }
 
-    /// Makes lists anew, for a state that was saved with clusters of another width. The run goes on
-    /// with sums in another order.
-    void renew_lists() {
-        rebuild_lists();
-        for (int n = 0; n < scheme_->first_evaluations(); ++n) evaluate(0.0);
-    }
 
     /// Throws std::invalid_argument where restored lists are not those of clusters of this width.
     void expect_lists() const { lists_.expect_fit_of(particles); }
 
-    /// The same for a state that keeps its rates: only the order of sums changes.
+    /// Makes lists anew for a state that keeps its rates: only the order of sums changes.
     void renew_order() { rebuild_lists(); }
 
     double time() const { return time_; }
@@ -207,7 +202,9 @@ private:
                (scheme_->kernel_support() * sound_speed_);
     }
     Ranks& ranks() { return lists_.halo().ranks; }
-    Array<double> supports() { return support_radii(*scheme_, options_); }
+    Array<double> supports() {
+        return support_radii(particles, materials(), options_, scheme_->kernel_support());
+    }
 
     template <class Work>
     void timed(Phase phase, const Work& work) {
@@ -223,7 +220,6 @@ private:
     void evaluate(double half_dt);
 
     void rebuild_lists();
-    void wrap_positions();
     bool look_at_terrain() {
         return terrain_looks_.look(
             particles, [this] { return supports(); }, open_boundaries.removed);
@@ -257,7 +253,7 @@ void Simulation<Lists>::step(double limit) {
 
     bodies.loads.begin_step(particles, ranks());
     kick(0.5 * dt);
-    account_.add_forces(particles, scheme_->work(), 0.5 * dt);
+    account_.add_forces(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
     const double own_moved = drift(dt), moved = ranks().largest(own_moved);
     time_ = dt < end - before ? before + dt : end;
     if (moved > max_mach * sound_speed_ * dt)
@@ -267,7 +263,7 @@ void Simulation<Lists>::step(double limit) {
     update_lists(before, moved);
     evaluate(0.5 * dt);
     bodies.loads.end_step(particles, ranks(), dt, time_);
-    account_.add_forces(particles, scheme_->work(), 0.5 * dt);
+    account_.add_forces(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_->end_step();
     timed(Phase::bodies, [&] { bodies.set_velocities(particles, 0.0); });
@@ -341,7 +337,7 @@ template <class Lists>
 void Simulation<Lists>::rebuild_lists() {
     const std::int64_t lost = lost_particle(particles, domain_);
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
-    wrap_positions();
+    wrap_positions(particles, domain_);
     bodies.loads.lose_members();
     lists_.cut_space(particles, phases());
     drop_removed();
@@ -352,12 +348,6 @@ void Simulation<Lists>::rebuild_lists() {
     const auto supports = [this] { return this->supports(); };
     terrain_looks_.fetch(particles, supports);
     lists_.rebuild(particles, supports, steps_, phases());
-}
-
-template <class Lists>
-void Simulation<Lists>::wrap_positions() {
-    if (!domain_.any_periodic()) return;
-    for (auto& x : particles.position) x = wrapped(domain_, x);
 }
 
 /// True where any rank has particles that left.

@@ -5,9 +5,8 @@
 
 #include "base/array.hpp"
 #include "base/poison.hpp"
-#include "physics/stress.hpp"
-#include "physics/timestep.hpp"
 #include "ranks/common_frame.hpp"
+#include "ueta2022/epilogues.hpp"
 #include "ueta2022/force_terms.hpp"
 #include "ueta2022/interactions.hpp"
 #include "ueta2022/model.hpp"
@@ -17,7 +16,7 @@ namespace doseki {
 
 template <int D, class real, class Backend>
 Ueta2022<D, real, Backend>::Ueta2022(Array<Material> materials, const Options<D>& options)
-    : model_(std::make_shared<const Ueta2022Model<D>>(std::move(materials), options)) {}
+    : model_(Shared<const Ueta2022Model<D>>::make(std::move(materials), options)) {}
 
 template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::evaluate(State& particles, const Lists& lists, Halo<D>& halo,
@@ -28,7 +27,8 @@ void Ueta2022<D, real, Backend>::evaluate(State& particles, const Lists& lists, 
     pack_motion(particles, halo, half_dt);
     if (new_lists && !halo.alone()) agree_on_h(particles, halo.ranks);
     stress_.resize(particles.size() + halo.ghosts());
-    summary_.assign(lists.clusters().size(), {});
+    summary_.resize(lists.clusters().size());
+    Backend::for_each_particle(summary_.size(), ClearElement<MomentumSummary>{summary_});
     if (poisoned) poison<real>(stress_), poison<double>(particles.acceleration);
     halo.start({halo_column(motion_)});
     sum_velocity_gradient(particles, lists, halo, half_dt);
@@ -48,22 +48,9 @@ void Ueta2022<D, real, Backend>::pack_motion(State& particles, const Halo<D>& ha
     motion_.resize(n + halo.ghosts());
     frame_ = common_frame<real, D>(particles.position, halo.ranks);
     const double h0 = n > 0 ? particles.smoothing_length[0] : 0.0;
-    const bool equal = Backend::reduce(n, true, std::logical_and{}, [&](std::size_t p) {
-        MotionRecord<real, D>& record = motion_[p];
-        for (int a = 0; a < D; ++a) {
-            record.x[a] = frame_.coordinate(particles.position[p][a], a);
-            record.v[a] = static_cast<real>(particles.velocity[p][a] +
-                                            half_dt * particles.acceleration[p][a]);
-        }
-        const double rho = particles.density[p] + half_dt * particles.density_rate[p];
-        double& h = particles.smoothing_length[p];
-        if (model_->options.h_mode == SmoothingLengthMode::eq10)
-            h = smoothing_length<D>(model_->options.eta, particles.mass[p], rho,
-                                    model_->materials[particles.tag[p].material].rho0);
-        record.mass = static_cast<real>(particles.mass[p]);
-        record.inverse_support = static_cast<real>(1.0 / (WendlandC6<D>::support * h));
-        return h == h0;
-    });
+    const bool equal =
+        Backend::reduce(n, true, std::logical_and{},
+                        MotionPacker<real, D>{*model_, particles, motion_, frame_, half_dt, h0});
     if (halo.alone()) equal_h_ = model_->options.h_mode == SmoothingLengthMode::constant && equal;
 }
 
@@ -77,50 +64,10 @@ void Ueta2022<D, real, Backend>::agree_on_h(const State& particles, const Ranks&
     equal_h_ = model_->options.h_mode == SmoothingLengthMode::constant && far[0] == -far[1];
 }
 
-/// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
-template <int D, class real, class Backend>
-void Ueta2022<D, real, Backend>::update_particle(State& particles, std::size_t p, Mat<double, D> L,
-                                                 double half_dt) {
-    const Tag& tag = particles.tag[p];
-    const Material& material = model_->materials[tag.material];
-    const double rho = particles.density[p] + half_dt * particles.density_rate[p];
-    for (double& element : L.element) element /= rho;
-
-    const auto eos = model_->equation_of_state(tag, rho);
-    summary_[p / Backend::width].fault.note_density(rho, material.rho0, p);
-    Deviator<double, D> stress{}, rate{};
-    if (tag.motion == Motion::free) {
-        if (material.law == Law::fluid) {
-            const ShearState<double> state{strain_rate(L), eos.pressure, rho};
-            stress = viscous_stress(L, viscosity(*material.laws, state));
-        } else if (material.shear_modulus > 0.0) {
-            stress = particles.deviatoric_stress[p];
-            add_scaled(stress, half_dt, particles.deviatoric_stress_rate[p]);
-            if (model_->yields)
-                stress = return_map(stress, eos.pressure, model_->surfaces[tag.material]);
-            rate = elastic_stress_rate(L, stress, material.shear_modulus);
-        }
-    }
-    particles.density_rate[p] = density_rate(material, tag.motion, rho, L);
-    if (particles.has_strength) particles.deviatoric_stress_rate[p] = rate;
-
-    const auto scaled = stress_over_rho_squared(eos.pressure, stress, rho);
-    StressRecord<real, D>& record = stress_[p];
-    for (int k = 0; k < Sym<real, D>::size; ++k)
-        record.stress.element[k] = static_cast<real>(scaled.element[k]);
-    record.rho = static_cast<real>(rho);
-    record.c = static_cast<real>(eos.sound_speed);
-    record.balsara = static_cast<real>(
-        model_->options.balsara ? balsara_switch(L, eos.sound_speed, particles.smoothing_length[p])
-                                : 1.0);
-}
-
 template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::sum_velocity_gradient(State& particles, const Lists& lists,
                                                        Halo<D>& halo, double half_dt) {
-    auto update = [&](std::size_t p, const Mat<double, D>& gradient) {
-        update_particle(particles, p, gradient, half_dt);
-    };
+    const StressEpilogue<real, D> update{*model_, particles, stress_, summary_, half_dt};
     const std::span<const MotionRecord<real, D>> motion(motion_);
     auto sum = [&](const auto& term) {
         sum_pairs(Phase::pass_1, lists, lists.clusters(), halo, term, update);
@@ -135,25 +82,10 @@ template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::sum_momentum(State& particles, const Lists& lists, Halo<D>& halo) {
     constexpr std::size_t width = Backend::width;
     const auto clusters = lists.clusters().first((lists.moving() + width - 1) / width);
-    std::fill(particles.acceleration.begin() + lists.moving(), particles.acceleration.end(),
-              Vec<double, D>{});
+    const auto of_walls = std::span(particles.acceleration).subspan(lists.moving());
+    Backend::for_each_particle(of_walls.size(), ClearElement<Vec<double, D>>{of_walls});
 
-    auto accelerate = [&](std::size_t p, const MomentumAccumulators<double, D>& sums) {
-        if (!particles.is_free(p)) {
-            particles.acceleration[p] = {};
-            return;
-        }
-        const Vec<double, D> a = sums.acceleration + model_->options.gravity;
-        particles.acceleration[p] = a;
-        const double v_sig = max(sums.max_v_sig, 2.0 * static_cast<double>(stress_[p].c));
-        ClusterSummary& summary = summary_[p / width];
-        summary.av_power += particles.mass[p] * sums.av_power;
-        const double dt = doseki::timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
-                                           model_->options.cflnumber, model_->options.cfl_force);
-        if (dt < summary.timestep)
-            summary.timestep = dt, summary.limiting = static_cast<std::int64_t>(p);
-        summary.fault.note_right_hand_side(dot(a, a) + particles.density_rate[p], p);
-    };
+    const MomentumEpilogue<real, D> accelerate{*model_, particles, stress_, summary_};
     const std::span<const MotionRecord<real, D>> motion(motion_);
     const std::span<const StressRecord<real, D>> stress(stress_);
     const MomentumOptions<real> constants{static_cast<real>(model_->options.alpha),
@@ -169,15 +101,10 @@ void Ueta2022<D, real, Backend>::sum_momentum(State& particles, const Lists& lis
 
 template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::reduce_summaries() {
-    timestep_ = std::numeric_limits<double>::max();
-    av_power_ = 0.0;
-    fault_ = {}, limiting_ = -1;
-    for (const ClusterSummary& summary : summary_) {
-        if (summary.timestep < timestep_)
-            timestep_ = summary.timestep, limiting_ = summary.limiting;
-        av_power_ += summary.av_power;
-        fault_.merge(summary.fault);
-    }
+    const auto total = Backend::reduce(summary_.size(), MomentumSummary{}, joined,
+                                       ElementOf<MomentumSummary>{summary_});
+    timestep_ = total.timestep, limiting_ = total.limiting;
+    av_power_ = total.av_power, fault_ = total.fault;
 }
 
 /// In float, coordinates are whole numbers, which may look like NaN: only double motion is looked
@@ -194,11 +121,12 @@ void Ueta2022<D, real, Backend>::find_survivor(State& particles) {
 template <int D, class real, class Backend>
 template <class Term, class Epilogue>
 void Ueta2022<D, real, Backend>::sum_pairs(Phase phase, const Lists& lists,
-                                           std::span<const ClusterList> clusters, Halo<D>& halo,
-                                           const Term& term, const Epilogue& epilogue) {
+                                           std::span<const typename Lists::List> clusters,
+                                           Halo<D>& halo, const Term& term,
+                                           const Epilogue& epilogue) {
     PhaseTimer* const sampled = phase == Phase::pass_1 ? &phases_ : nullptr;
     while_ghosts_come(halo, lists, clusters, Backend::width,
-                      [&](std::span<const ClusterList> part, std::size_t first) {
+                      [&](std::span<const typename Lists::List> part, std::size_t first) {
                           const auto timing = phases_.measure(phase);
                           Backend::sum_pairs(lists,
                                              {part, motion_, frame_, {skip_empty_, first, sampled}},
@@ -209,26 +137,15 @@ void Ueta2022<D, real, Backend>::sum_pairs(Phase phase, const Lists& lists,
 template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::end_step(State& particles) const {
     if (!model_->yields || !particles.has_strength) return;
-    Backend::for_each_particle(particles.size(), [&](std::size_t p) {
-        const YieldSurface<double>& surface =
-            model_->surfaces[static_cast<std::size_t>(particles.tag[p].material)];
-        if (particles.is_free(p) && std::isfinite(surface.k))
-            particles.deviatoric_stress[p] = return_map(
-                particles.deviatoric_stress[p], equation_of_state(particles, p).pressure, surface);
-    });
+    Backend::for_each_particle(particles.size(), StressReturn<D>{*model_, particles});
 }
 
 template <int D, class real, class Backend>
 ForceTerms<D> Ueta2022<D, real, Backend>::force_terms(const State& particles, const Lists& lists,
                                                       Halo<D>& halo, std::int64_t p) const {
     Field<StressRecord<real, D>> pressure = stress_;
-    Backend::for_each_particle(particles.size(), [&](std::size_t q) {
-        const double rho = static_cast<double>(stress_[q].rho);
-        const Sym<double, D> stress = stress_over_rho_squared(
-            model_->equation_of_state(particles.tag[q], rho).pressure, Deviator<double, D>{}, rho);
-        for (int k = 0; k < Sym<real, D>::size; ++k)
-            pressure[q].stress.element[k] = static_cast<real>(stress.element[k]);
-    });
+    Backend::for_each_particle(particles.size(),
+                               IsotropicStress<real, D>{*model_, particles, stress_, pressure});
     halo.start({halo_column(pressure)});
     halo.finish();
     if (p < 0 || !particles.is_free(static_cast<std::size_t>(p))) return {};

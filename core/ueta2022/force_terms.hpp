@@ -25,15 +25,10 @@ struct MomentumPass {
                                             double alpha) const {
         const MomentumOptions<real> constants{static_cast<real>(alpha), options.fixed_limits_dt};
         const std::size_t cluster = p / static_cast<std::size_t>(Backend::width);
-        MomentumAccumulators<double, D> found{};
-        Backend::sum_pairs(
-            lists,
-            {lists.clusters().subspan(cluster, 1), motion, frame, {.first_cluster = cluster}},
-            MomentumTerm<GradientOf::mean_h, real, D>{motion, stress, constants},
-            [&](std::size_t q, const MomentumAccumulators<double, D>& sums) {
-                if (q == p) found = sums;
-            });
-        return found;
+        const PairsOf<Backend, D> pairs{
+            lists.clusters().subspan(cluster, 1), motion, frame, {.first_cluster = cluster}};
+        return sums_of_particle<Backend>(
+            lists, pairs, MomentumTerm<GradientOf::mean_h, real, D>{motion, stress, constants}, p);
     }
 };
 

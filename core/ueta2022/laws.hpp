@@ -24,8 +24,9 @@ YieldSurface<double> yield_surface(const Material& material) {
 
 /// Pressure and sound speed of a particle as its scheme sees them: the equation of state and the
 /// rule on tension.
-inline ThermodynamicState<double> equation_of_state(const Material& material, double rho,
-                                                    Motion motion, Tension tension) {
+DOSEKI_DEVICE_FN inline ThermodynamicState<double> equation_of_state(const Material& material,
+                                                                     double rho, Motion motion,
+                                                                     Tension tension) {
     auto state = thermodynamic_state(*material.laws, rho);
     const bool clamped = motion == Motion::fixed || tension == Tension::clamp_all ||
                          (tension == Tension::clamp_fluid && material.law == Law::fluid);
@@ -40,7 +41,8 @@ inline constexpr double void_ratio = 0.60368;
 /// Eq. (11), drho/dt = -rho div v. Inflow-buffer particles keep their prescribed density; a
 /// particle stretched beyond void_ratio is not stretched further.
 template <int D>
-double density_rate(const Material& material, Motion motion, double rho, const Mat<double, D>& L) {
+DOSEKI_DEVICE_FN double density_rate(const Material& material, Motion motion, double rho,
+                                     const Mat<double, D>& L) {
     if (motion == Motion::driven) return 0.0;
     const double rate = -rho * trace(L);
     return rho < void_ratio * material.rho0 ? max(0.0, rate) : rate;
@@ -48,7 +50,7 @@ double density_rate(const Material& material, Motion motion, double rho, const M
 
 /// Eq. (10), held within a quarter of its value at rest (a solid in tension would grow h for ever).
 template <int D>
-double smoothing_length(double eta, double mass, double rho, double rho0) {
+DOSEKI_DEVICE_FN double smoothing_length(double eta, double mass, double rho, double rho0) {
     const double rest = eta * std::pow(mass / rho0, 1.0 / D);
     return std::clamp(eta * std::pow(mass / rho, 1.0 / D), 0.8 * rest, 1.25 * rest);
 }

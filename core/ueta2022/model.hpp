@@ -24,7 +24,8 @@ struct Ueta2022Model {
     }
 
     /// With the tension cut of what yields, Eq. (62).
-    ThermodynamicState<double> equation_of_state(const Tag& tag, double rho) const {
+    DOSEKI_DEVICE_FN ThermodynamicState<double> equation_of_state(const Tag& tag,
+                                                                  double rho) const {
         auto state =
             doseki::equation_of_state(materials[tag.material], rho, tag.motion, options.tension);
         state.pressure = tension_cut(surfaces[tag.material], state.pressure);

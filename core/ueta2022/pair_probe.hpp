@@ -85,7 +85,7 @@ private:
     void sum(const HotSet& hot) const {
         const std::span<const MotionRecord<real, D>> motion(hot.motion);
         const std::span<const StressRecord<real, D>> stress(hot.stress);
-        const PairsToSum<real, D> pairs{hot.clusters, motion, scheme_.frame(), {}};
+        const PairsOf<Backend, D> pairs{hot.clusters, motion, scheme_.frame(), {}};
         volatile double sink = 0.0;
         auto keep_gradient = [&](std::size_t, const Mat<double, D>& gradient) {
             sink = gradient.element[0];
@@ -107,7 +107,9 @@ private:
 };
 
 template <int D, class real, class Backend>
-double Ueta2022<D, real, Backend>::bare_pair_rate(const Lists& lists, double seconds) const {
+double Ueta2022<D, real, Backend>::bare_pair_rate(const Lists& lists, double seconds) const
+    requires std::is_same_v<typename Lists::List, ClusterList>
+{
     return PairProbe(*this, lists).bare_rate(seconds);
 }
 

@@ -1,21 +1,21 @@
 #pragma once
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 
 #include "base/array.hpp"
 #include "base/phase_timer.hpp"
+#include "cells/list_wear.hpp"
+#include "device/backend_of_build.hpp"
 #include "model/fault.hpp"
 #include "model/force_terms.hpp"
 #include "model/material.hpp"
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
-#include "pairs/cpu.hpp"
-#include "pairs/list_wear.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
+#include "ueta2022/epilogues.hpp"
 #include "ueta2022/records.hpp"
 #include "ueta2022/state.hpp"
 
@@ -27,7 +27,7 @@ struct Ueta2022Model;
 /// Right-hand side of the scheme of Ueta et al. (2022): rates of density, stress and velocity of
 /// all particles, from two sums over pairs. How it is evaluated is in ueta2022/evaluate.hpp, which
 /// a unit of its own compiles: who steps a run need not see the physics.
-template <int D, class real, class BackendOf = Cpu<real>>
+template <int D, class real, class BackendOf = BackendOfBuild<real>>
 class Ueta2022 {
 public:
     using Real = real;
@@ -93,7 +93,8 @@ public:
 
     /// Pairs per second of one thread in both sums over a few clusters that stay in cache, for
     /// `seconds` of processor time: for the bench.
-    double bare_pair_rate(const Lists& lists, double seconds) const;
+    double bare_pair_rate(const Lists& lists, double seconds) const
+        requires std::is_same_v<typename Lists::List, ClusterList>;
 
     /// Stress records are kept from step to step where nothing is near (see compute).
     void serialise(Archive& archive) {
@@ -106,33 +107,24 @@ public:
     }
 
 private:
-    /// What a cluster adds to the step's totals, reduced in the order of clusters.
-    struct ClusterSummary {
-        double timestep = std::numeric_limits<double>::max();
-        double av_power = 0.0;
-        Fault fault;
-        std::int64_t limiting = -1;
-    };
-
     void pack_motion(State& particles, const Halo<D>& halo, double half_dt);
     void agree_on_h(const State& particles, const Ranks& ranks);
-    void update_particle(State& particles, std::size_t p, Mat<double, D> L, double half_dt);
     void sum_velocity_gradient(State& particles, const Lists& lists, Halo<D>& halo, double half_dt);
     void sum_momentum(State& particles, const Lists& lists, Halo<D>& halo);
     void reduce_summaries();
     void find_survivor(State& particles);
 
     template <class Term, class Epilogue>
-    void sum_pairs(Phase phase, const Lists& lists, std::span<const ClusterList> clusters,
+    void sum_pairs(Phase phase, const Lists& lists, std::span<const typename Lists::List> clusters,
                    Halo<D>& halo, const Term& term, const Epilogue& epilogue);
 
-    std::shared_ptr<const Ueta2022Model<D>> model_;
+    Shared<const Ueta2022Model<D>> model_;
     bool equal_h_ = true;
     bool skip_empty_ = false;
     CoordinateFrame<real, D> frame_;
     Field<MotionRecord<real, D>> motion_;
     Field<StressRecord<real, D>> stress_;
-    Field<ClusterSummary> summary_;
+    Field<MomentumSummary> summary_;
     PhaseTimer phases_;
     double timestep_ = 0.0;
     double av_power_ = 0.0;

@@ -39,11 +39,13 @@ struct Ueta2022State : Particles<D> {
         if (has_strength) deviatoric_stress[p] = deviatoric_stress_rate[p] = {};
     }
     /// Half a step of the scheme's own fields.
-    void kick(std::size_t p, double half_dt) {
+    DOSEKI_DEVICE_FN void kick(std::size_t p, double half_dt) {
         if (has_strength) add_scaled(deviatoric_stress[p], half_dt, deviatoric_stress_rate[p]);
     }
     /// With which a particle moves.
-    Vec<double, D> transport_velocity(std::size_t p) const { return this->velocity[p]; }
+    DOSEKI_DEVICE_FN Vec<double, D> transport_velocity(std::size_t p) const {
+        return this->velocity[p];
+    }
 
     bool has_density(std::size_t) const { return true; }
     /// Not finite where any field is not.

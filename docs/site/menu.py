@@ -33,6 +33,7 @@ MENU = (
             "how-to/paraview",
             "how-to/restart",
             "how-to/ranks",
+            "how-to/graphics-card",
             "how-to/studies",
         ),
         "how-to",

@@ -20,9 +20,13 @@ INSTRUCTION_SETS: dict[str, dict[str, set[str]]] = {
         "v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
         "v3": {"avx2", "fma", "bmi1", "bmi2", "f16c"},
         "scalar": set(),
+        "device": set(),
     },
-    "other": {"native": set(), "scalar": set()},
+    "other": {"native": set(), "scalar": set(), "device": set()},
 }
+
+# The module of each device: that of a graphics card, and the same code on the processor.
+DEVICES = {"host": "device", "cuda": "cuda"}
 
 # How long a thread that waits for the others spins before it sleeps (decision 0024).  OpenMP's own
 # choice, some milliseconds, makes a run many times slower as soon as another program wants one of
@@ -167,12 +171,18 @@ def load_core(isa: str | None = None) -> Core:
 
     `isa` is "v4" (AVX-512), "v3" (AVX2), "native" (other processors) or "scalar" (one lane, the
     reference); by default the environment variable DOSEKI_ISA, else the fastest one available.
-    Raises UserError when it is not available here.
+    "device" and "cuda" are those of DEVICES.  Raises UserError when it is not available here, and
+    ResourceError when there is no graphics card for it.
     """
-    from .errors import UserError  # the build runs this file by itself
+    from .errors import ResourceError, UserError  # the build runs this file by itself
 
     available = available_instruction_sets()
     chosen = isa or os.environ.get("DOSEKI_ISA") or (available[0] if available else None)
+    if chosen == "cuda":
+        core = import_module("doseki._core_cuda")
+        if problem := core.card_problem():
+            raise ResourceError(f"no graphics card can be used: {problem}")
+        return cast(Core, core)
     if chosen not in available:
         raise UserError(
             f"instruction set {chosen!r} is not available on this {platform.machine()} processor;"
@@ -181,6 +191,32 @@ def load_core(isa: str | None = None) -> Core:
     if not os.environ.get("OMP_WAIT_POLICY"):
         os.environ.setdefault("GOMP_SPINCOUNT", SPIN_COUNT)
     return cast(Core, import_module(f"doseki._core_{chosen}"))
+
+
+def has_card() -> bool:
+    """Whether the core was built for a graphics card, and there is one."""
+    if find_spec("doseki._core_cuda") is None:
+        return False
+    return not import_module("doseki._core_cuda").card_problem()
+
+
+def use_device(name: str) -> None:
+    """Let load_core() take the module of a device from now on; "cpu" leaves the choice as it is.
+
+    Raises UserError where the core was not built for it.
+    """
+    from .errors import UserError
+
+    if name == "cpu":
+        return
+    module = DEVICES[name]
+    if find_spec(f"doseki._core_{module}") is None:
+        raise UserError(
+            f"--device {name}: the core is not built for it;"
+            f" DOSEKI_INSTRUCTION_SETS='host;{module}' ./doseki list builds it in a clone"
+        )
+    os.environ["DOSEKI_ISA"] = module
+    load_core()
 
 
 if __name__ == "__main__":  # what CMakeLists.txt asks: the one instruction set to build here

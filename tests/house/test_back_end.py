@@ -44,4 +44,6 @@ def test_how_values_are_stored_only_two_files_know():
 def shown(text: str) -> str:
     """What a header lets others use: private parts and what is inherited privately left out."""
     text = re.sub(r"^(private|protected):.*?^(?=public:|};)", "", text, flags=re.M | re.S)
-    return re.sub(r": private std::vector<T> \{.*?^public:", "{", text, flags=re.M | re.S)
+    return re.sub(
+        r": private std::vector<T, Memory<T>> \{.*?^public:", "{", text, flags=re.M | re.S
+    )

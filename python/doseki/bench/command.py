@@ -13,7 +13,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from ..compiled import available_instruction_sets, load_core
+from ..compiled import DEVICES, available_instruction_sets, has_card, load_core
 from ..errors import ResourceError, UserError
 from ..scenario.schemes import UETA2022
 from ..solver.protocol import CoreSimulation
@@ -125,7 +125,8 @@ class Timing:
         self.core_shares.append(core_share)
         self.steps += steps
         self.rebuilds += simulation.rebuilds - first_build
-        if self.case.threads == 1 and self.case.scheme == UETA2022:
+        on_device = self.case.isa in DEVICES.values()
+        if self.case.threads == 1 and self.case.scheme == UETA2022 and not on_device:
             self.bare_rates.append(simulation.bare_pair_rate(BARE_SECONDS))
 
     def shares(self) -> dict[str, float]:
@@ -214,13 +215,14 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
     flows = _chosen_flows(options, quick)
     scheme = (_words("--scheme", options["--scheme"], SCHEMES) or [UETA2022])[0]
     precisions = _words("--precision", options["--precision"], PRECISIONS) or list(PRECISIONS)
+    modules = [*available_instruction_sets(), *(["cuda"] if has_card() else [])]
     return Plan(
         scheme=scheme,
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],
         precisions=precisions,
         sizes=sizes,
         threads=counts_of("--threads", options["--threads"], 4096),
-        isas=_words("--isa", options["--isa"], available_instruction_sets()),
+        isas=_words("--isa", options["--isa"], modules),
         quick=quick,
         block=options["--flows"] is None,
         flows=flows,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -19,6 +20,15 @@ Settings = Annotated[
 ]
 Threads = Annotated[
     int | None, typer.Option(min=1, max=4096, help="Threads.", show_default="all cores")
+]
+DeviceName = StrEnum("DeviceName", ["cpu", "host", "cuda"])
+Device = Annotated[
+    DeviceName,
+    typer.Option(
+        "--device",
+        help="Where the flow is worked out: the processor, a graphics card (cuda), or the code of "
+        "a card on the processor (host).",
+    ),
 ]
 CheckpointEvery = Annotated[
     float | None,

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..compiled import use_device
 from ..errors import Interrupted, one_line
 from .interrupts import ending_early
 from .numbers import number
@@ -15,6 +16,8 @@ from .options import (
     AsJson,
     CheckpointEvery,
     CheckpointMinutes,
+    Device,
+    DeviceName,
     Directory,
     Figures,
     Ranks,
@@ -36,6 +39,7 @@ def run(
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
+    device: Device = DeviceName.cpu,
     ranks: Ranks = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")
@@ -51,6 +55,7 @@ def run(
     from ..running.runner import RunOptions, run_folder, run_scenario
     from ..scenario.load import load_scenario
 
+    use_device(device)
     team = join(ranks)
     loaded = load_scenario(scenario, settings or [])
     directory = output or team.agree(free_directory(scenario))
@@ -162,6 +167,7 @@ def resume(
         ),
     ] = float("inf"),
     threads: Threads = None,
+    device: Device = DeviceName.cpu,
     ranks: Ranks = None,
     checkpoint_every: CheckpointEvery = None,
     checkpoint_minutes: CheckpointMinutes = 10.0,
@@ -174,6 +180,7 @@ def resume(
     from ..running.resume import resume_run
     from ..running.runner import RunOptions
 
+    use_device(device)
     team = join(ranks)
     scenario = load(directory).scenario
     with team.holding(directory), ending_early():

@@ -10,7 +10,7 @@ import pytest
 
 CORE = Path(__file__).parents[3] / "core"
 PROGRAM = r"""
-#include "base/hilbert.hpp"
+#include "cells/hilbert.hpp"
 using namespace doseki;
 
 template <int D>

@@ -1,4 +1,4 @@
-"""The pair sums and the point physics are device code as well: nvcc compiles them."""
+"""The core is the code of a graphics card as well: nvcc compiles it, and nothing spills."""
 
 from __future__ import annotations
 
@@ -10,43 +10,43 @@ from pathlib import Path
 import pytest
 
 CORE = Path(__file__).parents[3] / "core"
-KERNELS = ("sum_velocity_gradient", "sum_momentum", "point_physics")
+UNITS = {
+    "resolved": '#include "resolved/evaluate.hpp"\ntemplate class doseki::Resolved<3, double>;\n',
+    "ueta2022": '#include "ueta2022/evaluate.hpp"\n#include "ueta2022/pair_probe.hpp"\n'
+    "template class doseki::Ueta2022<3, double>;\n",
+    "lists": '#include "device/row_lists.cpp"\n',
+    "cells": '#include "cells/sorted_cells.cpp"\n',
+}
+LEAST_KERNELS = {"resolved": 10, "ueta2022": 8, "lists": 4, "cells": 6}
 PROPERTIES = re.compile(
     r"Function properties for (?P<name>\S+)\s+"
     r"\d+ bytes stack frame, (?P<stores>\d+) bytes spill stores, "
     r"(?P<loads>\d+) bytes spill loads\s+"
     r"ptxas info\s*: Used (?P<registers>\d+) registers"
 )
+OPTIONS = [
+    "-arch=sm_90", "-std=c++20", "-rdc=true", "--expt-relaxed-constexpr",
+    "-Werror", "all-warnings", "-DDOSEKI_SCALAR", "-DDOSEKI_DEVICE", "-DDOSEKI_CUDA",
+    "-Xptxas", "-v",
+]  # fmt: skip
 
 
 @pytest.mark.minutes
-def test_shared_sources_compile_for_a_device_without_spills(tmp_path):
+@pytest.mark.parametrize("unit", UNITS)
+def test_kernels_compile_without_spills(tmp_path, unit):
     nvcc = shutil.which("nvcc")
     if nvcc is None:
         print("no nvcc on the path: device code is not compiled")
         pytest.skip("no nvcc on the path")
-    built = tmp_path / "pair_terms.o"
-    command = [
-        nvcc,
-        "-arch=sm_90",
-        "-std=c++20",
-        "--expt-relaxed-constexpr",
-        "-Werror",
-        "all-warnings",
-    ]
-    command += ["-Xptxas", "-v", "-I", CORE, "-c", CORE / "device" / "pair_terms.cu", "-o", built]
-    done = subprocess.run(command, capture_output=True, text=True)
+    source, built = tmp_path / f"{unit}.cu", tmp_path / f"{unit}.o"
+    source.write_text(UNITS[unit])
+    done = subprocess.run(
+        [nvcc, *OPTIONS, "-I", CORE, "-c", source, "-o", built], capture_output=True, text=True
+    )
     report = done.stdout + done.stderr
     assert done.returncode == 0, report
-    assert built.stat().st_size > 0
-
-    found = set()
-    for match in PROPERTIES.finditer(report):
-        name = match["name"]
-        # The mangled name: length, kernel, I, d or f, Li, dimensions, E.
-        kernel, real, dim = re.search(r"\d+([a-z_]+)I([df])Li([23])E", name).groups()
-        found.add((kernel, real, dim))
-        print(f"{kernel} {real} {dim}-D: {match['registers']} registers")
-        if real == "d":
-            assert int(match["stores"]) == int(match["loads"]) == 0, name
-    assert found == {(kernel, real, dim) for kernel in KERNELS for real in "df" for dim in "23"}
+    kernels = list(PROPERTIES.finditer(report))
+    for kernel in kernels:
+        print(f"{kernel['registers']} registers: {kernel['name']}")
+        assert int(kernel["stores"]) == int(kernel["loads"]) == 0, kernel["name"]
+    assert len(kernels) >= LEAST_KERNELS[unit]

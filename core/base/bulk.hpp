@@ -1,0 +1,128 @@
+#pragma once
+// Loops over all particles that run where the particles are: on the threads of the processor or, in
+// a build for a device, there, by Thrust. Functions are objects that are copied to where they run:
+// what they refer to lies in memory that a device reaches (base/memory.hpp), and what they call is
+// marked DOSEKI_DEVICE_FN. Loops of other code are in base/parallel.hpp.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+
+#include "base/array.hpp"
+#include "base/parallel.hpp"
+
+#if defined(DOSEKI_DEVICE)
+#include <thrust/binary_search.h>
+#include <thrust/execution_policy.h>
+#include <thrust/for_each.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
+#include <thrust/scan.h>
+#include <thrust/sequence.h>
+#include <thrust/sort.h>
+#endif
+
+namespace doseki::bulk {
+
+/// Numbers of elements in the order of their keys, equal ones as they were, and where those of each
+/// key start; the last start is the number of elements.
+struct Buckets {
+    Array<std::uint32_t> order, starts;
+};
+
+#if defined(DOSEKI_DEVICE)
+/// Calls f(k) for k = 0 ... count - 1; calls must not depend on one another.
+template <class F>
+void for_each(std::size_t count, const F& f) {
+    thrust::for_each_n(thrust::device, thrust::counting_iterator<std::size_t>(0), count, f);
+}
+
+/// Threads may write to neighbours, which the bits of many bools in a row forbid.
+template <class Value>
+struct Part {
+    Value value;
+};
+
+/// Part k of a reduction takes each of `parts` in turn, so that threads side by side read elements
+/// side by side.
+template <class Value, class Combine, class F>
+struct ReducePart {
+    std::size_t count, parts;
+    Value start;
+    Combine combine;
+    F f;
+    Part<Value>* results;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        Value result = start;
+        for (std::size_t p = k; p < count; p += parts) result = combine(result, f(p));
+        results[k].value = result;
+    }
+};
+
+template <class Value>
+struct PartAt {
+    const Part<Value>* parts;
+    DOSEKI_DEVICE_FN const Value& operator()(std::size_t k) const { return parts[k].value; }
+};
+
+/// Combines f(0), f(1) ... f(count - 1), beginning with the neutral `start`. The order is always
+/// the same one, whatever the number of threads.
+template <class Value, class Combine, class F>
+Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
+    constexpr std::size_t fewest = 256, most = 32768;
+    const std::size_t parts = std::min(count, count > most ? most : fewest);
+    Array<Part<Value>> results(parts, Part<Value>{start});
+    for_each(parts, ReducePart<Value, Combine, F>{count, parts, start, combine, f, results.data()});
+    if (parts > fewest) return reduce(parts, start, combine, PartAt<Value>{results.data()});
+    Value result = start;
+    for (const Part<Value>& part : results) result = combine(result, part.value);
+    return result;
+}
+
+/// Where rows of these lengths start that lie one after another, and where the last one ends.
+template <class Length>
+Array<std::size_t> starts_of(std::size_t count, const Length& length) {
+    Array<std::size_t> starts(count + 1, 0);
+    const auto lengths =
+        thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0), length);
+    thrust::inclusive_scan(thrust::device, lengths, lengths + static_cast<std::ptrdiff_t>(count),
+                           starts.data() + 1);
+    return starts;
+}
+
+/// Sorts elements by keys below `count`.
+inline Buckets sorted_by(Array<std::uint32_t> keys, std::size_t count) {
+    Buckets sorted{Array<std::uint32_t>(keys.size()), Array<std::uint32_t>(count + 1)};
+    std::uint32_t *const first = keys.data(), *const last = first + keys.size();
+    thrust::sequence(thrust::device, sorted.order.data(), sorted.order.data() + keys.size());
+    thrust::stable_sort_by_key(thrust::device, first, last, sorted.order.data());
+    const thrust::counting_iterator<std::uint32_t> key(0);
+    thrust::lower_bound(thrust::device, first, last, key,
+                        key + static_cast<std::ptrdiff_t>(count + 1), sorted.starts.data());
+    return sorted;
+}
+#else
+template <class F>
+void for_each(std::size_t count, const F& f) {
+    for_each_particle(count, f);
+}
+
+template <class Value, class Combine, class F>
+Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
+    return doseki::reduce(count, start, combine, f);
+}
+
+inline Buckets sorted_by(const Array<std::uint32_t>& keys, std::size_t count) {
+    Buckets sorted{Array<std::uint32_t>(keys.size()), Array<std::uint32_t>(count + 1)};
+    for (const std::uint32_t key : keys) ++sorted.starts[key + 1];
+    std::partial_sum(sorted.starts.begin(), sorted.starts.end(), sorted.starts.begin());
+    Array<std::uint32_t> next(sorted.starts.begin(), sorted.starts.end() - 1);
+    for (std::uint32_t k = 0; k < keys.size(); ++k) sorted.order[next[keys[k]]++] = k;
+    return sorted;
+}
+#endif
+
+}  // namespace doseki::bulk

@@ -1,0 +1,44 @@
+#pragma once
+// What is done for every particle where lists are made anew, compiled once.
+
+#include <cstdint>
+#include <span>
+
+#include "base/array.hpp"
+#include "model/domain.hpp"
+#include "model/material.hpp"
+#include "model/options.hpp"
+#include "model/particles.hpp"
+
+namespace doseki {
+
+/// Support radii of particles [m], as large as they may become before the next sort. `kernel`: that
+/// of the kernel over the smoothing length.
+template <int D>
+Array<double> support_radii(const Particles<D>& particles, std::span<const Material> materials,
+                            const Options<D>& options, double kernel);
+
+/// The smallest and the largest of them; nothing of no particles.
+struct SupportRange {
+    double smallest, largest;
+};
+SupportRange range_of(std::span<const double> support);
+
+/// Of each particle, whether it is one of a wall.
+template <int D>
+Array<std::uint8_t> wall_flags(const Particles<D>& particles);
+
+/// Index of the first particle that is lost, -1 for none: outside the world, or a whole box away
+/// from a domain that is given.
+template <int D>
+std::int64_t lost_particle(const Particles<D>& particles, const Domain<D>& domain);
+
+/// Takes particles to their images inside the domain.
+template <int D>
+void wrap_positions(Particles<D>& particles, const Domain<D>& domain);
+
+/// New particle k is old particle order[k]; particles not named are gone.
+template <int D>
+void reorder(Particles<D>& particles, std::span<const std::uint32_t> order);
+
+}  // namespace doseki

@@ -1,0 +1,170 @@
+// Lists of single particles, built by one thread for each.
+
+#include "device/row_lists.hpp"
+
+#include "base/bulk.hpp"
+
+namespace doseki {
+namespace {
+
+/// Looks through the cells around a particle.
+template <int D>
+struct RowSearch {
+    std::span<const CellGrid<D>> grids;
+    std::span<const Vec<double, D>> shifts;  // of images
+    std::span<const Vec<double, D>> position;
+    std::span<const double> support;
+    std::span<const std::int32_t> faces;  // empty: no particle has one
+    std::uint32_t moving;
+    double skin;
+
+    /// Calls keep(entry) for each neighbour of p, which are moving ones or fixed ones.
+    template <class Keep>
+    DOSEKI_DEVICE_FN void visit(std::uint32_t p, bool fixed, const Keep& keep) const {
+        const bool by_faces = fixed && p >= moving;
+        if (by_faces && (faces.empty() || faces[p] == 0)) return;
+        for (const CellGrid<D>& grid : grids)
+            if (grid.fixed == fixed) visit_grid(grid, p, by_faces, keep);
+    }
+
+private:
+    using Cell = std::array<std::int64_t, D>;
+
+    template <class Keep>
+    DOSEKI_DEVICE_FN void visit_grid(const CellGrid<D>& grid, std::uint32_t p, bool by_faces,
+                                     const Keep& keep) const {
+        const Vec<double, D>& x = position[p];
+        const double radius = max(support[p], grid.support) + skin;
+        if (grid.is_beyond(x, x, radius)) return;
+        Cell low, high;
+        for (int a = 0; a < D; ++a) {
+            low[a] = grid.cell_of(x[a] - radius, a), high[a] = grid.cell_of(x[a] + radius, a);
+            // Around a wrapped table once is everything; twice would list particles twice.
+            if (!grid.periodic[a]) high[a] = min(high[a], low[a] + grid.cells[a] - 1);
+        }
+        for (Cell cell = low; cell[D - 1] <= high[D - 1];) {
+            visit_cell(grid, cell, p, by_faces, keep);
+            int a = 0;
+            while (++cell[a] > high[a] && a < D - 1) cell[a] = low[a], ++a;
+        }
+    }
+
+    template <class Keep>
+    DOSEKI_DEVICE_FN void visit_cell(const CellGrid<D>& grid, const Cell& cell, std::uint32_t p,
+                                     bool by_faces, const Keep& keep) const {
+        std::uint32_t key = 0, image = 0, weight = 1;
+        for (int a = 0; a < D; ++a, weight *= 3) {
+            const std::int64_t wrapped = grid.wrap(cell[a], a);
+            // Cell n of a periodic direction is cell 0 seen one box further.
+            const std::int64_t turns = grid.periodic[a] ? (cell[a] - wrapped) / grid.cells[a] : 0;
+            key |= grid.key_along(wrapped, a);
+            image += weight * static_cast<std::uint32_t>(turns + 1);
+        }
+        const std::uint32_t place = grid.place(key);
+        for (std::uint32_t j = grid.cell_start[place]; j < grid.cell_start[place + 1]; ++j)
+            if (is_near(p, j, shifts[image]) && (!by_faces || meet(p, j)))
+                keep(j | image << ListEntry::index_bits);
+    }
+
+    DOSEKI_DEVICE_FN bool is_near(std::uint32_t p, std::uint32_t j,
+                                  const Vec<double, D>& shift) const {
+        const Vec<double, D> r = position[p] - (position[j] + shift);
+        const double limit = max(support[p], support[j]) + skin;
+        return dot(r, r) < limit * limit;
+    }
+    DOSEKI_DEVICE_FN bool meet(std::uint32_t p, std::uint32_t j) const {
+        return faces[j] != 0 && faces[p] != faces[j];
+    }
+};
+
+template <int D>
+struct CountRow {
+    RowSearch<D> search;
+    std::span<RowLength> lengths;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        const auto p = static_cast<std::uint32_t>(k);
+        RowLength length{};
+        search.visit(p, false, [&](std::uint32_t) { ++length.moving; });
+        search.visit(p, true, [&](std::uint32_t) { ++length.fixed; });
+        lengths[k] = length;
+    }
+};
+
+template <int D>
+struct FillRow {
+    RowSearch<D> search;
+    std::span<const std::size_t> starts;
+    std::span<std::uint32_t> entries;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        const auto p = static_cast<std::uint32_t>(k);
+        std::size_t next = starts[k];
+        const auto keep = [&](std::uint32_t entry) { entries[next++] = entry; };
+        search.visit(p, false, keep);
+        search.visit(p, true, keep);
+    }
+};
+
+struct CutRow {
+    std::span<const RowLength> lengths;
+    std::span<const std::size_t> starts;
+    const std::uint32_t* entries;
+    std::span<RowList> rows;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        rows[k] = RowList(entries + starts[k], lengths[k].moving, lengths[k].fixed);
+    }
+};
+
+struct LengthOf {
+    std::span<const RowLength> lengths;
+    DOSEKI_DEVICE_FN std::size_t operator()(std::size_t k) const {
+        return std::size_t{lengths[k].moving} + lengths[k].fixed;
+    }
+};
+
+}  // namespace
+
+template <int D>
+void RowLists<D>::build(std::span<const Vec<double, D>> position, std::span<const double> support,
+                        double skin, std::span<const std::int32_t> faces) {
+    const std::size_t n = this->size();
+    const RowSearch<D> search{this->grids(), this->image_shifts(),
+                              position,      support,
+                              faces,         static_cast<std::uint32_t>(this->moving()),
+                              skin};
+    lengths_.resize(n), rows_.resize(n);
+    bulk::for_each(n, CountRow<D>{search, lengths_});
+    const Array<std::size_t> starts = bulk::starts_of(n, LengthOf{lengths_});
+    entries_.resize(starts[n]);
+    bulk::for_each(n, FillRow<D>{search, starts, entries_});
+    bulk::for_each(n, CutRow{lengths_, starts, entries_.data(), rows_});
+}
+
+template <int D>
+void RowLists<D>::serialise(Archive& archive) {
+    Array<std::uint32_t> moving, fixed;
+    for (const RowLength& length : lengths_)
+        moving.push_back(length.moving), fixed.push_back(length.fixed);
+    archive("lists_moving", moving), archive("lists_fixed", fixed);
+    archive("lists_entries", entries_), SortedCells<D>::serialise(archive);
+    if (!archive.loads()) return;
+    expect_fit(moving.size() == fixed.size(), "lists_fixed");
+    lengths_.clear();
+    std::size_t total = 0;
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+        lengths_.push_back({moving[k], fixed[k]});
+        total += std::size_t{moving[k]} + fixed[k];
+        expect_fit(total <= entries_.size(), "lists_entries");
+    }
+    expect_fit(total == entries_.size(), "lists_entries");
+    rows_.resize(lengths_.size());
+    const Array<std::size_t> starts = bulk::starts_of(rows_.size(), LengthOf{lengths_});
+    bulk::for_each(rows_.size(), CutRow{lengths_, starts, entries_.data(), rows_});
+}
+
+template class RowLists<2>;
+template class RowLists<3>;
+
+}  // namespace doseki
