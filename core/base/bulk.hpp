@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <type_traits>
 
 #include "base/array.hpp"
 #include "base/parallel.hpp"
@@ -39,10 +40,24 @@ void for_each(std::size_t count, const F& f) {
     thrust::for_each_n(thrust::device, thrust::counting_iterator<std::size_t>(0), count, f);
 }
 
-/// Threads may write to neighbours, which the bits of many bools in a row forbid.
-template <class Value>
-struct Part {
-    Value value;
+/// Room for values that a device writes first: the processor touches none of it.
+template <class T>
+class Scratch {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+public:
+    explicit Scratch(std::size_t count) : count_(count), data_(Memory<T>().allocate(count)) {}
+    ~Scratch() { Memory<T>().deallocate(data_, count_); }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+
+    T* data() const { return data_; }
+    const T* begin() const { return data_; }
+    const T* end() const { return data_ + count_; }
+
+private:
+    std::size_t count_;
+    T* data_;
 };
 
 /// Part k of a reduction takes each of `parts` in turn, so that threads side by side read elements
@@ -53,19 +68,19 @@ struct ReducePart {
     Value start;
     Combine combine;
     F f;
-    Part<Value>* results;
+    Value* results;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
         Value result = start;
         for (std::size_t p = k; p < count; p += parts) result = combine(result, f(p));
-        results[k].value = result;
+        results[k] = result;
     }
 };
 
 template <class Value>
 struct PartAt {
-    const Part<Value>* parts;
-    DOSEKI_DEVICE_FN const Value& operator()(std::size_t k) const { return parts[k].value; }
+    const Value* parts;
+    DOSEKI_DEVICE_FN const Value& operator()(std::size_t k) const { return parts[k]; }
 };
 
 /// Combines f(0), f(1) ... f(count - 1), beginning with the neutral `start`. The order is always
@@ -74,11 +89,12 @@ template <class Value, class Combine, class F>
 Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
     constexpr std::size_t fewest = 256, most = 32768;
     const std::size_t parts = std::min(count, count > most ? most : fewest);
-    Array<Part<Value>> results(parts, Part<Value>{start});
+    if (parts == 0) return start;
+    const Scratch<Value> results(parts);
     for_each(parts, ReducePart<Value, Combine, F>{count, parts, start, combine, f, results.data()});
     if (parts > fewest) return reduce(parts, start, combine, PartAt<Value>{results.data()});
     Value result = start;
-    for (const Part<Value>& part : results) result = combine(result, part.value);
+    for (const Value& part : results) result = combine(result, part);
     return result;
 }
 
