@@ -14,7 +14,7 @@ from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED, UETA2022
 from ..scenario.tables.bodies import Grains
 from ..scene.ground import ground_of
-from ..util.finding import Finding
+from ..util.finding import Finding, no_more_than
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
 from .open_sides import open_sides
 from .sound_speed import raised
@@ -50,7 +50,7 @@ class ShallowFlow(Finding):
         enough = self.across * self.dp / MIN_ACROSS_FLOW
         return (
             f"{self.place}: {self.across:.2g} particles over its depth; below {MIN_ACROSS_FLOW} it"
-            f" flows too slowly: dp = {enough:.2g} would do"
+            f" flows too slowly: dp = {no_more_than(enough)} would do"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -16,6 +17,12 @@ class Finding(ABC):
     @abstractmethod
     def __str__(self) -> str:
         """One sentence, with the remedy where there is one."""
+
+
+def no_more_than(most: float) -> str:
+    """The largest number of two digits that is no larger: what a remedy may say would do."""
+    unit = 10.0 ** (math.floor(math.log10(most)) - 1)
+    return f"{math.floor(most / unit + 1e-9) * unit:.2g}"
 
 
 def sentences(findings: Iterable[Finding]) -> list[str]:

@@ -129,6 +129,15 @@ def test_what_cannot_break_so_is_refused(load, override, said):
         build_scene(load(CLAY + DISCS, override))
 
 
+@pytest.mark.parametrize("radius", [0.0785, 0.0701, 0.07, 0.06])
+def test_the_spacing_that_is_advised_would_do(load, radius):
+    override = f"body.left.radius={radius}"
+    with pytest.raises(UserError) as refused:
+        build_scene(load(CLAY + DISCS, override))
+    advised = re.search(r"dp = (\S+) would do", str(refused.value))[1]
+    build_scene(load(CLAY + DISCS, override, f"dp={advised}"))
+
+
 BALL = """
 [body.left]
 shape = "sphere"
@@ -160,3 +169,30 @@ def test_rocks_that_break(load, preset):
     text = CLAY.split("[material.clay]")[0] + f'[material.clay]\npreset = "{preset}"\n' + DISCS
     material = load(text).materials["clay"]
     assert material.fracture == ("grady_kipp" if preset == "basalt" else "cohesive")
+
+
+CHOICES = {
+    "cohesive": "",
+    "none": "",
+    "grady_kipp": "weibull_k = 1e30\nweibull_m = 7\n",
+}
+
+
+@pytest.mark.parametrize("preset", ["basalt", "granite", "sandstone", "concrete"])
+@pytest.mark.parametrize("fracture", CHOICES)
+def test_how_a_rock_breaks_can_be_chosen(load, preset, fracture):
+    head, given = CLAY.split("[material.clay]")[0], CHOICES[fracture]
+    keys = f'[material.clay]\npreset = "{preset}"\nfracture = "{fracture}"\n'
+    material = load(head + keys + given + DISCS).materials["clay"]
+    assert material.fracture == fracture
+    numbers = material.of_laws
+    if fracture == "cohesive":
+        assert 1e6 < numbers["tensile_strength"] < 2e7
+        assert 4 < numbers["fracture_energy"] < 200
+    if fracture == "grady_kipp":
+        assert (numbers["weibull_k"], numbers["weibull_m"]) == (1e30, 7)
+        if preset == "basalt":
+            assert load(head + keys + DISCS).materials["clay"].of_laws["weibull_m"] == 8.5
+            return
+        with pytest.raises(UserError, match="needs weibull_k"):
+            load(head + keys + DISCS)

@@ -48,8 +48,9 @@ SOILS = {
 class Preset:
     """A published material.
 
-    `values(keys)` makes the numbers of a material, SI, of the preset's own keys; it raises
-    ValueError, with one sentence, for those that are outside of what was measured.
+    `values(keys)` makes the numbers of a material, SI, of the preset's own keys and those of
+    DECIDED that it leaves open; it raises ValueError, with one sentence, for those that are outside
+    of what was measured.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Preset:
     needed: tuple[str, ...]
     optional: tuple[str, ...]
     values: Callable[[Mapping[str, Any]], dict[str, Any]]
+    open: tuple[str, ...] = ()
 
 
 def mud(soil: str, cv: float) -> tuple[float, float]:
@@ -105,50 +107,67 @@ def _glass_beads(_: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-class Breaking(NamedTuple):
-    """A solid that breaks: density, kg/m3, Young's modulus, Pa, Poisson's ratio, and either
-    strength, Pa, with toughness, Pa m^0.5, or fracture energy, J/m2.
+class Cohesive(NamedTuple):
+    """How a solid cracks: strength, Pa, and toughness, Pa m^0.5, or fracture energy, J/m2."""
+
+    strength: float
+    toughness: float = 0.0
+    energy: float = 0.0
+
+
+@dataclass(frozen=True)
+class Rock:
+    """A solid that breaks: density, kg/m3, Young's modulus, Pa, Poisson's ratio, and how it does.
+
+    `flaws` are `weibull_k` and `weibull_m`; where it has them, they are its fracture unless a table
+    says "cohesive".
     """
 
     density: float
     young: float
     poisson: float
-    strength: float
-    toughness: float = 0.0
-    energy: float = 0.0
+    cohesive: Cohesive
+    flaws: tuple[float, float] | None = None
 
-    def values(self, _: Mapping[str, Any]) -> dict[str, Any]:
-        """The numbers of a material; the fracture energy of a toughness is that of plane strain."""
-        energy = self.energy or self.toughness**2 * (1 - self.poisson**2) / self.young
-        return _rock(self.density, self.young, self.poisson) | {
-            "fracture": "cohesive",
-            "tensile_strength": self.strength,
-            "fracture_energy": energy,
-        }
+    def values(self, keys: Mapping[str, Any]) -> dict[str, Any]:
+        """The numbers of a material, with those of the fracture that the keys choose."""
+        fracture = keys.get("fracture", "grady_kipp" if self.flaws else "cohesive")
+        return {
+            "law": "solid",
+            "rho0": self.density,
+            "young_modulus": self.young,
+            "poisson_ratio": self.poisson,
+            "fracture": fracture,
+        } | self._of_fracture(fracture)
 
-
-def _rock(density: float, young: float, poisson: float) -> dict[str, Any]:
-    return {"law": "solid", "rho0": density, "young_modulus": young, "poisson_ratio": poisson}
-
-
-def _basalt(_: Mapping[str, Any]) -> dict[str, Any]:
-    """Benz & Asphaug (Icarus 107, 1994): moduli of 26.7 GPa (bulk) and 22.7 GPa (shear), and the
-    flaws with which the impacts of Nakamura & Fujiwara came out as they were measured.
-    """
-    return _rock(2700.0, 53.1e9, 0.169) | {
-        "fracture": "grady_kipp",
-        "weibull_k": 5e34,
-        "weibull_m": 8.5,
-    }
+    def _of_fracture(self, fracture: str) -> dict[str, float]:
+        """The fracture energy of a toughness is that of plane strain."""
+        if fracture == "grady_kipp" and self.flaws:
+            return dict(zip(("weibull_k", "weibull_m"), self.flaws, strict=True))
+        if fracture != "cohesive":
+            return {}
+        strength, toughness, energy = self.cohesive
+        energy = energy or toughness**2 * (1 - self.poisson**2) / self.young
+        return {"tensile_strength": strength, "fracture_energy": energy}
 
 
+# Basalt: moduli of 26.7 GPa (bulk) and 22.7 GPa (shear), and the flaws with which the impacts of
+# Nakamura & Fujiwara came out as they were measured (Benz & Asphaug, Icarus 107, 1994); strength of
+# intact basalt: Schultz (Rock Mech. Rock Eng. 28, 1995); toughness of Icelandic basalt: Meredith
+# et al. (final report of PRENLAB-2, Icelandic Meteorological Office, 2001).
 # Toughness of Westerly granite and Berea sandstone: Atkinson & Meredith, in Fracture Mechanics of
 # Rock (1987); density, elasticity and strength are common values of such rock.  Concrete C30 by the
 # fib Model Code 2010: strength 0.3 * 30^(2/3) MPa (5.1-3a), fracture energy 73 * 38^0.18 J/m2
 # (5.1-9), Young's modulus 21.5 * 3.8^(1/3) GPa (5.1-21).
-_GRANITE = Breaking(2650.0, 60e9, 0.25, 10e6, toughness=1.6e6)
-_SANDSTONE = Breaking(2200.0, 14e9, 0.2, 4e6, toughness=0.28e6)
-_CONCRETE = Breaking(2400.0, 33.6e9, 0.2, 2.9e6, energy=140.5)
+_BASALT = Rock(2700.0, 53.1e9, 0.169, Cohesive(14.5e6, toughness=2.71e6), flaws=(5e34, 8.5))
+_GRANITE = Rock(2650.0, 60e9, 0.25, Cohesive(10e6, toughness=1.6e6))
+_SANDSTONE = Rock(2200.0, 14e9, 0.2, Cohesive(4e6, toughness=0.28e6))
+_CONCRETE = Rock(2400.0, 33.6e9, 0.2, Cohesive(2.9e6, energy=140.5))
+
+
+def _rock(name: str, doc: str, rock: Rock) -> Preset:
+    return Preset(name, doc, (), (), rock.values, ("fracture",))
+
 
 PRESETS = {
     preset.name: preset
@@ -167,14 +186,14 @@ PRESETS = {
             (),
             _glass_beads,
         ),
-        Preset("basalt", "basalt with flaws, Benz & Asphaug (1994), eq. 112", (), (), _basalt),
-        Preset("granite", "granite that breaks, eq. 110", (), (), _GRANITE.values),
-        Preset("sandstone", "sandstone that breaks, eq. 110", (), (), _SANDSTONE.values),
-        Preset("concrete", "concrete C30, fib Model Code 2010, eq. 110", (), (), _CONCRETE.values),
+        _rock("basalt", "basalt with flaws, Benz & Asphaug (1994), eq. 112", _BASALT),
+        _rock("granite", "granite that breaks, eq. 110", _GRANITE),
+        _rock("sandstone", "sandstone that breaks, eq. 110", _SANDSTONE),
+        _rock("concrete", "concrete C30, fib Model Code 2010, eq. 110", _CONCRETE),
     )
 }
 KEYS = tuple(dict.fromkeys(k for p in PRESETS.values() for k in (*p.needed, *p.optional)))
-DECIDED = ("law", "rheology", "fracture", "based_on")  # by a preset
+DECIDED = ("law", "rheology", "fracture", "based_on")  # by a preset that leaves them not open
 
 
 def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:
@@ -191,7 +210,7 @@ def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:
         return given
     preset = PRESETS[table["preset"]]
     for key in DECIDED:
-        if key in given:
+        if key in given and key not in preset.open:
             raise ValueError(f'{key} is decided by preset = "{preset.name}": remove one of them')
     for key in own:
         if key not in _keys(preset):
@@ -199,7 +218,8 @@ def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:
     for key in preset.needed:
         if key not in own:
             raise ValueError(f'preset = "{preset.name}" needs {key}')
-    return preset.values(own) | given
+    left_open = {key: given[key] for key in preset.open if key in given}
+    return preset.values(own | left_open) | given
 
 
 def _keys(preset: Preset) -> tuple[str, ...]:

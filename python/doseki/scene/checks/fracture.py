@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...scenario.materials import NO_FRACTURE, Material
-from ...util.finding import Finding
+from ...util.finding import Finding, no_more_than
 from ..groups import Group
 from ..kinds.body import Body
 
@@ -36,10 +36,11 @@ class CoarseCrack(Finding):
     length: float  # m
 
     def __str__(self) -> str:
+        enough = no_more_than(self.length / MIN_LENGTH)
         return (
             f"{self.place}: dp = {self.spacing:.2g} m, but cracks of its material open over "
-            f"E G_f/f_t^2 = {self.length:.2g} m; above {self.length / MIN_LENGTH:.2g} m they take "
-            "too much energy and the body is too strong: make dp smaller"
+            f"E G_f/f_t^2 = {self.length:.2g} m; above {enough} m they take too much energy and "
+            "the body is too strong: make dp smaller"
         )
 
 
@@ -76,10 +77,11 @@ def _breakable(body: Body[Any], group: Group, material: Material) -> Iterator[Fi
     width = min(shape.width for shape in group.shapes)
     across = width / body.spacing
     if across < MIN_ACROSS_BREAKABLE - 1e-6:
+        enough = no_more_than(width / MIN_ACROSS_BREAKABLE)
         whole = f'a material with fracture = "{NO_FRACTURE}"'
         raise body.error(
             f": {across:.2g} particles across a body that breaks; it needs at least "
-            f"{MIN_ACROSS_BREAKABLE}: dp = {width / MIN_ACROSS_BREAKABLE:.2g} would do, or "
+            f"{MIN_ACROSS_BREAKABLE}: dp = {enough} would do, or "
             + ('kinematics = "rigid"' if group.breakable else whole)
         )
     if material.fracture == "cohesive":

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ...util.finding import Finding
+from ...util.finding import Finding, no_more_than
 from ..groups import Group
 from ..kinds.body import Body
 
@@ -25,7 +25,7 @@ class CoarseBody(Finding):
         enough = self.across * self.spacing / MIN_ACROSS
         return (
             f"{self.place}: {self.across:.2g} particles across its bodies; below {MIN_ACROSS} the "
-            f"flow around them is not resolved: dp = {enough:.2g} "
+            f"flow around them is not resolved: dp = {no_more_than(enough)} "
             'would do, or kinematics = "single"'
         )
 

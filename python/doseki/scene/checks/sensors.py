@@ -12,7 +12,7 @@ from ...scenario.gauges.face import Face
 from ...scenario.gauges.gauge import State
 from ...scenario.gauges.pressure import PressureGauge
 from ...scenario.model import Scenario
-from ...util.finding import Finding
+from ...util.finding import Finding, no_more_than
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class SmallSensor(Finding):
         enough = self.dp * self.diameter / self.kernel
         return (
             f"{self.place}: a sensor {self.diameter:.3g} m across sees what one of the kernel's "
-            f"{self.kernel:.3g} m does; dp = {enough:.2g} would resolve it"
+            f"{self.kernel:.3g} m does; dp = {no_more_than(enough)} would resolve it"
         )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...util.finding import Finding
+from ...util.finding import Finding, no_more_than
 from ..shapes import MeshShape
 
 SHARE = 0.01  # of the surface; on less of it a wall may be thinner, as beside a sharp edge
@@ -26,12 +26,13 @@ class ThinWall(Finding):
     spacing: float  # m
 
     def __str__(self) -> str:
+        enough = no_more_than(self.spacing * self.thickness / self.needed)
         holes = ", and leaks where it is thinner than dp" if self.thickness < self.spacing else ""
         return (
             f"{self.place}: {100 * self.share:.2g} % of its surface is that of walls down to "
             f"{self.thickness:.3g} m thick; the kernel sees {self.needed:.3g} m, so that water on "
-            f"one side feels the water on the other{holes}: dp = "
-            f"{self.spacing * self.thickness / self.needed:.2g} would do, or a thicker wall"
+            f"one side feels the water on the other{holes}: dp = {enough} would do, or a thicker "
+            "wall"
         )
 
 
