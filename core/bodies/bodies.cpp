@@ -130,6 +130,23 @@ void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first
     });
 }
 
+/// A clamped body lies in what holds it: the fixed bodies, the ground among them, that it overlaps
+/// at the start. Where it is not clamped, beside its foot, these overlaps rest, Eq. (115).
+template <int D>
+void Bodies<D>::rest_in_holders() {
+    Array<std::uint8_t> is_held(rigid.size() + deformable.bodies(), 0), holds(is_held);
+    for (std::size_t k = 0; k < rigid.size(); ++k) holds[k] = rigid.body(k).fixed;
+    for (std::size_t p = 0; p < deformable.size(); ++p)
+        if (deformable.solids().clamped(p))
+            is_held[rigid.size() + static_cast<std::size_t>(deformable.body_of_point(p))] = 1;
+    if (std::ranges::find(is_held, 1) == is_held.end()) return;
+    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+        const auto [first, second] = contact_.bodies(pair);
+        const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+        return (is_held[a] && holds[b]) || (holds[a] && is_held[b]);
+    });
+}
+
 /// Of which body each one was a part, bodies as contacts number them now.
 template <int D>
 Array<std::int32_t> Bodies<D>::bodies_before(const Fragments<D>& fragments,

@@ -71,6 +71,7 @@ public:
         start_breakable();
         prepare_contacts();
         find_contacts();
+        rest_in_holders();
     }
 
     /// Where bodies come from, by their index of a kind.
@@ -209,6 +210,7 @@ private:
     /// `solids`: how many rigid bodies with surfaces there were before.
     void renumber_contacts(const Fragments<D>& fragments, std::size_t solids);
     void accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust);
+    void rest_in_holders();
     Array<std::int32_t> bodies_before(const Fragments<D>& fragments, std::size_t first_dust) const;
     /// Particles of what has become dust are points of rigid bodies from now on.
     void bind_dust(Particles<D>& particles);

@@ -254,6 +254,64 @@ young_modulus = 2e9
 poisson_ratio = 0.2
 {fracture}
 """
+SILL = """
+[terrain]
+file = "{file}"
+material = "aluminium"
+
+[body.sill]
+shape = "box"
+material = "concrete"
+kinematics = "elastic"
+min = {low}
+max = {high}
+clamped = "= 1 - 0.3*x - {up}"
+
+[material.concrete]
+preset = "concrete"
+"""
+BOULDER = """
+[body.boulder]
+shape = "{shape}"
+material = "aluminium"
+centre = {centre}
+radius = 0.1
+velocity = {velocity}
+"""
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize(("speed", "breaks"), [(0.05, False), (12.0, True)])
+def test_a_sill_stands_in_the_ground_until_a_boulder_strikes_it(tmp_path, dim, speed, breaks):
+    """The ground does not press on what is held in it, points just above the clamp among them."""
+
+    def height(x, y=0.0):
+        return 1.0 - 0.3 * x + 0.0 * y
+
+    across = [0.7, 1.3] if dim == 3 else []
+    if dim == 2:
+        profile(tmp_path / "map.csv", height, high=2.0)
+    else:
+        grid(tmp_path / "map.asc", height, size=(2.0, 2.0))
+    head = HEAD.format(dim=dim, dp=0.04, time=0.004, out=0.004, gravity=[0.0] * (dim - 1) + [-9.81])
+    text = head + SILL.format(
+        file="map.csv" if dim == 2 else "map.asc",
+        low=[1.0, *across[:1], 0.52],
+        high=[1.4, *across[1:], 1.0],
+        up="y" if dim == 2 else "z",
+    )
+    text += BOULDER.format(
+        shape="disc" if dim == 2 else "sphere",
+        centre=[0.8995, *([1.0] if dim == 3 else []), 0.88],
+        velocity=[speed, *([0.0] if dim == 3 else []), 0.0],
+    )
+    run = recorded(tmp_path, text)
+    history = run.history
+    assert gap(ledger_of(run)) < 0.01
+    assert history["contact_work"].max() < 1e-3 * history["kinetic_energy"][0]
+    assert (history["broken_bonds"][-1] > (20 if breaks else 0)) == breaks
+
+
 ROCK = 'fracture = "cohesive"\ntensile_strength = 1e7\nfracture_energy = 1000'
 
 

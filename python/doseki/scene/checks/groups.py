@@ -71,7 +71,7 @@ def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
     """Whether a body is clamped and may therefore lie in what holds it."""
     body, holder = scenario.body.get(name), scenario.body.get(other)
     clamped = body is not None and body.given("clamped") is not None
-    return clamped and holder is not None and holder.fixed
+    return clamped and (other == TERRAIN or (holder is not None and holder.fixed))
 
 
 Overlap = tuple[str, str, float, float]  # of a body that moves, with, by m, its size in m
