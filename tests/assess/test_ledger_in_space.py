@@ -12,7 +12,7 @@ from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
 from ..small_scenarios import CHALK
-from .accounts import gap, without
+from .accounts import gap, recorded, without
 
 DROP = """
 schema = 1
@@ -68,7 +68,7 @@ def dropped(request, tmp_path_factory):
 
 
 def test_it_closes(dropped):
-    assert dropped.history["dust_grains"][-1] > 50
+    assert dropped.history["dust_grains"][-1] > 40
     assert gap(ledger_of(dropped)) < 0.002
 
 
@@ -83,3 +83,46 @@ def test_contacts_and_cracks_make_no_energy(dropped):
     taken = sum(history[name] for name in ("fracture_work", "parting_work", "damping_work"))
     assert (np.diff(taken) > -0.002 * history["kinetic_energy"][0]).all()
     assert history["contact_work"].max() < 0.002 * history["kinetic_energy"][0]
+
+
+PAIR = """
+schema = 1
+dim = 3
+dp = 0.00833
+scheme = "resolved"
+speed_max = 40
+time_max = 0.00033
+time_out = 0.00033
+gravity = [0, 0, 0]
+contact = {{ speed = 80 }}
+
+[material.rock]
+preset = "granite"
+friction = {friction}
+"""
+BALL = """
+[body.{name}]
+shape = "sphere"
+material = "rock"
+kinematics = "{kinematics}"
+centre = {centre}
+radius = 0.05
+velocity = {velocity}
+spin = [0, 0, 20]
+"""
+
+
+@pytest.mark.parametrize(("kinematics", "friction"), [("elastic", 0.0), ("breakable", 0.4)])
+@pytest.mark.parametrize("turn", [33.0, 80.0])
+def test_it_closes_where_stiff_rock_cracks_in_all_directions(tmp_path, kinematics, friction, turn):
+    """At 14 times the speed at which it may crack, points have broken bonds all around them."""
+    cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    text = PAIR.format(friction=friction)
+    for name, side in (("a", -1.0), ("b", 1.0)):
+        centre, velocity = side * np.array([0.051, 0.0075]), side * np.array([-10.0, 0.0])
+        turned = [[cos * x - sin * y, sin * x + cos * y, 0.0] for x, y in (centre, velocity)]
+        turned = np.array(turned).tolist()
+        text += BALL.format(name=name, kinematics=kinematics, centre=turned[0], velocity=turned[1])
+    run = recorded(tmp_path, text)
+    assert run.history["broken_bonds"][-1] > 2000
+    assert gap(ledger_of(run)) < 0.002

@@ -1,6 +1,8 @@
 #pragma once
 // How cracks begin, open, close and end.
 
+#include <utility>
+
 #include "bodies/elastic/bonds.hpp"
 #include "bodies/elastic/outer.hpp"
 #include "physics/fracture.hpp"
@@ -108,6 +110,9 @@ private:
     /// Of what would take the stress of a bond away in one step of its crack, so that those of
     /// neighbours do not overshoot together.
     static constexpr double relaxation = 0.7;
+    /// Of the largest response of the cracks around a point: with the relaxation, steps of all of
+    /// them are stable above 0.35.
+    static constexpr double crowding = 0.4;
     /// Of the length of a bond: sides of a crack farther apart than this part for good.
     static constexpr double reach = 0.03;
     /// Of the sides of a crack: that of rock (Byerlee, Pure Appl. Geophys. 116, 1978).
@@ -136,18 +141,21 @@ private:
     }
     /// By how much the stress across falls while the crack opens [Pa/m]: its own part of that, and
     /// never less than that of all bonds around, which is more where few are left: the matrix of
-    /// these is up to 2 at whole edges.
+    /// these is up to 2 at whole edges. Nor than a share of what the cracks of its points may do
+    /// together, Eq. (151), so that their steps are stable in whatever directions they are.
     double stiffness(const Vec<double, D>& normal, const CrackSite& place) const {
-        const double modulus = place.stiffness * body_.spacing;
-        double own = 0.0, few = 1.0;
-        for (const BondPoint<D>* i : {&a_, &b_}) {
+        const double modulus = place.stiffness * body_.spacing,
+                     of_all = D * modulus - 2.0 * (D - 1) * body_.shear_modulus();
+        double own = 0.0, together = 0.0, few = 1.0;
+        for (const auto& [i, tip] : {std::pair{&a_, &beside_.a}, std::pair{&b_, &beside_.b}}) {
             if (!i->spans) continue;
             const Vec<double, D> corrected = corrected_rest(*i);
             const double square = dot(corrected, corrected);
             own += modulus * ends_.weight * i->volume * square + i->kappa;
+            together += of_all * dot(corrected, tip->moment * corrected) / square + i->kappa;
             few = max(few, 0.5 * norm(i->B * normal));
         }
-        return max(few * place.stiffness, own / area(normal));
+        return max(few * place.stiffness, max(own, crowding * together) / area(normal));
     }
     CrackSite site(const Vec<double, D>& normal) const {
         const double c = body_.wave_speed(), stiffness = body_.rho0 * c * c / body_.spacing;
@@ -245,9 +253,23 @@ private:
 };
 
 template <int D>
+template <class Point>
+void Bonds<D>::find_moments(const Point& point) {
+    for (const std::uint32_t n : stepped_) {
+        const BondEnds& ends = pairs_[n];
+        if (!state_[n].cracked() || state_[n].whole == 0.0) continue;
+        const BondPoint<D> a = point(ends.a), b = point(ends.b);
+        const Vec<double, D> rest = a.rest - b.rest, at_a = a.B * rest, at_b = b.B * rest;
+        add_outer(tip_[ends.a].moment, ends.weight * b.volume, at_a, at_a);
+        add_outer(tip_[ends.b].moment, ends.weight * a.volume, at_b, at_b);
+    }
+}
+
+template <int D>
 template <class Point, class Body, class Tension>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body, const Tension& tension) {
     for (const std::uint32_t n : stepped_) tip_[pairs_[n].a] = tip_[pairs_[n].b] = {};
+    find_moments(point);
     for (const std::uint32_t n : stepped_) {
         if (!(state_[n].opening > 0.0)) continue;
         for (const std::uint32_t p : {pairs_[n].a, pairs_[n].b}) {

@@ -63,11 +63,13 @@ struct BondState {
     bool cracked() const { return dot(normal, normal) > 0.0; }
 };
 
-/// What open cracks leave at a point: whether there are any, and of a broken bond the normal at
-/// rest and the tension at which its crack goes on [Pa].
+/// What cracks leave at a point: whether any are open, the moment of the bonds that have cracked,
+/// by the gradients that these make, and of a broken one the normal at rest and the tension at
+/// which its crack goes on [Pa].
 template <int D>
 struct CrackTip {
     bool open = false;
+    Mat<double, D> moment{};
     Vec<double, D> normal{};
     double strength = std::numeric_limits<double>::infinity();
 
@@ -283,6 +285,9 @@ private:
     template <class Point, class Body, class Place, class Counts>
     double energy_across(std::size_t p, Moment moment, const Point& point, const Body& body,
                          const Place& place, const Counts& counts) const;
+    /// Of the cracks around each point.
+    template <class Point>
+    void find_moments(const Point& point);
     template <class Point, class Body>
     double first_halves(std::size_t p, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {
