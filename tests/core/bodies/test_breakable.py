@@ -284,6 +284,42 @@ def test_a_restored_run_goes_on_with_the_same_bits(build, dim, at):
     assert simulation.totals() == other.totals()
 
 
+@pytest.mark.parametrize(("dim", "share"), [(2, 3.5), (3, 4.0)])
+def test_a_cracked_body_that_is_rigid_again_is_restored(build, dim, share):
+    """Saved while it is rigid, it strikes a wall like the one that was not saved."""
+    flat = dim - 2
+    wall = f"""
+[body.wall]
+shape = "box"
+material = "chalk"
+fixed = true
+min = {[-0.4, -0.3, *[-0.2] * flat]}
+max = {[-0.25, 0.3, *[0.2] * flat]}
+"""
+    damped = pair(dim, "breakable", share * MEETS).replace(
+        "kinematics", "damping = 0.2\nkinematics"
+    )
+    simulation = build(damped + wall, dim)
+    run(simulation, 0.002)
+    assert deformable(simulation) == 2
+    while deformable(simulation):
+        run(simulation, simulation.time + 2e-4)
+        assert simulation.time < 0.012
+    cracked = simulation.totals()
+    assert cracked["broken_bonds"] > 0
+    assert cracked["parts"] == 0
+    saved, end = simulation.checkpoint(), 0.02
+    other = build.again()
+    check_state(other, saved, 1, 3)
+    assert other.restore(saved)
+    for one in (simulation, other):
+        one.advance(limit=end, pause=end, max_steps=100_000)
+    assert simulation.totals()["damping_work"] > cracked["damping_work"]  # it was struck again
+    for key in ("position", "velocity", "damage"):
+        assert np.array_equal(simulation.state()[key], other.state()[key]), key
+    assert simulation.totals() == other.totals()
+
+
 def test_deformable_and_rigid_bodies_beside_breakable_ones(build):
     """Three kinds in a row: a strong blow goes through all, and what is made of them is right."""
     tables = ball("a", 2, "breakable", [-0.202, 0.004], [3 * MEETS, 0])
