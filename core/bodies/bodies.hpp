@@ -69,8 +69,7 @@ public:
         number_bodies();
         breakable_.measure_strengths(deformable);
         start_breakable();
-        prepare_contacts();
-        find_contacts();
+        prepare_contacts(), find_contacts();
         rest_in_holders();
     }
 

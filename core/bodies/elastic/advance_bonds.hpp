@@ -110,8 +110,7 @@ private:
     /// Of what would take the stress of a bond away in one step of its crack, so that those of
     /// neighbours do not overshoot together.
     static constexpr double relaxation = 0.7;
-    /// Of the largest response of the cracks around a point: with the relaxation, steps of all of
-    /// them are stable above 0.35.
+    /// Of the largest response of the cracks around a point; half of the relaxation and some more.
     static constexpr double crowding = 0.4;
     /// Of the length of a bond: sides of a crack farther apart than this part for good.
     static constexpr double reach = 0.03;
