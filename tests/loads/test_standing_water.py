@@ -88,6 +88,18 @@ def test_a_disc_under_water_has_its_uplift(tmp_path):
     assert abs(force[0]) < 0.03 * uplift
 
 
+def test_what_another_wall_covers_has_no_water(tmp_path):
+    """A block touches the face of the stone, up to 0.3 m of its 0.4 m."""
+    stone = 'shape = "box"\nmin = [0.4, 0]\nmax = [0.5, 0.4]\nnormal = [1, 0]\n'
+    block = '[body.block]\nmaterial = "basalt"\nfixed = true\nshape = "box"\n'
+    block += "normal = [0, 1]\nmin = [0.5, 0]\nmax = [0.8, 0.3]\n"
+    level, low, top = 0.6, 0.3, 0.4
+    force, _ = static_of(tmp_path, 2, stone + block, level)
+    thrust = 0.5 * 1000 * G * ((level - low) ** 2 - (level - top) ** 2)
+    assert force[0] == pytest.approx(-thrust, rel=0.01)
+    assert abs(force[1]) < 1e-9 * thrust
+
+
 def test_half_of_it_under_water(tmp_path):
     """Only what is below the level counts, and level water pushes no way."""
     stone = 'shape = "box"\nmin = [0.3, 0.1]\nmax = [0.5, 0.5]'

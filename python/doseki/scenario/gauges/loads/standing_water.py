@@ -10,11 +10,11 @@ import numpy as np
 from ....record.particles import BOUND, FIXED
 from ..gauge import Sampled, Setting, State
 from ..near import INSIDE, MIN_VOID, REACH, Column, particles_in
+from .outside_walls import clear_of_walls, left_by_walls
 
 OFF = 1.5  # spacings in front of the surface: where the water is looked at
 STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
-INSIDE_WALL = 0.88  # spacings to the nearest particle of a wall; less within one
 CAPPED = 0.75  # share of walls around a point from which on a column ends there
 EDGE_REACH, LIKE, UNLIKE, EVEN = 1.5, 0.9, 0.5, 0.3  # neighbours and their normals at an edge
 
@@ -26,6 +26,7 @@ class Elements:
     place: np.ndarray  # (n, dim) on the surface, m
     area: np.ndarray  # (n, dim) outwards, m2; 2-D: m
     probe: np.ndarray  # (n, dim) in front of it, m
+    body: np.ndarray  # (n,) which it is of
 
 
 Box = tuple[np.ndarray, np.ndarray]  # lower and upper corner, m
@@ -45,6 +46,7 @@ def standing_water(
     if g > 0 and len(force):
         up = -setting.gravity / g
         around = _around(run, setting, elements, up)
+        elements = _outside_of_walls(elements, around, setting.dp)
         force = -g * _depths(elements, around, setting, up)[:, None] * elements.area
     return force.sum(axis=0), moment_of(elements.place - about, force)
 
@@ -64,7 +66,8 @@ def surface_of(run: Sampled, setting: Setting, bodies: Sequence[str], box: Box) 
     place = position + depth[:, None] * normal
     size = state["mass"][mine] / state["density"][mine] / setting.dp
     size *= _faces(position, normal, depth, setting.dp)
-    return Elements(place, size[:, None] * normal, place + OFF * setting.dp * normal)
+    probe = place + OFF * setting.dp * normal
+    return Elements(place, size[:, None] * normal, probe, state["body"][mine])
 
 
 def _around(run: Sampled, setting: Setting, elements: Elements, up: np.ndarray) -> State:
@@ -141,11 +144,12 @@ def _depths(elements: Elements, around: State, setting: Setting, up: np.ndarray)
     n = len(elements.place)
     height, probed = elements.place @ up, elements.probe @ up
     level, density, wet = np.full(n, np.nan), np.zeros(n), np.zeros(n, bool)
-    buried = _buried(elements.probe, around, setting.dp)
+    if not n:
+        return level
     lines = _Lines.through(elements.probe, up, CELL * setting.dp)
     for k, profile in enumerate(_profiles(lines.plan, around, setting, up, probed.min())):
         mine = np.flatnonzero(lines.of == k)
-        wet[mine] = profile.is_wet(probed[mine]) & ~buried[mine]
+        wet[mine] = profile.is_wet(probed[mine])
         level[mine] = np.where(wet[mine], profile.level(probed[mine]), np.nan)
         density[mine] = profile.density
     known = np.flatnonzero(np.isfinite(level))
@@ -160,12 +164,15 @@ def _depths(elements: Elements, around: State, setting: Setting, up: np.ndarray)
     return density * np.maximum(0.0, depth)
 
 
-def _buried(probe: np.ndarray, around: State, dp: float) -> np.ndarray:
-    """Whether each point lies within walls: a structure may reach into its bed and banks."""
-    from scipy.spatial import cKDTree
-
-    walls = around["position"][around["motion"] == FIXED]
-    return np.asarray(cKDTree(walls).query(probe)[0] < INSIDE_WALL * dp)
+def _outside_of_walls(elements: Elements, around: State, dp: float) -> Elements:
+    """The parts of the pieces that no other wall covers."""
+    size = np.linalg.norm(elements.area, axis=1)
+    normal = elements.area / np.maximum(size, 1e-300)[:, None]
+    share, middle = left_by_walls(elements.place, normal, elements.body, around, dp)
+    some, moved = share > 0, middle - elements.place
+    body, probe = elements.body[some], (elements.probe + moved)[some]
+    probe = clear_of_walls(probe, body, around, dp)
+    return Elements(middle[some], (share[:, None] * elements.area)[some], probe, body)
 
 
 @dataclass(frozen=True)
