@@ -87,6 +87,13 @@ def test_polygons_with_holes_and_parts(any_format):
     assert same_crs(found.crs, "EPSG:31287") is (False if known else None)
 
 
+def test_heights_of_a_compound_system_do_not_tell_it_apart():
+    pytest.importorskip("rasterio")
+    assert same_crs("EPSG:31287+5778", "EPSG:31287") is True
+    assert same_crs("EPSG:31287", "EPSG:31287+5778") is True
+    assert same_crs("EPSG:31287+5778", "EPSG:31254") is False
+
+
 def test_lines_with_heights(any_format):
     (line,) = read_features(any_format(collection(PATH, crs=CRS))).lines
     np.testing.assert_array_equal(line.vertices, [[WEST, SOUTH], [WEST + 30, SOUTH + 40]])

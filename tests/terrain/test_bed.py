@@ -55,6 +55,16 @@ def test_window_cell_and_smoothing(path):
     assert coarse.heights == pytest.approx(plane, abs=1e-9)  # a plane stays a plane
 
 
+def test_numbers_that_are_no_heights_are_refused(path, tmp_path):
+    """A map that does not say that -9999 means no data would have a pit of ten kilometres."""
+    kept = (tmp_path / "terrain.asc").read_text()
+    lines = [line for line in kept.splitlines() if not line.lower().startswith("nodata")]
+    lines[-1] = " ".join(["-9999", *lines[-1].split()[1:]])
+    (tmp_path / "terrain.asc").write_text("\n".join(lines) + "\n")
+    with pytest.raises(UserError, match="1 cells hold -9999, which is no height"):
+        load_scenario(path)
+
+
 def test_cells_without_data_are_filled_and_said(path, tmp_path):
     x, y = np.meshgrid(np.arange(60), np.arange(40))
     values = np.where((x > 45) & (y > 25), np.nan, 10 - 0.05 * x)

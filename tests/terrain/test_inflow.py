@@ -7,7 +7,8 @@ import pytest
 
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
-from doseki.scene.inflow_sections import build_inflows
+from doseki.scene.checks.terrain import terrain_findings
+from doseki.scene.inflow_sections import build_inflows, surge_volumes
 from doseki.solver.build import filled_simulation
 
 from .scenes import fluid, grid, text
@@ -107,6 +108,25 @@ def test_a_surge_rises_and_falls_in_thickness_and_speed(path, tmp_path):
     exact = 1000 * np.trapezoid(area * fast[::50], t[::50])
     assert asked[-1] == pytest.approx(exact, rel=0.02)
     assert totals["mass_entered"] == pytest.approx(asked[-1], rel=0.1)
+
+
+def test_a_surge_that_particles_are_too_coarse_for_is_warned_about(path):
+    """Its area above the ground is that of a V-shaped channel: h2 over the slope of its sides."""
+    grid(path.parent / "terrain.asc", channel, cell=0.02)
+    t = np.linspace(0, 0.8, 2001)
+    thick, fast = (np.interp(t, [0, 0.4, 0.8], of) for of in ([0.2, 0.8, 0.4], [1.0, 2.0, 1.0]))
+    exact = np.trapezoid(thick**2 * fast, t) * np.sqrt(1.04) / 0.5
+    said = {}
+    for dp in (0.2, 0.05):
+        path.write_text(text(3, dp=dp, speed=5.0, more=SURGE))
+        scenario = load_scenario(path)
+        (section,) = build_inflows(scenario, ["terrain", "flood"])
+        asked, _ = surge_volumes(scenario, section)
+        assert asked == pytest.approx(exact, rel=0.03)
+        findings = terrain_findings(scenario, {})
+        said[dp] = [str(each) for each in findings if each.place == "inflow.flood"]
+    assert "its layers have" in said[0.2][0]
+    assert said[0.05] == []
 
 
 def test_a_surge_from_a_file_of_time_thickness_and_velocity(path, tmp_path):

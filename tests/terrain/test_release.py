@@ -165,12 +165,29 @@ max = [6, 0.8]
         (SQUARE + "\narray = {count = [2, 1, 1], step = [1, 0, 0]}", "no copies"),
         (SQUARE.replace("0.5", "[0.5, 0.4]"), "2 numbers for 1 polygons"),
         (SQUARE.replace("0.5", "0.05"), "less than 0.6 particle"),
+        (
+            "polygon = [[1, 1], [4, 3], [4, 1], [1, 3]]\nthickness = 0.5",
+            r"area 1 crosses itself at \[2.5, 2.0\] m",
+        ),
+        (
+            "polygons = [[[[1, 1], [4, 1], [4, 3], [1, 3]]], [[[3.8, 1], [5, 1], [5, 3]]]]\n"
+            "thickness = 0.5",
+            r"areas 1 and 2 share 0.03\d+ m2",
+        ),
         (SQUARE + "\nfile_name = 'x'", "file_name is not a known key"),
     ],
 )
 def test_what_is_no_release_is_refused(case, keys, said):
     with pytest.raises(UserError, match=said):
         build_scene(load_scenario(case(keys)))
+
+
+def test_areas_that_share_an_edge_are_no_overlap(case):
+    """Nor is an outline that touches itself at a corner one that crosses itself."""
+    areas = "[[[1, 1], [2, 2], [1, 3]]], [[[2, 2], [1, 1], [4, 1], [4, 3], [1, 3]]]"
+    scenario = load_scenario(case(f"polygons = [{areas}]\nthickness = 0.5"))
+    exact = 0.5 * area_of(lambda x, y: (x > 1) & (x < 4) & (y > 1) & (y < 3), (1, 1), (4, 3))
+    assert volume_of(scenario) == pytest.approx(exact, rel=0.01)
 
 
 def test_a_release_needs_a_terrain(case):

@@ -13,6 +13,8 @@ PROJECTED = (
 )  # fmt: skip
 FEET = re.compile(r'UNIT\[\s*"([^"]*(?:foot|feet|ft|yard|link|chain)[^"]*)"', re.IGNORECASE)
 LAST_CODE = re.compile(r'(?:^EPSG:|(?:AUTHORITY|ID)\[\s*"EPSG",\s*"?)(\d+)"?(?:\s*\]){0,2}\s*$')
+COMPOUND = ("COMPD_CS", "COMPOUNDCRS")
+MAP_PART = re.compile(r"PROJC(?:S|RS)\[")
 MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG
 IN_DEGREES = re.compile(r"(?:^|:)(?:CRS84h?|EPSG:[^:]*:?(?:4326|4258|4979))$", re.IGNORECASE)
 
@@ -99,7 +101,7 @@ def not_metres(path: object, unit: str) -> str:
 
 
 def same_crs(one: str | None, other: str | None) -> bool | None:
-    """Whether two systems (WKT, or names such as "EPSG:32633") are the same.
+    """Whether two systems (WKT, or names such as "EPSG:32633") are the same on the map.
 
     None where that cannot be told: one is not known, or rasterio is not installed.
     """
@@ -115,8 +117,22 @@ def same_crs(one: str | None, other: str | None) -> bool | None:
         return None
     try:
         with Env():
-            first, second = CRS.from_user_input(one), CRS.from_user_input(other)
+            found = (CRS.from_user_input(each).to_wkt() for each in (one, other))
+            first, second = (CRS.from_wkt(_horizontal(wkt)) for wkt in found)
             codes = first.to_epsg(MIN_CONFIDENCE), second.to_epsg(MIN_CONFIDENCE)
     except CRSError:
         return None
     return bool(first == second) or (codes[0] is not None and codes[0] == codes[1])
+
+
+def _horizontal(wkt: str) -> str:
+    """A system without the heights that a compound one adds to it."""
+    start = MAP_PART.search(wkt)
+    if not wkt.startswith(COMPOUND) or start is None:
+        return wkt
+    depth = 0
+    for k in range(start.start(), len(wkt)):
+        depth += (wkt[k] == "[") - (wkt[k] == "]")
+        if wkt[k] == "]" and depth == 0:
+            return wkt[start.start() : k + 1]
+    return wkt

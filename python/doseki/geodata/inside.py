@@ -13,6 +13,31 @@ def ring_area(ring: np.ndarray) -> float:
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)
 
 
+def crossing_of(ring: np.ndarray) -> np.ndarray | None:
+    """Where an edge of a ring (n, 2) crosses another one, (2,) m; None where none does.
+
+    Edges that only touch, or lie along each other, do not cross.
+    """
+    start = ring - ring[0]
+    along = np.roll(start, -1, axis=0) - start
+    for k in range(len(ring) - 2):
+        first, step = start[k + 2 :], along[k + 2 :]
+        before = _turn(along[k], first - start[k])
+        after = _turn(along[k], first + step - start[k])
+        this_before = _turn(step, start[k] - first)
+        this_after = _turn(step, start[k] + along[k] - first)
+        found = np.flatnonzero((before * after < 0) & (this_before * this_after < 0))
+        if len(found):
+            j = found[0]
+            share = before[j] / (before[j] - after[j])
+            return np.asarray(ring[0] + first[j] + share * step[j])
+    return None
+
+
+def _turn(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
+
+
 def inside_rings(rings: Iterable[np.ndarray], x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Which points are inside an odd number of rings (n, 2); arrays that broadcast.
 

@@ -20,6 +20,7 @@ from .values.units import LENGTH
 
 PROFILE_EXAMPLE = "x [m],z [m]"
 TILE_COLUMNS = {2: 16, 3: 8}  # spacings along a side of a tile (core/boundaries/terrain.hpp)
+NO_HEIGHTS = (-9999.0, -32768.0, -32767.0, -99999.0, float(np.finfo(np.float32).min))
 MAX_NODES = 50_000_000  # of a profile or a section; 0.4 GB
 
 
@@ -92,7 +93,7 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        raster = _used(read_raster(path), terrain)
+        raster = _used(_with_heights(path, read_raster(path)), terrain)
     except GeodataError as error:
         raise where.error(("terrain",), f"terrain: {error}") from None
     if dim == 3:
@@ -104,6 +105,18 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
             "or give a CSV file with columns x and z",
         )
     return _bed_of_section(raster, terrain, dp, where)
+
+
+def _with_heights(path: Path, raster: Raster) -> Raster:
+    """The raster, unless it has numbers that mean no data and does not say so."""
+    for number in NO_HEIGHTS:
+        cells = int((raster.values == number).sum())
+        if cells:
+            raise GeodataError(
+                f"{path}: {cells} cells hold {number:g}, which is no height: let the file say that "
+                f"it means no data (gdal_edit -a_nodata {number:g} IN; .asc: a line NODATA_value)"
+            )
+    return raster
 
 
 def _used(raster: Raster, terrain: Terrain) -> Raster:

@@ -9,12 +9,14 @@ import numpy as np
 
 from ..geodata.crs import same_crs
 from ..geodata.errors import GeodataError
-from ..geodata.features import read_features
+from ..geodata.features import Polygon, read_features
+from ..geodata.inside import crossing_of
 from .tables.terrain.release import Release
 from .values.toml_source import Where
 
 RASTERS = (".tif", ".tiff", ".asc")
 FIELD = "thickness"
+OVERLAP = 0.01  # of the smaller of two areas; edges of drawn ones do not meet exactly
 
 
 def is_raster(file: str | None) -> bool:
@@ -43,6 +45,7 @@ def completed_release(
         given = release.polygon
         found["polygons"] = [[given]] if given is not None else release.polygons
         thickness = release.thickness
+    _check_areas(name, found["polygons"], where)
     count = len(found["polygons"])
     if not isinstance(thickness, list):
         thickness = [thickness] * count
@@ -52,6 +55,32 @@ def completed_release(
             f"body.{name}.thickness has {len(thickness)} numbers for {count} polygons",
         )
     return release.model_copy(update=found | {"thickness": thickness})
+
+
+def _check_areas(name: str, polygons: list[Any], where: Where) -> None:
+    """Refuse an outline that crosses itself, and areas that lie in each other."""
+    keys = ("body", name)
+    areas = []
+    for k, rings in enumerate(polygons, 1):
+        outlines = [np.array(ring, float) for ring in rings]
+        for ring in outlines:
+            at = crossing_of(ring)
+            if at is not None:
+                raise where.error(
+                    keys,
+                    f"body.{name}: the outline of area {k} crosses itself at "
+                    f"{np.round(at, 3).tolist()} m: what is inside cannot be told",
+                )
+        areas.append(Polygon(outlines[0], tuple(outlines[1:])))
+    for k, one in enumerate(areas):
+        for j, other in enumerate(areas[:k]):
+            shared = one.shared_with(other)
+            if shared > OVERLAP * min(one.area, other.area):
+                raise where.error(
+                    keys,
+                    f"body.{name}: areas {j + 1} and {k + 1} share {shared:.3g} m2, where "
+                    "particles of both would be: cut one of them, or make one area of both",
+                )
 
 
 def _from_file(

@@ -12,6 +12,7 @@ from ..scenario.values.directions import section_axes
 from .ground import ground_of
 from .lattices import ROUNDING
 
+INSTANTS = 2000  # at which the volume of a surge is looked at
 NEAREST = 0.4  # spacings between an inflow and a terrain
 
 
@@ -132,16 +133,38 @@ def _heights(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
 
 def _lowest_bed(scenario: Scenario, name: str) -> float:
     """How far the bed of a terrain lies above the foot of the section of a surge at least, m."""
-    inflow, dp = scenario.inflow[name], scenario.dp
-    if scenario.bed is None or inflow.surge is None:
+    if scenario.bed is None or scenario.inflow[name].surge is None:
         return 0.0
+    return max(0.0, float(_bed_across(scenario, name).min()))
+
+
+def _bed_across(scenario: Scenario, name: str) -> np.ndarray:
+    """Heights (n,) of the bed of a terrain above the foot of a section, evenly across it, m."""
+    inflow, bed = scenario.inflow[name], scenario.bed
+    assert bed is not None
     direction = inflow.direction / np.linalg.norm(inflow.direction)
     up, across = section_axes(direction, scenario.gravity)
     places = inflow.position[None, :]
     if across is not None:
-        places = inflow.position + np.arange(0.0, inflow.width, 0.25 * dp)[:, None] * across
-    ground = ground_of(scenario.bed).field.at(np.ascontiguousarray(places[:, :-1]))["height"]
-    return max(0.0, float((ground - places[:, -1]).min() * up[-1]))
+        steps = np.arange(0.0, inflow.width, 0.25 * scenario.dp)
+        places = inflow.position + steps[:, None] * across
+    ground = ground_of(bed).field.at(np.ascontiguousarray(places[:, :-1]))["height"]
+    return np.asarray((ground - places[:, -1]) * up[-1])
+
+
+def surge_volumes(scenario: Scenario, section: InflowSection) -> tuple[float, float]:
+    """What a surge asks for above the ground, and what its layers have, m3 (2-D: m2)."""
+    dim, dp = scenario.dim, scenario.dp
+    time = np.linspace(section.start, section.stop, INSTANTS)
+    thickness = np.interp(time, section.times, section.thickness)
+    speed = np.interp(time, section.times, section.speeds)
+    bed = _bed_across(scenario, section.name)
+    level = thickness[:, None] + _lowest_bed(scenario, section.name)
+    width = scenario.inflow[section.name].width if dim == 3 else 1.0
+    area = width * np.maximum(level - np.maximum(bed, 0.0), 0.0).mean(axis=1)
+    rows = np.searchsorted(np.sort(section.row_height), thickness)
+    layer = dp ** (dim - 1) * rows
+    return float(np.trapezoid(area * speed, time)), float(np.trapezoid(layer * speed, time))
 
 
 def _check_outside_walls(

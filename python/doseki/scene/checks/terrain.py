@@ -9,11 +9,12 @@ from typing import Any
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding
-from ..inflow_sections import build_inflows, rows_of
+from ..inflow_sections import InflowSection, build_inflows, rows_of, surge_volumes
 from ..kinds.body import Body
 from ..kinds.release import ReleaseBody
 
 VOLUME = 0.01  # by which the particles of a release may miss what is asked for
+SURGE = 0.1  # by which the layers of a surge may
 FEW_LAYERS = 2.0
 
 
@@ -75,6 +76,20 @@ class CutInflow(Finding):
 
 
 @dataclass(frozen=True)
+class CoarseSurge(Finding):
+    """A surge of which the particles of a layer are not what its thickness asks for."""
+
+    asked: float  # m3
+    volume: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: its layers have {self.volume:.3g} m3, and thickness, width and speed "
+            f"above the ground are {self.asked:.3g} m3: decrease dp"
+        )
+
+
+@dataclass(frozen=True)
 class ThinRelease(Finding):
     """A release of one or two layers of particles."""
 
@@ -98,9 +113,7 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
     if bed.cell < 0.5 * scenario.dp:
         yield Coarse(TERRAIN, bed.cell, scenario.dp)
     for section in build_inflows(scenario, list(scenario.inflow)):
-        rows, all_rows = len(section.rows), len(rows_of(scenario, section.name))
-        if rows < all_rows:
-            yield CutInflow(f"inflow.{section.name}", rows, all_rows, float(section.speeds.max()))
+        yield from _inflow_findings(scenario, section)
     for name, body in bodies.items():
         if not isinstance(body, ReleaseBody):
             continue
@@ -109,3 +122,16 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
             yield WrongVolume(name, body.asked, body.volume, unit)
         if body.layers < FEW_LAYERS:
             yield ThinRelease(name, body.layers, scenario.dp * body.layers / 4)
+
+
+def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Finding]:
+    """Doubts about one inflow."""
+    place = f"inflow.{section.name}"
+    if scenario.inflow[section.name].surge is None:
+        rows, all_rows = len(section.rows), len(rows_of(scenario, section.name))
+        if rows < all_rows:
+            yield CutInflow(place, rows, all_rows, float(section.speeds.max()))
+        return
+    asked, volume = surge_volumes(scenario, section)
+    if abs(volume - asked) > SURGE * asked:
+        yield CoarseSurge(place, asked, volume)
