@@ -79,6 +79,8 @@ def test_cells_without_data_are_filled_and_said(path, tmp_path):
     ("settings", "said"),
     [
         (["terrain.window=[-5, 0, 3, 2]"], "reaches beyond the raster"),
+        (["maps.cell=0.15"], "no whole multiple of the terrain's 0.1 m"),
+        (["maps.extent=[1, 1, 9, 2]"], "maps: .* reaches beyond the raster"),
         (["terrain.window=[3, 0, 1, 2]"], "smaller ones first"),
         (["terrain.window=[3, 0, 1]"], "terrain.window"),
         (["terrain.resample=9"], "larger than the raster"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -120,6 +121,21 @@ class Raster:
         values = self.values[rows - high : rows - low, first:last].copy()
         west, south = self.west + first * self.cell, self.south + low * self.cell
         return replace(self, values=values, west=west, south=south)
+
+    def for_maps(self, cell: float | None, extent: Sequence[float] | None) -> Raster:
+        """The cells that maps of a flow on this ground have: a multiple of its own, in a window.
+
+        Raises:
+            GeodataError: they do not fit the raster.
+
+        """
+        times = round((cell or self.cell) / self.cell)
+        if cell is not None and (times < 1 or abs(cell - times * self.cell) > TOLERANCE * cell):
+            raise GeodataError(
+                f"maps.cell = {cell:g} m is no whole multiple of the terrain's {self.cell:g} m"
+            )
+        raster = self.resampled(cell) if cell is not None and times > 1 else self
+        return raster if extent is None else raster.window(*extent)
 
     def _cells(self, start: float, end: float) -> tuple[int, int]:
         """The first cell, and the one after the last, that cover a stretch from an edge, m."""

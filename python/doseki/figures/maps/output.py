@@ -65,6 +65,8 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
 
 def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, list[str]]:
     """The maps, the bed on their cells, and how they were made."""
+    if run.scenario["dim"] != 3:
+        raise UserError(f"{run.directory}: a 2-D run has no map")
     table = run.scenario.get("maps")
     settings = MapSettings.of(table, run.scenario["dp"])
     kept = read_maps(run.folder) if table is not None else {}

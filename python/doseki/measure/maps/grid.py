@@ -65,7 +65,7 @@ def map_grid(folder: RunFolder, settings: MapSettings) -> Raster:
         if path is None:
             grid = _own_grid(folder, settings)
         else:
-            grid = _on_terrain(read_raster(path), settings)
+            grid = read_raster(path).for_maps(settings.cell, settings.extent)
     except GeodataError as error:
         raise UserError(f"maps: {error}") from None
     if grid.cell < settings.dp * (1 - TOLERANCE):
@@ -100,18 +100,6 @@ def _own_grid(folder: RunFolder, settings: MapSettings) -> Raster:
             f"maps.extent has {shape[0] * shape[1]:.3g} cells; at most {MAX_CELLS:.3g}"
         )
     return Raster(np.full(shape, np.nan), west, south, settings.cell)
-
-
-def _on_terrain(terrain: Raster, settings: MapSettings) -> Raster:
-    cell = settings.cell or terrain.cell
-    times = round(cell / terrain.cell)
-    if times < 1 or abs(cell - times * terrain.cell) > TOLERANCE * cell:
-        raise GeodataError(
-            f"maps.cell = {cell:g} m is no whole multiple of the terrain's {terrain.cell:g} m"
-        )
-    if times > 1:
-        terrain = terrain.resampled(cell)
-    return terrain if settings.extent is None else terrain.window(*settings.extent)
 
 
 def few_particles(grid: Raster, dp: float) -> str | None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from ...geodata.errors import GeodataError
 from ..model import Scenario
 
 MAX_LOOKS = 1e6
 
 
 def check_maps(scenario: Scenario) -> None:
-    """Raise UserError for maps that would be looked at too often, of too small cells or of none."""
+    """Raise UserError for maps that would be looked at too often, or of cells that do not fit."""
     maps = scenario.maps
     if maps is None:
         return
@@ -30,3 +31,8 @@ def check_maps(scenario: Scenario) -> None:
             ("maps", "cell"),
             f"maps.cell = {maps.cell:g} m is smaller than a particle (dp = {scenario.dp:g} m)",
         )
+    if scenario.bed is not None and scenario.bed.raster is not None:
+        try:
+            scenario.bed.raster.for_maps(maps.cell, maps.extent)
+        except GeodataError as error:
+            raise scenario.where.error(("maps",), f"maps: {error}") from None
