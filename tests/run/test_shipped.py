@@ -19,8 +19,8 @@ MOST_PARTICLES = 20_000
 RESOLVED = {
     "brazil-test", "breaking-flume", "channel", "dam-step", "drip", "drop-weight", "drum",
     "elastic-gate", "flood-log", "flume-3d",
-    "flume-strip", "gate-release", "mud-slump", "saturated-slide", "segregation", "slide-wave",
-    "slit-dam", "valley", "voellmy-chute",
+    "flume-strip", "gate-release", "gate-release-3d", "mud-slump", "saturated-slide", "segregation",
+    "slide-wave", "slit-dam", "valley", "voellmy-chute",
 }  # fmt: skip
 # Coarser than shipped, where a 3-D run would have too many particles for a quick test.
 COARSE = {
