@@ -3,10 +3,9 @@
 #include "base/memory.hpp"
 
 #include <cuda_runtime.h>
-#include <thrust/mr/sync_pool.h>
-#include <thrust/system/cuda/memory_resource.h>
 
 #include <cstdlib>
+#include <memory_resource>
 #include <new>
 
 #include "device/card.hpp"
@@ -34,18 +33,31 @@ bool has_card() {
     return there_is_one;
 }
 
+/// Memory of the driver.
+class ManagedMemory : public std::pmr::memory_resource {
+    void* do_allocate(std::size_t bytes, std::size_t) override {
+        void* memory = nullptr;
+        if (cudaMallocManaged(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
+        return memory;
+    }
+    void do_deallocate(void* memory, std::size_t, std::size_t) override { cudaFree(memory); }
+    bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override {
+        return this == &other;
+    }
+};
+
 /// Keeps what was freed for the next time: the driver takes long to find memory. It is never
 /// destroyed, since what it serves may live until the program has ended.
-auto& pool() {
-    using Pool = thrust::mr::synchronized_pool_resource<thrust::universal_memory_resource>;
-    static auto* const pool = new Pool();
+std::pmr::memory_resource& pool() {
+    static auto* const pool = new std::pmr::synchronized_pool_resource(
+        std::pmr::pool_options{0, std::size_t{1} << 22}, new ManagedMemory());
     return *pool;
 }
 
 }  // namespace
 
 void* allocate_for_device(std::size_t bytes) {
-    if (has_card()) return thrust::raw_pointer_cast(pool().do_allocate(bytes));
+    if (has_card()) return pool().allocate(bytes);
     void* const memory = std::malloc(bytes > 0 ? bytes : 1);
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
@@ -53,7 +65,7 @@ void* allocate_for_device(std::size_t bytes) {
 
 void free_for_device(void* memory, std::size_t bytes) noexcept {
     if (has_card())
-        pool().do_deallocate(thrust::universal_ptr<void>(memory), bytes);
+        pool().deallocate(memory, bytes);
     else
         std::free(memory);
 }

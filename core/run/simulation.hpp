@@ -342,7 +342,8 @@ void Simulation<Lists>::rebuild_lists() {
     lists_.cut_space(particles, phases());
     drop_removed();
     terrain_looks_.fill(particles, open_boundaries.next_id);
-    if (ranks().sum(static_cast<double>(particles.size())) == 0.0)
+    const bool more_comes = std::isfinite(open_boundaries.next_event());
+    if (!more_comes && ranks().sum(static_cast<double>(particles.size())) == 0.0)
         throw PhysicsFailure("no particle is left in the domain", FailureKind::empty);
     lists_.send_to_owners(particles);
     const auto supports = [this] { return this->supports(); };

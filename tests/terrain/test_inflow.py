@@ -164,3 +164,15 @@ def test_what_is_no_surge_is_refused(path, change, said):
     path.write_text(words)
     with pytest.raises(UserError, match=said):
         load_scenario(path)
+
+
+def test_a_dry_channel_waits_for_what_comes_later(path):
+    """Nothing is there before; it ends where nothing is left and nothing comes."""
+    simulation, _, _ = filled_simulation(load_scenario(path, ["inflow.flood.start=0.3"]))
+    simulation.start()
+    simulation.advance(limit=0.2, pause=0.2, max_steps=10**6)
+    assert len(simulation) == 0
+    assert simulation.time == pytest.approx(0.2)
+    simulation.advance(limit=0.8, pause=0.8, max_steps=10**6)
+    assert simulation.totals()["mass_entered"] > 100
+    assert fluid(simulation.state()).any()

@@ -69,7 +69,7 @@ def _fall(scenario: Scenario, state: State) -> float:
     along = state["position"] @ scenario.gravity
     starts = [along[moving].min()] if moving.any() else []
     starts += [float(inflow.position @ scenario.gravity) for inflow in scenario.inflow.values()]
-    return max(0.0, float(along.max() - min(starts))) if starts else 0.0
+    return float(along.max(initial=max(starts)) - min(starts)) if starts else 0.0
 
 
 def _extent(position: np.ndarray, scenario: Scenario) -> np.ndarray:
