@@ -123,7 +123,6 @@ public:
         lists_.serialise_lists(archive, particles);
     }
 
-
     /// Throws std::invalid_argument where restored lists are not those of clusters of this width.
     void expect_lists() const { lists_.expect_fit_of(particles); }
 
