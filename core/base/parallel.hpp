@@ -64,24 +64,26 @@ struct ElementOf {
     DOSEKI_DEVICE_FN const T& operator()(std::size_t k) const { return elements[k]; }
 };
 
+/// Sets the elements of a row to what they are at first.
+template <class T>
+struct ClearElement {
+    std::span<T> elements;
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const { elements[k] = T{}; }
+};
+
 struct Maximum {
     template <class T>
     DOSEKI_DEVICE_FN T operator()(const T& a, const T& b) const {
         return std::max(a, b);
     }
 };
+
 struct Join {
     template <class T>
     DOSEKI_DEVICE_FN T operator()(T one, const T& other) const {
         one.add(other);
         return one;
     }
-};
-/// Sets the elements of a row to what they are at first.
-template <class T>
-struct ClearElement {
-    std::span<T> elements;
-    DOSEKI_DEVICE_FN void operator()(std::size_t k) const { elements[k] = T{}; }
 };
 
 /// Ways to combine two values, as std::plus and std::logical_and are: to the larger one, and to one

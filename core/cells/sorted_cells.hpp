@@ -46,9 +46,6 @@ public:
                                      std::span<const double> support,
                                      std::span<const std::uint8_t> is_fixed);
 
-    const Vec<double, D>& image_shift(std::uint32_t entry) const {
-        return image_shift_[entry >> ListEntry::index_bits];
-    }
     const Array<Vec<double, D>>& image_shifts() const { return image_shift_; }
     bool is_periodic() const { return domain_.any_periodic(); }
     std::size_t moving() const { return moving_; }
@@ -60,7 +57,6 @@ public:
 
 protected:
     std::span<const CellGrid<D>> grids() const { return grids_; }
-    const Domain<D>& domain() const { return domain_; }
     std::size_t bytes_of_cells() const;
     /// Throws std::invalid_argument unless these are lists of clusters of `width` particles, so
     /// many as there are flags, moving ones first.

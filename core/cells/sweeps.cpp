@@ -26,9 +26,11 @@ struct SupportOf {
     }
 };
 
-struct NegativeOf {
-    std::span<const double> values;
-    DOSEKI_DEVICE_FN double operator()(std::size_t k) const { return -values[k]; }
+struct RangeOfOne {
+    std::span<const double> support;
+    DOSEKI_DEVICE_FN SupportRange operator()(std::size_t p) const {
+        return {support[p], support[p]};
+    }
 };
 
 template <int D>
@@ -112,9 +114,7 @@ Array<double> support_radii(const Particles<D>& particles, std::span<const Mater
 }
 
 SupportRange range_of(std::span<const double> support) {
-    constexpr double least = std::numeric_limits<double>::lowest();
-    return {-bulk::reduce(support.size(), least, maximum, NegativeOf{support}),
-            bulk::reduce(support.size(), least, maximum, ElementOf<double>{support})};
+    return bulk::reduce(support.size(), SupportRange{}, joined, RangeOfOne{support});
 }
 
 template <int D>

@@ -2,6 +2,7 @@
 // What is done for every particle where lists are made anew, compiled once.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "base/array.hpp"
@@ -18,9 +19,14 @@ template <int D>
 Array<double> support_radii(const Particles<D>& particles, std::span<const Material> materials,
                             const Options<D>& options, double kernel);
 
-/// The smallest and the largest of them; nothing of no particles.
+/// The smallest and the largest of them; of no particles, such that any is smaller and larger.
 struct SupportRange {
-    double smallest, largest;
+    double smallest = std::numeric_limits<double>::max(),
+           largest = std::numeric_limits<double>::lowest();
+
+    DOSEKI_DEVICE_FN void add(const SupportRange& other) {
+        smallest = min(smallest, other.smallest), largest = max(largest, other.largest);
+    }
 };
 SupportRange range_of(std::span<const double> support);
 

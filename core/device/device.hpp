@@ -1,9 +1,6 @@
 #pragma once
-#include <functional>
-
-#include "base/bulk.hpp"
 #include "device/row_lists.hpp"
-#include "pairs/backend.hpp"
+#include "pairs/bulk_backend.hpp"
 #include "pairs/rows.hpp"
 
 namespace doseki {
@@ -55,17 +52,11 @@ private:
 
 /// A device as a back end: one thread for each particle, which has a list of its own.
 template <class real>
-struct Device {
+struct Device : BulkBackend {
     using Real = real;
     static constexpr int width = 1;
     template <int D>
     using Lists = RowLists<D>;
-
-    template <int D>
-    static Array<std::uint32_t> sort(Lists<D>& lists, const ParticlesToSort<D>& particles) {
-        return lists.sort(particles.position, particles.support, particles.is_fixed,
-                          particles.is_near);
-    }
 
     template <int D>
     static void build_lists(Lists<D>& lists, std::span<const Vec<double, D>> position,
@@ -92,15 +83,6 @@ struct Device {
             sum.template operator()<true>();
         else
             sum.template operator()<false>();
-    }
-
-    template <class F>
-    static void for_each_particle(std::size_t count, const F& f) {
-        bulk::for_each(count, f);
-    }
-    template <class Value, class Combine, class F>
-    static Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
-        return bulk::reduce(count, start, combine, f);
     }
 };
 

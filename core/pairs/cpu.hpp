@@ -1,7 +1,6 @@
 #pragma once
 #include "base/array.hpp"
-#include "base/bulk.hpp"
-#include "pairs/backend.hpp"
+#include "pairs/bulk_backend.hpp"
 #include "pairs/loop.hpp"
 #include "pairs/neighbour_lists.hpp"
 
@@ -9,17 +8,11 @@ namespace doseki {
 
 /// The processor as a back end: clusters of as many particles as a pack has lanes, one list each.
 template <class real>
-struct Cpu {
+struct Cpu : BulkBackend {
     using Real = real;
     static constexpr int width = lanes<real>;
     template <int D>
     using Lists = Neighbours<D>;
-
-    template <int D>
-    static Array<std::uint32_t> sort(Lists<D>& lists, const ParticlesToSort<D>& particles) {
-        return lists.sort(particles.position, particles.support, particles.is_fixed,
-                          particles.is_near);
-    }
 
     template <int D>
     static void build_lists(Lists<D>& lists, std::span<const Vec<double, D>> position,
@@ -41,15 +34,6 @@ struct Cpu {
             sum.template operator()<true>();
         else
             sum.template operator()<false>();
-    }
-
-    template <class F>
-    static void for_each_particle(std::size_t count, const F& f) {
-        bulk::for_each(count, f);
-    }
-    template <class Value, class Combine, class F>
-    static Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
-        return bulk::reduce(count, start, combine, f);
     }
 };
 

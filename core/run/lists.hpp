@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>

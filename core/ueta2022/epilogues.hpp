@@ -3,10 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 
-#include "model/fault.hpp"
+#include "model/step_summary.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
 #include "ueta2022/accumulators.hpp"
@@ -14,24 +13,6 @@
 #include "ueta2022/state.hpp"
 
 namespace doseki {
-
-/// What a cluster adds to the step's totals.
-struct MomentumSummary {
-    double timestep = std::numeric_limits<double>::max();
-    double av_power = 0.0;
-    Fault fault;
-    std::int64_t limiting = -1;
-
-    DOSEKI_DEVICE_FN void limit(double dt, std::int64_t particle) {
-        if (dt < timestep || (dt == timestep && particle < limiting))
-            timestep = dt, limiting = particle;
-    }
-    DOSEKI_DEVICE_FN void add(const MomentumSummary& other) {
-        limit(other.timestep, other.limiting);
-        av_power += other.av_power;
-        fault.merge(other.fault);
-    }
-};
 
 /// Fills the record of a particle with what its state will be after `half_dt`; whether its
 /// smoothing length is h0.
@@ -67,7 +48,7 @@ struct StressEpilogue {
     const Ueta2022Model<D>& model;
     Ueta2022State<D>& particles;
     std::span<StressRecord<real, D>> records;
-    std::span<MomentumSummary> summaries;
+    std::span<StepSummary> summaries;
     double half_dt;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p, Mat<double, D> L) const {
@@ -115,7 +96,7 @@ struct MomentumEpilogue {
     const Ueta2022Model<D>& model;
     Ueta2022State<D>& particles;
     std::span<const StressRecord<real, D>> records;
-    std::span<MomentumSummary> summaries;
+    std::span<StepSummary> summaries;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p,
                                      const MomentumAccumulators<double, D>& sums) const {
@@ -126,8 +107,8 @@ struct MomentumEpilogue {
         const Vec<double, D> a = sums.acceleration + model.options.gravity;
         particles.acceleration[p] = a;
         const double v_sig = max(sums.max_v_sig, 2.0 * static_cast<double>(records[p].c));
-        MomentumSummary& summary = summaries[p / static_cast<std::size_t>(lanes<real>)];
-        summary.av_power += particles.mass[p] * sums.av_power;
+        StepSummary& summary = summaries[p / static_cast<std::size_t>(lanes<real>)];
+        summary.power += particles.mass[p] * sums.av_power;
         summary.limit(timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
                                model.options.cflnumber, model.options.cfl_force),
                       static_cast<std::int64_t>(p));

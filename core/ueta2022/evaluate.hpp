@@ -28,7 +28,7 @@ void Ueta2022<D, real, Backend>::evaluate(State& particles, const Lists& lists, 
     if (new_lists && !halo.alone()) agree_on_h(particles, halo.ranks);
     stress_.resize(particles.size() + halo.ghosts());
     summary_.resize(lists.clusters().size());
-    Backend::for_each_particle(summary_.size(), ClearElement<MomentumSummary>{summary_});
+    Backend::for_each_particle(summary_.size(), ClearElement<StepSummary>{summary_});
     if (poisoned) poison<real>(stress_), poison<double>(particles.acceleration);
     halo.start({halo_column(motion_)});
     sum_velocity_gradient(particles, lists, halo, half_dt);
@@ -101,10 +101,10 @@ void Ueta2022<D, real, Backend>::sum_momentum(State& particles, const Lists& lis
 
 template <int D, class real, class Backend>
 void Ueta2022<D, real, Backend>::reduce_summaries() {
-    const auto total = Backend::reduce(summary_.size(), MomentumSummary{}, joined,
-                                       ElementOf<MomentumSummary>{summary_});
+    const auto total =
+        Backend::reduce(summary_.size(), StepSummary{}, joined, ElementOf<StepSummary>{summary_});
     timestep_ = total.timestep, limiting_ = total.limiting;
-    av_power_ = total.av_power, fault_ = total.fault;
+    av_power_ = total.power, fault_ = total.fault;
 }
 
 /// In float, coordinates are whole numbers, which may look like NaN: only double motion is looked

@@ -12,10 +12,10 @@
 #include "model/material.hpp"
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
+#include "model/step_summary.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
-#include "ueta2022/epilogues.hpp"
 #include "ueta2022/records.hpp"
 #include "ueta2022/state.hpp"
 
@@ -124,7 +124,7 @@ private:
     CoordinateFrame<real, D> frame_;
     Field<MotionRecord<real, D>> motion_;
     Field<StressRecord<real, D>> stress_;
-    Field<MomentumSummary> summary_;
+    Field<StepSummary> summary_;
     PhaseTimer phases_;
     double timestep_ = 0.0;
     double av_power_ = 0.0;
