@@ -5,7 +5,11 @@ namespace doseki {
 
 /// Why no graphics card can be used; empty where one can.
 std::string card_problem();
-/// What the first card calls itself.
+/// Lets this process work on one of the cards of the machine: number k, counted round.
+void use_card(int k);
+/// What the card of this process calls itself.
 std::string card_name();
+/// How much memory it has [bytes].
+double card_memory();
 
 }  // namespace doseki

@@ -19,11 +19,26 @@ std::string card_problem() {
     return count > 0 ? "" : "there is none";
 }
 
-std::string card_name() {
-    cudaDeviceProp card{};
-    if (cudaGetDeviceProperties(&card, 0) != cudaSuccess) return "";
-    return card.name;
+namespace {
+
+/// Of the card of this process.
+cudaDeviceProp properties() {
+    int card = 0;
+    cudaDeviceProp found{};
+    if (cudaGetDevice(&card) == cudaSuccess) cudaGetDeviceProperties(&found, card);
+    return found;
 }
+
+}  // namespace
+
+void use_card(int k) {
+    int count = 0;
+    if (cudaGetDeviceCount(&count) == cudaSuccess && count > 0) cudaSetDevice(k % count);
+}
+
+std::string card_name() { return properties().name; }
+
+double card_memory() { return static_cast<double>(properties().totalGlobalMem); }
 
 namespace {
 

@@ -27,6 +27,8 @@ NB_MODULE(DOSEKI_MODULE, m) {
     bind_terrain(m);
 #if defined(DOSEKI_CUDA)
     m.def("card_problem", &doseki::card_problem);
+    m.def("use_card", &doseki::use_card, nb::arg("k"));
     m.def("card_name", &doseki::card_name);
+    m.def("card_memory", &doseki::card_memory);
 #endif
 }

@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 
 if TYPE_CHECKING:  # the build runs this file without numpy
     import numpy as np
@@ -142,6 +142,10 @@ class Core(Protocol):
         """How many threads calls take."""
         ...
 
+    def use_card(self, k: int) -> None:
+        """Let this process work on card k of the machine, counted round; of "cuda" alone."""
+        ...
+
 
 def _processor_flags() -> set[str]:
     try:
@@ -193,17 +197,30 @@ def load_core(isa: str | None = None) -> Core:
     return cast(Core, import_module(f"doseki._core_{chosen}"))
 
 
-def has_card() -> bool:
-    """Whether the core was built for a graphics card, and there is one."""
+class Card(NamedTuple):
+    """The graphics card of this process, and its memory in bytes."""
+
+    name: str
+    memory: float
+
+
+def card_here() -> Card | None:
+    """The card that a run would take; none where the core was not built for one."""
     if find_spec("doseki._core_cuda") is None:
-        return False
-    return not import_module("doseki._core_cuda").card_problem()
+        return None
+    core = import_module("doseki._core_cuda")
+    return None if core.card_problem() else Card(core.card_name(), core.card_memory())
+
+
+def module_is_chosen() -> bool:
+    """Whether the environment says which module of the core is to be taken."""
+    return bool(os.environ.get("DOSEKI_ISA"))
 
 
 def use_device(name: str) -> None:
     """Let load_core() take the module of a device from now on; "cpu" leaves the choice as it is.
 
-    Raises UserError where the core was not built for it.
+    Raises UserError where the core was not built for it, and ResourceError without a card.
     """
     from .errors import UserError
 
@@ -215,8 +232,9 @@ def use_device(name: str) -> None:
             f"--device {name}: the core is not built for it;"
             f" DOSEKI_INSTRUCTION_SETS='host;{module}' ./doseki list builds it in a clone"
         )
+    load_core(module)
     os.environ["DOSEKI_ISA"] = module
-    load_core()
+    load_core.cache_clear()
 
 
 if __name__ == "__main__":  # what CMakeLists.txt asks: the one instruction set to build here

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from doseki.compiled import available_instruction_sets, has_card
+from doseki.compiled import available_instruction_sets, card_here
 
 # Without a built core, tests fail where they load it, so that none is left out unnoticed.
 BEST, *OTHERS = available_instruction_sets() or ["none"]
-if has_card():
+if card_here():
     OTHERS.append("cuda")
 INSTRUCTION_SETS: list[Any] = [BEST, *(pytest.param(isa, marks=pytest.mark.isa) for isa in OTHERS)]

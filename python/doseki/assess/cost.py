@@ -29,8 +29,10 @@ class Estimate:
 
     particles: int  # at the start
     most_particles: float
+    state: float  # of the memory, what the steps work on
     memory: float
     disk: float
+    updates: float  # of particles, in all steps
     steps: float
     shortened: float  # of the steps, those that are there because outputs end steps
     seconds: float
@@ -57,12 +59,14 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
     return Estimate(
         particles=start,
         most_particles=most,
+        state=most * per_particle,
         # Beside the state, a copy of it for failures, one to be written, and the image of a file.
         memory=PROCESS_BYTES + most * (per_particle + 3 * checkpoint),
         disk=snapshots * snapshot_bytes * mean
         + rows * HISTORY_BYTES
         + samples * SAMPLE_BYTES
         + checkpoints * most * checkpoint,
+        updates=steps * mean,
         steps=steps,
         shortened=steps - unhindered,
         seconds=seconds,

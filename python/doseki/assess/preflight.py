@@ -161,11 +161,13 @@ def _costs(expected: Estimate) -> Iterator[str]:
     yield _line("most particles", f"{expected.most_particles:,.0f}, if nothing leaves")
     free = available_bytes()
     yield _line("memory", f"{_size(expected.memory)} of {_size(free)} free")
+    yield _line("state", f"{_size(expected.state)} of it, which steps work on")
     yield _line("disk", _size(expected.disk))
     yield _line("timestep", f"{expected.timestep:.3g} s")
     outputs = f", {expected.shortened:,.0f} of them because outputs end steps"
     shown = outputs if expected.shortened >= 1 else ""
     yield _line("steps", f"{expected.steps:,.0f}{shown}")
+    yield _line("updates", f"{expected.updates:.2g} of particles")
     yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second")
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from ..compiled import DEVICES, available_instruction_sets, has_card, load_core
+from ..compiled import DEVICES, available_instruction_sets, card_here, load_core
 from ..errors import ResourceError, UserError
 from ..scenario.schemes import UETA2022
 from ..solver.protocol import CoreSimulation
@@ -215,7 +215,7 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
     flows = _chosen_flows(options, quick)
     scheme = (_words("--scheme", options["--scheme"], SCHEMES) or [UETA2022])[0]
     precisions = _words("--precision", options["--precision"], PRECISIONS) or list(PRECISIONS)
-    modules = [*available_instruction_sets(), *(["cuda"] if has_card() else [])]
+    modules = [*available_instruction_sets(), *(["cuda"] if card_here() else [])]
     return Plan(
         scheme=scheme,
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],

@@ -21,13 +21,14 @@ Settings = Annotated[
 Threads = Annotated[
     int | None, typer.Option(min=1, max=4096, help="Threads.", show_default="all cores")
 ]
-DeviceName = StrEnum("DeviceName", ["cpu", "host", "cuda"])
+DeviceName = StrEnum("DeviceName", ["auto", "cpu", "host", "cuda"])
 Device = Annotated[
     DeviceName,
     typer.Option(
         "--device",
-        help="Where the flow is worked out: the processor, a graphics card (cuda), or the code of "
-        "a card on the processor (host).",
+        help="Where the flow is worked out: the processor (cpu), a graphics card (cuda), the code "
+        "of a card on the processor (host), or a card if there is one and the case is large "
+        "enough (auto).",
     ),
 ]
 CheckpointEvery = Annotated[

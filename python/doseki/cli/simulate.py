@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import typer
 
-from ..compiled import use_device
 from ..errors import Interrupted, one_line
 from .interrupts import ending_early
 from .numbers import number
@@ -39,7 +38,7 @@ def run(
     ] = None,
     settings: Settings = None,
     threads: Threads = None,
-    device: Device = DeviceName.cpu,
+    device: Device = DeviceName.auto,
     ranks: Ranks = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing run in DIR.")
@@ -51,18 +50,19 @@ def run(
 ) -> None:
     """Run a scenario; the record, figures and a one-screen summary go to DIR."""
     from ..assess.preflight import brief_check
+    from ..running.devices import choose_device, count_of_scene
     from ..running.progress import progress_bar
     from ..running.runner import RunOptions, run_folder, run_scenario
     from ..scenario.load import load_scenario
 
-    use_device(device)
     team = join(ranks)
     loaded = load_scenario(scenario, settings or [])
+    choose_device(device, lambda: count_of_scene(loaded), team, _say)
     directory = output or team.agree(free_directory(scenario))
 
     def tell(*started: Any) -> None:
-        for line in [*brief_check(*started), *_about_cores(threads)]:
-            typer.echo(line, err=True)
+        for line in [*brief_check(*started), *_about_cores(threads), *_about_card(*started)]:
+            _say(line)
 
     with run_folder(directory, overwrite, team), ending_early():
         with progress_bar(loaded.title, loaded.time_max) as progress:
@@ -81,11 +81,23 @@ def run(
             _report(directory, summary, figures, as_json)
 
 
+def _say(line: str) -> None:
+    typer.echo(line, err=True)
+
+
 def _about_cores(threads: int | None) -> list[str]:
     """A line where the cores are not those of the run alone."""
     from ..util.cores import shared_cores
 
     return [f"warning: {doubt}" for doubt in shared_cores(threads)]
+
+
+def _about_card(_scenario: Any, simulation: Any, *_: Any) -> list[str]:
+    """A line where the run does not fit on the card that it runs on."""
+    from ..running.devices import card_doubts
+
+    state = len(simulation) * simulation.bytes_per_particle
+    return [f"warning: {doubt}" for doubt in card_doubts(state)]
 
 
 def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bool) -> None:
@@ -140,17 +152,23 @@ def check(
     scenario: ScenarioName,
     settings: Settings = None,
     threads: Threads = None,
+    device: Device = DeviceName.auto,
 ) -> None:
     """Say what a scenario will take, and what is doubtful about it, without running it.
 
     See also: doseki list names the shipped ones, doseki explain says why a run failed.
     """
     from ..assess.preflight import check_scenario
+    from ..driver.ranks import OneRank
+    from ..running.devices import choose_device, count_of_scene, rehearsed
     from ..running.progress import work_shown
     from ..scenario.load import load_scenario
 
+    loaded = load_scenario(scenario, settings or [])
+    name = rehearsed(device, _say)
+    choose_device(name, lambda: count_of_scene(loaded), OneRank(), _say)
     with work_shown() as tell:
-        report = check_scenario(load_scenario(scenario, settings or []), threads, tell)
+        report = check_scenario(loaded, threads, tell)
     typer.echo(report)
 
 
@@ -167,7 +185,7 @@ def resume(
         ),
     ] = float("inf"),
     threads: Threads = None,
-    device: Device = DeviceName.cpu,
+    device: Device = DeviceName.auto,
     ranks: Ranks = None,
     checkpoint_every: CheckpointEvery = None,
     checkpoint_minutes: CheckpointMinutes = 10.0,
@@ -176,13 +194,15 @@ def resume(
 ) -> None:
     """Go on with a run that was stopped, killed or failed, from its last checkpoint."""
     from ..record.reader import load
+    from ..running.devices import choose_device, count_of_record
     from ..running.progress import progress_bar
     from ..running.resume import resume_run
     from ..running.runner import RunOptions
 
-    use_device(device)
     team = join(ranks)
-    scenario = load(directory).scenario
+    run = load(directory)
+    scenario = run.scenario
+    choose_device(device, lambda: count_of_record(run), team, _say)
     with team.holding(directory), ending_early():
         with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
             options = RunOptions(
@@ -194,7 +214,7 @@ def resume(
                 tell=progress.tell,
             )
             for line in _about_cores(threads) if team.is_root else ():
-                typer.echo(line, err=True)
+                _say(line)
             summary, notes = resume_run(directory, settings or [], options, until)
         for note in notes:
             typer.echo(f"warning: {note}", err=True)

@@ -25,6 +25,7 @@ class OneRank:
     """A run that is not spread over ranks; parallel.many_ranks has the other kind."""
 
     rank, count = 0, 1
+    rank_on_machine = 0  # among the ranks of this machine
     _held: Path | None = None
 
     @property

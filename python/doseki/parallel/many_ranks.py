@@ -60,6 +60,9 @@ class ManyRanks(OneRank):
         # One of its own: ranks that fail call it while others are in the middle of something else.
         self._last_words = comm.Dup()
         self.rank, self.count = comm.rank, comm.size
+        neighbours = comm.Split_type(MPI.COMM_TYPE_SHARED)
+        self.rank_on_machine, self._count_on_machine = neighbours.rank, neighbours.size
+        neighbours.Free()
         self._watchdog = watchdog
         self._directory: Path | None = None
         self._simulation: Simulation | None = None
@@ -78,10 +81,7 @@ class ManyRanks(OneRank):
 
     def threads(self, wish: int | None) -> int:
         """Those asked for, or an equal share of the cores of this machine."""
-        neighbours = self._comm.Split_type(MPI.COMM_TYPE_SHARED)
-        share = allowed_cores() // neighbours.size
-        neighbours.Free()
-        return wish or max(1, share)
+        return wish or max(1, allowed_cores() // self._count_on_machine)
 
     def recorder(self, directory: str | Path, make: Callable[[], Any]) -> RankedRecorder:
         """See OneRank."""

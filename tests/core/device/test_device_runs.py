@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from doseki.bench.flows import FLOWS
-from doseki.compiled import available_instruction_sets, has_card, load_core
+from doseki.compiled import available_instruction_sets, card_here, load_core
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, empty_simulation
 
@@ -48,7 +48,7 @@ centre = [0.3, 0.1]
 radius = 0.05
 """
 FASTEST = (available_instruction_sets() or [None])[0]
-DEVICES = ["device", "cuda"] if has_card() else ["device"]
+DEVICES = ["device", "cuda"] if card_here() else ["device"]
 TEXTS = {"film": FILM.format(dim=3), "channel": CHANNEL, "printed": PRINTED}
 
 
