@@ -163,13 +163,11 @@ Array<std::int32_t> Bodies<D>::bodies_before(const Fragments<D>& fragments,
 
 template class ContactLaws<2>;
 template class RigidBodies<2>;
-template class RigidParticles<2>;
 template class Contacts<2>;
 template class Bodies<2>;
 
 template class ContactLaws<3>;
 template class RigidBodies<3>;
-template class RigidParticles<3>;
 template class Contacts<3>;
 template class Bodies<3>;
 

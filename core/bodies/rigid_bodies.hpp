@@ -327,7 +327,7 @@ auto RigidBodies<D>::follow_walls(const MovingWalls<D>& walls, double t, double 
     WallStep step;
     for (std::size_t k = 0; k < size(); ++k) {
         if (!bodies_[k].fixed) continue;
-        const WallMotion<D>* motion = walls.motion_of(bodies_[k].group);
+        const WallMotion<D>* motion = walls.motions().of(bodies_[k].group);
         if (!motion) continue;
         RigidBodyState<D>& state = states_[k];
         state.velocity = motion->velocity_at(state.centre, t);

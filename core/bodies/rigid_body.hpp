@@ -41,7 +41,7 @@ struct RigidBodyPoint {
     Vec<double, D> offset, normal, area;
     Mat<double, D> edge_normals;  // in rows
 
-    std::size_t index() const { return static_cast<std::size_t>(body); }
+    DOSEKI_DEVICE_FN std::size_t index() const { return static_cast<std::size_t>(body); }
 };
 
 /// Shapes and rigid bodies as one vector for each member, as archives keep them.

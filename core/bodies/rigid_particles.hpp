@@ -1,15 +1,12 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
-#include "base/parallel.hpp"
+#include "base/matrix.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
-#include "physics/wall.hpp"
 #include "ranks/exchange.hpp"
 
 namespace doseki {
@@ -83,72 +80,7 @@ void RigidParticles<D>::sort_by_body(std::size_t bodies) {
     for (std::size_t q = 0; q < points_.size(); ++q) of_body_[next[points_[q].index()]++] = q;
 }
 
-template <int D>
-void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
-                               const Ranks& ranks) {
-    Array<Vec<double, D>> force(points_.size());
-    for_each_particle(particles.size(), [&](std::size_t p) {
-        if (has(particles, p)) force[particles.point(p)] = particles.wall.force[p];
-    });
-    ranks.sum(numbers_of(force));
-    sort_by_body(bodies.size());
-    for_each_contact(bodies.size(), [&](std::size_t k) {
-        RigidBodyState<D>& state = bodies.state(k);
-        const Mat<double, 3> R = state.orientation.matrix();
-        state.flow_force = {}, state.flow_torque = {};
-        for (std::size_t n = first_of_body_[k]; n < first_of_body_[k + 1]; ++n) {
-            const Vec<double, D>& push = force[of_body_[n]];
-            const Vec<double, D> lever = rotated(R, points_[of_body_[n]].offset);
-            state.flow_force = state.flow_force + push;
-            state.flow_torque = state.flow_torque + cross(in_space(lever), in_space(push));
-        }
-    });
-}
-
-template <int D>
-double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& bodies,
-                                const Domain<D>& domain, double ahead) const {
-    const auto R = bodies.rotations();
-    const auto w = bodies.spins(0.0), w_ahead = bodies.spins(ahead);
-    auto move = [&](std::size_t p) {
-        if (!has(particles, p)) return 0.0;
-        const RigidBodyPoint<D>& point = point_of(particles, p);
-        const std::size_t k = point.index();
-        const RigidBodyState<D>& state = bodies.state(k);
-        const Vec<double, D> lever = rotated(R[k], point.offset);
-        const Vec<double, D> step =
-            nearest_image(domain, state.centre + lever - particles.position[p]);
-        particles.position[p] = particles.position[p] + step;
-        const Vec<double, D> normal = rotated(R[k], point.normal);
-        particles.wall.bend[p] =
-            turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal);
-        particles.wall.normal[p] = normal;
-        particles.wall.area[p] = rotated(R[k], point.area);
-        particles.wall.edge_normals[p] =
-            each_row(point.edge_normals, [&](const Vec<double, D>& n) { return rotated(R[k], n); });
-        particles.acceleration[p] = state.acceleration + turning_velocity(state.spin_rate, lever) +
-                                    turning_velocity(w[k], turning_velocity(w[k], lever));
-        particles.velocity[p] = bodies.velocity(k, ahead) + turning_velocity(w_ahead[k], lever);
-        return dot(step, step);
-    };
-    return std::sqrt(reduce(particles.size(), 0.0, maximum, move));
-}
-
-template <int D>
-void RigidParticles<D>::set_velocities(Particles<D>& particles, const RigidBodies<D>& bodies,
-                                       double ahead) const {
-    const auto R = bodies.rotations();
-    const auto w = bodies.spins(ahead);
-    for_each_particle(particles.size(), [&](std::size_t p) {
-        if (!has(particles, p)) return;
-        const RigidBodyPoint<D>& point = point_of(particles, p);
-        const std::size_t k = point.index();
-        particles.velocity[p] =
-            bodies.velocity(k, ahead) + turning_velocity(w[k], rotated(R[k], point.offset));
-    });
-}
-
-// Compiled once: bodies.cpp.
+// Compiled once: rigid_particles.cpp.
 extern template class RigidParticles<2>;
 extern template class RigidParticles<3>;
 

@@ -3,11 +3,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/array.hpp"
-#include "base/parallel.hpp"
 #include "model/particles.hpp"
-#include "physics/wall.hpp"
 
 namespace doseki {
 
@@ -22,7 +21,7 @@ struct WallMotion {
     Vec<double, D> pivot{};                            // at `start` [m]
     double start = 0.0, stop = 0.0, removed_at = 0.0;  // [s]
 
-    bool moves(double t) const { return start <= t && t < stop; }
+    DOSEKI_DEVICE_FN bool moves(double t) const { return start <= t && t < stop; }
 
     Vec<double, 3> spin_at(double t) const {
         Vec<double, 3> w;
@@ -30,19 +29,19 @@ struct WallMotion {
         return w;
     }
 
-    Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
+    DOSEKI_DEVICE_FN Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
         if (!moves(t)) return {};
         return velocity + cross_spin(x - pivot_at(t));
     }
 
     /// Where a point that is at x at time t is after dt, within which the motion does not change.
-    Vec<double, D> moved(const Vec<double, D>& x, double t, double dt) const {
+    DOSEKI_DEVICE_FN Vec<double, D> moved(const Vec<double, D>& x, double t, double dt) const {
         return x + dt * velocity + turning(x - pivot_at(t), dt);
     }
 
     /// What turning for dt adds to a vector that is fixed to the body. It turns by the exact angle,
     /// so a body keeps its shape over any number of steps.
-    Vec<double, D> turning(const Vec<double, D>& r, double dt) const {
+    DOSEKI_DEVICE_FN Vec<double, D> turning(const Vec<double, D>& r, double dt) const {
         const double rate = std::sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]);
         if (rate == 0.0) return {};
         // Rodrigues, k being the axis: k x r sin + k x (k x r) (1 - cos).
@@ -53,16 +52,35 @@ struct WallMotion {
     }
 
 private:
-    Vec<double, D> pivot_at(double t) const {
+    DOSEKI_DEVICE_FN Vec<double, D> pivot_at(double t) const {
         return pivot + (std::clamp(t, start, stop) - start) * velocity;
     }
 
-    Vec<double, D> cross_spin(const Vec<double, D>& r) const {
+    DOSEKI_DEVICE_FN Vec<double, D> cross_spin(const Vec<double, D>& r) const {
         Vec<double, D> v{};
         v[0] = -spin[2] * r[1], v[1] = spin[2] * r[0];
         if constexpr (D == 3)
             v[0] += spin[1] * r[2], v[1] -= spin[0] * r[2], v[2] = spin[0] * r[1] - spin[1] * r[0];
         return v;
+    }
+};
+
+/// Motions, and the index of that of each body; -1: none.
+template <int D>
+struct MotionsOfBodies {
+    std::span<const WallMotion<D>> motions;
+    std::span<const int> of_body;
+
+    /// Null for a body that stands still.
+    DOSEKI_DEVICE_FN const WallMotion<D>* of(std::int32_t named) const {
+        const auto body = static_cast<std::size_t>(named);
+        return body < of_body.size() && of_body[body] >= 0
+                   ? &motions[static_cast<std::size_t>(of_body[body])]
+                   : nullptr;
+    }
+    /// That of a particle.
+    DOSEKI_DEVICE_FN const WallMotion<D>* of(const Tag& tag) const {
+        return tag.motion == Motion::fixed ? of(tag.body) : nullptr;
     }
 };
 
@@ -82,42 +100,16 @@ public:
     double next_event(double t) const {
         double next = std::numeric_limits<double>::infinity();
         for (const WallMotion<D>& motion : motions_)
-            for (double event : {motion.start, motion.stop, motion.removed_at})
+            for (double event : std::array{motion.start, motion.stop, motion.removed_at})
                 if (event > t) next = std::min(next, event);
         return next;
     }
 
     /// Takes walls from t to t + dt; returns the largest distance that a particle of theirs went.
-    double move(Particles<D>& particles, double t, double dt) const {
-        if (!any_moves(t)) return 0.0;
-        const double farthest = reduce(particles.size(), 0.0, maximum, [&](std::size_t p) {
-            const WallMotion<D>* motion = motion_of(particles.tag[p]);
-            if (!motion || !motion->moves(t)) return 0.0;
-            const Vec<double, D> step =
-                motion->moved(particles.position[p], t, dt) - particles.position[p];
-            for (int a = 0; a < D; ++a) particles.position[p][a] += step[a];
-            if (particles.wall.in_use) {
-                Vec<double, D>& normal = particles.wall.normal[p];
-                const Vec<double, D> turned = normal + motion->turning(normal, dt);
-                particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal, turned);
-                normal = turned;
-                particles.wall.edge_normals[p] = each_row(
-                    particles.wall.edge_normals[p],
-                    [&](const Vec<double, D>& face) { return face + motion->turning(face, dt); });
-            }
-            return dot(step, step);
-        });
-        return std::sqrt(farthest);
-    }
+    double move(Particles<D>& particles, double t, double dt) const;
 
     /// Gives particles of moving walls their velocity at time t, zero outside the time they move.
-    void set_velocities(Particles<D>& particles, double t) const {
-        if (motions_.empty()) return;
-        for_each_particle(particles.size(), [&](std::size_t p) {
-            if (const WallMotion<D>* motion = motion_of(particles.tag[p]))
-                particles.velocity[p] = motion->velocity_at(particles.position[p], t);
-        });
-    }
+    void set_velocities(Particles<D>& particles, double t) const;
 
     /// Marks in `removed` what vanishes after `before` and up to t; true if there is any.
     bool remove(const Particles<D>& particles, double before, double t,
@@ -127,19 +119,13 @@ public:
         if (!any) return false;
         removed.resize(particles.size(), 0);
         for (std::size_t p = 0; p < particles.size(); ++p)
-            if (const WallMotion<D>* motion = motion_of(particles.tag[p]);
+            if (const WallMotion<D>* motion = motions().of(particles.tag[p]);
                 motion && vanishes(*motion, before, t))
                 removed[p] = 1;
         return true;
     }
 
-    /// Null for a body that stands still.
-    const WallMotion<D>* motion_of(std::int32_t named) const {
-        const auto body = static_cast<std::size_t>(named);
-        return body < of_body_.size() && of_body_[body] >= 0
-                   ? &motions_[static_cast<std::size_t>(of_body_[body])]
-                   : nullptr;
-    }
+    MotionsOfBodies<D> motions() const { return {motions_, of_body_}; }
 
 private:
     static bool vanishes(const WallMotion<D>& motion, double before, double t) {
@@ -151,12 +137,12 @@ private:
                            [t](const auto& motion) { return motion.moves(t); });
     }
 
-    const WallMotion<D>* motion_of(const Tag& tag) const {
-        return tag.motion == Motion::fixed ? motion_of(tag.body) : nullptr;
-    }
-
     Array<WallMotion<D>> motions_;
     Array<int> of_body_;  // index of its motion; -1: none
 };
+
+// Compiled once: moving_walls.cpp.
+extern template class MovingWalls<2>;
+extern template class MovingWalls<3>;
 
 }  // namespace doseki

@@ -129,6 +129,10 @@ struct Passed {
     }
 };
 
+/// Gives the particles that the inflow of this body drives a velocity. In driven_particles.cpp.
+template <int D>
+void drive(Particles<D>& particles, std::int32_t body, const Vec<double, D>& velocity);
+
 /// Account of what passes open boundaries; masses [kg], 2-D: [kg/m].
 template <int D>
 struct Ledger {
@@ -217,12 +221,7 @@ template <class Speed>
 void OpenBoundaries<D>::set_speeds(Particles<D>& particles, Speed&& speed_of) const {
     for (const Inflow<D>& inflow : inflows) {
         if (inflow.speed.steady() || !inflow.open || inflow.closed) continue;
-        const Vec<double, D> velocity = speed_of(inflow.speed) * inflow.direction;
-        for (std::size_t p = 0; p < particles.size(); ++p) {
-            const Tag& tag = particles.tag[p];
-            if (tag.motion == Motion::driven && tag.body == inflow.body)
-                particles.velocity[p] = velocity;
-        }
+        drive(particles, inflow.body, speed_of(inflow.speed) * inflow.direction);
     }
 }
 

@@ -109,11 +109,11 @@ struct Particles {
     /// One that fluid meets as it meets a wall.
     DOSEKI_DEVICE_FN bool is_wall(std::size_t p) const { return is_fixed(p) || is_bound(p); }
     /// Whether particle p is a point of a body of that kind.
-    bool is_point_of(std::size_t p, BodyKind kind) const {
+    DOSEKI_DEVICE_FN bool is_point_of(std::size_t p, BodyKind kind) const {
         return wall.in_use && is_bound(p) && wall.body_kind[p] == kind;
     }
     /// Its number among the points of bodies of its kind.
-    std::size_t point(std::size_t p) const { return static_cast<std::size_t>(wall.point[p]); }
+    DOSEKI_DEVICE_FN std::size_t point(std::size_t p) const { return static_cast<std::size_t>(wall.point[p]); }
     void set_point(std::size_t p, BodyKind kind, std::size_t point) {
         wall.body_kind[p] = kind, wall.point[p] = static_cast<std::int32_t>(point);
     }

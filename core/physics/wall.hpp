@@ -33,7 +33,7 @@ DOSEKI_DEVICE_FN inline double edge_rate(double rate, double size) {
 /// How the normal of a surface turns that curves alike all ways, as that of a ball does: by `bend`
 /// r where one goes along r [1/m].
 template <int D>
-Sym<double, D> bend_of_ball(const Vec<double, D>& normal, double curvature) {
+DOSEKI_DEVICE_FN Sym<double, D> bend_of_ball(const Vec<double, D>& normal, double curvature) {
     Sym<double, D> bend;
     for (int a = 0; a < D; ++a)
         for (int b = a; b < D; ++b)
@@ -44,8 +44,9 @@ Sym<double, D> bend_of_ball(const Vec<double, D>& normal, double curvature) {
 /// That of a ball, once its normal has turned from `before` to `normal`. Their lengths count:
 /// particles in the middle of a body have none.
 template <int D>
-Sym<double, D> turned_bend(const Sym<double, D>& bend, const Vec<double, D>& before,
-                           const Vec<double, D>& normal) {
+DOSEKI_DEVICE_FN Sym<double, D> turned_bend(const Sym<double, D>& bend,
+                                            const Vec<double, D>& before,
+                                            const Vec<double, D>& normal) {
     double sum = 0.0;
     for (int a = 0; a < D; ++a) sum += bend(a, a);
     return bend_of_ball(normal, sum / (D - dot(before, before)));

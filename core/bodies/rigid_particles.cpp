@@ -1,0 +1,169 @@
+// The particles of rigid bodies, where all particles are.
+
+#include "bodies/rigid_particles.hpp"
+
+#include "base/bulk.hpp"
+#include "physics/wall.hpp"
+
+namespace doseki {
+namespace {
+
+/// How bodies stand and move, as their particles see it.
+template <int D>
+struct Bearing {
+    Mat<double, 3> rotation;
+    Vec<double, D> centre, velocity, acceleration;
+    Vec3 spin, spin_ahead, spin_rate;
+};
+
+/// `velocity` and `spin_ahead` are those when the fluid will have acted for `ahead` more.
+template <int D>
+Array<Bearing<D>> bearings(const RigidBodies<D>& bodies, double ahead) {
+    const auto R = bodies.rotations();
+    const auto w = bodies.spins(0.0), w_ahead = bodies.spins(ahead);
+    Array<Bearing<D>> found(bodies.size());
+    for_each_particle(bodies.size(), [&](std::size_t k) {
+        const RigidBodyState<D>& state = bodies.state(k);
+        found[k] = {R[k],       state.centre,   bodies.velocity(k, ahead), state.acceleration, w[k],
+                    w_ahead[k], state.spin_rate};
+    });
+    return found;
+}
+
+/// A particle, if it is one of a rigid body: its point, and how its body stands.
+template <int D>
+struct BoundParticles {
+    Particles<D>& particles;
+    std::span<const RigidBodyPoint<D>> points;
+    std::span<const Bearing<D>> bearing;
+
+    DOSEKI_DEVICE_FN bool has(std::size_t p) const {
+        return particles.is_point_of(p, BodyKind::rigid);
+    }
+    DOSEKI_DEVICE_FN const RigidBodyPoint<D>& point(std::size_t p) const {
+        return points[particles.point(p)];
+    }
+};
+
+/// Eq. (53); the square of how far a particle went.
+template <int D>
+struct PlaceBound {
+    BoundParticles<D> bound;
+    Domain<D> domain;
+
+    DOSEKI_DEVICE_FN double operator()(std::size_t p) const {
+        if (!bound.has(p)) return 0.0;
+        Particles<D>& particles = bound.particles;
+        const RigidBodyPoint<D>& point = bound.point(p);
+        const Bearing<D>& body = bound.bearing[point.index()];
+        const Mat<double, 3>& R = body.rotation;
+        const Vec<double, D> lever = rotated(R, point.offset);
+        const Vec<double, D> step =
+            nearest_image(domain, body.centre + lever - particles.position[p]);
+        particles.position[p] = particles.position[p] + step;
+        const Vec<double, D> normal = rotated(R, point.normal);
+        particles.wall.bend[p] =
+            turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal);
+        particles.wall.normal[p] = normal;
+        particles.wall.area[p] = rotated(R, point.area);
+        particles.wall.edge_normals[p] = each_row(point.edge_normals, RotatedBy{R});
+        particles.acceleration[p] = body.acceleration + turning_velocity(body.spin_rate, lever) +
+                                    turning_velocity(body.spin, turning_velocity(body.spin, lever));
+        particles.velocity[p] = body.velocity + turning_velocity(body.spin_ahead, lever);
+        return dot(step, step);
+    }
+
+private:
+    struct RotatedBy {
+        const Mat<double, 3>& R;
+        DOSEKI_DEVICE_FN Vec<double, D> operator()(const Vec<double, D>& n) const {
+            return rotated(R, n);
+        }
+    };
+};
+
+template <int D>
+struct MoveBound {
+    BoundParticles<D> bound;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (!bound.has(p)) return;
+        const RigidBodyPoint<D>& point = bound.point(p);
+        const Bearing<D>& body = bound.bearing[point.index()];
+        bound.particles.velocity[p] =
+            body.velocity + turning_velocity(body.spin_ahead, rotated(body.rotation, point.offset));
+    }
+};
+
+template <int D>
+struct ForceOnPoint {
+    const Particles<D>& particles;
+    std::span<Vec<double, D>> force;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (particles.is_point_of(p, BodyKind::rigid))
+            force[particles.point(p)] = particles.wall.force[p];
+    }
+};
+
+/// The sum over the points of a body, in rising order, whatever threads there are.
+template <int D>
+struct ForceOnBody {
+    struct Load {
+        Vec<double, D> force;
+        Vec3 torque;
+    };
+    std::span<const std::size_t> first, order;
+    std::span<const RigidBodyPoint<D>> points;
+    std::span<const Vec<double, D>> force;
+    std::span<const Mat<double, 3>> rotation;
+    std::span<Load> loads;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        Load sum{};
+        for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
+            const Vec<double, D>& push = force[order[n]];
+            const Vec<double, D> lever = rotated(rotation[k], points[order[n]].offset);
+            sum.force = sum.force + push;
+            sum.torque = sum.torque + cross(in_space(lever), in_space(push));
+        }
+        loads[k] = sum;
+    }
+};
+
+}  // namespace
+
+template <int D>
+void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
+                               const Ranks& ranks) {
+    Array<Vec<double, D>> force(points_.size());
+    bulk::for_each(particles.size(), ForceOnPoint<D>{particles, force});
+    ranks.sum(numbers_of(force));
+    sort_by_body(bodies.size());
+    Array<typename ForceOnBody<D>::Load> loads(bodies.size());
+    const auto R = bodies.rotations();
+    bulk::for_each(bodies.size(),
+                   ForceOnBody<D>{first_of_body_, of_body_, points_, force, R, loads});
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+        bodies.state(k).flow_force = loads[k].force, bodies.state(k).flow_torque = loads[k].torque;
+}
+
+template <int D>
+double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& bodies,
+                                const Domain<D>& domain, double ahead) const {
+    const Array<Bearing<D>> bearing = bearings(bodies, ahead);
+    const PlaceBound<D> place{{particles, points_, bearing}, domain};
+    return std::sqrt(bulk::reduce(particles.size(), 0.0, maximum, place));
+}
+
+template <int D>
+void RigidParticles<D>::set_velocities(Particles<D>& particles, const RigidBodies<D>& bodies,
+                                       double ahead) const {
+    const Array<Bearing<D>> bearing = bearings(bodies, ahead);
+    bulk::for_each(particles.size(), MoveBound<D>{{particles, points_, bearing}});
+}
+
+template class RigidParticles<2>;
+template class RigidParticles<3>;
+
+}  // namespace doseki
