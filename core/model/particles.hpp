@@ -113,7 +113,9 @@ struct Particles {
         return wall.in_use && is_bound(p) && wall.body_kind[p] == kind;
     }
     /// Its number among the points of bodies of its kind.
-    DOSEKI_DEVICE_FN std::size_t point(std::size_t p) const { return static_cast<std::size_t>(wall.point[p]); }
+    DOSEKI_DEVICE_FN std::size_t point(std::size_t p) const {
+        return static_cast<std::size_t>(wall.point[p]);
+    }
     void set_point(std::size_t p, BodyKind kind, std::size_t point) {
         wall.body_kind[p] = kind, wall.point[p] = static_cast<std::int32_t>(point);
     }

@@ -20,8 +20,14 @@ def crossing_of(ring: np.ndarray) -> np.ndarray | None:
     """
     start = ring - ring[0]
     along = np.roll(start, -1, axis=0) - start
-    for k in range(len(ring) - 2):
-        first, step = start[k + 2 :], along[k + 2 :]
+    west, east = np.minimum(0, along[:, 0]) + start[:, 0], np.maximum(0, along[:, 0]) + start[:, 0]
+    order = np.argsort(west, kind="stable")
+    # Of the edges that begin farther east, those up to this place may meet each edge.
+    last = np.searchsorted(west[order], east[order], side="right")
+    for place, k in enumerate(order):
+        others = order[place + 1 : last[place]]
+        others = others[(np.abs(others - k) > 1) & (np.abs(others - k) < len(ring) - 1)]
+        first, step = start[others], along[others]
         before = _turn(along[k], first - start[k])
         after = _turn(along[k], first + step - start[k])
         this_before = _turn(step, start[k] - first)
