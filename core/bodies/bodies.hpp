@@ -138,7 +138,7 @@ public:
         return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), ahead));
     }
     /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
-    void set_velocities(Particles<D>& particles, double ahead) const {
+    void set_velocities(Particles<D>& particles, double ahead) {
         if (!any_moves()) return;
         deformable.set_velocities(particles, ahead);
         rigid_particles_.set_velocities(particles, rigid, ahead);

@@ -333,30 +333,6 @@ Vec<double, D> DeformableBodies<D>::normal(std::size_t k) const {
 }
 
 template <int D>
-double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) const {
-    Array<double> gone(particles.size(), 0.0);
-    for_each_point(particles, [&](std::size_t p, std::size_t k) {
-        const Vec<double, D> step = nearest_image(domain, solids_.x[k] - particles.position[p]);
-        gone[p] = dot(step, step);
-        particles.position[p] = particles.position[p] + step;
-        particles.wall.bend[p] =
-            turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal(k));
-        particles.wall.normal[p] = normal(k), particles.wall.depth[p] = depth_[k];
-        particles.acceleration[p] = acceleration_[k];
-    });
-    return gone.empty() ? 0.0 : std::sqrt(*std::max_element(gone.begin(), gone.end()));
-}
-
-template <int D>
-void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) const {
-    for_each_point(particles, [&](std::size_t p, std::size_t k) {
-        particles.velocity[p] = solids_.clamped(k)
-                                    ? Vec<double, D>{}
-                                    : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
-    });
-}
-
-template <int D>
 void DeformableBodies<D>::stress(const Particles<D>& particles, std::size_t p, double* out) const {
     const std::size_t k = particles.point(p);
     const Mat<double, D>& F = solids_.deformation(k);

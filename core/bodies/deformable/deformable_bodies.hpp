@@ -36,6 +36,13 @@ struct Fragments {
     bool any() const { return !parent.empty() || !dust.empty(); }
 };
 
+/// A point as its particle shows it to the fluid.
+template <int D>
+struct ShownPoint {
+    Vec<double, D> place, normal, acceleration, velocity;
+    double depth;
+};
+
 /// Deformable bodies among water and other bodies: each of their points is a bound particle, which
 /// the fluid meets as a wall, and their surfaces touch other bodies.
 template <int D>
@@ -169,14 +176,8 @@ public:
     /// plane.
     void stress(const Particles<D>& particles, std::size_t p, double* out) const;
 
-    /// See Bodies.
-    void gather(const Particles<D>& particles, const Ranks& ranks) {
-        if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
-        for_each_point(particles, [&](std::size_t p, std::size_t k) {
-            flow_force_[k] = particles.wall.force[p];
-        });
-        ranks.sum(numbers_of(flow_force_));
-    }
+    /// See Bodies. In deformable_particles.cpp, with what puts the particles where points are.
+    void gather(const Particles<D>& particles, const Ranks& ranks);
     void kick(double half_dt) { solids_.kick(half_dt, flow_force_); }
     void begin_step() {
         before_.resize(size());
@@ -187,8 +188,8 @@ public:
     /// Shows the contacts where the points are, and takes their forces.
     void show(ContactBodies<D>& contact) const { surfaces_.show(contact, solids_); }
     void collect(ContactBodies<D>& contact) { surfaces_.collect(contact, solids_); }
-    double place(Particles<D>& particles, const Domain<D>& domain) const;
-    void set_velocities(Particles<D>& particles, double ahead) const;
+    double place(Particles<D>& particles, const Domain<D>& domain);
+    void set_velocities(Particles<D>& particles, double ahead);
 
     double drift(double dt) { return solids_.drift(dt); }
     BodyStep<D> push(double dt, const Vec<double, D>& gravity) { return solids_.push(dt, gravity); }
@@ -240,15 +241,6 @@ public:
     const DeformableSurfaces<D>& surfaces() const { return surfaces_; }
 
 private:
-    /// Calls f(particle, point) for the particles of deformable bodies.
-    template <class P, class F>
-    void for_each_point(P& particles, F&& f) const {
-        if (empty()) return;
-        for_each_particle(particles.size(), [&](std::size_t p) {
-            if (has(particles, p)) f(p, particles.point(p));
-        });
-    }
-
     TotalLagrangian<D> solids_;
     Division division() const;
 
@@ -257,6 +249,7 @@ private:
     Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
+    Array<ShownPoint<D>> shown_;
     DeformableSurfaces<D> surfaces_;
 };
 

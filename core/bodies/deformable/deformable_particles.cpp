@@ -1,0 +1,94 @@
+// The particles of deformable bodies, where all particles are.
+
+#include "base/bulk.hpp"
+#include "bodies/deformable/deformable_bodies.hpp"
+#include "physics/wall.hpp"
+
+namespace doseki {
+namespace {
+
+template <int D>
+struct TakeForce {
+    const Particles<D>& particles;
+    std::span<Vec<double, D>> force;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (particles.is_point_of(p, BodyKind::deformable))
+            force[particles.point(p)] = particles.wall.force[p];
+    }
+};
+
+/// The square of how far a particle went.
+template <int D>
+struct PlaceShown {
+    Particles<D>& particles;
+    std::span<const ShownPoint<D>> points;
+    Domain<D> domain;
+
+    DOSEKI_DEVICE_FN double operator()(std::size_t p) const {
+        if (!particles.is_point_of(p, BodyKind::deformable)) return 0.0;
+        const ShownPoint<D>& point = points[particles.point(p)];
+        const Vec<double, D> step = nearest_image(domain, point.place - particles.position[p]);
+        particles.position[p] = particles.position[p] + step;
+        particles.wall.bend[p] =
+            turned_bend(particles.wall.bend[p], particles.wall.normal[p], point.normal);
+        particles.wall.normal[p] = point.normal, particles.wall.depth[p] = point.depth;
+        particles.acceleration[p] = point.acceleration;
+        return dot(step, step);
+    }
+};
+
+template <int D>
+struct MoveShown {
+    Particles<D>& particles;
+    std::span<const ShownPoint<D>> points;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (particles.is_point_of(p, BodyKind::deformable))
+            particles.velocity[p] = points[particles.point(p)].velocity;
+    }
+};
+
+}  // namespace
+
+template <int D>
+void DeformableBodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
+    if (empty()) return;
+    if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
+    bulk::for_each(particles.size(), TakeForce<D>{particles, flow_force_});
+    ranks.sum(numbers_of(flow_force_));
+}
+
+template <int D>
+double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) {
+    if (empty()) return 0.0;
+    shown_.resize(size());
+    solids_.stepped().for_each([&](std::size_t k) {
+        ShownPoint<D>& point = shown_[k];
+        point.place = solids_.x[k], point.normal = normal(k), point.depth = depth_[k];
+        point.acceleration = acceleration_[k];
+    });
+    const PlaceShown<D> place{particles, shown_, domain};
+    return std::sqrt(bulk::reduce(particles.size(), 0.0, maximum, place));
+}
+
+template <int D>
+void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) {
+    if (empty()) return;
+    shown_.resize(size());
+    solids_.stepped().for_each([&](std::size_t k) {
+        shown_[k].velocity = solids_.clamped(k)
+                                 ? Vec<double, D>{}
+                                 : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
+    });
+    bulk::for_each(particles.size(), MoveShown<D>{particles, shown_});
+}
+
+template void DeformableBodies<2>::gather(const Particles<2>&, const Ranks&);
+template double DeformableBodies<2>::place(Particles<2>&, const Domain<2>&);
+template void DeformableBodies<2>::set_velocities(Particles<2>&, double);
+template void DeformableBodies<3>::gather(const Particles<3>&, const Ranks&);
+template double DeformableBodies<3>::place(Particles<3>&, const Domain<3>&);
+template void DeformableBodies<3>::set_velocities(Particles<3>&, double);
+
+}  // namespace doseki
