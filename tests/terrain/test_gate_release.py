@@ -1,0 +1,78 @@
+"""The gate release of the USGS flume beside what was measured there (debris with mud)."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doseki.record.reader import load
+from doseki.running.runner import run_scenario
+from doseki.scenario.load import load_scenario
+
+DATA = Path(__file__).resolve().parents[3] / "shared/data/usgs_flume"
+ARRIVAL = 0.03  # m of thickness
+MEAN_OVER = 5  # samples of a gauge, 0.25 s
+
+pytestmark = [
+    pytest.mark.validate,
+    pytest.mark.skipif(not DATA.exists(), reason=f"no measured data: {DATA} is not there"),
+]
+
+
+@cache
+def measured(x):
+    """Times, s, and the thickness less and plus its deviation, m, at x m below the gate."""
+    return np.loadtxt(DATA / f"SGM_thickness_x{x}.csv", delimiter=",", skiprows=1).T
+
+
+@pytest.fixture(scope="module")
+def thickness(tmp_path_factory):
+    """Times, s, and thickness, m, at x m below the gate, of a run with these settings."""
+
+    @cache
+    def run(*settings):
+        folder = tmp_path_factory.mktemp("gate")
+        run_scenario(load_scenario("gate-release", list(settings)), folder / "run")
+        return load(folder / "run").gauges
+
+    def at(x, *settings):
+        gauge = run(*settings)[f"at_{x}"]
+        return np.asarray(gauge["time"]), np.nan_to_num(np.asarray(gauge["height"]))
+
+    return at
+
+
+def arrival(time, height):
+    return time[np.argmax(height > ARRIVAL)]
+
+
+def lateness(thickness, x, *settings):
+    """Of the front, over the measured time."""
+    time, low, high = measured(x)
+    return arrival(*thickness(x, *settings)) / arrival(time, (low + high) / 2) - 1
+
+
+@pytest.mark.parametrize("x", [32, 66])
+def test_the_front_comes_in_time(thickness, x):
+    assert abs(lateness(thickness, x, "dp=0.1")) < 0.1
+    assert lateness(thickness, x, "dp=0.1", "pore_water=0.5") > 0.2
+
+
+@pytest.mark.parametrize("x", [32, 66])
+def test_it_does_not_depend_on_the_spacing(thickness, x):
+    coarse, fine = (arrival(*thickness(x, setting)) for setting in ("dp=0.1", "dp=0.05"))
+    assert coarse == pytest.approx(fine, rel=0.02)
+
+
+@pytest.mark.xfail(reason="the front is thick at once and the tail short", strict=True)
+@pytest.mark.parametrize("x", [32, 66])
+def test_the_thickness_is_within_the_measured_band(thickness, x):
+    sampled, height = thickness(x, "dp=0.05")
+    mean = np.convolve(height, np.ones(MEAN_OVER) / MEAN_OVER, mode="same")
+    time, low, high = measured(x)
+    during = time < sampled[-1]
+    found = np.interp(time[during], sampled, mean)
+    assert ((found >= low[during]) & (found <= high[during])).mean() > 0.7
