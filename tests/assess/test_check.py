@@ -101,8 +101,32 @@ def test_a_mass_that_is_weaker_than_its_bed_is_named(doubts):
     wall = 'max = [0.5, 0]\nwall = "voellmy"\nmu = 0.3'
     told = doubts(replace=("max = [0.5, 0]", wall), scheme="resolved")
     assert any("body.floor.mu = 0.3: water has less friction inside" in doubt for doubt in told)
+    assert not any("with xi" in doubt for doubt in told)
     smooth = doubts(replace=("max = [0.5, 0]", wall.replace("0.3", "0")), scheme="resolved")
     assert not any("friction inside" in doubt for doubt in smooth)
+
+
+GRAINS = """
+[material.water]
+rheology = "mu_i"
+mu_s = 0.5
+mu_2 = 0.5
+inertial_number = 0.3
+grain_diameter = 1e-3
+grain_density = 2600
+viscosity_max = 10
+pore_pressure_ratio = {pore}
+"""
+
+
+@pytest.mark.parametrize(
+    ("xi", "pore", "weak"), [(1000, 0, False), (1000, 0.9, True), (100, 0, True)]
+)
+def test_the_turbulent_part_of_a_bed_counts(doubts, xi, pore, weak):
+    """Half of a tenth of the sound speed, 3.7 m/s, in 0.12 m of water."""
+    bed = f'max = [0.5, 0]\nwall = "voellmy"\nmu = 0.3\nturbulent_xi = {xi}'
+    told = doubts(replace=("max = [0.5, 0]", bed), scheme="resolved", more=GRAINS.format(pore=pore))
+    assert any("and with xi" in doubt for doubt in told) is weak
 
 
 DISCS = """

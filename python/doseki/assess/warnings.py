@@ -89,11 +89,14 @@ class WeakMass(Finding):
 
     mu: float
     fluid: str
+    least: float  # coefficient of friction inside that the bed asks for
 
     def __str__(self) -> str:
+        turbulent = f" and with xi {self.least:.2g} in a fast flow" if self.least > self.mu else ""
         return (
-            f"{self.place} = {self.mu:g}: {self.fluid} has less friction inside, shears over its"
-            " lowest layer and leaves that behind; give it a yield stress, or mu_s above mu"
+            f"{self.place} = {self.mu:g}{turbulent}: {self.fluid} has less friction inside, shears"
+            " over its lowest layer and leaves that behind, the more the smaller dp is; give it a"
+            " yield stress, or mu_s above that"
         )
 
 
@@ -173,7 +176,7 @@ def findings(
     names = dict(enumerate(body_names))
     found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, state, names)]
     found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
-    found += [*_voellmy(scenario), *_gauges(scenario, state), *_mach(scenario, state)]
+    found += [*_voellmy(scenario, state, names), *_gauges(scenario, state), *_mach(scenario, state)]
     found += open_sides(scenario, state, names)
     found += [*_films(scenario, state)]
     return list(dict.fromkeys(found))
@@ -223,15 +226,23 @@ def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Itera
             yield LargeRoughness(place, ks, depth)
 
 
-def _voellmy(scenario: Scenario) -> Iterator[Finding]:
+def _voellmy(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     """Voellmy's law is one of a mass that slides as a whole."""
-    walls = scenario.walls.items()
-    for place, mu in ((f"{'.'.join(keys)}.mu", wall.given("mu")) for keys, wall in walls):
-        for name in scenario.material_names:
+    depths = flow_depths(scenario, state, names).values()
+    depth = max(depths, default=math.inf) * scenario.dp
+    for keys, wall in scenario.walls.items():
+        mu, xi = wall.given("mu"), wall.given("turbulent_xi")
+        for name in _liquids(scenario) if mu else ():
             fluid = scenario.materials[name]
-            friction = {"newtonian": 0.0, "mu_i": fluid.of_laws["mu_s"]}.get(fluid.rheology)
-            if fluid.law == "fluid" and mu and friction is not None and friction < mu:
-                yield WeakMass(place, mu, name)
+            if fluid.rheology not in {"newtonian", "mu_i"}:
+                continue
+            inside = fluid.of_laws["mu_s"] if fluid.rheology == "mu_i" else 0.0
+            # Half of the speed that the sound speed is for: of most of a flow, not of its front.
+            fast = 0.05 * scenario.xi * fluid.speedsound
+            borne = 1 - fluid.of_laws["pore_pressure_ratio"]
+            least = mu + (fast**2 / (xi * depth * borne) if xi else 0.0)
+            if inside < least:
+                yield WeakMass(f"{'.'.join(keys)}.mu", mu, name, least)
 
 
 def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:
