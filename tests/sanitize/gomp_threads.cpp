@@ -2,10 +2,9 @@
 // sanitiser cannot see inside libgomp and takes its barriers for races; it sees everything here, so
 // a race that it reports is one of the core.
 
-#include <atomic>
+#include <condition_variable>
 #include <mutex>
 #include <thread>
-#include <vector>
 
 namespace {
 
@@ -24,15 +23,70 @@ thread_local int number = 0;
 
 using Work = void (*)(void*);
 
+void work_as(Team& shared, Work work, void* data, int own) {
+    team = &shared, number = own;
+    work(data);
+    team = nullptr, number = 0;
+}
+
+// Threads that wait for regions: making them for each takes longer than what most of them do. The
+// lock orders a region after what came before it, and what follows after the region.
+class Crew {
+public:
+    void run(Team& shared, Work work, void* data) {
+        {
+            const std::lock_guard hold(lock_);
+            for (; hired_ + 1 < shared.size; ++hired_)
+                std::thread([this, own = hired_ + 1, seen = regions_] {
+                    serve(own, seen);
+                }).detach();
+            team_ = &shared, work_ = work, data_ = data;
+            busy_ = shared.size - 1, ++regions_;
+        }
+        begins_.notify_all();
+        work_as(shared, work, data, 0);
+        std::unique_lock hold(lock_);
+        ends_.wait(hold, [this] { return busy_ == 0; });
+    }
+
+private:
+    // The thread of this number, which has taken part in the regions before `seen`.
+    [[noreturn]] void serve(int own, long seen) {
+        for (;;) {
+            std::unique_lock hold(lock_);
+            begins_.wait(hold, [&] { return regions_ > seen; });
+            seen = regions_;
+            if (own >= team_->size) continue;
+            Team& shared = *team_;
+            const Work work = work_;
+            void* const data = data_;
+            hold.unlock();
+            work_as(shared, work, data, own);
+            hold.lock();
+            if (--busy_ == 0) ends_.notify_one();
+        }
+    }
+
+    std::mutex lock_;
+    std::condition_variable begins_, ends_;
+    Team* team_ = nullptr;
+    Work work_ = nullptr;
+    void* data_ = nullptr;
+    long regions_ = 0;
+    int hired_ = 0, busy_ = 0;
+};
+
 void run(Team& shared, Work work, void* data) {
-    std::vector<std::thread> threads;
-    for (int n = 0; n < shared.size; ++n)
-        threads.emplace_back([&shared, work, data, n] {
-            team = &shared, number = n;
-            work(data);
-            team = nullptr;
-        });
-    for (std::thread& thread : threads) thread.join();
+    if (shared.size == 1 || team) {  // a region within another one is one thread's
+        Team* const outer = team;
+        const int own = number;
+        shared.size = 1;
+        work_as(shared, work, data, 0);
+        team = outer, number = own;
+        return;
+    }
+    static Crew* const crew = new Crew;  // never destroyed: its threads wait to the end
+    crew->run(shared, work, data);
 }
 
 int size_of(unsigned asked) { return asked ? static_cast<int>(asked) : wanted_threads; }
