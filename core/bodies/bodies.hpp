@@ -13,8 +13,8 @@
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"
+#include "bodies/particles/rigid_particles.hpp"
 #include "bodies/rigid_bodies.hpp"
-#include "bodies/rigid_particles.hpp"
 
 namespace doseki {
 

@@ -16,9 +16,10 @@ UNITS = {
     "template class doseki::Ueta2022<3, double>;\n",
     "lists": '#include "device/row_lists.cpp"\n',
     "cells": '#include "cells/sorted_cells.cpp"\n',
-    "bodies": '#include "bodies/rigid_particles.cpp"\n#include "boundaries/moving_walls.cpp"\n'
+    "bodies": '#include "bodies/particles/rigid_particles.cpp"\n'
+    '#include "boundaries/moving_walls.cpp"\n'
     '#include "boundaries/driven_particles.cpp"\n'
-    '#include "bodies/deformable/deformable_particles.cpp"\n',
+    '#include "bodies/particles/deformable_particles.cpp"\n',
 }
 LEAST_KERNELS = {"resolved": 10, "ueta2022": 8, "lists": 4, "cells": 6, "bodies": 12}
 PROPERTIES = re.compile(

@@ -2,21 +2,11 @@
 
 #include "base/bulk.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/particles/force_on_points.hpp"
 #include "physics/wall.hpp"
 
 namespace doseki {
 namespace {
-
-template <int D>
-struct TakeForce {
-    const Particles<D>& particles;
-    std::span<Vec<double, D>> force;
-
-    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
-        if (particles.is_point_of(p, BodyKind::deformable))
-            force[particles.point(p)] = particles.wall.force[p];
-    }
-};
 
 /// The square of how far a particle went.
 template <int D>
@@ -55,7 +45,7 @@ template <int D>
 void DeformableBodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
     if (empty()) return;
     if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
-    bulk::for_each(particles.size(), TakeForce<D>{particles, flow_force_});
+    bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::deformable, flow_force_});
     ranks.sum(numbers_of(flow_force_));
 }
 

@@ -1,8 +1,9 @@
 // The particles of rigid bodies, where all particles are.
 
-#include "bodies/rigid_particles.hpp"
+#include "bodies/particles/rigid_particles.hpp"
 
 #include "base/bulk.hpp"
+#include "bodies/particles/force_on_points.hpp"
 #include "physics/wall.hpp"
 
 namespace doseki {
@@ -95,17 +96,6 @@ struct MoveBound {
     }
 };
 
-template <int D>
-struct ForceOnPoint {
-    const Particles<D>& particles;
-    std::span<Vec<double, D>> force;
-
-    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
-        if (particles.is_point_of(p, BodyKind::rigid))
-            force[particles.point(p)] = particles.wall.force[p];
-    }
-};
-
 /// The sum over the points of a body, in rising order, whatever threads there are.
 template <int D>
 struct ForceOnBody {
@@ -137,7 +127,7 @@ template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) {
     Array<Vec<double, D>> force(points_.size());
-    bulk::for_each(particles.size(), ForceOnPoint<D>{particles, force});
+    bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::rigid, force});
     ranks.sum(numbers_of(force));
     sort_by_body(bodies.size());
     Array<typename ForceOnBody<D>::Load> loads(bodies.size());
