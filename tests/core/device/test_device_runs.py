@@ -83,6 +83,16 @@ def test_grains_and_inflow(name, isa):
 
 
 @pytest.mark.parametrize("isa", DEVICES)
+@pytest.mark.parametrize("name", ["elastic-gate", "brazil-test", "dam-step"])
+def test_bodies_that_bend_and_walls_that_move(name, isa):
+    scenario = load_scenario(name)
+    simulations = [build_simulation(scenario, module)[0] for module in (FASTEST, isa)]
+    for simulation in simulations:
+        advance(simulation, 40)
+    assert largest_difference(*simulations) < 1e-9
+
+
+@pytest.mark.parametrize("isa", DEVICES)
 @pytest.mark.parametrize("precision", ["double", "mixed"])
 @pytest.mark.parametrize("text", TEXTS)
 def test_threads_and_runs_change_no_bit(flows, text, precision, isa):
