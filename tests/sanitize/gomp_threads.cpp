@@ -24,9 +24,11 @@ thread_local int number = 0;
 using Work = void (*)(void*);
 
 void work_as(Team& shared, Work work, void* data, int own) {
+    Team* const outer = team;
+    const int outer_number = number;
     team = &shared, number = own;
     work(data);
-    team = nullptr, number = 0;
+    team = outer, number = outer_number;
 }
 
 // Threads that wait for regions: making them for each takes longer than what most of them do. The
@@ -78,11 +80,8 @@ private:
 
 void run(Team& shared, Work work, void* data) {
     if (shared.size == 1 || team) {  // a region within another one is one thread's
-        Team* const outer = team;
-        const int own = number;
         shared.size = 1;
         work_as(shared, work, data, 0);
-        team = outer, number = own;
         return;
     }
     static Crew* const crew = new Crew;  // never destroyed: its threads wait to the end

@@ -228,11 +228,14 @@ def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Itera
 
 def _voellmy(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     """Voellmy's law is one of a mass that slides as a whole."""
+    beds = {keys: wall for keys, wall in scenario.walls.items() if wall.given("mu")}
+    if not beds:
+        return
     depths = flow_depths(scenario, state, names).values()
     depth = max(depths, default=math.inf) * scenario.dp
-    for keys, wall in scenario.walls.items():
+    for keys, wall in beds.items():
         mu, xi = wall.given("mu"), wall.given("turbulent_xi")
-        for name in _liquids(scenario) if mu else ():
+        for name in _liquids(scenario):
             fluid = scenario.materials[name]
             if fluid.rheology not in {"newtonian", "mu_i"}:
                 continue
