@@ -95,7 +95,7 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     direction = inflow.direction / np.linalg.norm(inflow.direction)
     rows = rows_of(scenario, name)
     rows = rows[above_ground(scenario, rows, direction)]
-    if len(rows) and inflow.surge is not None:
+    if inflow.surge is not None:
         rows = _enough_rows(scenario, name, rows)
     if not len(rows):
         raise scenario.where.error(
