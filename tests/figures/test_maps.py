@@ -193,6 +193,21 @@ def test_what_a_map_shows():
     assert west < WEST + 10 < WEST + 60 < east
 
 
+@pytest.mark.parametrize("shape", [(34, 67), (60, 24), (40, 40), (12, 90)])
+@pytest.mark.parametrize("title", [TITLE, 8 * "a long title "])
+def test_nothing_of_a_map_is_cut_off(shape, title):
+    bed = Raster(np.add.outer(np.arange(shape[0]), np.arange(shape[1])) * 0.5, WEST, SOUTH, 2.0)
+    figure = draw_map(PEAK_DEPTH, bed.with_values(np.ones(shape)), bed, title)
+    figure.canvas.draw()
+    axes, key = figure.axes
+    for text in (axes.title, axes.xaxis.label, axes.yaxis.label, key.yaxis.label):
+        box = text.get_window_extent()
+        assert box.x0 >= 0
+        assert box.y0 >= 0
+        assert box.x1 <= figure.bbox.x1
+        assert box.y1 <= figure.bbox.y1
+
+
 def test_nothing_is_no_picture():
     bed = hill()
     with pytest.raises(NothingToDrawError, match="peak depth"):

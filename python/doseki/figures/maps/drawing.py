@@ -20,6 +20,7 @@ LONGEST = 7.0  # inches of the longer side of a map
 SHORTEST = 2.5  # inches of the shorter one
 LETTERS = 64  # in a line of the title
 SIDE = 2.6  # inches beside a map, for its axis and its key
+BELOW, LINE = 0.6, 0.22  # inches below a map, and of a line of its title
 AROUND = 0.15  # of the extent of the flow, shown around it
 LEAST_AROUND = 5.0  # cells
 DARKEST = -1.2  # of the grey that stands for no light, below white's 1
@@ -43,7 +44,8 @@ def draw_map(quantity: MapQuantity, values: Raster, bed: Raster, title: str) -> 
     part = _around(shown)
     bed, values, shown = _part(bed, part), _part(values, part), shown[part]
     west, south, east, north = bed.extent
-    figure, axes = _map_axes(east - west, north - south)
+    title = fill(title, LETTERS)
+    figure, axes = _map_axes(east - west, north - south, title.count("\n") + 1)
     extent = (west, east, south, north)
     _draw_bed(axes, bed, extent)
     image = axes.imshow(
@@ -52,7 +54,7 @@ def draw_map(quantity: MapQuantity, values: Raster, bed: Raster, title: str) -> 
         vmin=None if quantity == ARRIVAL_TIME else 0.0,
     )  # fmt: skip
     figure.colorbar(image, ax=axes, label=f"{quantity.label} ({quantity.unit})", shrink=0.8)
-    axes.set_title(fill(title, LETTERS), fontsize="medium")
+    axes.set_title(title, fontsize="medium")
     return figure
 
 
@@ -77,11 +79,14 @@ def _part(raster: Raster, part: tuple[slice, slice]) -> Raster:
     )
 
 
-def _map_axes(wide: float, high: float) -> tuple[Figure, Axes]:
-    """Axes of equal units in a figure of their proportions, with coordinates in full."""
+def _map_axes(wide: float, high: float, lines: int) -> tuple[Figure, Axes]:
+    """Axes of equal units in a figure of their proportions, with coordinates in full.
+
+    There is room for so many `lines` of a title.
+    """
     scale = LONGEST / max(wide, high)
     width, height = (max(side * scale, SHORTEST) for side in (wide, high))
-    figure, panels = chart_grid(1, 1, (width + SIDE - 1.5, height + 0.6), "")
+    figure, panels = chart_grid(1, 1, (width + SIDE - 1.5, height + BELOW + LINE * lines), "")
     axes = panels[0, 0]
     axes.set_aspect("equal")
     axes.ticklabel_format(useOffset=False, style="plain")
