@@ -43,10 +43,8 @@ private:
     }
     DOSEKI_DEVICE_FN Pair<real, D> pair_with(const std::array<Coordinate<real>, D>& x,
                                              std::uint32_t entry) const {
-        const auto x_j = places.template position<periodic>(entry);
-        Vec<real, D> r_ij;
-        for (int a = 0; a < D; ++a) r_ij[a] = static_cast<real>(x[a] - x_j[a]) * places.unit;
-        return pair_of(r_ij);
+        return pair_of(
+            difference<real, D>(x, places.template position<periodic>(entry), places.unit));
     }
 };
 

@@ -78,8 +78,7 @@ DeformableBody read_elastic_body(const NamedValues& table, const Array<const cha
 }
 
 template <int D>
-Shape<D> BodyTables<D>::shape(const NamedValues& table,
-                              const std::shared_ptr<const ContactSurface<D>>& ground) {
+Shape<D> BodyTables<D>::shape(const NamedValues& table, const SharedSurface<D>& ground) {
     Shape<D> shape;
     if (table.find("radius")) {
         Reader read(table, "shape");

@@ -23,7 +23,7 @@ struct BodySums {
     Vec<double, D> momentum{}, moment{};  // sum of m v, of m x
     double kinetic_energy = 0.0;
 
-    BodySums operator+(const BodySums& other) const {
+    DOSEKI_DEVICE_FN BodySums operator+(const BodySums& other) const {
         return {momentum + other.momentum, moment + other.moment,
                 kinetic_energy + other.kinetic_energy};
     }
