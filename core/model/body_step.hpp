@@ -11,7 +11,7 @@ struct BodyStep {
     double gravity_work = 0.0, contact_work = 0.0;  // [J]
     double parting_work = 0.0;                      // [J]
 
-    BodyStep operator+(const BodyStep& other) const {
+    DOSEKI_DEVICE_FN BodyStep operator+(const BodyStep& other) const {
         return {impulse + other.impulse, gravity_work + other.gravity_work,
                 contact_work + other.contact_work, parting_work + other.parting_work};
     }

@@ -23,6 +23,7 @@ UNITS = {
     "contacts": '#include "bodies/contact/contact_pushes.cpp"\n'
     '#include "bodies/steps/rigid_steps.cpp"\n'
     '#include "bodies/steps/rigid_contacts.cpp"\n',
+    "solids": '#include "bodies/deformable/solid_steps.cpp"\n',
 }
 LEAST_KERNELS = {
     "resolved": 10,
@@ -31,6 +32,7 @@ LEAST_KERNELS = {
     "cells": 6,
     "bodies": 12,
     "contacts": 36,
+    "solids": 14,
 }
 PROPERTIES = re.compile(
     r"Function properties for (?P<name>\S+)\s+"
