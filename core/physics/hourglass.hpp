@@ -48,7 +48,7 @@ struct MisfitMoments {
 /// N - N^T with C = `square`, N = `rate`. Misfits below 1e-10 of a spacing have none: weights are
 /// such that the sum of R (x) R is 1.
 template <int D>
-Mat<double, D> misfit_spin(const MisfitMoments<double, D>& moments) {
+DOSEKI_DEVICE_FN Mat<double, D> misfit_spin(const MisfitMoments<double, D>& moments) {
     constexpr double floor = 1e-20;
     const Mat<double, D>&C = moments.square, &N = moments.rate;
     Mat<double, D> spin{};
