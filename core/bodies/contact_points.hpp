@@ -6,7 +6,7 @@
 
 #include "base/array.hpp"
 #include "bodies/contact_law.hpp"
-#include "bodies/contact_surface.hpp"
+#include "bodies/shapes/contact_surface.hpp"
 #include "bodies/surface.hpp"
 
 namespace doseki {

@@ -6,7 +6,7 @@
 #include "base/array.hpp"
 #include "bodies/contact/shown_points.hpp"
 #include "bodies/rigid_body.hpp"
-#include "bodies/steps/rigid_spans.hpp"
+#include "bodies/rigid_spans.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "model/body_step.hpp"
 

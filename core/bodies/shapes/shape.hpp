@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "base/array.hpp"
-#include "bodies/contact_surface.hpp"
+#include "bodies/shapes/contact_surface.hpp"
 
 namespace doseki {
 

@@ -56,8 +56,9 @@ def share_of_roof(work: Row, peaks: Peaks, precision: str) -> float:
 
 
 def _roof(work: Row, peaks: Peaks | None, row: Row) -> str:
-    on_card = row["isa"] == DEVICES["cuda"] and peaks
-    return f"{100 * share_of_roof(work, peaks, row['precision']):.0f} %" if on_card else ""
+    if peaks is None or row["isa"] != DEVICES["cuda"]:
+        return ""
+    return f"{100 * share_of_roof(work, peaks, row['precision']):.0f} %"
 
 
 def work_table(rows: Sequence[Row], peaks: Peaks | None) -> str:

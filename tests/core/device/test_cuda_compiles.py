@@ -20,7 +20,7 @@ UNITS = {
     '#include "boundaries/moving_walls.cpp"\n'
     '#include "boundaries/driven_particles.cpp"\n'
     '#include "bodies/particles/deformable_particles.cpp"\n',
-    "contacts": '#include "bodies/contact/contact_pushes.cpp"\n'
+    "contacts": '#include "bodies/steps/contact_pushes.cpp"\n'
     '#include "bodies/steps/rigid_steps.cpp"\n'
     '#include "bodies/steps/rigid_contacts.cpp"\n',
     "solids": '#include "bodies/deformable/solid_steps.cpp"\n',
