@@ -44,9 +44,40 @@ struct MisfitMoments {
     }
 };
 
+/// The x with A x = b for a symmetric A without negative eigenvalues, by elimination with the
+/// largest pivots first; along what is left of A below `floor`, x is 0. The inverse of a matrix
+/// that is nearly singular would leave A x - b as large as its condition makes it.
+DOSEKI_DEVICE_FN inline Vec<double, 3> solve_semidefinite(Mat<double, 3> A, Vec<double, 3> b,
+                                                          double floor) {
+    int row[3] = {0, 1, 2};
+    Vec<double, 3> x{};
+    int rank = 0;
+    for (; rank < 3; ++rank) {
+        for (int k = rank + 1; k < 3; ++k)
+            if (A(row[k], row[k]) > A(row[rank], row[rank])) {
+                const int larger = row[k];
+                row[k] = row[rank], row[rank] = larger;
+            }
+        const int p = row[rank];
+        if (!(A(p, p) > floor)) break;
+        for (int k = rank + 1; k < 3; ++k) {
+            const double share = A(row[k], p) / A(p, p);
+            for (int a = 0; a < 3; ++a) A(row[k], a) -= share * A(p, a);
+            b[row[k]] -= share * b[p];
+        }
+    }
+    for (int n = rank - 1; n >= 0; --n) {
+        double sum = b[row[n]];
+        for (int k = n + 1; k < rank; ++k) sum -= A(row[n], row[k]) * x[row[k]];
+        x[row[n]] = sum / A(row[n], row[n]);
+    }
+    return x;
+}
+
 /// Eq. (83a): the skew matrix Omega with sum e x (de/dt - Omega e) = 0, that is Omega C + C Omega =
 /// N - N^T with C = `square`, N = `rate`. Misfits below 1e-10 of a spacing have none: weights are
-/// such that the sum of R (x) R is 1.
+/// such that the sum of R (x) R is 1. About the line of misfits that are all parallel there is
+/// none either.
 template <int D>
 DOSEKI_DEVICE_FN Mat<double, D> misfit_spin(const MisfitMoments<double, D>& moments) {
     constexpr double floor = 1e-20;
@@ -56,15 +87,16 @@ DOSEKI_DEVICE_FN Mat<double, D> misfit_spin(const MisfitMoments<double, D>& mome
         spin(1, 0) = (N(1, 0) - N(0, 1)) / (C(0, 0) + C(1, 1) + floor);
         spin(0, 1) = -spin(1, 0);
     } else {
-        // The share of the trace keeps misfits that are all parallel from being singular.
         const double size = C(0, 0) + C(1, 1) + C(2, 2);
-        const Mat<double, 3> inertia = (size * (1.0 + 1e-13) + floor) * identity<double, 3>() - C;
+        const Mat<double, 3> inertia = (size + floor) * identity<double, 3>() - C;
         Vec<double, 3> moment;
         for (int a = 0; a < 3; ++a) {
             const int b = (a + 1) % 3, c = (a + 2) % 3;
             moment[a] = N(c, b) - N(b, c);
         }
-        const Vec<double, 3> about = inverse(inertia, 0.0) * moment;
+        constexpr double parallel = 1e-15;
+        const Vec<double, 3> about =
+            solve_semidefinite(inertia, moment, parallel * size + 2.0 * floor);
         for (int a = 0; a < 3; ++a) {
             const int b = (a + 1) % 3, c = (a + 2) % 3;
             spin(c, b) = about[a], spin(b, c) = -about[a];

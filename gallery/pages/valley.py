@@ -7,7 +7,7 @@ import math
 from doseki.measure.hydrographs import passage
 from doseki.record.reader import Run
 
-from ..page import Number, Page
+from ..page import Film, Number, Page
 from ..reading import load_on, parameter
 
 
@@ -52,7 +52,7 @@ chain is the same on a real map.
 """,
     numbers=numbers,
     figures=("overview", "peak_depth"),
-    film=None,
+    film=Film("material", frames_per_second=8, width=480),
     then=(
         ("./doseki maps runs/valley", "depth, speed, pressure, arrival: rasters with coordinates"),
         ("./doseki run valley --set slit=1.5", "a dam that is nearly shut"),

@@ -110,23 +110,40 @@ def test_a_surge_rises_and_falls_in_thickness_and_speed(path, tmp_path):
     assert totals["mass_entered"] == pytest.approx(asked[-1], rel=0.1)
 
 
-def test_a_surge_that_particles_are_too_coarse_for_is_warned_about(path):
+@pytest.mark.parametrize("dp", [0.2, 0.1, 0.05])
+def test_a_surge_has_its_volume_whatever_the_spacing(path, dp):
     """Its area above the ground is that of a V-shaped channel: h2 over the slope of its sides."""
     grid(path.parent / "terrain.asc", channel, cell=0.02)
     t = np.linspace(0, 0.8, 2001)
     thick, fast = (np.interp(t, [0, 0.4, 0.8], of) for of in ([0.2, 0.8, 0.4], [1.0, 2.0, 1.0]))
     exact = np.trapezoid(thick**2 * fast, t) * np.sqrt(1.04) / 0.5
-    said = {}
-    for dp in (0.2, 0.05):
-        path.write_text(text(3, dp=dp, speed=5.0, more=SURGE))
-        scenario = load_scenario(path)
-        (section,) = build_inflows(scenario, ["terrain", "flood"])
-        asked, _ = surge_volumes(scenario, section)
-        assert asked == pytest.approx(exact, rel=0.03)
-        findings = terrain_findings(scenario, {})
-        said[dp] = [str(each) for each in findings if each.place == "inflow.flood"]
-    assert "its layers have" in said[0.2][0]
-    assert said[0.05] == []
+    path.write_text(text(3, dp=dp, speed=5.0, more=SURGE))
+    scenario = load_scenario(path)
+    (section,) = build_inflows(scenario, ["terrain", "flood"])
+    asked, volume = surge_volumes(scenario, section)
+    assert asked == pytest.approx(exact, rel=0.03)
+    assert volume == pytest.approx(asked, rel=0.02)
+    assert not [each for each in terrain_findings(scenario, {}) if each.place == "inflow.flood"]
+
+
+def test_a_surge_fills_its_section_from_below_and_alike_on_both_sides(path):
+    grid(path.parent / "terrain.asc", channel, cell=0.02)
+    path.write_text(text(3, dp=0.1, speed=5.0, more=SURGE))
+    (section,) = build_inflows(load_scenario(path), ["terrain", "flood"])
+    order = np.argsort(section.row_height)
+    height = section.rows[order, 2]
+    assert (np.diff(height) > -1e-9).all()
+    aside = np.abs(section.rows[order, 1] - 2.0)  # the bed is lowest there
+    for level in np.unique(height.round(6)):
+        assert (np.diff(aside[abs(height - level) < 1e-6]) > -1e-9).all()
+
+
+def test_a_surge_of_less_than_particles_is_warned_about(path):
+    rows = "[0, 0.2, 1.0], [0.4, 0.8, 2.0], [0.8, 0.4, 1.0]"
+    thin = SURGE.replace(rows, "[0, 0.02, 1], [1, 0.04, 1]")
+    path.write_text(text(3, dp=0.1, speed=5.0, more=thin))
+    said = [str(each) for each in terrain_findings(load_scenario(path), {})]
+    assert any("its layers have" in each for each in said)
 
 
 def test_a_surge_from_a_file_of_time_thickness_and_velocity(path, tmp_path):

@@ -19,7 +19,9 @@ from .dots import dots, extent_of, picture
 from .layout import time_text
 from .nothing import NothingToDrawError
 from .space.box import Space, balls_of, seen_extent
+from .space.ground import ground_behind, terrain_of
 from .space.surfaces import Camera, render
+from .space.way import Way
 from .stage import WIDTH, Stage
 from .text import plain_text
 
@@ -40,7 +42,8 @@ def make_movie(
 
     `colour` names a quantity (see quantities.py), `window` a window of the scenario (default:
     everything, gravity pointing down), `width` the pixels of what is shown.  3-D runs are seen
-    from the side, as shaded surfaces behind translucent water.  Raises UserError for another
+    from the side, those on a terrain from where they go to, as shaded surfaces behind translucent
+    water.  Raises UserError for another
     ending, a file that exists, an unknown colour or window, and an .mp4 without ffmpeg.
     """
     path = Path(path)
@@ -72,12 +75,16 @@ class _Camera:
         samples = [*run[::step], run[-1]]
         self._side: Camera | None = None
         if run.scenario["dim"] == 3:
-            self._side, self._space = Camera.looking(SIDEWAYS), Space.around(samples, self._view)
+            self._space = Space.around(samples, self._view, terrain_of(run))
+            way = None if self._space.buried is None else Way.between(samples)
+            self._side = Camera.looking(SIDEWAYS) if way is None else way.looking_back()
             self._extent = seen_extent(self._space, samples, self._side)
+            self._behind = ground_behind(run, self._space, self._side, self._extent, width)
         else:
             self._extent = extent_of(samples, self._view)
         self._colours = colouring(run, samples, colour, self._view)
-        self.stage = Stage(run, self._view, self._extent, self._colours, width)
+        slanting = self._side is not None and self._side.away[2] != 0.0
+        self.stage = Stage(run, self._view, self._extent, self._colours, width, not slanting)
 
     def _choose_view(self, window: str | None) -> View:
         if window is not None:
@@ -95,7 +102,7 @@ class _Camera:
     def _pixels(self, snapshot: Snapshot) -> np.ndarray:
         if self._side is not None:
             balls = balls_of(self._run, snapshot, self._colours, self._space, self._side)
-            return render(balls, self._side, self._extent, self._width)
+            return render(balls, self._side, self._extent, self._width, self._behind)
         shown = dots(snapshot, self._view)
         rgba = self._colours.rgba(snapshot)[shown.index]
         return picture(shown, rgba, self._extent, self._width)

@@ -27,9 +27,15 @@ class Stage:
     """The frame around the particles of a movie; everything is placed in pixels."""
 
     def __init__(
-        self, run: Run, view: View, extent: Extent, colours: Colouring, pixels: int
+        self,
+        run: Run,
+        view: View,
+        extent: Extent,
+        colours: Colouring,
+        pixels: int,
+        numbers: bool = True,
     ) -> None:
-        """`extent` is what the frames show, m, `pixels` how wide that is."""
+        """`extent` is what the frames show, m, `pixels` how wide; axes may have `numbers`."""
         left, right, bottom, top = extent
         self._width = pixels
         self._height = max(1, round((top - bottom) / (right - left) * pixels))
@@ -38,7 +44,10 @@ class Stage:
         self.figure = Figure(figsize=(self._size[0] / DPI, self._size[1] / DPI), dpi=DPI)
         canvas = FigureCanvasAgg(self.figure)
         axes = self._axes(extent)
-        name_axes(axes, run.scenario["dim"], view.rotate)
+        if numbers:
+            name_axes(axes, run.scenario["dim"], view.rotate)
+        else:
+            axes.set(xticks=[], yticks=[])
         title = view.title or run.scenario.get("title", "")
         size = 8.5 if self._is_narrow else 11
         self.figure.text(LEFT / self._size[0], self._up(TITLE), title, fontsize=size)

@@ -14,6 +14,7 @@ from .lattices import ROUNDING
 
 INSTANTS = 2000  # at which the volume of a surge is looked at
 NEAREST = 0.4  # spacings between an inflow and a terrain
+MOST_ROWS_MORE = 8  # on top of those of the depth, for what banks take
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,9 @@ class InflowSection:
     buffer_layers: int
     jitter: float  # random displacement of a particle, in spacings
     thickness: np.ndarray  # (k,) at `times`, m; none: every layer is whole
-    row_height: np.ndarray  # (n,) above the bed, m, where there is a thickness
+    row_height: (
+        np.ndarray
+    )  # (n,) thickness from which a layer has the particle, m, where there is one
 
     @property
     def start(self) -> float:
@@ -92,6 +95,8 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     direction = inflow.direction / np.linalg.norm(inflow.direction)
     rows = rows_of(scenario, name)
     rows = rows[above_ground(scenario, rows, direction)]
+    if inflow.surge is not None:
+        rows = _enough_rows(scenario, name, rows)
     if not len(rows):
         raise scenario.where.error(
             ("inflow", name, "position"), f"inflow.{name}: all of its section lies in the ground"
@@ -101,7 +106,7 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     speeds, thickness, heights = rate / area, np.zeros(0), np.zeros(0)
     if inflow.surge is not None:
         _, thickness, speeds = np.array(inflow.surge, dtype=float).T
-        heights = _heights(scenario, name, rows)
+        heights = _appearance(scenario, name, rows)
     steps = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)
     return InflowSection(
         name=name,
@@ -123,12 +128,54 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     )
 
 
-def _heights(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
-    """Heights (N,) of the points of a layer above the lowest point of the bed in the section, m."""
+def _enough_rows(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
+    """More rows on top of those above the ground, as many as the largest area of a surge needs.
+
+    Where banks leave no room for particles these lie higher than the thickness.
+    """
+    direction = scenario.inflow[name].direction / np.linalg.norm(scenario.inflow[name].direction)
+    needed = _areas(scenario, name, np.array([scenario.inflow[name].height]))[0] / _cell(scenario)
+    for more in range(1, MOST_ROWS_MORE + 1):
+        if len(rows) >= needed:
+            break
+        rows = rows_of(scenario, name, more)
+        rows = rows[above_ground(scenario, rows, direction)]
+    return rows
+
+
+def _cell(scenario: Scenario) -> float:
+    """Area of a section that a particle takes, m2 (2-D: m)."""
+    return float(scenario.dp ** (scenario.dim - 1))
+
+
+def _appearance(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
+    """The thickness (n,), m, from which a layer of a surge has each particle.
+
+    Particles fill the section from below, of one height first where it is widest, and there are at
+    any time as many as the area of the surge above the ground has room for.
+    """
     inflow = scenario.inflow[name]
     direction = inflow.direction / np.linalg.norm(inflow.direction)
-    up, _ = section_axes(direction, scenario.gravity)
-    return np.asarray((rows - inflow.position) @ up) - _lowest_bed(scenario, name)
+    up, across = section_axes(direction, scenario.gravity)
+    height = np.round((rows - inflow.position) @ up / scenario.dp, 6)
+    aside = np.zeros(len(rows)) if across is None else (rows - inflow.position) @ across
+    lowest = aside[height == height.min()].mean()
+    order = np.lexsort((aside, np.round(abs(aside - lowest) / scenario.dp, 6), height))
+    thickness = np.linspace(0.0, 2.0 * inflow.height, INSTANTS)
+    area = _areas(scenario, name, thickness)
+    found = np.empty(len(rows))
+    found[order] = np.interp((np.arange(len(rows)) + 0.5) * _cell(scenario), area, thickness)
+    return found
+
+
+def _areas(scenario: Scenario, name: str, thickness: np.ndarray) -> np.ndarray:
+    """Area (k,) of a surge above the ground at each thickness (k,), m2 (2-D: m)."""
+    width = scenario.inflow[name].width if scenario.dim == 3 else 1.0
+    if scenario.bed is None:
+        return np.asarray(width * thickness)
+    bed = np.maximum(_bed_across(scenario, name), 0.0)
+    level = thickness[:, None] + _lowest_bed(scenario, name)
+    return np.asarray(width * np.maximum(level - bed, 0.0).mean(axis=1))
 
 
 def _lowest_bed(scenario: Scenario, name: str) -> float:
@@ -154,16 +201,11 @@ def _bed_across(scenario: Scenario, name: str) -> np.ndarray:
 
 def surge_volumes(scenario: Scenario, section: InflowSection) -> tuple[float, float]:
     """What a surge asks for above the ground, and what its layers have, m3 (2-D: m2)."""
-    dim, dp = scenario.dim, scenario.dp
     time = np.linspace(section.start, section.stop, INSTANTS)
     thickness = np.interp(time, section.times, section.thickness)
     speed = np.interp(time, section.times, section.speeds)
-    bed = _bed_across(scenario, section.name)
-    level = thickness[:, None] + _lowest_bed(scenario, section.name)
-    width = scenario.inflow[section.name].width if dim == 3 else 1.0
-    area = width * np.maximum(level - np.maximum(bed, 0.0), 0.0).mean(axis=1)
-    rows = np.searchsorted(np.sort(section.row_height), thickness)
-    layer = dp ** (dim - 1) * rows
+    area = _areas(scenario, section.name, thickness)
+    layer = _cell(scenario) * np.searchsorted(np.sort(section.row_height), thickness)
     return float(np.trapezoid(area * speed, time)), float(np.trapezoid(layer * speed, time))
 
 
@@ -201,13 +243,16 @@ def above_ground(scenario: Scenario, rows: np.ndarray, direction: np.ndarray) ->
     return np.all([ground.height_above(place) > lowest for place in places], axis=0)
 
 
-def rows_of(scenario: Scenario, name: str) -> np.ndarray:
-    """Centres of the particles of one layer: whole particles along depth and (3-D) width."""
+def rows_of(scenario: Scenario, name: str, more: int = 0) -> np.ndarray:
+    """Centres of the particles of one layer: whole particles along depth and (3-D) width.
+
+    There are so many rows `more` on top.
+    """
     inflow = scenario.inflow[name]
     direction = inflow.direction / np.linalg.norm(inflow.direction)
     up, across = section_axes(direction, scenario.gravity)
     dp = scenario.dp
-    high = _whole(scenario, name, "depth", inflow.height + _lowest_bed(scenario, name))
+    high = _whole(scenario, name, "depth", inflow.height + _lowest_bed(scenario, name)) + more
     wide = 1 if across is None else _whole(scenario, name, "width", inflow.width)
     check_size({f"inflow.{name}": high * wide * (_buffer_layers(scenario) + 1)})
     steps_up = ((np.arange(high) + 0.5) * dp)[:, None] * up

@@ -13,11 +13,12 @@ from ...record.reader import Run
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ..layout import Extent
 from .box import Space
-from .surfaces import Balls, no_balls, picture_shape
+from .surfaces import NOTHING, Background, Camera, picture_shape, seen_balls
 
 COLOUR = "#b3ada3"
-SPACE_COLOUR = (0.70, 0.68, 0.64)
+SPACE_COLOUR = np.array([0.95, 0.94, 0.88])  # lighter than what stands on it
 SUN = {"azdeg": 315.0, "altdeg": 45.0}
+TO_THE_SUN = np.array([-0.5, 0.5, np.sqrt(0.5)])
 DARKEST = 0.62  # grey of what faces away from the sun
 ACROSS = 240  # points of the ground along the longer side of what is drawn
 
@@ -69,19 +70,47 @@ def hillshade(height: np.ndarray, cell: float) -> np.ndarray:
     return np.asarray(LightSource(**SUN).hillshade(filled, dx=cell, dy=cell))
 
 
-def ground_balls(run: Run, space: Space) -> Balls:
-    """The surface of a terrain around what is drawn, as balls; none without one."""
+def ground_behind(
+    run: Run, space: Space, camera: Camera, extent: Extent, width: int
+) -> Background | None:
+    """The surface of a terrain around what is drawn, as a camera sees it; None without one."""
     if not isinstance(run.ground, Raster):
-        return no_balls()
+        return None
+    shape = picture_shape(extent, width)
+    pixel = (extent[1] - extent[0]) / shape[1]
+    shown, depth = seen_balls(*_balls_below(run.ground, space), camera, extent, shape)
+    row, column = np.nonzero(shown != NOTHING)
+    right = extent[0] + pixel * (column + 0.5)
+    up = extent[3] - pixel * (row + 0.5)
+    place = np.outer(right, camera.right) + np.outer(up, camera.up)
+    place += np.outer(pixel * depth[row, column], camera.away)
+    picture = np.ones((*shape, 3))
+    shade = _shade(run.ground, place[:, 0], place[:, 1], pixel)
+    picture[row, column] = SPACE_COLOUR * (DARKEST + (1.0 - DARKEST) * shade)[:, None]
+    return Background(picture, depth)
+
+
+def _balls_below(ground: Raster, space: Space) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (n, 3) and radii (n,) of balls whose tops are at the surface."""
     room = 0.15 * float(np.max(space.high - space.low))
     low, high = (space.low - room)[:2], (space.high + room)[:2]
     step = float(np.max(high - low)) / ACROSS
     x, y = (np.arange(a, b, step) for a, b in zip(low, high, strict=True))
     grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    height = run.ground.sampled(grid[:, 0], grid[:, 1])
+    height = ground.sampled(grid[:, 0], grid[:, 1])
     known = ~np.isnan(height)
-    # A ball whose top is at the surface; on a slope it must reach its neighbours.
-    radius = np.full(int(known.sum()), 1.5 * step)
+    # On a slope a ball must reach its neighbours.
     position = np.column_stack([grid, height])[known] - [0.0, 0.0, 1.5 * step]
-    smooth = np.ones(len(position), bool)
-    return Balls(position, radius, np.tile(SPACE_COLOUR, (len(position), 1)), smooth, ~smooth)
+    return position, np.full(len(position), 1.5 * step)
+
+
+def _shade(ground: Raster, x: np.ndarray, y: np.ndarray, step: float) -> np.ndarray:
+    """How bright the sun makes the ground at places (n,), from 0 to 1, by its slope there."""
+    slopes = [
+        np.nan_to_num(ground.sampled(x + dx, y + dy) - ground.sampled(x - dx, y - dy)) / (2 * step)
+        for dx, dy in ((step, 0.0), (0.0, step))
+    ]
+    normal = np.stack([-slopes[0], -slopes[1], np.ones(len(x))], axis=1)
+    bright = normal @ TO_THE_SUN / np.linalg.norm(normal, axis=1)
+    least, most = (bright.min(), bright.max()) if len(bright) else (0.0, 0.0)
+    return np.asarray((bright - least) / (most - least)) if most > least else np.ones(len(x))

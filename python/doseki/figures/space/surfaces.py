@@ -65,17 +65,17 @@ class Balls:
     clear: np.ndarray
 
 
-def no_balls() -> Balls:
-    """None at all."""
-    none = np.zeros((0, 3))
-    flags = np.zeros(0, bool)
-    return Balls(none, np.zeros(0), none, flags, flags)
+@dataclass(frozen=True)
+class Background:
+    """What is behind balls: colours (rows, columns, 3) from 0 to 1, and how deep it is, pixels."""
 
+    colour: np.ndarray
+    depth: np.ndarray
 
-def joined(*parts: Balls) -> Balls:
-    """All balls of several."""
-    columns = zip(*(vars(part).values() for part in parts), strict=True)
-    return Balls(*(np.concatenate(column) for column in columns))
+    @classmethod
+    def flat(cls, colour: np.ndarray) -> Background:
+        """A picture behind everything."""
+        return cls(colour, np.full(colour.shape[:2], np.inf))
 
 
 def picture_shape(extent: Extent, width: int) -> tuple[int, int]:
@@ -88,20 +88,20 @@ def render(
     camera: Camera,
     extent: Extent,
     width: int,
-    background: np.ndarray | None = None,
+    background: Background | None = None,
 ) -> np.ndarray:
     """A picture (rows, `width`, 3) uint8 of what `extent` holds, in the camera's axes.
 
-    The background is white, or a picture (rows, `width`, 3) of colours from 0 to 1.
+    What is behind it is white, or the `background`.
     """
-    height, width = picture_shape(extent, width)
-    picture = np.ones((height, width, 3)) if background is None else background.copy()
-    nearest = np.full((height, width), np.inf)
+    shape = picture_shape(extent, width)
+    behind = background or Background(np.ones((*shape, 3)), np.full(shape, np.inf))
+    picture, nearest = behind.colour.copy(), behind.depth.copy()
     for solid in (~balls.clear & balls.smooth, ~balls.clear & ~balls.smooth):
-        colour, depth = _layer(balls, solid, camera, extent, (height, width))
+        colour, depth = _layer(balls, solid, camera, extent, shape)
         front = depth < nearest
         picture[front], nearest[front] = colour[front], depth[front]
-    colour, depth = _layer(balls, balls.clear, camera, extent, (height, width))
+    colour, depth = _layer(balls, balls.clear, camera, extent, shape)
     cover = np.where(np.isfinite(nearest), OVER_SOLID, OVER_NOTHING) * (depth < nearest)
     picture += cover[..., None] * (colour - picture)
     return np.round(255 * picture).astype(np.uint8)
@@ -111,18 +111,30 @@ def _layer(
     balls: Balls, chosen: np.ndarray, camera: Camera, extent: Extent, shape: tuple[int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Colours (rows, columns, 3), shaded, and depth in pixels, infinite where there is nothing."""
-    pixel = (extent[1] - extent[0]) / shape[1]
-    position, smooth = balls.position[chosen], bool(balls.smooth[chosen].any())
-    radius = balls.radius[chosen] * (SWELL if smooth else 1.0) / pixel
-    points = (camera.project(position) - [extent[0], extent[3]]) / pixel * [1, -1]
-    shown, depth = nearest_balls(points, position @ camera.away / pixel, radius, shape)
+    smooth = bool(balls.smooth[chosen].any())
+    radius = balls.radius[chosen] * (SWELL if smooth else 1.0)
+    shown, depth = seen_balls(balls.position[chosen], radius, camera, extent, shape)
     there = shown != NOTHING
     colour = np.ones((*shape, 3))
     if there.any():
-        reach = SMOOTH * float(np.median(radius)) if smooth else 0.0
+        pixel = (extent[1] - extent[0]) / shape[1]
+        reach = SMOOTH * float(np.median(radius)) / pixel if smooth else 0.0
         shade = _shade(depth, there, reach)
         colour[there] = balls.colour[chosen][shown[there]] * shade[there, None]
     return colour, depth
+
+
+def seen_balls(
+    position: np.ndarray,
+    radius: np.ndarray,
+    camera: Camera,
+    extent: Extent,
+    shape: tuple[int, int],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which ball each pixel (rows, columns) shows, or NOTHING, and how deep it is, in pixels."""
+    pixel = (extent[1] - extent[0]) / shape[1]
+    points = (camera.project(position) - [extent[0], extent[3]]) / pixel * [1, -1]
+    return nearest_balls(points, position @ camera.away / pixel, radius / pixel, shape)
 
 
 def nearest_balls(

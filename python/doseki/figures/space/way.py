@@ -1,0 +1,92 @@
+"""Which way a flow over a terrain goes, and how it looks from there and from beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...geodata.raster import Raster
+from ...record.reader import Run, Snapshot
+from ..dots import MARGIN, Dots, ends_of_most, grain_radius
+from ..layout import Extent
+from .box import Space
+from .surfaces import Camera
+
+AGAINST, ACROSS, DOWN = 0.75, 0.40, 0.62  # how far one looks against the flow, across it, and down
+
+
+@dataclass(frozen=True)
+class Way:
+    """Where the middle of a flow starts in plan (2,), m, and its direction (2,)."""
+
+    start: np.ndarray
+    direction: np.ndarray
+
+    @classmethod
+    def between(cls, snapshots: Sequence[Snapshot]) -> Way | None:
+        """From the first moment at which something can move to the last; None without a way."""
+        middles = [s["position"][~s["fixed"], :2].mean(axis=0) for s in snapshots if moves(s)]
+        if not middles:
+            return None
+        first, last = middles[0], middles[-1]
+        length = float(np.linalg.norm(last - first))
+        sizes = [2 * grain_radius(s).max() for s in snapshots if moves(s)]
+        return cls(first, (last - first) / length) if length > max(sizes) else None
+
+    def looking_back(self) -> Camera:
+        """The camera that stands in front of the flow, above it and somewhat beside it."""
+        x, y = self.direction
+        return Camera.looking(
+            np.array([-AGAINST * x + ACROSS * y, -AGAINST * y - ACROSS * x, -DOWN])
+        )
+
+    def points(self, position: np.ndarray) -> np.ndarray:
+        """How far along the way, and how high, positions (n, 3) are: (n, 2)."""
+        return np.column_stack([(position[:, :2] - self.start) @ self.direction, position[:, 2]])
+
+
+def moves(snapshot: Snapshot) -> bool:
+    """Whether anything in it can move."""
+    return bool((~snapshot["fixed"]).any())
+
+
+def dots_beside(snapshot: Snapshot, way: Way, space: Space, material: str | None) -> Dots:
+    """All that moves and structures near it, seen from beside the way: structures first."""
+    position = snapshot["position"]
+    shown = space.view.contains(position) & (snapshot["body"] != space.buried)
+    shown &= ~snapshot["fixed"] | space.is_near(space.view.coordinates(position))
+    if material is not None:
+        shown &= snapshot["material"] == material
+    index = np.flatnonzero(shown)
+    index = index[np.lexsort((snapshot["density"][index], ~snapshot["fixed"][index]))]
+    return Dots(index, way.points(position[index]), grain_radius(snapshot)[index])
+
+
+def extent_beside(clouds: Sequence[Dots]) -> Extent:
+    """What holds all dots but drops that fly far from all others."""
+    ends = [ends_of_most(cloud.points) for cloud in clouds if len(cloud.index)]
+    low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
+    margin = MARGIN * float(np.max(high - low)) + max(
+        c.radius.max() for c in clouds if len(c.index)
+    )
+    return low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin
+
+
+def bed_beside(run: Run, way: Way, snapshots: Sequence[Snapshot], cell: float) -> np.ndarray:
+    """Where the ground below the flow is lowest: distance and height (n, 2), one each `cell`, m."""
+    ground = run.ground
+    assert isinstance(ground, Raster)
+    position = np.concatenate([s["position"][~s["fixed"]] for s in snapshots])
+    height = ground.sampled(position[:, 0], position[:, 1])
+    known = ~np.isnan(height)
+    if not known.any():
+        return np.zeros((0, 2))
+    along = way.points(position[known])[:, 0]
+    first = np.floor(along.min() / cell)
+    number = (np.floor(along / cell) - first).astype(int)
+    lowest = np.full(number.max() + 1, np.inf)
+    np.minimum.at(lowest, number, height[known])
+    middle = (first + np.arange(len(lowest)) + 0.5) * cell
+    return np.column_stack([middle, lowest])[np.isfinite(lowest)]

@@ -1,0 +1,135 @@
+"""Flows over a terrain, seen from in front of them and from beside their way."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from doseki.figures.movie import make_movie
+from doseki.figures.plot import figures
+from doseki.figures.space.box import Space
+from doseki.figures.space.ground import ground_behind
+from doseki.figures.space.surfaces import Camera
+from doseki.figures.space.way import Way, dots_beside, extent_beside
+from doseki.geodata.grid import Raster
+from doseki.geodata.raster import write_raster
+from doseki.measure.views import whole_space
+from doseki.record.reader import load
+
+from ..synthetic_runs import make_plain_state
+
+MIDDLE = np.array([460_050.0, 5_200_050.0])
+ANGLES = [0, 37, 90, 215]  # degrees, of the way from the east
+
+
+def towards(angle):
+    return np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+
+
+def slope(angle):
+    """A channel in a slope of one in two."""
+    grid = Raster(np.zeros((101, 101)), *(MIDDLE - 50.5), 1.0)
+    x, y = grid.x[None, :] - MIDDLE[0], grid.y[:, None] - MIDDLE[1]
+    along, across = np.tensordot(towards(angle), [x + 0 * y, y + 0 * x], 1), 0.0
+    left = towards(angle + 90)
+    across = left[0] * x + left[1] * y
+    return grid.with_values(900 - 0.5 * along + 0.05 * across**2)
+
+
+@pytest.fixture
+def slide(tmp_path, record_run):
+    """A function that makes a run of a block that slides 40 m down the channel of that angle."""
+
+    def at(angle):
+        def state(time):
+            axes = [np.arange(-a, a, 1.0) + 0.5 for a in (6, 3, 1)]
+            along, across, up = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
+            along = along - 20 + 10 * time
+            plan = MIDDLE + np.outer(along, towards(angle)) + np.outer(across, towards(angle + 90))
+            position = np.column_stack([plan, 902 - 0.5 * along + up])
+            return make_plain_state(position, np.zeros_like(position), np.zeros(len(position), int))
+
+        folder = tmp_path / f"at_{angle}"
+        recorder, _ = record_run(folder, dim=3, times=(0.0, 2.0, 4.0), state_at=state)
+        recorder.close({"status": "done"})
+        write_raster(folder / "terrain.asc", slope(angle))
+        scenario = folder / "scenario.toml"
+        text, count = re.subn(r"gravity = .*", "gravity = [0, 0, -9.81]", scenario.read_text())
+        assert count == 1
+        scenario.write_text(text)
+        return load(folder)
+
+    return at
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_the_way_is_that_of_the_flow_whatever_its_direction(slide, angle):
+    run = slide(angle)
+    way = Way.between(list(run))
+    assert way.direction == pytest.approx(towards(angle), abs=1e-9)
+    space = Space.around(list(run), whole_space(3), "terrain")
+    clouds = [dots_beside(snapshot, way, space, None) for snapshot in run]
+    for moved, cloud in zip((0, 20, 40), clouds, strict=True):
+        assert len(cloud.index) == 144
+        assert [cloud.points[:, 0].min(), cloud.points[:, 0].max()] == pytest.approx(
+            [moved - 5.5, moved + 5.5], abs=1e-6
+        )
+    left, right, bottom, top = extent_beside(clouds)
+    assert left < -5.5
+    assert right > 45.5
+    assert bottom < clouds[-1].points[:, 1].min()
+    assert top > clouds[0].points[:, 1].max()
+
+
+def test_the_picture_from_in_front_of_a_flow_does_not_turn_with_it(slide):
+    seen = []
+    for angle in (0, 90):
+        run = slide(angle)
+        camera = Way.between(list(run)).looking_back()
+        middle = camera.project(np.append(MIDDLE, 900.0)[None])[0]
+        extent = (middle[0] - 6, middle[0] + 6, middle[1] - 12, middle[1] + 12)
+        space = Space.around(list(run), whole_space(3), "terrain")
+        seen.append(ground_behind(run, space, camera, extent, 40).depth)
+    there = np.isfinite(seen[0]) & np.isfinite(seen[1])
+    assert there.mean() > 0.9
+    apart = seen[0][there] - seen[1][there]
+    assert np.abs(apart - apart.mean()).max() < 2.0  # pixels; the ground is drawn by balls of three
+
+
+def test_the_ground_is_lit_from_the_north_west(slide):
+    run = slide(90)
+    space = Space.around(list(run), whole_space(3), "terrain")
+    extent = (MIDDLE[0] - 8, MIDDLE[0] + 8, MIDDLE[1] - 8, MIDDLE[1] + 8)
+    colour = ground_behind(
+        run, space, Camera.looking(np.array([0.0, 0.0, -1.0])), extent, 64
+    ).colour
+    west, east = colour[:, :20].mean(), colour[:, -20:].mean()
+    assert east > west + 0.1  # the side that faces the west
+
+
+def test_a_run_on_a_terrain_has_the_view_from_beside_its_way(slide):
+    figure = dict(figures(slide(37)))["overview"]
+    section = figure.axes[2]
+    assert section.get_title(loc="left") == "from beside its way"
+    assert section.get_xlabel() == "along the way (m)"
+    bed = section.collections[0].get_paths()[0].vertices
+    inside = (bed[:, 0] > -4) & (bed[:, 0] < 44) & (bed[:, 1] > section.get_ylim()[0] + 0.1)
+    assert bed[inside, 1] == pytest.approx(910 - 0.5 * bed[inside, 0], abs=1.0)
+
+
+def test_what_stays_where_it_is_has_no_way(slide):
+    run = slide(0)
+    assert Way.between([run[0], run[0]]) is None
+    assert Way.between([]) is None
+
+
+def test_a_movie_of_a_run_on_a_terrain_has_its_ground(slide, tmp_path):
+    run = slide(215)
+    with Image.open(make_movie(run, tmp_path / "movie.gif", width=300)) as movie:
+        assert movie.n_frames == 3
+        frame = np.asarray(movie.convert("RGB")).astype(int)
+    inner = frame[120:-80, 120:-60]
+    assert (inner.sum(axis=2) < 3 * 252).mean() > 0.5  # ground, where there was white around walls
