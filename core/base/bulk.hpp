@@ -40,6 +40,12 @@ void for_each(std::size_t count, const F& f) {
     thrust::for_each_n(thrust::device, thrust::counting_iterator<std::size_t>(0), count, f);
 }
 
+/// The same for pairs of bodies that may touch, see base/parallel.hpp.
+template <class F>
+void for_each_contact(std::size_t count, const F& f) {
+    for_each(count, f);
+}
+
 /// Room for values that a device writes first: the processor touches none of it.
 template <class T>
 class Scratch {
@@ -124,6 +130,11 @@ inline Buckets sorted_by(Array<std::uint32_t> keys, std::size_t count) {
 template <class F>
 void for_each(std::size_t count, const F& f) {
     for_each_particle(count, f);
+}
+
+template <class F>
+void for_each_contact(std::size_t count, const F& f) {
+    doseki::for_each_contact(count, f);
 }
 
 template <class Value, class Combine, class F>

@@ -64,6 +64,8 @@ public:
 
     DOSEKI_DEVICE_FN T& operator*() const { return *value_; }
     DOSEKI_DEVICE_FN T* operator->() const { return value_; }
+    T* get() const { return value_; }
+    explicit operator bool() const { return value_ != nullptr; }
 
 private:
     std::shared_ptr<T> owner_;

@@ -282,12 +282,11 @@ private:
         deformable.add_to(contact_, static_cast<std::int32_t>(rigid.size()));
         choose_margin();
         deformable_step_ = deformable.timestep();
-        all_points_.resize(contact_.points.size());
-        std::iota(all_points_.begin(), all_points_.end(), 0);
+        all_points_ = ShownPoints::all_of(contact_.points);
         show_bodies(all_points_);
     }
     void choose_margin();
-    void show_bodies(std::span<const std::int32_t> points) {
+    void show_bodies(const ShownPoints& points) {
         rigid.show(contact_, points);
         deformable.show(contact_);
     }
@@ -345,7 +344,7 @@ private:
     std::int32_t rigid_at_start_ = 0;                 // how many
     std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
-    Array<std::int32_t> all_points_;
+    ShownPoints all_points_;
     double moved_ = 0.0;        // bound on the distance gone since contacts were looked for
     double margin_ = 0.0;       // twice the distance after which they are looked for again
     double longest_way_ = 0.0;  // in a step, after which no overlap is deep at once

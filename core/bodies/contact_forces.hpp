@@ -16,13 +16,13 @@
 namespace doseki {
 
 template <int D>
-void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
+void Contacts<D>::find(ContactBodies<D>& bodies, double margin) {
     std::unordered_map<std::uint64_t, std::size_t> before;  // first rows
     for (std::size_t k = 0; k < pairs_.size(); ++k) before.try_emplace(key(pairs_[k]), k);
     const Array<ContactSprings> springs = std::move(springs_);
     const Array<Vec<double, D>> normals = std::move(normals_);
-    const Array<Push> pushes = std::move(pushes_);
-    const Array<Contact> contacts = std::move(contacts_);
+    const Array<PairPush<D>> pushes = std::move(pushes_);
+    const Array<PairContact> contacts = std::move(contacts_);
     pairs_.clear();
     find_ball_pairs(bodies.points, domain_, margin, pairs_);
     find_solid_pairs(bodies, domain_, margin, pairs_);
@@ -30,8 +30,7 @@ void Contacts<D>::find(const ContactBodies<D>& bodies, double margin) {
     add_rows(bodies);
     springs_.assign(pairs_.size(), {}), normals_.assign(pairs_.size(), {});
     restore(bodies);
-    for_each_contact(pairs_.size(),
-                     [&](std::size_t k) { contacts_[k].gap = gap_of(bodies, k, margin); });
+    find_gaps(bodies, margin);
     pushes_.assign(pairs_.size(), {});
     for (std::size_t k = 0; k < pairs_.size(); ++k)
         if (const auto found = before.find(key(pairs_[k])); found != before.end()) {
@@ -51,14 +50,6 @@ void Contacts<D>::add_rows(const ContactBodies<D>& bodies) {
         rows.insert(rows.end(), ball && solid ? solid->surface->most_touched() : 1, pair);
     }
     pairs_ = std::move(rows);
-}
-
-template <int D>
-std::size_t Contacts<D>::run_from(std::size_t k) const {
-    if (k > 0 && pairs_[k - 1] == pairs_[k]) return 0;
-    std::size_t end = k + 1;
-    while (end < pairs_.size() && pairs_[end] == pairs_[k]) ++end;
-    return end - k;
 }
 
 /// Each once, in rising order.
@@ -89,7 +80,7 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
     contacts_.clear(), pushes_.clear();
     std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch
-    auto at = [&points](const Contact& contact) -> double& {
+    auto at = [&points](const PairContact& contact) -> double& {
         return points[std::minmax(contact.body_a, contact.body_b)];
     };
     for (const ContactPair& pair : pairs_) {
@@ -98,11 +89,11 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     }
     selections_ = {};
     if (apart_)
-        select(PairKind::slow), select(PairKind::fast);
+        select(bodies, PairKind::slow), select(bodies, PairKind::fast);
     else
-        select(PairKind::all);
+        select(bodies, PairKind::all);
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
-        const Contact& contact = contacts_[k];
+        const PairContact& contact = contacts_[k];
         // Points of deformable bodies move each on its own, but on a light ball press many.
         const double together = contact.law.rigid                         ? at(contact)
                                 : is_light_ball(bodies.points, pairs_[k]) ? 4.0
@@ -120,12 +111,18 @@ PairKind Contacts<D>::kind_of(std::size_t k) const {
 }
 
 template <int D>
-void Contacts<D>::select(PairKind kind) {
+void Contacts<D>::select(const ContactBodies<D>& bodies, PairKind kind) {
     Selection& selection = of(kind);
     Array<ContactPair> pairs;
-    for (std::size_t k = 0; k < pairs_.size(); ++k)
-        if (kind_of(k) == kind) selection.rows.push_back(k), pairs.push_back(pairs_[k]);
-    selection.points = points_of(pairs);
+    Array<std::size_t> on_solids;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        if (kind_of(k) != kind) continue;
+        selection.rows.push_back(k), pairs.push_back(pairs_[k]);
+        if (bodies.solid(pairs_[k])) on_solids.push_back(k);
+        if (bodies.surface(pairs_[k])) selection.on_surfaces.push_back(k);
+    }
+    selection.on_solids = PushesOnSolids(std::move(on_solids), pairs_);
+    selection.points = ShownPoints(points_of(pairs), bodies.points);
     list_pushes(selection);
 }
 
@@ -163,13 +160,14 @@ void Contacts<D>::expect_pairs_of(const ContactBodies<D>& bodies) const {
         else
             expect_index(pair.b, bodies.points.size(), "contact_b");
     }
+    const ContactRows<D> rows{pairs_, {}, {}, {}, {}, {}, domain_};
     for (std::size_t k = 0; k < pairs_.size(); ++k)
-        expect_fit(run_from(k) <= SurfacePoints<D>::most, "contact_a");
+        expect_fit(rows.run_from(k) <= SurfacePoints<D>::most, "contact_a");
 }
 
 template <int D>
 auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const
-    -> Contact {
+    -> PairContact {
     const ContactPoints<D>& points = bodies.points;
     const ContactSide a = points.side(pair.first());
     const std::int32_t first = points.body[pair.first()];
@@ -185,30 +183,6 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }
 
-/// Each point takes what its pairs do to it in their order, so that sums do not depend on the
-/// number of threads.
-template <int D>
-void Contacts<D>::apply(ContactBodies<D>& bodies, PairKind kind, double moved, double dt) {
-    Selection& selection = of(kind);
-    pushes_.resize(pairs_.size());
-    if (apart_) keep(selection);
-    for_each_contact(selection.rows.size(), [&](std::size_t n) {
-        const std::size_t k = selection.rows[n];
-        if (contacts_[k].gap > contacts_[k].approach(moved))
-            part(k);
-        else
-            push_pair(bodies, k, dt);
-    });
-    hand_out(selection, bodies.points);
-    for (const std::size_t k : selection.rows) {
-        const Push& push = pushes_[k];
-        if (!push.touches) continue;
-        max_overlap_ = std::max(max_overlap_, contacts_[k].overlap / contacts_[k].law.diameter);
-        if (pairs_[k].with_shape())
-            push_second(bodies, pairs_[k], push.overlap, -1.0 * push.force, push.torque_b);
-    }
-}
-
 template <int D>
 double Contacts<D>::stored_energy() const {
     double sum = 0.0;
@@ -220,7 +194,7 @@ double Contacts<D>::stored_energy() const {
 
 template <int D>
 void Contacts<D>::list_pushes(Selection& selection) const {
-    const Array<std::int32_t>& points = selection.points;
+    const Array<std::int32_t>& points = selection.points.points;
     Array<std::size_t>& first_push = selection.first_push;
     first_push.assign(points.size() + 1, 0);
     auto place = [&points](std::size_t point) {
@@ -242,126 +216,19 @@ void Contacts<D>::list_pushes(Selection& selection) const {
 }
 
 template <int D>
-void Contacts<D>::hand_out(const Selection& selection, ContactPoints<D>& points) const {
-    for_each_contact(selection.points.size(), [&](std::size_t n) {
-        const auto c = static_cast<std::size_t>(selection.points[n]);
-        for (std::size_t m = selection.first_push[n]; m < selection.first_push[n + 1]; ++m) {
-            const std::size_t side = selection.pushes_on[m];
-            const Push& push = pushes_[side / 2];
-            if (!push.touches) continue;
-            const bool second = side % 2 == 1;
-            points.force[c] = points.force[c] + (second ? -1.0 : 1.0) * push.force;
-            points.torque[c] = points.torque[c] + (second ? push.torque_b : push.torque_a);
-        }
-    });
-}
-
-template <int D>
-Overlaps<D> Contacts<D>::overlaps_of_pair(const ContactBodies<D>& bodies, std::size_t k) const {
-    const ContactPair& pair = pairs_[k];
-    const ContactPoints<D>& points = bodies.points;
-    if constexpr (D == 2)
-        if (const Surface<D>* surface = bodies.surface(pair))
-            return overlap_of(points, pair.first(), *surface, contacts_[k].vertex, domain_);
-    if (!pair.with_shape()) return overlap_of(points, pair.first(), pair.second(), domain_);
-    return overlaps_of(points, pair.first(), bodies.solids[pair.shape()], domain_);
-}
-
-/// 0 where it is not known.
-template <int D>
-double Contacts<D>::gap_of(const ContactBodies<D>& bodies, std::size_t k, double margin) const {
-    const ContactPair& pair = pairs_[k];
-    const ContactPoints<D>& points = bodies.points;
-    const Vec<double, D>& x = points.position[pair.first()];
-    const double radius = points.radius[pair.first()];
-    if constexpr (D == 2)
-        if (const Surface<D>* surface = bodies.surface(pair)) {
-            const auto foot = surface->foot(x, contacts_[k].vertex, domain_);
-            return foot ? std::max(0.0, -foot->depth) : 0.0;
-        }
-    if (!pair.with_shape()) {
-        const Vec<double, D> r = nearest_image(domain_, points.position[pair.second()] - x);
-        return std::max(0.0, norm(r) - radius - points.radius[pair.second()]);
-    }
-    const ContactSolid<D>& solid = bodies.solids[pair.shape()];
-    const Vec<double, D> r = nearest_image(domain_, x - solid.centre);
-    const auto places = solid.surface->touched_by(rotated_back(solid.rotation, r), radius + margin);
-    return places.empty() ? margin : std::max(0.0, places[0].distance - radius);
-}
-
-template <int D>
 template <class NewPair>
-void Contacts<D>::accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new,
-                                  bool have_met) {
+void Contacts<D>::accept_overlaps(ContactBodies<D>& bodies, const NewPair& is_new, bool have_met) {
+    const ContactRows<D> all = rows(bodies);
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        const std::size_t rows = run_from(k);
+        const std::size_t rows = all.run_from(k);
         if (rows == 0 || !is_new(pairs_[k])) continue;
-        const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
+        const Overlaps<D> overlaps = all.overlaps(k);
         for (std::size_t n = 0; n < std::min(overlaps.size(), rows); ++n) {
             pushes_[k + n].touches = false, contacts_[k + n].overlap = 0.0;
             springs_[k + n] = {}, springs_[k + n][rest_overlap] = overlaps[n].depth;
             normals_[k + n] = have_met ? overlaps[n].normal : Vec<double, D>{};
         }
     }
-}
-
-template <int D>
-void Contacts<D>::push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt) {
-    const std::size_t rows = run_from(k);
-    if (rows == 0) return;
-    if (!pairs_[k].with_shape()) return push_balls(bodies, k, dt);
-    const Overlaps<D> overlaps = overlaps_of_pair(bodies, k);
-    const auto share = shares_of(overlaps);
-    const auto row = rows_of(overlaps, std::span<const Vec<double, D>>(normals_.data() + k, rows));
-    for (std::size_t n = k; n < k + rows; ++n) pushes_[n] = {}, contacts_[n].overlap = 0.0;
-    for (std::size_t place = 0; place < std::min(overlaps.size(), rows); ++place) {
-        const std::size_t n = k + row[place];
-        pushes_[n] = push_at(bodies, n, overlaps[place], dt, share[place]);
-    }
-    for (std::size_t n = k; n < k + rows; ++n)
-        if (!pushes_[n].touches) part(n);
-}
-
-template <int D>
-void Contacts<D>::push_balls(const ContactBodies<D>& bodies, std::size_t k, double dt) {
-    const auto overlap = overlap_of(bodies.points, pairs_[k].first(), pairs_[k].second(), domain_);
-    if (!overlap) return part(k);
-    pushes_[k] = push_at(bodies, k, *overlap, dt, 1.0);
-}
-
-template <int D>
-void Contacts<D>::part(std::size_t k) {
-    pushes_[k].touches = false, contacts_[k].overlap = 0.0;
-    springs_[k] = {}, normals_[k] = {};
-}
-
-template <int D>
-auto Contacts<D>::push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
-                          double dt, double share) -> Push {
-    Contact& contact = contacts_[k];
-    const bool begins = dot(normals_[k], normals_[k]) == 0.0;
-    normals_[k] = overlap.normal;
-    const ContactPoints<D>& points = bodies.points;
-    const MotionAt<D> b = motion_of_second(bodies, pairs_[k], overlap);
-    const std::size_t a = pairs_[k].first();
-    const Vec<double, D> v_a =
-                             points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
-                         v_b = b.velocity + turning_velocity(b.spin, overlap.lever_b);
-    ContactAction on_a = contact.law.act(springs_[k], overlap.depth, in_space(overlap.normal),
-                                         {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
-    contact.overlap = overlap.depth - springs_[k][rest_overlap];
-    on_a.force = share * on_a.force, on_a.moment = share * on_a.moment;
-    auto torque = [&](const Vec<double, D>& lever) {
-        return cross(in_space(lever), on_a.force) + on_a.moment;
-    };
-    const double approach = begins ? dot(v_a - v_b, overlap.normal) : 0.0;
-    return {true,
-            overlap,
-            in_run<D>(on_a.force),
-            torque(overlap.lever_a),
-            -1.0 * torque(overlap.lever_b),
-            std::max(0.0, approach),
-            share};
 }
 
 }  // namespace doseki

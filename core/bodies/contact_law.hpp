@@ -54,7 +54,7 @@ struct ContactLaw {
     double tangential;  // stiffness of friction over the normal one
     double steps;       // time steps in a collision
 
-    double curvature() const { return radius > 0.0 ? radius : 0.5 * diameter; }
+    DOSEKI_DEVICE_FN double curvature() const { return radius > 0.0 ? radius : 0.5 * diameter; }
 
     /// That resolves a collision at this speed, and is stable where two bodies touch at `points`
     /// points at once, whose springs and dashpots add up.
@@ -62,15 +62,15 @@ struct ContactLaw {
 
     /// Energy of the springs, without that of rolling, where the overlap beyond that of rest is
     /// `pressed`.
-    double stored(const ContactSprings& springs, double pressed) const;
+    DOSEKI_DEVICE_FN double stored(const ContactSprings& springs, double pressed) const;
 
     /// n points away from the first body. Overlaps below that of rest do not press, and take it
     /// with them, Eq. (115).
-    ContactAction act(ContactSprings& springs, double overlap, const Vec3& n,
-                      const RelativeMotion& motion, double dt) const;
+    DOSEKI_DEVICE_FN ContactAction act(ContactSprings& springs, double overlap, const Vec3& n,
+                                       const RelativeMotion& motion, double dt) const;
 
 private:
-    NormalSpring normal_spring(double overlap) const;
+    DOSEKI_DEVICE_FN NormalSpring normal_spring(double overlap) const;
 };
 
 /// Makes the laws of pairs from the materials that touch.
@@ -103,7 +103,7 @@ private:
 };
 
 /// A spring along the surface turns with it.
-inline Vec3 turned_with(const Vec3& n, const ContactSprings& springs, int first) {
+DOSEKI_DEVICE_FN inline Vec3 turned_with(const Vec3& n, const ContactSprings& springs, int first) {
     Vec3 stretch;
     for (int c = 0; c < 3; ++c) stretch[c] = springs[first + c];
     const double before = norm(stretch);
@@ -120,12 +120,13 @@ inline double ContactLaw::timestep(double speed, double points) const {
     return collision.time / std::max(steps, fastest);
 }
 
-inline NormalSpring ContactLaw::normal_spring(double overlap) const {
+DOSEKI_DEVICE_FN inline NormalSpring ContactLaw::normal_spring(double overlap) const {
     return hertz ? hertz_spring(stiffness, curvature(), overlap)
                  : linear_spring(stiffness, overlap);
 }
 
-inline double ContactLaw::stored(const ContactSprings& springs, double pressed) const {
+DOSEKI_DEVICE_FN inline double ContactLaw::stored(const ContactSprings& springs,
+                                                  double pressed) const {
     const NormalSpring spring = normal_spring(pressed);
     double square = 0.0;
     for (int c = 0; c < 3; ++c) square += springs[c] * springs[c];
@@ -133,8 +134,9 @@ inline double ContactLaw::stored(const ContactSprings& springs, double pressed) 
            0.5 * tangential * spring.stiffness * square;
 }
 
-inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap, const Vec3& n,
-                                     const RelativeMotion& motion, double dt) const {
+DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap,
+                                                      const Vec3& n, const RelativeMotion& motion,
+                                                      double dt) const {
     const double approach = dot(motion.velocity, n);
     springs[rest_overlap] = min(springs[rest_overlap], overlap);
     const NormalSpring spring = normal_spring(overlap - springs[rest_overlap]);

@@ -1,50 +1,79 @@
 #pragma once
 #include <compare>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "base/array.hpp"
 #include "bodies/contact_law.hpp"
-#include "bodies/contact_surface.hpp"
+#include "bodies/shapes/contact_surface.hpp"
 #include "bodies/surface.hpp"
 
 namespace doseki {
 
+template <class T>
+using Span = std::span<T>;
+
 /// Points at which bodies touch others, each a ball: a whole body, a sample of the surface of a
 /// solid one or (2-D) of a deformable one (radius 0), or (3-D) a surface particle of a deformable
-/// one. Bodies are numbered over all kinds.
-template <int D>
-struct ContactPoints {
-    Array<Vec<double, D>> position, velocity;  // of the centre
-    Array<Vec3> spin;
-    Array<double> radius;
-    Array<double> mass, diameter;  // of the body; overlaps are compared with the diameter
-    Array<double> share;           // see ContactSide
-    Array<std::int32_t> body, material;
-    Array<std::uint8_t> fixed, removed, deformable, dust;
-    Array<std::int32_t> surface;  // of which it is a sample, in ContactBodies; -1: of none
+/// one. Bodies are numbered over all kinds. A row of numbers is an Array or, as loops over many
+/// refer to it, a Span.
+template <int D, template <class> class Row>
+struct RowsOfContactPoints {
+    Row<Vec<double, D>> position, velocity;  // of the centre
+    Row<Vec3> spin;
+    Row<double> radius;
+    Row<double> mass, diameter;  // of the body; overlaps are compared with the diameter
+    Row<double> share;           // see ContactSide
+    Row<std::int32_t> body, material;
+    Row<std::uint8_t> fixed, removed, deformable, dust;
+    Row<std::int32_t> surface;   // of which it is a sample, in ContactBodies; -1: of none
+    Row<Vec<double, D>> offset;  // of rigid bodies, in the frame of the body
     // What the contacts do to them; torque about their own centre.
-    Array<Vec<double, D>> force;
-    Array<Vec3> torque;
+    Row<Vec<double, D>> force;
+    Row<Vec3> torque;
 
-    std::size_t size() const { return radius.size(); }
+    template <class F, class... Self>
+    static void members(F&& f, Self&... self) {
+        f(self.position...), f(self.velocity...), f(self.spin...), f(self.radius...);
+        f(self.mass...), f(self.diameter...), f(self.share...), f(self.body...);
+        f(self.material...), f(self.fixed...), f(self.removed...), f(self.deformable...);
+        f(self.dust...), f(self.surface...), f(self.offset...), f(self.force...);
+        f(self.torque...);
+    }
+};
+
+template <int D>
+using ContactPointSpans = RowsOfContactPoints<D, Span>;
+
+template <int D>
+struct ContactPoints : RowsOfContactPoints<D, Array> {
+    std::size_t size() const { return this->radius.size(); }
 
     /// How far from the point bodies that may touch it are looked for.
-    double reach(std::size_t k) const { return surface[k] >= 0 ? 0.5 * diameter[k] : radius[k]; }
+    double reach(std::size_t k) const {
+        return this->surface[k] >= 0 ? 0.5 * this->diameter[k] : this->radius[k];
+    }
     /// Adds a point of a body, as a side of a contact has it.
-    void add(std::int32_t of_body, const ContactSide& side) {
-        position.push_back({}), velocity.push_back({}), spin.push_back({});
-        force.push_back({}), torque.push_back({});
-        radius.push_back(side.radius), mass.push_back(side.mass);
-        diameter.push_back(side.diameter);
-        body.push_back(of_body), material.push_back(side.material);
-        fixed.push_back(side.fixed), removed.push_back(0), deformable.push_back(side.deformable);
-        share.push_back(side.share), dust.push_back(side.dust), surface.push_back(-1);
+    void add(std::int32_t of_body, const ContactSide& side, const Vec<double, D>& at = {}) {
+        this->members([](auto& row) { row.emplace_back(); }, *this);
+        this->radius.back() = side.radius, this->mass.back() = side.mass;
+        this->diameter.back() = side.diameter, this->offset.back() = at;
+        this->body.back() = of_body, this->material.back() = side.material;
+        this->fixed.back() = side.fixed, this->deformable.back() = side.deformable;
+        this->share.back() = side.share, this->dust.back() = side.dust;
+        this->surface.back() = -1;
     }
 
     ContactSide side(std::size_t k) const {
-        return {material[k],        radius[k], mass[k],  diameter[k], fixed[k] != 0,
-                deformable[k] != 0, false,     share[k], dust[k] != 0};
+        return {this->material[k],   this->radius[k],          this->mass[k], this->diameter[k],
+                this->fixed[k] != 0, this->deformable[k] != 0, false,         this->share[k],
+                this->dust[k] != 0};
+    }
+    ContactPointSpans<D> spans() {
+        ContactPointSpans<D> spans;
+        this->members([](auto& span, auto& row) { span = row; }, spans, *this);
+        return spans;
     }
 };
 
@@ -69,10 +98,41 @@ struct ContactPair {
     std::int32_t a, b;
 
     auto operator<=>(const ContactPair&) const = default;
-    bool with_shape() const { return b < 0; }
-    std::size_t shape() const { return static_cast<std::size_t>(-1 - b); }
-    std::size_t first() const { return static_cast<std::size_t>(a); }
-    std::size_t second() const { return static_cast<std::size_t>(b); }
+    DOSEKI_DEVICE_FN bool is(const ContactPair& other) const {
+        return a == other.a && b == other.b;
+    }
+    DOSEKI_DEVICE_FN bool with_shape() const { return b < 0; }
+    DOSEKI_DEVICE_FN std::size_t shape() const { return static_cast<std::size_t>(-1 - b); }
+    DOSEKI_DEVICE_FN std::size_t first() const { return static_cast<std::size_t>(a); }
+    DOSEKI_DEVICE_FN std::size_t second() const { return static_cast<std::size_t>(b); }
+};
+
+/// The solid of a pair; none where it is one of other things.
+template <class Bodies>
+DOSEKI_DEVICE_FN auto solid_of(Bodies& bodies, const ContactPair& pair) {
+    const bool is_solid = pair.with_shape() && pair.shape() < bodies.solids.size();
+    return is_solid ? &bodies.solids[pair.shape()] : nullptr;
+}
+/// Its surface of a deformable body.
+template <class Bodies>
+DOSEKI_DEVICE_FN auto surface_of(Bodies& bodies, const ContactPair& pair) {
+    const bool is_surface = pair.with_shape() && pair.shape() >= bodies.solids.size();
+    return is_surface ? &bodies.surfaces[pair.shape() - bodies.solids.size()] : nullptr;
+}
+
+/// All that may touch, as loops over contacts refer to it.
+template <int D>
+struct ContactBodySpans {
+    ContactPointSpans<D> points;
+    std::span<ContactSolid<D>> solids;
+    std::span<Surface<D>> surfaces;
+
+    DOSEKI_DEVICE_FN ContactSolid<D>* solid(const ContactPair& pair) const {
+        return solid_of(*this, pair);
+    }
+    DOSEKI_DEVICE_FN Surface<D>* surface(const ContactPair& pair) const {
+        return surface_of(*this, pair);
+    }
 };
 
 /// All that may touch.
@@ -81,6 +141,8 @@ struct ContactBodies {
     ContactPoints<D> points;
     Array<ContactSolid<D>> solids;
     Array<Surface<D>> surfaces;
+
+    ContactBodySpans<D> spans() { return {points.spans(), solids, surfaces}; }
 
     /// The two bodies of a pair.
     std::pair<std::int32_t, std::int32_t> bodies(const ContactPair& pair) const {
@@ -92,18 +154,8 @@ struct ContactBodies {
     ContactPair pair_with_surface(std::int32_t point, std::int32_t surface) const {
         return {point, -1 - static_cast<std::int32_t>(solids.size()) - surface};
     }
-    /// That of the pair; none where it is one of other things.
-    const ContactSolid<D>* solid(const ContactPair& pair) const {
-        if (!pair.with_shape() || pair.shape() >= solids.size()) return nullptr;
-        return &solids[pair.shape()];
-    }
-    const Surface<D>* surface(const ContactPair& pair) const {
-        if (!pair.with_shape() || pair.shape() < solids.size()) return nullptr;
-        return &surfaces[pair.shape() - solids.size()];
-    }
-    Surface<D>* surface(const ContactPair& pair) {
-        return const_cast<Surface<D>*>(std::as_const(*this).surface(pair));
-    }
+    const ContactSolid<D>* solid(const ContactPair& pair) const { return solid_of(*this, pair); }
+    const Surface<D>* surface(const ContactPair& pair) const { return surface_of(*this, pair); }
 };
 
 }  // namespace doseki

@@ -6,10 +6,10 @@
 
 #include "base/array.hpp"
 #include "base/error.hpp"
-#include "bodies/contact_law.hpp"
+#include "bodies/contact/contact_rows.hpp"
+#include "bodies/contact/pushes_on_solids.hpp"
+#include "bodies/contact/shown_points.hpp"
 #include "bodies/contact_search.hpp"
-#include "bodies/overlap.hpp"
-#include "bodies/places.hpp"
 #include "model/archive.hpp"
 
 namespace doseki {
@@ -29,7 +29,7 @@ public:
 
     /// Pairs that may touch before anything has moved by half of `margin`; springs of pairs that
     /// are found again go on.
-    void find(const ContactBodies<D>& bodies, double margin);
+    void find(ContactBodies<D>& bodies, double margin);
 
     /// Gives contact points and shapes other numbers, before bodies are looked for that touch; what
     /// has -1 touches anew.
@@ -38,8 +38,7 @@ public:
     /// Lets the overlaps that pairs have now press no more than before, Eq. (115), those for which
     /// is_new(pair). Unless they have met, their contacts begin at the speed that they have next.
     template <class NewPair>
-    void accept_overlaps(const ContactBodies<D>& bodies, const NewPair& is_new,
-                         bool have_met = true);
+    void accept_overlaps(ContactBodies<D>& bodies, const NewPair& is_new, bool have_met = true);
 
     /// From the next find() on, pairs of one kind can be looked at alone, and no longer all. Slow
     /// are those of bodies with numbers below this one.
@@ -52,8 +51,8 @@ public:
 
     /// Whether there are pairs of a kind that may touch.
     bool any(PairKind kind) const { return !of(kind).rows.empty(); }
-    /// The contact points of these pairs, in rising order.
-    const Array<std::int32_t>& points(PairKind kind) const { return of(kind).points; }
+    /// The contact points of these pairs.
+    const ShownPoints& points(PairKind kind) const { return of(kind).points; }
     const Domain<D>& domain() const { return domain_; }
     /// Step that follows the stiffest pair of a kind, infinite without any.
     double timestep(PairKind kind) const { return of(kind).timestep; }
@@ -78,7 +77,7 @@ public:
     /// Bodies that touch, and by how much of their diameters.
     template <class F>
     void for_each_touching(F&& f) const {
-        for (const Contact& contact : contacts_)
+        for (const PairContact& contact : contacts_)
             if (contact.overlap > 0.0)
                 f(contact.body_a, contact.body_b, contact.overlap / contact.law.diameter);
     }
@@ -103,35 +102,14 @@ public:
     void restore(const ContactBodies<D>& bodies);
 
 private:
-    /// A pair that may touch, and how it does.
-    struct Contact {
-        std::int32_t body_a, body_b;
-        ContactLaw law;
-        double overlap;
-        std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
-        double gap = 0.0;          // at least, when pairs were found [m]
-
-        /// How far its sides may come together while points go some way. Vertices of deformable
-        /// bodies lie half a spacing beyond them.
-        double approach(double moved) const { return (law.rigid ? 2.0 : 4.0) * moved; }
-    };
-
-    /// What a pair does to its bodies; the second one gets the opposite force.
-    struct Push {
-        bool touches = false;
-        Overlap<D> overlap;
-        Vec<double, D> force;
-        Vec3 torque_a, torque_b;  // on each body about its own centre or point
-        double approach = 0.0;    // speed, where the contact begins
-        double share = 1.0;       // of the springs
-    };
-
     /// Pairs that are applied together.
     struct Selection {
         Array<std::size_t> rows;
-        Array<std::int32_t> points;
+        ShownPoints points;
         Array<std::size_t> first_push;  // of each of `points` in pushes_on, and their end
         Array<std::size_t> pushes_on;   // row of the pair, doubled, plus one for its second side
+        PushesOnSolids on_solids;
+        Array<std::size_t> on_surfaces;  // rows of pairs with surfaces of deformable bodies
         double timestep = std::numeric_limits<double>::infinity();
         Array<std::size_t> kept;  // rows with springs before they were applied, and these
         Array<ContactSprings> springs;
@@ -140,7 +118,7 @@ private:
     const Selection& of(PairKind kind) const { return selections_[static_cast<std::size_t>(kind)]; }
     Selection& of(PairKind kind) { return selections_[static_cast<std::size_t>(kind)]; }
     PairKind kind_of(std::size_t k) const;
-    void select(PairKind kind);
+    void select(const ContactBodies<D>& bodies, PairKind kind);
     void keep(Selection& selection) const;
 
     static std::uint64_t key(const ContactPair& pair) {
@@ -148,25 +126,16 @@ private:
                static_cast<std::uint32_t>(pair.b);
     }
     void expect_pairs_of(const ContactBodies<D>& bodies) const;
-    Contact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
-    double gap_of(const ContactBodies<D>& bodies, std::size_t k, double margin) const;
-    /// Length of the run of one pair that begins with row k; 0 where it began before.
-    std::size_t run_from(std::size_t k) const;
+    PairContact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
     /// As many rows of the pair as it may have places.
     void add_rows(const ContactBodies<D>& bodies);
-    Overlaps<D> overlaps_of_pair(const ContactBodies<D>& bodies, std::size_t k) const;
-    /// What two balls do, which touch at one place.
-    void push_balls(const ContactBodies<D>& bodies, std::size_t k, double dt);
-    /// The pair of row k does not touch there.
-    void part(std::size_t k);
     void turn_round(std::size_t k);
     /// Lists for each point, in rising order, the pairs that push it.
     void list_pushes(Selection& selection) const;
-    void hand_out(const Selection& selection, ContactPoints<D>& points) const;
-    /// Finds what a pair does whose run of rows begins with k.
-    void push_pair(const ContactBodies<D>& bodies, std::size_t k, double dt);
-    Push push_at(const ContactBodies<D>& bodies, std::size_t k, const Overlap<D>& overlap,
-                 double dt, double share);
+    void find_gaps(ContactBodies<D>& bodies, double margin);
+    ContactRows<D> rows(ContactBodies<D>& bodies) {
+        return {pairs_, springs_, normals_, contacts_, pushes_, bodies.spans(), domain_};
+    }
 
     Domain<D> domain_;
     ContactLaws<D> laws_;
@@ -178,8 +147,8 @@ private:
     std::array<Selection, 3> selections_;  // by PairKind
     bool apart_ = false;                   // whether these are of kinds, or of all pairs
     std::size_t slow_bodies_ = 0;
-    Array<Contact> contacts_;
-    Array<Push> pushes_;
+    Array<PairContact> contacts_;
+    Array<PairPush<D>> pushes_;
     double max_overlap_ = 0.0;
 };
 
@@ -214,7 +183,7 @@ void Contacts<D>::turn_round(std::size_t k) {
     std::swap(contacts_[k].body_a, contacts_[k].body_b);
     normals_[k] = -1.0 * normals_[k];
     for (int c = 0; c < 3; ++c) springs_[k][c] = -springs_[k][c];
-    Push& push = pushes_[k];
+    PairPush<D>& push = pushes_[k];
     push.force = -1.0 * push.force;
     std::swap(push.torque_a, push.torque_b);
     push.overlap.normal = -1.0 * push.overlap.normal;
@@ -225,7 +194,7 @@ template <int D>
 template <class F>
 void Contacts<D>::for_each_push(const ContactBodies<D>& bodies, PairKind kind, F&& f) const {
     for (const std::size_t k : of(kind).rows) {
-        const Push& push = pushes_[k];
+        const PairPush<D>& push = pushes_[k];
         if (!push.touches || bodies.surface(pairs_[k])) continue;  // surfaces are of no fixed body
         const ContactPair& pair = pairs_[k];
         const Vec<double, D>& second = pair.with_shape() ? bodies.solids[pair.shape()].centre

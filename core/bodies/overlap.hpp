@@ -22,14 +22,14 @@ template <int D>
 class Overlaps {
 public:
     Overlaps() = default;
-    Overlaps(const std::optional<Overlap<D>>& overlap) {
+    DOSEKI_DEVICE_FN Overlaps(const std::optional<Overlap<D>>& overlap) {
         if (overlap) add(*overlap);
     }
-    void add(const Overlap<D>& overlap) { overlaps_[count_++] = overlap; }
-    std::size_t size() const { return count_; }
-    const Overlap<D>& operator[](std::size_t k) const { return overlaps_[k]; }
-    const Overlap<D>* begin() const { return overlaps_.data(); }
-    const Overlap<D>* end() const { return overlaps_.data() + count_; }
+    DOSEKI_DEVICE_FN void add(const Overlap<D>& overlap) { overlaps_[count_++] = overlap; }
+    DOSEKI_DEVICE_FN std::size_t size() const { return count_; }
+    DOSEKI_DEVICE_FN const Overlap<D>& operator[](std::size_t k) const { return overlaps_[k]; }
+    DOSEKI_DEVICE_FN const Overlap<D>* begin() const { return overlaps_.data(); }
+    DOSEKI_DEVICE_FN const Overlap<D>* end() const { return overlaps_.data() + count_; }
 
 private:
     std::array<Overlap<D>, SurfacePoints<D>::most> overlaps_;
@@ -37,8 +37,9 @@ private:
 };
 
 template <int D>
-std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t a, std::size_t b,
-                                     const Domain<D>& domain) {
+DOSEKI_DEVICE_FN std::optional<Overlap<D>> overlap_of(const ContactPointSpans<D>& points,
+                                                      std::size_t a, std::size_t b,
+                                                      const Domain<D>& domain) {
     const Vec<double, D> r = nearest_image(domain, points.position[b] - points.position[a]);
     const double reach = points.radius[a] + points.radius[b], square = dot(r, r);
     if (square >= reach * reach || square == 0.0) return {};
@@ -51,8 +52,8 @@ std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t
 
 /// At each place of the solid that the point touches, the nearest first.
 template <int D>
-Overlaps<D> overlaps_of(const ContactPoints<D>& points, std::size_t a, const ContactSolid<D>& solid,
-                        const Domain<D>& domain) {
+DOSEKI_DEVICE_FN Overlaps<D> overlaps_of(const ContactPointSpans<D>& points, std::size_t a,
+                                         const ContactSolid<D>& solid, const Domain<D>& domain) {
     const Vec<double, D> r = nearest_image(domain, points.position[a] - solid.centre);
     const double radius = points.radius[a], around = solid.surface->radius() + radius;
     Overlaps<D> overlaps;
@@ -70,9 +71,10 @@ Overlaps<D> overlaps_of(const ContactPoints<D>& points, std::size_t a, const Con
 
 /// Near a vertex of the surface.
 template <int D>
-std::optional<Overlap<D>> overlap_of(const ContactPoints<D>& points, std::size_t a,
-                                     const Surface<D>& surface, std::uint32_t vertex,
-                                     const Domain<D>& domain) {
+DOSEKI_DEVICE_FN std::optional<Overlap<D>> overlap_of(const ContactPointSpans<D>& points,
+                                                      std::size_t a, const Surface<D>& surface,
+                                                      std::uint32_t vertex,
+                                                      const Domain<D>& domain) {
     const auto foot = surface.foot(points.position[a], vertex, domain);
     if (!foot || foot->depth <= 0.0) return {};
     Overlap<D> overlap{foot->depth, -1.0 * foot->normal, {}, {}, foot->at};
@@ -90,8 +92,8 @@ struct MotionAt {
 
 /// Of the second side of a pair: another point, a solid or a surface.
 template <int D>
-MotionAt<D> motion_of_second(const ContactBodies<D>& bodies, const ContactPair& pair,
-                             const Overlap<D>& overlap) {
+DOSEKI_DEVICE_FN MotionAt<D> motion_of_second(const ContactBodySpans<D>& bodies,
+                                              const ContactPair& pair, const Overlap<D>& overlap) {
     if (const Surface<D>* surface = bodies.surface(pair))
         return {surface->mean(surface->velocity, overlap.at), surface->spin[overlap.at.nearest()]};
     if (pair.with_shape()) {
@@ -99,21 +101,6 @@ MotionAt<D> motion_of_second(const ContactBodies<D>& bodies, const ContactPair& 
         return {solid.velocity, solid.spin};
     }
     return {bodies.points.velocity[pair.second()], bodies.points.spin[pair.second()]};
-}
-
-/// Gives force and torque to the second side of a pair.
-template <int D>
-void push_second(ContactBodies<D>& bodies, const ContactPair& pair, const Overlap<D>& overlap,
-                 const Vec<double, D>& force, const Vec3& torque) {
-    auto add_to = [&](Vec<double, D>& forces, Vec3& torques) {
-        forces = forces + force, torques = torques + torque;
-    };
-    if (Surface<D>* surface = bodies.surface(pair))
-        surface->push(overlap.at, force, torque);
-    else if (pair.with_shape())
-        add_to(bodies.solids[pair.shape()].force, bodies.solids[pair.shape()].torque);
-    else
-        add_to(bodies.points.force[pair.second()], bodies.points.torque[pair.second()]);
 }
 
 }  // namespace doseki

@@ -13,7 +13,7 @@ namespace doseki {
 /// degrees push as one: a hollow of many small faces is not stiffer than the smooth one. Nothing
 /// jumps where a face comes in, whose overlap is zero then.
 template <int D>
-std::array<double, SurfacePoints<D>::most> shares_of(const Overlaps<D>& overlaps) {
+DOSEKI_DEVICE_FN std::array<double, SurfacePoints<D>::most> shares_of(const Overlaps<D>& overlaps) {
     constexpr double apart = 0.866;  // cosine of the angle beyond which places push on their own
     std::array<double, SurfacePoints<D>::most> share{};
     for (std::size_t i = 0; i < overlaps.size(); ++i) {
@@ -32,8 +32,8 @@ std::array<double, SurfacePoints<D>::most> shares_of(const Overlaps<D>& overlaps
 /// the nearest normal, or else one that has not touched. `normals` are those of the rows before,
 /// zero of those that did not touch. Overlaps beyond their number are left out.
 template <int D>
-std::array<std::size_t, SurfacePoints<D>::most> rows_of(const Overlaps<D>& overlaps,
-                                                        std::span<const Vec<double, D>> normals) {
+DOSEKI_DEVICE_FN std::array<std::size_t, SurfacePoints<D>::most> rows_of(
+    const Overlaps<D>& overlaps, std::span<const Vec<double, D>> normals) {
     constexpr double turned = 0.5;  // cosine of what a normal turns in one step at most
     constexpr std::size_t most = SurfacePoints<D>::most, none = most;
     const std::size_t count = std::min(overlaps.size(), normals.size());

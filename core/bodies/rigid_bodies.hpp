@@ -4,21 +4,35 @@
 #include <span>
 
 #include "base/array.hpp"
-#include "base/parallel.hpp"
-#include "bodies/contact_points.hpp"
+#include "bodies/contact/shown_points.hpp"
 #include "bodies/rigid_body.hpp"
+#include "bodies/rigid_spans.hpp"
 #include "boundaries/moving_walls.hpp"
 #include "model/body_step.hpp"
 
 namespace doseki {
 
+/// How a body is turned and turns.
+struct BodyPose {
+    Mat<double, 3> rotation;
+    Vec3 spin;
+};
+
+/// Of bodies at the start of a step.
+template <int D>
+struct BodiesBefore {
+    std::span<Vec<double, D>> velocity, impulse;
+    std::span<Vec3> spin;
+};
+
 /// The motion of rigid bodies: their state, its steps under the forces of contacts and fluid, and
-/// the points at which contacts find them.
+/// the points at which contacts find them. Loops over them run where the bodies are: they are in
+/// steps/rigid_steps.cpp and steps/rigid_contacts.cpp.
 template <int D>
 class RigidBodies {
 public:
     Array<Shape<D>> shapes;
-    std::shared_ptr<const ContactSurface<D>> ground;  // of a run on a terrain
+    SharedSurface<D> ground;  // of a run on a terrain
 
     bool any_moves() const { return moving_ > 0; }
     std::size_t size() const { return bodies_.size(); }
@@ -28,26 +42,16 @@ public:
     const Shape<D>& shape(std::size_t k) const {
         return shapes[static_cast<std::size_t>(bodies_[k].shape)];
     }
-    bool is_free(std::size_t k) const { return !bodies_[k].fixed && !states_[k].is_removed(); }
+    bool is_free(std::size_t k) const { return seen().is_free(k); }
     /// Mean over the last step.
     const Vec<double, D>& contact_force(std::size_t k) const { return mean_contact_force_[k]; }
-    Vec3 spin(std::size_t k) const { return spin_of(k, states_[k].angular_momentum); }
-    /// Of the centre when the fluid will have acted for `ahead` more.
-    Vec<double, D> velocity(std::size_t k, double ahead) const {
-        return states_[k].velocity + (ahead / bodies_[k].mass) * states_[k].flow_force;
+    Vec3 spin(std::size_t k) const { return seen().spin(k); }
+    /// As loops over them refer to them.
+    RigidBodiesSeen<D> seen() const {
+        return {bodies_, states_, inverse_inertia_, turns_alike_, shapes};
     }
-    /// All spins then.
-    Array<Vec3> spins(double ahead) const {
-        Array<Vec3> w(size());
-        for_each_particle(size(), [&](std::size_t k) {
-            w[k] = spin_of(k, states_[k].angular_momentum + ahead * states_[k].flow_torque);
-        });
-        return w;
-    }
-    Array<Mat<double, 3>> rotations() const {
-        Array<Mat<double, 3>> R(size());
-        for_each_particle(size(), [&](std::size_t k) { R[k] = states_[k].orientation.matrix(); });
-        return R;
+    RigidBodiesMoved<D> moved() {
+        return {seen(), states_, contact_force_, contact_torque_, ball_turn_};
     }
 
     void add(const RigidBody<D>& body, const RigidBodyState<D>& state, const Vec3& spin);
@@ -60,35 +64,28 @@ public:
 
     /// Adds the bodies to those that may touch; the first that are added.
     void add_to(ContactBodies<D>& contact);
-    /// Shows the contacts where the bodies are, and of their contact points those given in rising
-    /// order, which have no force then.
-    void show(ContactBodies<D>& contact, std::span<const std::int32_t> points) const;
+    /// Shows the contacts where the bodies are, and those of their contact points, which have no
+    /// force then.
+    void show(ContactBodies<D>& contact, const ShownPoints& points);
     /// Takes the forces on the points that were shown.
-    void collect(const ContactBodies<D>& contact, std::span<const std::int32_t> points);
+    void collect(ContactBodies<D>& contact, const ShownPoints& points);
 
     /// Half a step of the forces of the fluid.
     void kick(double half_dt);
     /// Begins a step of length dt after the first kick, whose force acts all through it instead.
     void begin_step(double dt);
     /// Positions and orientations; returns the largest distance that a point of a surface goes.
-    double drift(double dt) {
-        return reduce(size(), 0.0, maximum, [&](std::size_t k) { return drift_one(k, dt); });
-    }
+    double drift(double dt);
     /// The same of some bodies.
-    double drift(double dt, std::span<const std::uint32_t> which) {
-        return reduce(which.size(), 0.0, maximum,
-                      [&](std::size_t n) { return drift_one(which[n], dt); });
-    }
+    double drift(double dt, std::span<const std::uint32_t> which);
     /// Velocities, by gravity, contacts and the fluid.
     void push(const Vec<double, D>& gravity, double dt);
     void push_by_contacts(double dt);
-    void push_by_contacts(std::size_t k, double dt);
-    /// By the forces that the fluid had when it was evaluated.
-    void push_by_flow(std::size_t k, double dt);
     /// How a body is turned within a step.
     Quaternion orientation(std::size_t k) const {
         return states_[k].orientation.turned(ball_turn_[k]);
     }
+    void push_by_flow(std::size_t k, double dt) { moved().push_by_flow(k, dt); }
     /// Takes a body out, and puts it back in the middle of a step with this motion.
     void take_out(std::size_t k) { states_[k].removed = 1.0; }
     void put_back(std::size_t k, const Vec<double, D>& centre, const Vec<double, D>& velocity,
@@ -113,11 +110,7 @@ public:
         return leaves;
     }
 
-    double max_speed() const {
-        return reduce(size(), 0.0, maximum, [&](std::size_t k) {
-            return is_free(k) ? norm(states_[k].velocity) + shape(k).radius * norm(spin(k)) : 0.0;
-        });
-    }
+    double max_speed() const;
     /// The smallest length(k) of the bodies that may move; infinite without any.
     template <class Length>
     double smallest(const Length& length) const {
@@ -130,26 +123,9 @@ public:
     double gyration(std::size_t k) const {
         return std::sqrt(bodies_[k].inertia(2, 2) / bodies_[k].mass);
     }
-    BodySums<D> sums() const {
-        BodySums<D> sum;
-        for (std::size_t k = 0; k < size(); ++k) {
-            if (!is_free(k)) continue;
-            sum.momentum = sum.momentum + bodies_[k].mass * states_[k].velocity;
-            sum.moment = sum.moment + bodies_[k].mass * states_[k].centre;
-        }
-        sum.kinetic_energy = kinetic_energy();
-        return sum;
-    }
-    double kinetic_energy() const {
-        double energy = 0.0;
-        for (std::size_t k = 0; k < size(); ++k)
-            if (is_free(k)) energy += kinetic_energy_of(k);
-        return energy;
-    }
-    double kinetic_energy_of(std::size_t k) const {
-        return 0.5 * bodies_[k].mass * dot(states_[k].velocity, states_[k].velocity) +
-               0.5 * dot(spin(k), states_[k].angular_momentum);
-    }
+    BodySums<D> sums() const;
+    double kinetic_energy() const { return sums().kinetic_energy; }
+    double kinetic_energy_of(std::size_t k) const { return seen().kinetic_energy(k); }
 
     void serialise(Archive& archive) {
         RigidBodyColumns<D> columns;
@@ -160,27 +136,23 @@ public:
     }
 
 private:
-    double drift_one(std::size_t k, double dt);
-    /// Of body k, the sample that contact point c is.
-    std::size_t sample(std::size_t k, std::size_t c) const {
-        return c - static_cast<std::size_t>(first_point_[k]);
-    }
-    Vec3 spin_of(std::size_t k, const Vec3& angular_momentum) const;
+    BodiesBefore<D> before() { return {velocity_before_, impulse_before_, spin_before_}; }
     /// Whether a body turns about all axes alike, as balls do.
     static bool turns_alike(const Mat<double, 3>& inertia);
     void restore(const RigidBodyColumns<D>& columns);
 
     Array<RigidBody<D>> bodies_;
     Array<RigidBodyState<D>> states_;
-    Array<Mat<double, 3>> inverse_inertia_;  // 3-D: of bodies that do not turn alike
+    Array<Mat<double, 3>> inverse_inertia_;
     Array<std::uint8_t> turns_alike_;
-    Array<std::int32_t> first_point_;      // of each body among the contact points
-    Array<Vec<double, D>> contact_force_;  // of the last contact step
+    Array<Vec<double, D>> contact_force_;
     Array<Vec3> contact_torque_;
     Array<Vec<double, D>> mean_contact_force_;
     Array<Vec<double, D>> velocity_before_, impulse_before_;  // at the start of a step
     Array<Vec3> spin_before_;
-    Array<Vec3> ball_turn_;  // within a step: contacts do not see how a ball is turned
+    Array<Vec3> ball_turn_;
+    Array<BodyPose> poses_;  // of bodies that were shown
+    Array<std::uint32_t> fixed_;
     std::size_t moving_ = 0;
 };
 
@@ -192,6 +164,8 @@ void RigidBodies<D>::add(const RigidBody<D>& body, const RigidBodyState<D>& stat
     inverse_inertia_.push_back(turns_alike_.back() || body.fixed ? Mat<double, 3>{}
                                                                  : inverse(body.inertia, 0.0));
     contact_force_.push_back({}), contact_torque_.push_back({}), mean_contact_force_.push_back({});
+    ball_turn_.push_back({});
+    if (body.fixed) fixed_.push_back(static_cast<std::uint32_t>(size() - 1));
     const Mat<double, 3> R = state.orientation.matrix();
     states_.back().angular_momentum = rotated(R, body.inertia * rotated_back(R, spin));
     moving_ += !body.fixed;
@@ -204,7 +178,7 @@ void RigidBodies<D>::add(RigidBody<D> body, const RigidBodyState<D>& state, cons
     add(body, state, Vec3{});
     states_.back().angular_momentum = state.angular_momentum;
     velocity_before_.push_back(state.velocity), impulse_before_.push_back({});
-    spin_before_.push_back(spin(size() - 1)), ball_turn_.push_back({});
+    spin_before_.push_back(spin(size() - 1));
 }
 
 /// Makes the bodies of an archive, in whose state they are already.
@@ -214,24 +188,10 @@ void RigidBodies<D>::restore(const RigidBodyColumns<D>& columns) {
     columns.expect_fit_of(states.size());
     shapes = columns.shapes(ground);
     bodies_.clear(), states_.clear(), moving_ = 0;
-    inverse_inertia_.clear(), turns_alike_.clear();
+    inverse_inertia_.clear(), turns_alike_.clear(), ball_turn_.clear(), fixed_.clear();
     contact_force_.clear(), contact_torque_.clear(), mean_contact_force_.clear();
     for (std::size_t k = 0; k < states.size(); ++k) add(columns.rigid(k), states[k], Vec3{});
     states_ = states;
-}
-
-/// omega = R I^-1 R^T L (eq. 51).
-template <int D>
-Vec3 RigidBodies<D>::spin_of(std::size_t k, const Vec3& L) const {
-    if (bodies_[k].fixed) return L;
-    if (turns_alike_[k]) {
-        const double I = bodies_[k].inertia(2, 2);
-        Vec3 spin;
-        for (int c = 0; c < 3; ++c) spin[c] = L[c] / I;
-        return spin;
-    }
-    const Mat<double, 3> R = states_[k].orientation.matrix();
-    return rotated(R, inverse_inertia_[k] * rotated_back(R, L));
 }
 
 template <int D>
@@ -244,9 +204,7 @@ bool RigidBodies<D>::turns_alike(const Mat<double, 3>& I) {
 
 template <int D>
 void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
-    first_point_.clear();
     for (std::size_t k = 0; k < size(); ++k) {
-        first_point_.push_back(static_cast<std::int32_t>(contact.points.size()));
         const RigidBody<D>& body = bodies_[k];
         const auto number = static_cast<std::int32_t>(k);
         const double diameter = 2.0 * shape(k).radius;
@@ -259,74 +217,32 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         side.radius = 0.0;
         const bool balls = shape(k).kind == ShapeKind::balls;
         if (balls) side.radius = 0.5 * shape(k).thickness;
-        for (std::size_t s = 0; s < shape(k).samples.size(); ++s) contact.points.add(number, side);
+        for (const Vec<double, D>& sample : shape(k).samples)
+            contact.points.add(number, side, sample);
         if (balls) continue;
         ContactSolid<D> solid;
         solid.body = number, solid.material = body.material, solid.fixed = body.fixed;
         solid.mass = body.mass, solid.diameter = diameter;
+        solid.surface = shape(k).surface.get();
         contact.solids.push_back(solid);
     }
 }
 
 template <int D>
-void RigidBodies<D>::show(ContactBodies<D>& contact, std::span<const std::int32_t> points) const {
-    for (ContactSolid<D>& solid : contact.solids) {
-        const auto k = static_cast<std::size_t>(solid.body);
-        const RigidBodyState<D>& state = states_[k];
-        solid.surface = shape(k).surface.get();
-        solid.centre = state.centre, solid.velocity = state.velocity;
-        solid.rotation = state.orientation.matrix(), solid.spin = spin(k);
-        solid.removed = state.is_removed();
-        solid.force = {}, solid.torque = {};
-    }
-    ContactPoints<D>& shown = contact.points;
-    Vec3 w;
-    Mat<double, 3> R;
-    for (std::size_t n = 0, body = size(); n < points.size(); ++n) {
-        const auto c = static_cast<std::size_t>(points[n]),
-                   k = static_cast<std::size_t>(shown.body[c]);
-        if (k >= size()) break;  // deformable ones come last
-        const RigidBodyState<D>& state = states_[k];
-        const bool ball = shape(k).is_ball();
-        if (k != body) {
-            body = k, w = spin(k);
-            if (!ball) R = state.orientation.matrix();
-        }
-        const Vec<double, D> lever =
-            ball ? Vec<double, D>{} : rotated(R, shape(k).samples[sample(k, c)]);
-        shown.position[c] = state.centre + lever;
-        shown.velocity[c] = state.velocity + turning_velocity(w, lever);
-        shown.spin[c] = w, shown.removed[c] = state.is_removed();
-        shown.force[c] = {}, shown.torque[c] = {};
-    }
-}
-
-template <int D>
-void RigidBodies<D>::collect(const ContactBodies<D>& contact,
-                             std::span<const std::int32_t> points) {
-    const ContactPoints<D>& shown = contact.points;
-    std::fill(contact_force_.begin(), contact_force_.end(), Vec<double, D>{});
-    std::fill(contact_torque_.begin(), contact_torque_.end(), Vec3{});
-    for (const std::int32_t point : points) {
-        const auto c = static_cast<std::size_t>(point), k = static_cast<std::size_t>(shown.body[c]);
-        if (k >= size()) break;
-        const Vec3 lever = in_space(shown.position[c] - states_[k].centre);
-        contact_force_[k] = contact_force_[k] + shown.force[c];
-        contact_torque_[k] =
-            contact_torque_[k] + shown.torque[c] + cross(lever, in_space(shown.force[c]));
-    }
-    for (const ContactSolid<D>& solid : contact.solids) {
-        const auto k = static_cast<std::size_t>(solid.body);
-        contact_force_[k] = contact_force_[k] + solid.force;
-        contact_torque_[k] = contact_torque_[k] + solid.torque;
-    }
+void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
+                              const Vec<double, D>& velocity, const Quaternion& orientation,
+                              const Vec3& angular_momentum) {
+    RigidBodyState<D>& state = states_[k];
+    state.removed = 0.0, state.centre = centre, state.velocity = velocity;
+    state.orientation = orientation, state.angular_momentum = angular_momentum;
+    state.acceleration = {}, state.spin_rate = {}, state.flow_force = {}, state.flow_torque = {};
+    ball_turn_[k] = {};
 }
 
 template <int D>
 auto RigidBodies<D>::follow_walls(const MovingWalls<D>& walls, double t, double dt) -> WallStep {
     WallStep step;
-    for (std::size_t k = 0; k < size(); ++k) {
-        if (!bodies_[k].fixed) continue;
+    for (const std::uint32_t k : fixed_) {
         const WallMotion<D>* motion = walls.motions().of(bodies_[k].group);
         if (!motion) continue;
         RigidBodyState<D>& state = states_[k];

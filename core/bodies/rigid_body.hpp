@@ -31,7 +31,7 @@ struct RigidBodyState {
     Vec<double, D> flow_impulse, contact_impulse;  // since the start
     double removed;                                // 1: gone
 
-    bool is_removed() const { return removed != 0.0; }
+    DOSEKI_DEVICE_FN bool is_removed() const { return removed != 0.0; }
 };
 
 /// A particle of a rigid body, in its frame; numbers only, as RigidBodyState.
@@ -102,7 +102,7 @@ struct RigidBodyColumns {
     }
 
     /// `ground` is that of the run.
-    Array<Shape<D>> shapes(const std::shared_ptr<const ContactSurface<D>>& ground) const {
+    Array<Shape<D>> shapes(const SharedSurface<D>& ground) const {
         Array<Shape<D>> result(radius.size());
         auto corner = corners.begin(), sample = samples.begin();
         for (std::size_t k = 0; k < result.size(); ++k) {

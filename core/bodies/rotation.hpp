@@ -44,7 +44,7 @@ struct Quaternion {
     double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
 
     /// What it becomes when the body turns by the vector `angle` (axis times angle, fixed axes).
-    Quaternion turned(const Vec3& angle) const {
+    DOSEKI_DEVICE_FN Quaternion turned(const Vec3& angle) const {
         const double full = norm(angle);
         if (full == 0.0) return *this;
         const double s = std::sin(0.5 * full) / full, c = std::cos(0.5 * full);
@@ -62,7 +62,7 @@ struct Quaternion {
                 w * q.y - x * q.z + y * q.w + z * q.x, w * q.z + x * q.y - y * q.x + z * q.w};
     }
 
-    Mat<double, 3> matrix() const {
+    DOSEKI_DEVICE_FN Mat<double, 3> matrix() const {
         Mat<double, 3> R;
         R(0, 0) = 1 - 2 * (y * y + z * z), R(0, 1) = 2 * (x * y - w * z),
              R(0, 2) = 2 * (x * z + w * y);

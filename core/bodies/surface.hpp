@@ -17,7 +17,7 @@ struct SurfaceWeights {
     std::array<double, 4> weight;
 
     /// That with the greatest weight.
-    std::uint32_t nearest() const {
+    DOSEKI_DEVICE_FN std::uint32_t nearest() const {
         const auto greatest = std::max_element(weight.begin(), weight.end());
         return vertex[static_cast<std::size_t>(greatest - weight.begin())];
     }
@@ -40,7 +40,7 @@ struct Surface {
     Array<Vec<double, D>> force;
     Array<Vec3> torque;
 
-    std::size_t size() const { return crease.size(); }
+    DOSEKI_DEVICE_FN std::size_t size() const { return crease.size(); }
     /// Vertices added from now on are of another curve.
     void begin_curve() { first.push_back(static_cast<std::uint32_t>(size())); }
     void add(bool is_crease) {
@@ -54,7 +54,7 @@ struct Surface {
     ContactSide side() const { return {material, 0.0, mass, spacing, false, true, true, 0.5}; }
 
     /// Along its curve.
-    std::uint32_t after(std::uint32_t vertex, int steps) const {
+    DOSEKI_DEVICE_FN std::uint32_t after(std::uint32_t vertex, int steps) const {
         const std::size_t next = curve[vertex] + std::size_t{1};
         const std::int64_t begin = first[curve[vertex]],
                            end = next < first.size() ? first[next]
@@ -64,7 +64,7 @@ struct Surface {
     }
     /// Weights at t in [0, 1] of the part of the curve from a vertex to the next, and their
     /// `derivative` by t, once or twice. Beyond a crease the curve goes straight on.
-    SurfaceWeights at(std::uint32_t first, double t, int derivative = 0) const {
+    DOSEKI_DEVICE_FN SurfaceWeights at(std::uint32_t first, double t, int derivative = 0) const {
         const double s = 1.0 - t;
         std::array<double, 4> w;
         if (derivative == 0)
@@ -81,7 +81,7 @@ struct Surface {
     }
 
     template <class Field>
-    auto mean(const Field& field, const SurfaceWeights& at) const {
+    DOSEKI_DEVICE_FN auto mean(const Field& field, const SurfaceWeights& at) const {
         auto sum = at.weight[0] * field[at.vertex[0]];
         for (std::size_t k = 1; k < 4; ++k) sum = sum + at.weight[k] * field[at.vertex[k]];
         return sum;
@@ -110,8 +110,8 @@ struct Surface {
         double depth;           // of the point below the curve
     };
     /// Near a vertex; none where it is a crease, beyond both parts that meet there.
-    std::optional<Foot> foot(const Vec<double, D>& x, std::uint32_t vertex,
-                             const Domain<D>& domain) const;
+    DOSEKI_DEVICE_FN std::optional<Foot> foot(const Vec<double, D>& x, std::uint32_t vertex,
+                                              const Domain<D>& domain) const;
 
 private:
     static constexpr int newton_steps = 4;
@@ -119,8 +119,8 @@ private:
 };
 
 template <int D>
-auto Surface<D>::foot(const Vec<double, D>& x, std::uint32_t vertex, const Domain<D>& domain) const
-    -> std::optional<Foot> {
+DOSEKI_DEVICE_FN auto Surface<D>::foot(const Vec<double, D>& x, std::uint32_t vertex,
+                                       const Domain<D>& domain) const -> std::optional<Foot> {
     static_assert(D == 2, "in 3-D a surface is no more than its vertices");
     auto sum = [this](const SurfaceWeights& w) { return mean(position, w); };
     const Vec<double, D> near = position[vertex],

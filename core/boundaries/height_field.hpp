@@ -14,7 +14,7 @@ template <int D>
 using Horizontal = Vec<double, D - 1>;
 
 template <int D>
-Horizontal<D> horizontal(const Vec<double, D>& x) {
+DOSEKI_DEVICE_FN Horizontal<D> horizontal(const Vec<double, D>& x) {
     Horizontal<D> place;
     for (int a = 0; a < D - 1; ++a) place[a] = x[a];
     return place;
@@ -81,7 +81,7 @@ public:
         Vec<double, D> normal;  // upwards
     };
 
-    Surface at(const Horizontal<D>& place) const {
+    DOSEKI_DEVICE_FN Surface at(const Horizontal<D>& place) const {
         std::array<Stencil, axes> stencil;
         for (int a = 0; a < axes; ++a) stencil[a] = stencil_at(a, place[a]);
         Surface surface{};
@@ -130,7 +130,7 @@ public:
         double distance;
         Vec<double, D> normal;
     };
-    Nearest nearest(const Vec<double, D>& x) const {
+    DOSEKI_DEVICE_FN Nearest nearest(const Vec<double, D>& x) const {
         Surface surface = at(horizontal(x));
         double distance = (x[axes] - surface.height) * surface.normal[axes];
         for (int k = 0; k < 3; ++k) {
@@ -181,7 +181,7 @@ private:
     Part part_;
 
     /// Where a node is among those held along an axis; of one that is not, the nearest.
-    std::int64_t among_held(int a, std::int64_t k) const {
+    DOSEKI_DEVICE_FN std::int64_t among_held(int a, std::int64_t k) const {
         return std::clamp(k - part_.first[a], std::int64_t{0}, part_.count[a] - 1);
     }
 
@@ -192,7 +192,7 @@ private:
         double beyond;  // the grid's end [m]
     };
 
-    Stencil stencil_at(int a, double place) const {
+    DOSEKI_DEVICE_FN Stencil stencil_at(int a, double place) const {
         const double u = (place - origin[a]) / cell, last = static_cast<double>(nodes[a] - 1);
         const double inside = std::clamp(u, 0.0, last);
         const double start = std::min(std::floor(inside), last - 1.0);
@@ -207,7 +207,7 @@ private:
 
     /// Height of a node of the row whose first held one is at `base`; one outside the grid lies on
     /// the straight line through the two next to it.
-    double node(std::int64_t base, std::int64_t k) const {
+    DOSEKI_DEVICE_FN double node(std::int64_t base, std::int64_t k) const {
         const auto of = [&](std::int64_t j) {
             return heights[static_cast<std::size_t>(base + among_held(0, j))];
         };
@@ -216,15 +216,16 @@ private:
         return of(k);
     }
 
-    double sum_along(const std::array<double, 4>& weight, const Stencil& x,
-                     std::int64_t base) const {
+    DOSEKI_DEVICE_FN double sum_along(const std::array<double, 4>& weight, const Stencil& x,
+                                      std::int64_t base) const {
         double sum = 0.0;
         for (int k = 0; k < 4; ++k) sum += weight[k] * node(base, x.first + k);
         return sum;
     }
 
     /// Height and slope from the rows of four nodes around the place.
-    void sum_over_rows(const std::array<Stencil, axes>& stencil, Surface& surface) const
+    DOSEKI_DEVICE_FN void sum_over_rows(const std::array<Stencil, axes>& stencil,
+                                        Surface& surface) const
         requires(D == 3)
     {
         const Stencil &x = stencil[0], &y = stencil[1];
@@ -247,13 +248,17 @@ private:
     }
 
     /// A weighted sum along row j, which may lie outside by one.
-    double row(const std::array<double, 4>& weight, const Stencil& x, std::int64_t j) const
+    DOSEKI_DEVICE_FN double row(const std::array<double, 4>& weight, const Stencil& x,
+                                std::int64_t j) const
         requires(D == 3)
     {
+        const auto inside = [&](std::int64_t of) {
+            return sum_along(weight, x, among_held(1, of) * part_.count[0]);
+        };
         const std::int64_t rows = nodes[1];
-        if (j < 0) return 2.0 * row(weight, x, 0) - row(weight, x, 1);
-        if (j >= rows) return 2.0 * row(weight, x, rows - 1) - row(weight, x, rows - 2);
-        return sum_along(weight, x, among_held(1, j) * part_.count[0]);
+        if (j < 0) return 2.0 * inside(0) - inside(1);
+        if (j >= rows) return 2.0 * inside(rows - 1) - inside(rows - 2);
+        return inside(j);
     }
 };
 

@@ -11,5 +11,8 @@ void use_card(int k);
 std::string card_name();
 /// How much memory it has [bytes].
 double card_memory();
+/// What it reads or writes at best [bytes/s], and adds and multiplies [operations/s].
+double card_bandwidth();
+double card_arithmetic(bool in_double);
 
 }  // namespace doseki

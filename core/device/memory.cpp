@@ -4,6 +4,7 @@
 
 #include <cuda_runtime.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory_resource>
 #include <new>
@@ -39,6 +40,33 @@ void use_card(int k) {
 std::string card_name() { return properties().name; }
 
 double card_memory() { return static_cast<double>(properties().totalGlobalMem); }
+
+namespace {
+
+double attribute(cudaDeviceAttr which) {
+    int card = 0, value = 0;
+    if (cudaGetDevice(&card) == cudaSuccess) cudaDeviceGetAttribute(&value, which, card);
+    return value;
+}
+
+}  // namespace
+
+double card_bandwidth() {
+    constexpr double kilohertz = 1e3, words_each_time = 2.0, bits = 8.0;
+    return kilohertz * words_each_time * attribute(cudaDevAttrMemoryClockRate) *
+           attribute(cudaDevAttrGlobalMemoryBusWidth) / bits;
+}
+
+/// A unit adds a product to a sum in each cycle, which is two operations.
+double card_arithmetic(bool in_double) {
+    constexpr double kilohertz = 1e3, units_in_float = 128.0;  // of a multiprocessor, from 8.6 on
+    const bool has_half = attribute(cudaDevAttrComputeCapabilityMajor) == 8.0 &&
+                          attribute(cudaDevAttrComputeCapabilityMinor) == 0.0;
+    const double units = has_half ? 0.5 * units_in_float : units_in_float;
+    const double slower = in_double ? attribute(cudaDevAttrSingleToDoublePrecisionPerfRatio) : 1.0;
+    return 2.0 * kilohertz * attribute(cudaDevAttrClockRate) *
+           attribute(cudaDevAttrMultiProcessorCount) * units / std::max(slower, 1.0);
+}
 
 namespace {
 

@@ -80,14 +80,14 @@ private:
 template <int D>
 struct CountRow {
     RowSearch<D> search;
-    std::span<RowLength> lengths;
+    std::span<RowList> rows;  // without entries yet
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
         const auto p = static_cast<std::uint32_t>(k);
-        RowLength length{};
-        search.visit(p, false, [&](std::uint32_t) { ++length.moving; });
-        search.visit(p, true, [&](std::uint32_t) { ++length.fixed; });
-        lengths[k] = length;
+        std::uint32_t moving = 0, fixed = 0;
+        search.visit(p, false, [&](std::uint32_t) { ++moving; });
+        search.visit(p, true, [&](std::uint32_t) { ++fixed; });
+        rows[k] = RowList(nullptr, moving, fixed);
     }
 };
 
@@ -106,22 +106,29 @@ struct FillRow {
     }
 };
 
+/// An array that grows would take up to twice the memory, and copy what is written anew.
+void make_room(Array<std::uint32_t>& entries, std::size_t count) {
+    constexpr std::size_t spare = 32;  // one part in so many, for lists a little longer
+    if (entries.capacity() < count) {
+        entries = Array<std::uint32_t>();
+        entries.reserve(count + count / spare);
+    }
+    entries.resize(count);
+}
+
 struct CutRow {
-    std::span<const RowLength> lengths;
     std::span<const std::size_t> starts;
     const std::uint32_t* entries;
     std::span<RowList> rows;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
-        rows[k] = RowList(entries + starts[k], lengths[k].moving, lengths[k].fixed);
+        rows[k] = rows[k].at(entries + starts[k]);
     }
 };
 
 struct LengthOf {
-    std::span<const RowLength> lengths;
-    DOSEKI_DEVICE_FN std::size_t operator()(std::size_t k) const {
-        return std::size_t{lengths[k].moving} + lengths[k].fixed;
-    }
+    std::span<const RowList> rows;
+    DOSEKI_DEVICE_FN std::size_t operator()(std::size_t k) const { return rows[k].words(); }
 };
 
 }  // namespace
@@ -134,34 +141,36 @@ void RowLists<D>::build(std::span<const Vec<double, D>> position, std::span<cons
                               position,      support,
                               faces,         static_cast<std::uint32_t>(this->moving()),
                               skin};
-    lengths_.resize(n), rows_.resize(n);
-    bulk::for_each(n, CountRow<D>{search, lengths_});
-    const Array<std::size_t> starts = bulk::starts_of(n, LengthOf{lengths_});
-    entries_.resize(starts[n]);
+    rows_.resize(n);
+    bulk::for_each(n, CountRow<D>{search, rows_});
+    const Array<std::size_t> starts = bulk::starts_of(n, LengthOf{rows_});
+    make_room(entries_, starts[n]);
     bulk::for_each(n, FillRow<D>{search, starts, entries_});
-    bulk::for_each(n, CutRow{lengths_, starts, entries_.data(), rows_});
+    cut_rows(starts);
+}
+
+template <int D>
+void RowLists<D>::cut_rows(const Array<std::size_t>& starts) {
+    bulk::for_each(rows_.size(), CutRow{starts, entries_.data(), rows_});
 }
 
 template <int D>
 void RowLists<D>::serialise(Archive& archive) {
     Array<std::uint32_t> moving, fixed;
-    for (const RowLength& length : lengths_)
-        moving.push_back(length.moving), fixed.push_back(length.fixed);
+    for (const RowList& row : rows_) moving.push_back(row.moving()), fixed.push_back(row.fixed());
     archive("lists_moving", moving), archive("lists_fixed", fixed);
     archive("lists_entries", entries_), SortedCells<D>::serialise(archive);
     if (!archive.loads()) return;
     expect_fit(moving.size() == fixed.size(), "lists_fixed");
-    lengths_.clear();
+    rows_.clear();
     std::size_t total = 0;
     for (std::size_t k = 0; k < moving.size(); ++k) {
-        lengths_.push_back({moving[k], fixed[k]});
-        total += std::size_t{moving[k]} + fixed[k];
+        rows_.emplace_back(nullptr, moving[k], fixed[k]);
+        total += rows_.back().words();
         expect_fit(total <= entries_.size(), "lists_entries");
     }
     expect_fit(total == entries_.size(), "lists_entries");
-    rows_.resize(lengths_.size());
-    const Array<std::size_t> starts = bulk::starts_of(rows_.size(), LengthOf{lengths_});
-    bulk::for_each(rows_.size(), CutRow{lengths_, starts, entries_.data(), rows_});
+    cut_rows(bulk::starts_of(rows_.size(), LengthOf{rows_}));
 }
 
 template class RowLists<2>;

@@ -21,7 +21,13 @@ public:
     RowList without_fixed() const { return {begin_, moving_, 0}; }
 
     DOSEKI_DEVICE_FN bool empty() const { return moving_ + fixed_ == 0; }
-    std::size_t words() const { return std::size_t{moving_} + fixed_; }
+    DOSEKI_DEVICE_FN std::size_t words() const { return std::size_t{moving_} + fixed_; }
+    std::uint32_t moving() const { return moving_; }
+    std::uint32_t fixed() const { return fixed_; }
+    /// The same with its entries there.
+    DOSEKI_DEVICE_FN RowList at(const std::uint32_t* begin) const {
+        return {begin, moving_, fixed_};
+    }
 
     template <class F>
     DOSEKI_DEVICE_FN void for_each_moving(const F& f) const {
@@ -36,11 +42,6 @@ public:
 private:
     const std::uint32_t* begin_ = nullptr;
     std::uint32_t moving_ = 0, fixed_ = 0;
-};
-
-/// How many neighbours a particle has.
-struct RowLength {
-    std::uint32_t moving, fixed;
 };
 
 /// Lists of single particles. What they hold is what those of clusters do
@@ -61,7 +62,6 @@ public:
     std::size_t entries() const { return entries_.size(); }
     std::size_t bytes() const {
         return this->bytes_of_cells() + rows_.capacity() * sizeof(RowList) +
-               lengths_.capacity() * sizeof(RowLength) +
                entries_.capacity() * sizeof(std::uint32_t);
     }
 
@@ -74,10 +74,9 @@ public:
     void serialise(Archive& archive);
 
 private:
-    /// Makes a row of each length.
-    void cut_rows();
+    /// Gives the rows, whose lengths are known, their places in the entries.
+    void cut_rows(const Array<std::size_t>& starts);
 
-    Array<RowLength> lengths_;
     Array<std::uint32_t> entries_;
     Array<RowList> rows_;
 };

@@ -73,9 +73,10 @@ public:
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
     void set_terrain(const NamedValues& field, const NamedValues& wall) override {
-        auto bed = std::make_shared<HeightField<D>>(BoundaryTables<D>::height_field(field));
+        auto bed = std::allocate_shared<HeightField<D>>(Memory<HeightField<D>>(),
+                                                        BoundaryTables<D>::height_field(field));
         bed->measure_lean(), bed->hold_all();
-        sim_.bodies.rigid.ground = std::make_shared<const GroundSurface<D>>(bed);
+        sim_.bodies.rigid.ground = SharedSurface<D>::make(GroundSurface<D>(bed));
         sim_.terrain.set(std::move(bed), BoundaryTables<D>::terrain_wall(wall));
     }
     void share_terrain(NumberReader read) override {

@@ -73,13 +73,12 @@ DeformableBody read_elastic_body(const NamedValues& table, const Array<const cha
     body.seed = static_cast<std::uint64_t>(std::max<std::int64_t>(0, seed));
     auto chosen = alternative<Hyperelastic<double>>(law);
     with_value(chosen, [&](auto& known) { known.lame = Lame<double>::of(modulus, ratio); });
-    body.law = std::make_shared<const ElasticLaw>(ElasticLaw{chosen, fracture});
+    body.law = Shared<const ElasticLaw>::make(ElasticLaw{chosen, fracture});
     return body;
 }
 
 template <int D>
-Shape<D> BodyTables<D>::shape(const NamedValues& table,
-                              const std::shared_ptr<const ContactSurface<D>>& ground) {
+Shape<D> BodyTables<D>::shape(const NamedValues& table, const SharedSurface<D>& ground) {
     Shape<D> shape;
     if (table.find("radius")) {
         Reader read(table, "shape");

@@ -26,8 +26,7 @@ template <int D>
 struct BodyTables {
     /// Balls {radius}, convex shapes {vertices, faces, samples}, or meshes with a thickness too,
     /// which is that of a sheet, [0] of one that encloses a body; {radius, ground} is `ground`.
-    static Shape<D> shape(const NamedValues& table,
-                          const std::shared_ptr<const ContactSurface<D>>& ground);
+    static Shape<D> shape(const NamedValues& table, const SharedSurface<D>& ground);
     static void add_rigid(Bodies<D>& bodies, const NamedValues& columns);
     /// `body`: index of its rigid body for each particle, or -1.
     static void bind(Bodies<D>& bodies, Particles<D>& particles, const NamedValues& columns);

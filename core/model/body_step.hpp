@@ -11,7 +11,7 @@ struct BodyStep {
     double gravity_work = 0.0, contact_work = 0.0;  // [J]
     double parting_work = 0.0;                      // [J]
 
-    BodyStep operator+(const BodyStep& other) const {
+    DOSEKI_DEVICE_FN BodyStep operator+(const BodyStep& other) const {
         return {impulse + other.impulse, gravity_work + other.gravity_work,
                 contact_work + other.contact_work, parting_work + other.parting_work};
     }
@@ -23,7 +23,7 @@ struct BodySums {
     Vec<double, D> momentum{}, moment{};  // sum of m v, of m x
     double kinetic_energy = 0.0;
 
-    BodySums operator+(const BodySums& other) const {
+    DOSEKI_DEVICE_FN BodySums operator+(const BodySums& other) const {
         return {momentum + other.momentum, moment + other.moment,
                 kinetic_energy + other.kinetic_energy};
     }

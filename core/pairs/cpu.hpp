@@ -14,6 +14,9 @@ struct Cpu : BulkBackend {
     template <int D>
     using Lists = Neighbours<D>;
 
+    /// How many summaries epilogues keep for so many clusters: number c is that of cluster c.
+    static std::size_t summaries(std::size_t clusters) { return clusters; }
+
     template <int D>
     static void build_lists(Lists<D>& lists, std::span<const Vec<double, D>> position,
                             std::span<const double> support, double skin,
@@ -34,6 +37,11 @@ struct Cpu : BulkBackend {
             sum.template operator()<true>();
         else
             sum.template operator()<false>();
+    }
+    /// What a device would do elsewhere.
+    template <class... Arguments>
+    static void sum_pairs_on_threads(const Arguments&... arguments) {
+        sum_pairs(arguments...);
     }
 };
 

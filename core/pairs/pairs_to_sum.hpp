@@ -61,6 +61,15 @@ struct NeighbourPlaces {
     std::uint32_t last() const { return static_cast<std::uint32_t>(records.size() - 1); }
 };
 
+/// From a place to another, whose coordinates these are.
+template <class T, int D, class X>
+DOSEKI_FN Vec<T, D> difference(const std::array<X, D>& x, const std::array<X, D>& from,
+                               const T& unit) {
+    Vec<T, D> r;
+    for (int a = 0; a < D; ++a) r[a] = static_cast<T>(x[a] - from[a]) * unit;
+    return r;
+}
+
 /// A floor far below any spacing keeps the pair of a particle with itself harmless.
 template <class T, int D>
 DOSEKI_FN Pair<T, D> pair_of(const Vec<T, D>& r_ij) {

@@ -29,21 +29,25 @@ struct NormalSpring {
 };
 
 /// Hertz, eqs. (44) and (45).
-inline NormalSpring hertz_spring(double E, double R, double overlap) {
+DOSEKI_DEVICE_FN inline NormalSpring hertz_spring(double E, double R, double overlap) {
     const double root = std::sqrt(R * overlap);
     return {4.0 / 3.0 * E * root * overlap, 2.0 * E * root};
 }
 
-inline NormalSpring linear_spring(double k, double overlap) { return {k * overlap, k}; }
+DOSEKI_DEVICE_FN inline NormalSpring linear_spring(double k, double overlap) {
+    return {k * overlap, k};
+}
 
 /// Eq. (44), never tension: bodies do not stick. `approach` is the speed at which they come nearer.
-inline double normal_force(const NormalSpring& spring, double damping, double approach) {
+DOSEKI_DEVICE_FN inline double normal_force(const NormalSpring& spring, double damping,
+                                            double approach) {
     return std::max(0.0, spring.force + damping * approach);
 }
 
 /// Eq. (45); that of Tsuji et al. (1992) keeps the restitution of a Hertz contact
 /// independent of speed.
-inline double contact_damping(bool hertz, double zeta, double stiffness, double mass) {
+DOSEKI_DEVICE_FN inline double contact_damping(bool hertz, double zeta, double stiffness,
+                                               double mass) {
     return (hertz ? 2.0 * std::sqrt(5.0 / 6.0) : 2.0) * zeta * std::sqrt(stiffness * mass);
 }
 

@@ -1,7 +1,4 @@
 #pragma once
-#include <array>
-#include <utility>
-
 #include "base/matrix.hpp"
 
 namespace doseki {
@@ -50,13 +47,17 @@ struct MisfitMoments {
 /// The x with A x = b for a symmetric A without negative eigenvalues, by elimination with the
 /// largest pivots first; along what is left of A below `floor`, x is 0. The inverse of a matrix
 /// that is nearly singular would leave A x - b as large as its condition makes it.
-inline Vec<double, 3> solve_semidefinite(Mat<double, 3> A, Vec<double, 3> b, double floor) {
-    std::array<int, 3> row{0, 1, 2};
+DOSEKI_DEVICE_FN inline Vec<double, 3> solve_semidefinite(Mat<double, 3> A, Vec<double, 3> b,
+                                                          double floor) {
+    int row[3] = {0, 1, 2};
     Vec<double, 3> x{};
     int rank = 0;
     for (; rank < 3; ++rank) {
         for (int k = rank + 1; k < 3; ++k)
-            if (A(row[k], row[k]) > A(row[rank], row[rank])) std::swap(row[k], row[rank]);
+            if (A(row[k], row[k]) > A(row[rank], row[rank])) {
+                const int larger = row[k];
+                row[k] = row[rank], row[rank] = larger;
+            }
         const int p = row[rank];
         if (!(A(p, p) > floor)) break;
         for (int k = rank + 1; k < 3; ++k) {
@@ -78,7 +79,7 @@ inline Vec<double, 3> solve_semidefinite(Mat<double, 3> A, Vec<double, 3> b, dou
 /// such that the sum of R (x) R is 1. About the line of misfits that are all parallel there is
 /// none either.
 template <int D>
-Mat<double, D> misfit_spin(const MisfitMoments<double, D>& moments) {
+DOSEKI_DEVICE_FN Mat<double, D> misfit_spin(const MisfitMoments<double, D>& moments) {
     constexpr double floor = 1e-20;
     const Mat<double, D>&C = moments.square, &N = moments.rate;
     Mat<double, D> spin{};

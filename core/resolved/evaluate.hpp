@@ -80,7 +80,7 @@ void Resolved<D, real, Backend>::pack(State& state, const Halo<D>& halo, double 
     frame_ = common_frame<real, D>(state.position, halo.ranks);
     motion_.resize(n + ghosts), wall_.resize(n - fluid_count_ + ghosts);
     fluid_.resize(moving > 0 ? n + moving : fluid_count_);
-    summary_.resize((n + Backend::width - 1) / Backend::width);
+    summary_.resize(Backend::summaries((n + Backend::width - 1) / Backend::width));
     Backend::for_each_particle(summary_.size(), ClearElement<FlowSummary<D>>{summary_});
     if (is_poisoned_run()) poison<real>(motion_), poison<real>(fluid_), poison<real>(wall_);
     Backend::for_each_particle(n, FlowPacker<real, D>{*model_, state, motion_, fluid_, wall_,

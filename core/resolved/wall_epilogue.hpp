@@ -32,7 +32,8 @@ public:
         Vec<double, D> force = sums.force;
         const double before = wall.pressure[p];
         wall.pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
-        FlowSummary<D>& summary = summaries_[p / static_cast<std::size_t>(lanes<real>)];
+        FlowSummary<D>& summary =
+            summaries_[p / static_cast<std::size_t>(lanes<real>) % summaries_.size()];
         if (wall.face[p] != Face::none) {
             const Vec<double, D> film = film_force(p, sums, before);
             force = force + film;

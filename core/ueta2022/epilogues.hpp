@@ -42,6 +42,12 @@ struct MotionPacker {
     }
 };
 
+/// That of the cluster of particle p, see Backend::summaries.
+template <class real>
+DOSEKI_DEVICE_FN StepSummary& summary_of(std::span<StepSummary> summaries, std::size_t p) {
+    return summaries[p / static_cast<std::size_t>(lanes<real>) % summaries.size()];
+}
+
 /// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
 template <class real, int D>
 struct StressEpilogue {
@@ -58,8 +64,7 @@ struct StressEpilogue {
         for (double& element : L.element) element /= rho;
 
         const auto eos = model.equation_of_state(tag, rho);
-        summaries[p / static_cast<std::size_t>(lanes<real>)].fault.note_density(rho, material.rho0,
-                                                                                p);
+        summary_of<real>(summaries, p).fault.note_density(rho, material.rho0, p);
         Deviator<double, D> stress{}, rate{};
         if (tag.motion == Motion::free) {
             if (material.law == Law::fluid) {
@@ -107,7 +112,7 @@ struct MomentumEpilogue {
         const Vec<double, D> a = sums.acceleration + model.options.gravity;
         particles.acceleration[p] = a;
         const double v_sig = max(sums.max_v_sig, 2.0 * static_cast<double>(records[p].c));
-        StepSummary& summary = summaries[p / static_cast<std::size_t>(lanes<real>)];
+        StepSummary& summary = summary_of<real>(summaries, p);
         summary.power += particles.mass[p] * sums.av_power;
         summary.limit(timestep(particles.smoothing_length[p], v_sig, sqrt(dot(a, a)),
                                model.options.cflnumber, model.options.cfl_force),

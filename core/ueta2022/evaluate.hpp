@@ -27,7 +27,7 @@ void Ueta2022<D, real, Backend>::evaluate(State& particles, const Lists& lists, 
     pack_motion(particles, halo, half_dt);
     if (new_lists && !halo.alone()) agree_on_h(particles, halo.ranks);
     stress_.resize(particles.size() + halo.ghosts());
-    summary_.resize(lists.clusters().size());
+    summary_.resize(Backend::summaries(lists.clusters().size()));
     Backend::for_each_particle(summary_.size(), ClearElement<StepSummary>{summary_});
     if (poisoned) poison<real>(stress_), poison<double>(particles.acceleration);
     halo.start({halo_column(motion_)});

@@ -9,7 +9,7 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
 if TYPE_CHECKING:  # the build runs this file without numpy
     import numpy as np
@@ -134,6 +134,14 @@ class Core(Protocol):
         """Triangles by their corners (3 m, 3), m; a thickness above 0 is that of a sheet."""
         ...
 
+    def pair_work(
+        self, scheme: str, dim: int, precision: str, wide_kernel: bool
+    ) -> list[dict[str, Any]]:
+        """Of each sum over moving neighbours, `sum` being its phase: the sums, products, quotients,
+        roots and comparisons of a pair, and the bytes that are read of a neighbour.
+        """
+        ...
+
     def set_threads(self, n: int) -> None:
         """Threads of the calls that follow."""
         ...
@@ -212,6 +220,22 @@ def card_here() -> Card | None:
     return None if core.card_problem() else Card(core.card_name(), core.card_memory())
 
 
+class Peaks(NamedTuple):
+    """What a card can do at best: operations per second, and bytes per second."""
+
+    in_double: float
+    in_float: float
+    bandwidth: float
+
+
+def card_peaks() -> Peaks | None:
+    """Of the card that a run would take; none where there is none."""
+    if card_here() is None:
+        return None
+    core = import_module("doseki._core_cuda")
+    return Peaks(core.card_arithmetic(True), core.card_arithmetic(False), core.card_bandwidth())
+
+
 def module_is_chosen() -> bool:
     """Whether the environment says which module of the core is to be taken."""
     return bool(os.environ.get("DOSEKI_ISA"))
@@ -228,9 +252,10 @@ def use_device(name: str) -> None:
         return
     module = DEVICES[name]
     if find_spec(f"doseki._core_{module}") is None:
+        with_nvcc = " with nvcc, which pip install 'doseki[cuda]' brings" if name == "cuda" else ""
         raise UserError(
-            f"--device {name}: the core is not built for it;"
-            f" DOSEKI_INSTRUCTION_SETS='host;{module}' ./doseki list builds it in a clone"
+            f"--device {name}: the core is not built for it; in a clone,"
+            f" DOSEKI_INSTRUCTION_SETS='host;{module}' ./doseki list builds it{with_nvcc}"
         )
     load_core(module)
     os.environ["DOSEKI_ISA"] = module

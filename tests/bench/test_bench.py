@@ -10,8 +10,9 @@ import pytest
 from doseki.bench import command as bench
 from doseki.bench import report as bench_report
 from doseki.bench.case import DP, ETA, Case, block, make_simulation
+from doseki.bench.roofline import share_of_roof
 from doseki.cli.main import main
-from doseki.compiled import available_instruction_sets
+from doseki.compiled import Peaks, available_instruction_sets, load_core
 from doseki.errors import ResourceError
 
 KEYS = {
@@ -129,3 +130,38 @@ def test_targets_compare_rows_that_differ_in_one_thing():
     assert values["v4 over scalar"] == pytest.approx(4)
     assert values["mixed over double"] == pytest.approx(2)
     assert values["2 threads over 1"] == pytest.approx(1.5)
+
+
+@pytest.mark.skipif("device" not in available_instruction_sets(), reason="not built")
+def test_work_of_pairs_on_a_device(capsys, monkeypatch):
+    """What is printed is what the core counts, times the pairs that were summed."""
+    monkeypatch.setenv("DOSEKI_ISA", "")
+    main_ends([*TINY, "--dims", "2", "--precision", "double", "--device", "host", "--json"])
+    row = json.loads(capsys.readouterr().out)[0]
+    assert row["isa"] == "device"
+    counted = load_core("device").pair_work("ueta2022", 2, "double", False)
+    assert [work["sum"] for work in row["work"]] == [work["sum"] for work in counted]
+    for shown, own in zip(row["work"], counted, strict=True):
+        operations = own["sums"] + own["products"] + own["quotients"] + own["roots"]
+        assert shown["operations_per_pair"] == operations
+        assert shown["bytes_per_pair"] == own["bytes"]
+        pairs = shown["operations_per_s"] / operations * row["phases"][own["sum"]]
+        listed = row["list_to_pair"] * row["pairs_per_particle"]
+        assert pairs == pytest.approx(row["updates_per_s"] * listed)
+    main_ends([*TINY, "--dims", "2", "--precision", "double", "--device", "host"])
+    assert "operations/pair" in capsys.readouterr().out
+
+
+def test_share_of_a_roof():
+    """The lower of two roofs counts: of arithmetic in the precision of the pairs, or of memory."""
+    peaks = Peaks(in_double=10.0, in_float=100.0, bandwidth=50.0)
+    work = {"operations_per_s": 5.0, "bytes_per_s": 10.0}
+    assert share_of_roof(work, peaks, "double") == pytest.approx(0.5)
+    assert share_of_roof(work, peaks, "mixed") == pytest.approx(0.2)
+
+
+def test_a_device_and_instruction_sets_exclude_each_other(capsys):
+    with pytest.raises(SystemExit) as end:
+        main([*TINY, "--device", "host", "--isa", available_instruction_sets()[0]])
+    assert end.value.code == 2
+    assert "--isa: not with --device" in capsys.readouterr().err

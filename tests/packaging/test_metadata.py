@@ -36,6 +36,36 @@ def test_an_extra_is_found_however_it_is_quoted():
     assert extras_named("pip install 'doseki[one]' or doseki[two]: doseki three") == {"one", "two"}
 
 
+def find_nvcc(path: Path, folders: Path) -> subprocess.CompletedProcess[str]:
+    """What the build does to find CUDA's compiler, with this path and these folders."""
+    cmake = shutil.which("cmake")
+    assert cmake, "the build has put cmake on the path of tests"
+    return subprocess.run(
+        [cmake, f"-Dnvcc_folders={folders}", "-P", ROOT / "core/device/nvcc.cmake"],
+        env={"PATH": str(path)},
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_without_nvcc_a_build_for_cards_says_what_to_install(tmp_path):
+    done = find_nvcc(tmp_path, tmp_path)
+    assert done.returncode != 0
+    said = " ".join(done.stderr.split())
+    assert "cuda needs nvcc" in said
+    assert "pip install 'doseki[cuda]'" in said
+
+
+@pytest.mark.parametrize("on_path", [True, False])
+def test_nvcc_is_found_on_the_path_and_among_packages(tmp_path, on_path):
+    there, nowhere = tmp_path / "bin", tmp_path / "empty"
+    there.mkdir(), nowhere.mkdir()
+    (there / "nvcc").write_text("#!/bin/sh\n")
+    (there / "nvcc").chmod(0o755)
+    folders = (there, nowhere) if on_path else (nowhere, there)
+    assert find_nvcc(*folders).returncode == 0
+
+
 def test_a_clone_and_a_wheel_are_built_with_the_same():
     required = PROJECT["build-system"]["requires"]
     assert all("==" in line for line in required)

@@ -5,27 +5,13 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
-#include "bodies/elastic/interactions.hpp"
+#include "bodies/deformable/internal_forces.hpp"
 #include "bodies/elastic/outer.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
-#include "pairs/loop.hpp"
 #include "physics/hyperelastic/strain.hpp"
 #include "physics/wall.hpp"
 
 namespace doseki {
-
-template <int D>
-template <class Term, class Epilogue>
-void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
-    for_each_pair<false>(
-        neighbours_, neighbours_.clusters(), std::span<const MotionRecord<double, D>>(motion_),
-        CoordinateFrame<double, D>{}, term, epilogue, {.only = stepped_.clusters()});
-}
-
-template <int D>
-ElasticRecords<D> TotalLagrangian<D>::records() const {
-    return {motion_, place_, solid_};
-}
 
 /// Shift along x that sets a body two supports beyond all before it.
 template <int D>
@@ -88,7 +74,8 @@ void TotalLagrangian<D>::sort() {
     slot_.resize(size());
     for (std::uint32_t k = 0; k < order.size(); ++k) slot_[order[k]] = k;
     number_points();
-    neighbours_.build(lanes<double>, rest_, radii, 0.0);
+    OnThreads::Backend::build_lists(neighbours_, std::span<const Vec<double, D>>(rest_),
+                                    std::span<const double>(radii), 0.0, {});
 }
 
 /// The records hold places at rest, so the deformation they give is what a gradient makes of none.
@@ -102,7 +89,7 @@ void TotalLagrangian<D>::correct_gradients() {
         flat[p] = !(determinant(sums.place) > min_determinant);
         correction_[p] = inverse(sums.place, min_determinant);
     };
-    sum_over_pairs(DeformationTerm<D>{records()}, finish);
+    sum_over_pairs<OnThreads>(DeformationTerm<D>{records()}, finish);
     for (std::size_t p = 0; p < size(); ++p)
         if (flat[p])
             throw PhysicsFailure("an elastic body is too thin for its spacing of " +
@@ -111,97 +98,39 @@ void TotalLagrangian<D>::correct_gradients() {
                                  FailureKind::empty);
 }
 
-/// Between the sums: strain and stress of one point, as the second sum needs them.
-template <int D>
-void TotalLagrangian<D>::update_point(std::size_t p,
-                                      const DeformationAccumulators<double, D>& sums) {
-    const DeformableBody& body = body_of(p);
-    const Mat<double, D>& B = correction_[p];
-    deformation_[p] = sums.place * B;
-    const Mat<double, D> rate = sums.velocity * B;
-    const Mat<double, D> damping = kelvin_voigt(deformation_[p], rate, body.viscosity());
-    const Mat<double, D> P = stress(p) + damping;
-    solid_[p].Q_damping = damping * transposed(B);
-    solid_[p].Q = less_springs(P * transposed(B), solid_[p].kappa, deformation_[p]);
-    solid_[p].F = deformation_[p], solid_[p].F_rate = rate;
-}
-
 /// Over springs, those of bonds where there are any.
 template <int D>
 template <class Epilogue>
 void TotalLagrangian<D>::sum_springs(const ElasticRecords<D>& records,
                                      const Epilogue& epilogue) const {
     if (bonds_.any())
-        sum_over_pairs(Bonded<SpringTerm<D>>{{records}, bonds_.rows()}, epilogue);
+        sum_over_pairs<OnThreads>(Bonded<SpringTerm<D>>{{records}, bonds_.rows()}, epilogue);
     else
-        sum_over_pairs(SpringTerm<D>{records}, epilogue);
-}
-
-/// The damper sees misfits from a frame that turns with them: rigid motions do no work in it, and
-/// its torque vanishes.
-template <int D>
-void TotalLagrangian<D>::damp_springs() {
-    auto turn = [this](std::size_t p, const MisfitMoments<double, D>& sums) {
-        ElasticRecord<D>& point = solid_[p];
-        const Mat<double, D> spin = misfit_spin(sums), rate = point.F_rate - spin * point.F;
-        point.Q = less_springs(point.Q, point.kappa_rate, rate);
-        point.Q_damping = less_springs(point.Q_damping, point.kappa_rate, rate);
-        point.spin = point.kappa_rate * spin;
-    };
-    sum_springs(records(), turn);
+        sum_over_pairs<OnThreads>(SpringTerm<D>{records}, epilogue);
 }
 
 /// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead.
 template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
-    stepped_.for_each([&](std::size_t p) {
-        place_[p].x = x[p];
-        motion_[p].v = v[p] + half_dt * a[p];
-    });
-    if (bonds_.any()) return sum_bonded_forces(take);
-    auto update = [this](std::size_t p, const DeformationAccumulators<double, D>& sums) {
-        update_point(p, sums);
-    };
-    sum_over_pairs(DeformationTerm<D>{records()}, update);
-    if (springs_damp_) damp_springs();
-    sum_over_pairs(InternalForceTerm<D>{records()}, take);
+    if (!bonds_.any()) return sum_whole_forces<OnThreads>(half_dt, take);
+    predict<OnThreads>(half_dt);
+    sum_bonded_forces(take);
 }
 
+/// Bonds are on the processor.
 template <int D>
 void TotalLagrangian<D>::compute_accelerations(double half_dt, const Vec<double, D>& gravity) {
-    sum_internal_forces(half_dt, [&](std::size_t p, const InternalForce<double, D>& force) {
-        damping_force_[p] = place_[p].volume * force.damping;
-        a[p] = clamped_[p]
-                   ? Vec<double, D>{}
-                   : (1.0 / body_of(p).rho0) * force.all + (1.0 / mass(p)) * load[p] + gravity;
-    });
+    if (bonds_.any())
+        sum_internal_forces(half_dt, AcceleratePoint<D>{spans(), gravity});
+    else
+        accelerate_whole(half_dt, gravity);
 }
 
-template <int D>
-double TotalLagrangian<D>::drift(double dt) {
-    const double fastest = stepped_.reduce(0.0, maximum, [&](std::size_t p) {
-        x[p] = x[p] + dt * v[p];
-        return dot(v[p], v[p]);
-    });
-    return dt * sqrt(fastest);
-}
-
-/// Damping sees the velocities that the last accelerations predict for the middle of the step; its
-/// work is that of its force on the way that is gone.
 template <int D>
 BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     compute_accelerations(0.5 * dt, gravity);
-    damping_work_ -= stepped_.reduce(0.0, std::plus<>(), [&](std::size_t p) {
-        return dot(damping_force_[p], dt * v[p] + (0.5 * dt * dt) * a[p]);
-    });
-    const BodyStep<D> given = stepped_.reduce(BodyStep<D>{}, std::plus<>(), [&](std::size_t p) {
-        const Vec<double, D> way = dt * v[p] + (0.5 * dt * dt) * a[p];
-        v[p] = v[p] + dt * a[p];
-        if (clamped_[p]) return BodyStep<D>{};
-        const Vec<double, D> weight = (body_of(p).rho0 * place_[p].volume) * gravity;
-        return BodyStep<D>{dt * (load[p] + weight), dot(weight, way), dot(load[p], way)};
-    });
+    const BodyStep<D> given = push_points(dt, gravity);
     if (!std::isfinite(given.contact_work))  // no load times a way that is not finite is not
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
     if (bonds_.any()) advance_bonds(dt);

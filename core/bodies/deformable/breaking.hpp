@@ -90,7 +90,7 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     correction_[p] = inverse(shape, 0.0);
     solid_[p].kappa = body.hourglass * body.shear_modulus();
     solid_[p].kappa_rate = body.hourglass * body.viscosity();
-    update_point(p, sums);
+    spans().update(p, sums);
     stress_[p] = stress(p);
     tension_[p] = largest_principal(material_stress(deformation_[p], stress_[p])).value;
 }
@@ -101,15 +101,15 @@ void TotalLagrangian<D>::update_deformations() {
     auto update = [this](std::size_t p, const BondedDeformation<double, D>& sums) {
         update_bonded(p, sums.now, sums.shape);
     };
-    sum_over_pairs(BondedDeformationTerm<D>{{records()}, bonds_.rows()}, update);
+    sum_over_pairs<OnThreads>(BondedDeformationTerm<D>{{records()}, bonds_.rows()}, update);
 }
 
 template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
     update_deformations();
-    if (springs_damp_) damp_springs();
-    sum_over_pairs(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
+    if (springs_damp_) sum_springs(records(), DampSprings<D>{spans()});
+    sum_over_pairs<OnThreads>(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
 }
 
 template <int D>

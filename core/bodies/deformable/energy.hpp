@@ -38,12 +38,12 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
             points[p].P = body_of(p).stress(F), points[p].kappa = solid[p].kappa;
             points[p].spans = spans;
         };
-        sum_over_pairs(BondedDeformationTerm<D>{{records}, bonds_.rows()}, bonded);
+        sum_over_pairs<OnThreads>(BondedDeformationTerm<D>{{records}, bonds_.rows()}, bonded);
     } else {
         auto whole = [&](std::size_t p, const DeformationAccumulators<double, D>& sums) {
             strain(p, sums.place * correction_[p]);
         };
-        sum_over_pairs(DeformationTerm<D>{records}, whole);
+        sum_over_pairs<OnThreads>(DeformationTerm<D>{records}, whole);
     }
     sum_springs(records, [&](std::size_t p, const MisfitMoments<double, D>& sums) {
         energy[p].springs = 0.5 * volume(p) * solid[p].kappa * trace(sums.square);

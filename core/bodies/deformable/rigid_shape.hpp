@@ -32,7 +32,7 @@ Shape<D> DeformableSurfaces<D>::shape_of(const ContactBodies<D>& contact, std::i
     for (const Facet<D>& facet : shape.facets)
         for (const Vec<double, D>& corner : facet)
             shape.radius = std::max(shape.radius, norm(corner));
-    shape.enclose(nullptr);
+    shape.enclose({});
     return shape;
 }
 

@@ -94,17 +94,32 @@ struct BondRows {
     std::span<const BondState<D>> state;
 
     template <class T>
+    static constexpr std::size_t width_of() {
+        if constexpr (std::is_arithmetic_v<T>)
+            return 1;
+        else
+            return T::size();
+    }
+    /// value(lane) in each lane; a number is one lane.
+    template <class T, class Value>
+    DOSEKI_FN static T in_lanes(const Value& value) {
+        if constexpr (std::is_arithmetic_v<T>)
+            return value(std::size_t{0});
+        else
+            return T(value);
+    }
+    template <class T>
     DOSEKI_FN BondFields<T, D> load(PairEntry at) const {
-        constexpr std::size_t width = T::size();
+        constexpr std::size_t width = width_of<T>();
         const std::uint32_t* const codes =
             code.data() + first[at.first / width] + at.number * width;
         BondFields<T, D> bond;
         for (int a = 0; a < D; ++a)
-            bond.jump[a] = T([&](auto lane) {
+            bond.jump[a] = in_lanes<T>([&](auto lane) {
                 const double jump = state[codes[lane] >> 1].jump[a];
                 return (codes[lane] & 1u) != 0 ? -jump : jump;
             });
-        bond.whole = T([&](auto lane) { return state[codes[lane] >> 1].whole; });
+        bond.whole = in_lanes<T>([&](auto lane) { return state[codes[lane] >> 1].whole; });
         return bond;
     }
 };

@@ -4,26 +4,12 @@
 #include "bodies/elastic/elastic_law.hpp"
 
 namespace doseki {
-namespace {
 
-Lame<double> lame(const DeformableBody& body) {
-    return with_value(body.law->law, [](const auto& known) { return known.lame; });
-}
-
-}  // namespace
-
-double DeformableBody::shear_modulus() const { return lame(*this).mu; }
 double DeformableBody::young_modulus() const {
-    const auto [lambda, mu] = lame(*this);
+    const auto [lambda, mu] = law->lame();
     return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
 }
 bool DeformableBody::breaks() const { return law->fracture.index() > 0; }
-double DeformableBody::wave_speed() const { return p_wave_speed(lame(*this), rho0); }
-
-template <int D>
-Mat<double, D> DeformableBody::stress(const Mat<double, D>& F) const {
-    return with_value(law->law, [&](const auto& known) { return known.stress(F); });
-}
 
 template <int D>
 double DeformableBody::energy(const Mat<double, D>& F) const {
@@ -40,7 +26,7 @@ double DeformableBody::stiffening(const Mat<double, D>& F) const {
 }
 
 std::array<double, DeformableBody::count> DeformableBody::numbers() const {
-    const auto [lambda, mu] = lame(*this);
+    const auto [lambda, mu] = law->lame();
     const auto index = static_cast<double>(law->law.index());
     std::array<double, 2> of_fracture{};
     with_value(law->fracture, [&of_fracture](auto known) {
@@ -78,12 +64,10 @@ DeformableBody DeformableBody::of(const double* n) {
             expect_fit(number > 0.0, "elastic_numbers");
         });
     });
-    const auto laws = std::make_shared<const ElasticLaw>(ElasticLaw{known, breaking});
+    const auto laws = Shared<const ElasticLaw>::make(ElasticLaw{known, breaking});
     return {n[0], laws, n[4], n[5], n[6], static_cast<std::uint64_t>(n[10])};
 }
 
-template Mat<double, 2> DeformableBody::stress(const Mat<double, 2>&) const;
-template Mat<double, 3> DeformableBody::stress(const Mat<double, 3>&) const;
 template double DeformableBody::energy(const Mat<double, 2>&) const;
 template double DeformableBody::energy(const Mat<double, 3>&) const;
 template double DeformableBody::stiffening(const Mat<double, 2>&) const;

@@ -8,11 +8,11 @@
 #include "bodies/elastic/bonds.hpp"
 #include "bodies/elastic/deformable_body.hpp"
 #include "bodies/elastic/division.hpp"
-#include "bodies/elastic/records.hpp"
+#include "bodies/elastic/solid_spans.hpp"
 #include "bodies/elastic/stepped_points.hpp"
 #include "bodies/rotation.hpp"
+#include "device/lists_of_build.hpp"
 #include "model/body_step.hpp"
-#include "pairs/neighbour_lists.hpp"
 #include "physics/kernel/wendland_c2.hpp"
 
 namespace doseki {
@@ -116,10 +116,7 @@ public:
     void start(const Vec<double, D>& gravity, double stable_step = 0.0);
 
     /// Half a step of the forces of others, which change slowly [N], 2-D: [N/m].
-    void kick(double half_dt, std::span<const Vec<double, D>> force) {
-        for (const std::uint32_t p : stepped_.points())
-            if (!clamped_[p]) v[p] = v[p] + (half_dt / mass(p)) * force[p];
-    }
+    void kick(double half_dt, std::span<const Vec<double, D>> force);
 
     /// Steps of their own over `dt`, under `load` and gravity.
     void advance(double dt, const Vec<double, D>& gravity) {
@@ -291,15 +288,23 @@ private:
     void compute_accelerations(double half_dt, const Vec<double, D>& gravity);
     Array<Vec<double, D>> linear_response(const Array<Vec<double, D>>& displacement,
                                           const Array<Vec<double, D>>& velocity);
-    void update_point(std::size_t p, const DeformationAccumulators<double, D>& sums);
-
-    void damp_springs();
-
-    template <class Term, class Epilogue>
-    void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
     template <class Epilogue>
     void sum_springs(const ElasticRecords<D>& records, const Epilogue& epilogue) const;
-    ElasticRecords<D> records() const;
+    ElasticRecords<D> records() const { return {motion_, place_, solid_}; }
+    SolidSpans<D> spans() {
+        return {bodies_, body_, clamped_, correction_, deformation_,   motion_, place_,
+                solid_,  x,     v,        a,           damping_force_, load};
+    }
+
+    // Where loops may run elsewhere: bodies/deformable/internal_forces.hpp.
+    template <class Where, class Term, class Epilogue>
+    void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
+    template <class Where>
+    void predict(double half_dt);
+    template <class Where, class F>
+    void sum_whole_forces(double half_dt, const F& take);
+    void accelerate_whole(double half_dt, const Vec<double, D>& gravity);
+    BodyStep<D> push_points(double dt, const Vec<double, D>& gravity);
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.
     void find_bonds();
@@ -345,7 +350,7 @@ private:
     Array<std::uint8_t> clamped_, gone_;
     Array<std::uint32_t> slot_, number_;  // of the point of each number, and of each slot
     Array<Mat<double, D>> correction_, deformation_;
-    Neighbours<D> neighbours_;
+    ListsOfBuild<D> neighbours_;
     Array<MotionRecord<double, D>> motion_;
     Array<ElasticPlaceRecord<D>> place_;
     Array<ElasticRecord<D>> solid_;

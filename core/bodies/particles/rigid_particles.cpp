@@ -17,17 +17,29 @@ struct Bearing {
     Vec3 spin, spin_ahead, spin_rate;
 };
 
+template <int D>
+struct FindBearing {
+    RigidBodiesSeen<D> rigid;
+    std::span<Bearing<D>> found;
+    double ahead;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+        const RigidBodyState<D>& state = rigid.states[k];
+        found[k] = {state.orientation.matrix(),
+                    state.centre,
+                    rigid.velocity(k, ahead),
+                    state.acceleration,
+                    rigid.spin(k),
+                    rigid.spin(k, ahead),
+                    state.spin_rate};
+    }
+};
+
 /// `velocity` and `spin_ahead` are those when the fluid will have acted for `ahead` more.
 template <int D>
 Array<Bearing<D>> bearings(const RigidBodies<D>& bodies, double ahead) {
-    const auto R = bodies.rotations();
-    const auto w = bodies.spins(0.0), w_ahead = bodies.spins(ahead);
     Array<Bearing<D>> found(bodies.size());
-    for_each_particle(bodies.size(), [&](std::size_t k) {
-        const RigidBodyState<D>& state = bodies.state(k);
-        found[k] = {R[k],       state.centre,   bodies.velocity(k, ahead), state.acceleration, w[k],
-                    w_ahead[k], state.spin_rate};
-    });
+    bulk::for_each(bodies.size(), FindBearing<D>{bodies.seen(), found, ahead});
     return found;
 }
 
@@ -99,25 +111,23 @@ struct MoveBound {
 /// The sum over the points of a body, in rising order, whatever threads there are.
 template <int D>
 struct ForceOnBody {
-    struct Load {
-        Vec<double, D> force;
-        Vec3 torque;
-    };
     std::span<const std::size_t> first, order;
     std::span<const RigidBodyPoint<D>> points;
     std::span<const Vec<double, D>> force;
-    std::span<const Mat<double, 3>> rotation;
-    std::span<Load> loads;
+    std::span<RigidBodyState<D>> states;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
-        Load sum{};
+        RigidBodyState<D>& state = states[k];
+        const Mat<double, 3> rotation = state.orientation.matrix();
+        Vec<double, D> sum{};
+        Vec3 moment{};
         for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
             const Vec<double, D>& push = force[order[n]];
-            const Vec<double, D> lever = rotated(rotation[k], points[order[n]].offset);
-            sum.force = sum.force + push;
-            sum.torque = sum.torque + cross(in_space(lever), in_space(push));
+            const Vec<double, D> lever = rotated(rotation, points[order[n]].offset);
+            sum = sum + push;
+            moment = moment + cross(in_space(lever), in_space(push));
         }
-        loads[k] = sum;
+        state.flow_force = sum, state.flow_torque = moment;
     }
 };
 
@@ -130,12 +140,8 @@ void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bo
     bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::rigid, force});
     ranks.sum(numbers_of(force));
     sort_by_body(bodies.size());
-    Array<typename ForceOnBody<D>::Load> loads(bodies.size());
-    const auto R = bodies.rotations();
     bulk::for_each(bodies.size(),
-                   ForceOnBody<D>{first_of_body_, of_body_, points_, force, R, loads});
-    for (std::size_t k = 0; k < bodies.size(); ++k)
-        bodies.state(k).flow_force = loads[k].force, bodies.state(k).flow_torque = loads[k].torque;
+                   ForceOnBody<D>{first_of_body_, of_body_, points_, force, bodies.moved().states});
 }
 
 template <int D>

@@ -25,7 +25,7 @@ public:
     /// Calls visit(item) for all items whose box is nearer to x than the root of `square`, nearer
     /// boxes first; `visit` may make `square` smaller.
     template <class Visit>
-    void visit_near(const Vec<double, D>& x, double& square, Visit&& visit) const {
+    DOSEKI_DEVICE_FN void visit_near(const Vec<double, D>& x, double& square, Visit&& visit) const {
         if (nodes_.empty()) return;
         std::array<std::uint32_t, deepest> waiting;
         std::size_t count = 0;
@@ -64,7 +64,7 @@ public:
     }
 
     /// Whether x is nearer than `distance` to the box around everything.
-    bool is_near(const Vec<double, D>& x, double distance) const {
+    DOSEKI_DEVICE_FN bool is_near(const Vec<double, D>& x, double distance) const {
         return !nodes_.empty() && square_to(nodes_[0].box, x) <= distance * distance;
     }
 
@@ -77,7 +77,7 @@ private:
         std::uint32_t items;  // of a leaf
     };
 
-    static double square_to(const Box<D>& box, const Vec<double, D>& x) {
+    DOSEKI_DEVICE_FN static double square_to(const Box<D>& box, const Vec<double, D>& x) {
         double square = 0.0;
         for (int a = 0; a < D; ++a) {
             const double beyond = std::max({box.low[a] - x[a], x[a] - box.high[a], 0.0});

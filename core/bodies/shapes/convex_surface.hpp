@@ -3,31 +3,37 @@
 #include <limits>
 
 #include "base/array.hpp"
-#include "bodies/contact_surface.hpp"
 #include "bodies/shapes/facet.hpp"
+#include "bodies/shapes/surface_points.hpp"
 
 namespace doseki {
 
 /// The outline of a convex polygon or polyhedron.
 template <int D>
-class ConvexSurface final : public ContactSurface<D> {
+class ConvexSurface {
 public:
+    static constexpr std::size_t most_touched = 1;
+
     explicit ConvexSurface(Array<Facet<D>> facets) : facets_(std::move(facets)) {
         for (const Facet<D>& facet : facets_)
             for (const Vec<double, D>& corner : facet) radius_ = std::max(radius_, norm(corner));
     }
 
-    double radius() const override { return radius_; }
+    DOSEKI_DEVICE_FN double radius() const { return radius_; }
 
-    SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const override {
+    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const {
         SurfacePoints<D> touched;
         if (const SurfacePoint<D> nearest = from(x); nearest.distance < radius)
             touched.add(nearest);
         return touched;
     }
 
+    DOSEKI_DEVICE_FN bool is_touched_by(const Vec<double, D>& x, double radius) const {
+        return !touched_by(x, radius).empty();
+    }
+
     /// Exact outside and inside.
-    SurfacePoint<D> from(const Vec<double, D>& x) const {
+    DOSEKI_DEVICE_FN SurfacePoint<D> from(const Vec<double, D>& x) const {
         constexpr double infinite = std::numeric_limits<double>::infinity();
         SurfacePoint<D> inside{-infinite, {}};
         for (const Facet<D>& facet : facets_) {

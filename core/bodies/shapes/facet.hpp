@@ -12,7 +12,7 @@ template <int D>
 using Facet = std::array<Vec<double, D>, D>;
 
 template <int D>
-Vec<double, D> normal_of(const Facet<D>& facet) {
+DOSEKI_DEVICE_FN Vec<double, D> normal_of(const Facet<D>& facet) {
     const Vec<double, D> u = facet[1] - facet[0];
     Vec<double, D> n;
     if constexpr (D == 2)
@@ -23,15 +23,15 @@ Vec<double, D> normal_of(const Facet<D>& facet) {
 }
 
 template <int D>
-Vec<double, D> nearest_on_segment(const Vec<double, D>& a, const Vec<double, D>& b,
-                                  const Vec<double, D>& x) {
+DOSEKI_DEVICE_FN Vec<double, D> nearest_on_segment(const Vec<double, D>& a, const Vec<double, D>& b,
+                                                   const Vec<double, D>& x) {
     const Vec<double, D> u = b - a;
     return a + std::clamp(dot(x - a, u) / dot(u, u), 0.0, 1.0) * u;
 }
 
 /// The point of a facet that is nearest to x.
 template <int D>
-Vec<double, D> nearest_on_facet(const Facet<D>& facet, const Vec<double, D>& x) {
+DOSEKI_DEVICE_FN Vec<double, D> nearest_on_facet(const Facet<D>& facet, const Vec<double, D>& x) {
     if constexpr (D == 2)
         return nearest_on_segment(facet[0], facet[1], x);
     else {

@@ -15,8 +15,8 @@ namespace doseki {
 /// from the corner with its number to the next.
 enum class Feature : std::uint8_t { edge, corner = 3, face = 6 };
 
-constexpr Feature edge_of(int k) { return static_cast<Feature>(k); }
-constexpr Feature corner_of(int k) { return static_cast<Feature>(3 + k); }
+DOSEKI_DEVICE_FN constexpr Feature edge_of(int k) { return static_cast<Feature>(k); }
+DOSEKI_DEVICE_FN constexpr Feature corner_of(int k) { return static_cast<Feature>(3 + k); }
 
 template <int D>
 struct FacetPoint {
@@ -26,8 +26,8 @@ struct FacetPoint {
 
 /// The point of a facet with normal n that is nearest to x.
 template <int D>
-FacetPoint<D> nearest_point(const Facet<D>& facet, const Vec<double, D>& n,
-                            const Vec<double, D>& x) {
+DOSEKI_DEVICE_FN FacetPoint<D> nearest_point(const Facet<D>& facet, const Vec<double, D>& n,
+                                             const Vec<double, D>& x) {
     auto on_edge = [&](int k) -> FacetPoint<D> {
         const Vec<double, D>&a = facet[static_cast<std::size_t>(k)],
                           &b = facet[static_cast<std::size_t>((k + 1) % D)];
@@ -78,12 +78,12 @@ public:
         for (Vec<double, D>& n : edge_normals_) make_unit(n);
     }
 
-    FacetPoint<D> nearest(std::uint32_t f, const Vec<double, D>& x) const {
+    DOSEKI_DEVICE_FN FacetPoint<D> nearest(std::uint32_t f, const Vec<double, D>& x) const {
         return nearest_point<D>(facets_[f], normals_[f], x);
     }
 
     /// Unit vector outwards.
-    Vec<double, D> normal(std::uint32_t f, Feature at) const {
+    DOSEKI_DEVICE_FN Vec<double, D> normal(std::uint32_t f, Feature at) const {
         const auto k = static_cast<std::size_t>(at);
         if (at == Feature::face) return normals_[f];
         if (at >= Feature::corner) return corner_normals_[corner_[f][k - 3]];

@@ -4,17 +4,19 @@
 #include <limits>
 
 #include "base/array.hpp"
-#include "bodies/contact_surface.hpp"
 #include "bodies/shapes/box_tree.hpp"
 #include "bodies/shapes/mesh_corners.hpp"
+#include "bodies/shapes/surface_points.hpp"
 
 namespace doseki {
 
 /// A mesh of facets, convex or not: the outside of what it encloses or, with a thickness, all that
 /// is nearer to it than half of that, on both of its sides.
 template <int D>
-class MeshSurface final : public ContactSurface<D> {
+class MeshSurface {
 public:
+    static constexpr std::size_t most_touched = SurfacePoints<D>::most;
+
     /// Corners that facets share must be the same numbers.
     MeshSurface(const Array<Facet<D>>& facets, double thickness)
         : mesh_(facets), tree_(boxes(facets)), half_(0.5 * thickness) {
@@ -23,10 +25,9 @@ public:
                 radius_ = std::max(radius_, norm(corner) + half_);
     }
 
-    double radius() const override { return radius_; }
-    std::size_t most_touched() const override { return SurfacePoints<D>::most; }
+    DOSEKI_DEVICE_FN double radius() const { return radius_; }
 
-    SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const override {
+    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const {
         SurfacePoints<D> touched;
         const Foot nearest = nearest_foot(x, radius);
         if (nearest.facet == none) return touched;
@@ -39,7 +40,7 @@ public:
         return touched;
     }
 
-    bool is_touched_by(const Vec<double, D>& x, double radius) const override {
+    DOSEKI_DEVICE_FN bool is_touched_by(const Vec<double, D>& x, double radius) const {
         const Foot nearest = nearest_foot(x, radius);
         return nearest.facet != none && place_of(nearest, x).distance < radius;
     }
@@ -81,6 +82,10 @@ private:
         double square;  // of its distance
         std::uint32_t facet;
         FacetPoint<D> at;
+
+        DOSEKI_DEVICE_FN bool comes_before(const Foot& other) const {
+            return square < other.square || (square == other.square && facet < other.facet);
+        }
     };
 
     static Array<Box<D>> boxes(const Array<Facet<D>>& facets) {
@@ -93,26 +98,24 @@ private:
     }
 
     /// Of a sheet only if it is within reach; what a mesh encloses may lie as deep as it will.
-    Foot nearest_foot(const Vec<double, D>& x, double radius) const {
+    DOSEKI_DEVICE_FN Foot nearest_foot(const Vec<double, D>& x, double radius) const {
         Foot nearest{std::numeric_limits<double>::infinity(), none, {}};
         if (half_ > 0.0) nearest.square = (radius + half_) * (radius + half_);
         if (!tree_.is_near(x, radius + half_)) return nearest;
         tree_.visit_near(x, nearest.square, [&](std::uint32_t k) {
             const Foot foot = foot_on(k, x);
-            if (foot.square < nearest.square ||
-                (foot.square == nearest.square && k < nearest.facet))
-                nearest = foot;
+            if (foot.comes_before(nearest)) nearest = foot;
         });
         return nearest;
     }
 
-    Foot foot_on(std::uint32_t facet, const Vec<double, D>& x) const {
+    DOSEKI_DEVICE_FN Foot foot_on(std::uint32_t facet, const Vec<double, D>& x) const {
         const FacetPoint<D> at = mesh_.nearest(facet, x);
         const Vec<double, D> r = x - at.position;
         return {dot(r, r), facet, at};
     }
 
-    SurfacePoint<D> place_of(const Foot& foot, const Vec<double, D>& x) const {
+    DOSEKI_DEVICE_FN SurfacePoint<D> place_of(const Foot& foot, const Vec<double, D>& x) const {
         const Vec<double, D> out = mesh_.normal(foot.facet, foot.at.feature);
         const Vec<double, D> r = x - foot.at.position;
         const double distance = std::sqrt(foot.square), side = dot(r, out) >= 0.0 ? 1.0 : -1.0;
@@ -124,28 +127,41 @@ private:
 
     /// The feet nearer than the radius, but for those that lie on or below the plane in which the
     /// ball touches a nearer one: these belong to the same convex part.
-    void add_places(const Vec<double, D>& x, double radius, SurfacePoints<D>& touched) const {
-        Array<Foot> feet;
-        double square = (radius + half_) * (radius + half_);
-        tree_.visit_near(x, square, [&](std::uint32_t k) {
-            if (const Foot foot = foot_on(k, x); foot.square < square) feet.push_back(foot);
-        });
-        std::sort(feet.begin(), feet.end(), [](const Foot& a, const Foot& b) {
-            return a.square < b.square || (a.square == b.square && a.facet < b.facet);
-        });
+    DOSEKI_DEVICE_FN void add_places(const Vec<double, D>& x, double radius,
+                                     SurfacePoints<D>& touched) const {
+        const double square = (radius + half_) * (radius + half_);
         std::array<Vec<double, D>, SurfacePoints<D>::most> taken;
-        for (const Foot& foot : feet) {
-            if (touched.size() == touched.most) return;
-            bool hidden = false;
+        auto counts = [&](const Foot& foot) {
             for (std::size_t k = 0; k < touched.size(); ++k) {
                 const Vec<double, D> apart = foot.at.position - taken[k];
-                hidden |= dot(apart, touched[k].normal) <= flat * norm(apart);
+                if (dot(apart, touched[k].normal) <= flat * norm(apart)) return false;
             }
-            const SurfacePoint<D> place = place_of(foot, x);
-            if (hidden || place.distance < 0.0) continue;
-            taken[touched.size()] = foot.at.position;
-            touched.add(place);
+            return !(place_of(foot, x).distance < 0.0);
+        };
+        for (Foot last{-1.0, 0, {}}; touched.size() < touched.most;) {
+            last = next_foot(x, square, last, counts);
+            if (last.facet == none) return;
+            taken[touched.size()] = last.at.position;
+            touched.add(place_of(last, x));
         }
+    }
+
+    /// Of the feet after `last` that count the first, the nearest first; looked for anew for each
+    /// of the few places, since a device has no room for a list of all feet.
+    template <class Counts>
+    DOSEKI_DEVICE_FN Foot next_foot(const Vec<double, D>& x, double square, const Foot& last,
+                                    const Counts& counts) const {
+        constexpr double rounding = 1.0 + 1e-9;  // boxes of feet that are as near are looked into
+        Foot next{square, none, {}};
+        double within = square;
+        tree_.visit_near(x, within, [&](std::uint32_t k) {
+            const Foot foot = foot_on(k, x);
+            if (!(foot.square < square) || !last.comes_before(foot) || !foot.comes_before(next) ||
+                !counts(foot))
+                return;
+            next = foot, within = std::min(square, rounding * foot.square);
+        });
+        return next;
     }
 
     MeshCorners<D> mesh_;

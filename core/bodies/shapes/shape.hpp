@@ -1,11 +1,8 @@
 #pragma once
 #include <cstdint>
-#include <memory>
 
 #include "base/array.hpp"
-#include "bodies/contact_surface.hpp"
-#include "bodies/shapes/convex_surface.hpp"
-#include "bodies/shapes/mesh_surface.hpp"
+#include "bodies/shapes/contact_surface.hpp"
 
 namespace doseki {
 
@@ -26,18 +23,18 @@ struct Shape {
     Array<Facet<D>> facets;
     // Points of the surface that may touch another shape; the middles of many balls.
     Array<Vec<double, D>> samples;
-    std::shared_ptr<const ContactSurface<D>> surface;  // that others touch; none of a ball
+    SharedSurface<D> surface;  // that others touch; none of a ball
 
-    bool is_ball() const { return kind == ShapeKind::ball; }
+    DOSEKI_DEVICE_FN bool is_ball() const { return kind == ShapeKind::ball; }
 
     /// Makes the surface; call once everything else is there. `ground` is that of the run.
-    void enclose(const std::shared_ptr<const ContactSurface<D>>& ground) {
+    void enclose(const SharedSurface<D>& ground) {
         if (kind == ShapeKind::ground)
             surface = ground;
         else if (kind == ShapeKind::convex)
-            surface = std::make_shared<const ConvexSurface<D>>(facets);
+            surface = SharedSurface<D>::make(ConvexSurface<D>(facets));
         else if (kind == ShapeKind::mesh)
-            surface = std::make_shared<const MeshSurface<D>>(facets, thickness);
+            surface = SharedSurface<D>::make(MeshSurface<D>(facets, thickness));
     }
 };
 

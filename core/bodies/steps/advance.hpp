@@ -5,7 +5,6 @@
 
 #include "bodies/bodies.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
-#include "bodies/steps/rigid_steps.hpp"
 
 namespace doseki {
 

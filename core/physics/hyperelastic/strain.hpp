@@ -17,7 +17,7 @@ struct Lame {
 };
 
 /// Speed of compression waves at rest [m/s].
-inline double p_wave_speed(const Lame<double>& lame, double rho0) {
+DOSEKI_DEVICE_FN inline double p_wave_speed(const Lame<double>& lame, double rho0) {
     return std::sqrt((lame.lambda + 2.0 * lame.mu) / rho0);
 }
 

@@ -13,7 +13,13 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from ..compiled import DEVICES, available_instruction_sets, card_here, load_core
+from ..compiled import (
+    DEVICES,
+    available_instruction_sets,
+    card_here,
+    load_core,
+    use_device,
+)
 from ..errors import ResourceError, UserError
 from ..scenario.schemes import UETA2022
 from ..solver.protocol import CoreSimulation
@@ -22,6 +28,7 @@ from ..version import version
 from .case import SCHEMES, Case, clocked, make_simulation
 from .flows import FLOWS, print_flows, time_flows
 from .report import checks, growth, machine, memory_check, phase_table, speed_table
+from .roofline import print_work, work_of
 
 SIZES = (4_000, 10_000, 100_000, 1_000_000)
 QUICK_SIZES = (4_000, 10_000, 100_000)
@@ -32,7 +39,7 @@ ROUNDS, QUICK_ROUNDS = 5, 3
 LIVES_PER_ROUND = 4  # of the lists, at most
 ROUND_SECONDS = 0.1  # at least, unless the lists' lives are up
 BARE_SECONDS = 0.05
-OF_BLOCK = ("--sizes", "--dims", "--isa", "--scheme")
+OF_BLOCK = ("--sizes", "--dims", "--isa", "--device", "--scheme")
 
 Row = dict[str, Any]
 
@@ -142,6 +149,7 @@ class Timing:
         rate = median(self.update_rates)
         pairs = simulation.interacting_pairs() / case.n
         pair_rate = rate * pairs / case.threads
+        shares = self.shares()
         return {
             "dim": case.dim,
             "precision": case.precision,
@@ -152,7 +160,8 @@ class Timing:
             "updates_per_s": rate,
             "pairs_per_s": pair_rate,
             "bytes_per_particle": simulation.bytes_per_particle,
-            "phases": self.shares(),
+            "phases": shares,
+            "work": work_of(case, simulation, rate, shares),
             "pairs_per_particle": pairs,
             "list_to_pair": simulation.entries_per_particle * case.lanes / pairs,
             "bare_pairs_per_s": bare_rate,
@@ -205,6 +214,11 @@ def counts_of(option: str, text: str | None, most: float) -> list[int]:
     return [int(count) for count in counts]
 
 
+def modules_here() -> list[str]:
+    """Modules of the core that can be timed here, that of a card among them."""
+    return [*available_instruction_sets(), *(["cuda"] if card_here() else [])]
+
+
 def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
     """The plan for options as typed; raises UserError for what cannot be run here."""
     sizes = counts_of("--sizes", options["--sizes"], 1e8)
@@ -212,17 +226,22 @@ def make_plan(options: Mapping[str, str | None], quick: bool) -> Plan:
         raise UserError(
             f"--sizes {min(sizes)}: fewer than {SMALLEST} particles are not worth timing"
         )
+    isas = _words("--isa", options["--isa"], modules_here())
+    if device := options["--device"]:
+        if isas:
+            raise UserError("--isa: not with --device, which says what is timed")
+        use_device(_words("--device", device, list(DEVICES))[0])
+        isas = [DEVICES[device]]
     flows = _chosen_flows(options, quick)
     scheme = (_words("--scheme", options["--scheme"], SCHEMES) or [UETA2022])[0]
     precisions = _words("--precision", options["--precision"], PRECISIONS) or list(PRECISIONS)
-    modules = [*available_instruction_sets(), *(["cuda"] if card_here() else [])]
     return Plan(
         scheme=scheme,
         dims=[int(word) for word in _words("--dims", options["--dims"], ["2", "3"])] or [2, 3],
         precisions=precisions,
         sizes=sizes,
         threads=counts_of("--threads", options["--threads"], 4096),
-        isas=_words("--isa", options["--isa"], modules),
+        isas=isas,
         quick=quick,
         block=options["--flows"] is None,
         flows=flows,
@@ -259,6 +278,7 @@ def print_report(rows: Sequence[Row]) -> None:
     print(f"{machine()}; scheme {rows[0]['scheme']}")
     for title, table in (("Speed and memory", speed_table), ("Share of a step, %", phase_table)):
         print(f"\n{title}\n\n{table(rows)}")
+    print_work(rows)
     print("\nStep time ~ N^a\n")
     for name, exponent in growth(rows):
         print(f"- {name}: a = {exponent:.3f}")

@@ -75,6 +75,15 @@ def bench(
             metavar="v4,...", help="Instruction sets.", show_default="best; others at one size"
         ),
     ] = None,
+    device: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Time the code of a card instead, on it (cuda) or on the processor (host): with "
+            "the operations and bytes of a pair.",
+            show_default="none",
+        ),
+    ] = None,
     scheme: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="ueta2022 or resolved.", show_default="ueta2022"),
@@ -102,6 +111,7 @@ def bench(
 
     options = {"--sizes": sizes, "--dims": dims, "--precision": precision}
     options |= {"--threads": threads, "--isa": isa, "--scheme": scheme, "--flows": flows}
+    options |= {"--device": device}
     if flows is not None and ranks is not None:
         raise UserError("--flows: not with --ranks; run them one after the other")
     plan = make_plan(options, quick)

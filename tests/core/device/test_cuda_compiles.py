@@ -20,8 +20,20 @@ UNITS = {
     '#include "boundaries/moving_walls.cpp"\n'
     '#include "boundaries/driven_particles.cpp"\n'
     '#include "bodies/particles/deformable_particles.cpp"\n',
+    "contacts": '#include "bodies/steps/contact_pushes.cpp"\n'
+    '#include "bodies/steps/rigid_steps.cpp"\n'
+    '#include "bodies/steps/rigid_contacts.cpp"\n',
+    "solids": '#include "bodies/deformable/solid_steps.cpp"\n',
 }
-LEAST_KERNELS = {"resolved": 10, "ueta2022": 8, "lists": 4, "cells": 6, "bodies": 12}
+LEAST_KERNELS = {
+    "resolved": 10,
+    "ueta2022": 8,
+    "lists": 4,
+    "cells": 6,
+    "bodies": 12,
+    "contacts": 36,
+    "solids": 14,
+}
 PROPERTIES = re.compile(
     r"Function properties for (?P<name>\S+)\s+"
     r"\d+ bytes stack frame, (?P<stores>\d+) bytes spill stores, "

@@ -107,6 +107,22 @@ def test_threads_and_runs_change_no_bit(flows, text, precision, isa):
         assert_same_bits(checkpoints[0], other)
 
 
+@pytest.mark.parametrize("isa", [FASTEST, *DEVICES])
+@pytest.mark.parametrize("name", ["tumbler", "dam-step"])
+def test_threads_change_no_bit_of_bodies(name, isa):
+    """Contacts and motion: of grains in a drum, and of what lies on the ground."""
+    scenario = load_scenario(FLOWS[name].scenario if name in FLOWS else name)
+    core = load_core(isa)
+    before, checkpoints = core.threads(), []
+    for threads in (1, 2, 4):
+        core.set_threads(threads)
+        simulation, _names = build_simulation(scenario, isa)
+        checkpoints.append(advance(simulation, 40).checkpoint())
+    core.set_threads(before)
+    for other in checkpoints[1:]:
+        assert_same_bits(checkpoints[0], other)
+
+
 @pytest.mark.parametrize("isa", DEVICES)
 @pytest.mark.parametrize("back", [False, True])
 @pytest.mark.parametrize("text", TEXTS)

@@ -1,0 +1,161 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "bodies/contact_points.hpp"
+#include "bodies/overlap.hpp"
+#include "bodies/places.hpp"
+
+// Large enough to be called, which would put registers into memory.
+#if defined(__CUDACC__)
+#define DOSEKI_WHOLE_DEVICE_FN __host__ __device__ __forceinline__
+#else
+#define DOSEKI_WHOLE_DEVICE_FN
+#endif
+
+namespace doseki {
+
+/// A pair that may touch, and how it does.
+struct PairContact {
+    std::int32_t body_a, body_b;
+    ContactLaw law;
+    double overlap;
+    std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
+    double gap = 0.0;          // at least, when pairs were found [m]
+
+    /// How far its sides may come together while points go some way. Vertices of deformable
+    /// bodies lie half a spacing beyond them.
+    DOSEKI_DEVICE_FN double approach(double moved) const { return (law.rigid ? 2.0 : 4.0) * moved; }
+};
+
+/// What a pair does to its bodies; the second one gets the opposite force.
+template <int D>
+struct PairPush {
+    bool touches = false;
+    Overlap<D> overlap;
+    Vec<double, D> force;
+    Vec3 torque_a, torque_b;  // on each body about its own centre or point
+    double approach = 0.0;    // speed, where the contact begins
+    double share = 1.0;       // of the springs
+};
+
+/// The rows of Contacts, one for each place at which a pair may touch, with the bodies: what a
+/// thread needs that finds what one pair does.
+template <int D>
+struct ContactRows {
+    std::span<const ContactPair> pairs;
+    std::span<ContactSprings> springs;
+    std::span<Vec<double, D>> normals;
+    std::span<PairContact> contacts;
+    std::span<PairPush<D>> pushes;
+    ContactBodySpans<D> bodies;
+    Domain<D> domain;
+
+    /// Length of the run of one pair that begins with row k; 0 where it began before.
+    DOSEKI_DEVICE_FN std::size_t run_from(std::size_t k) const {
+        if (k > 0 && pairs[k - 1].is(pairs[k])) return 0;
+        std::size_t end = k + 1;
+        while (end < pairs.size() && pairs[end].is(pairs[k])) ++end;
+        return end - k;
+    }
+
+    DOSEKI_DEVICE_FN Overlaps<D> overlaps(std::size_t k) const;
+    /// 0 where it is not known.
+    DOSEKI_DEVICE_FN double gap(std::size_t k, double margin) const;
+    /// Finds what a pair does whose run of rows begins with k, its springs stretching for dt.
+    DOSEKI_WHOLE_DEVICE_FN void push(std::size_t k, double dt) const;
+    /// The pair of row k does not touch there.
+    DOSEKI_DEVICE_FN void part(std::size_t k) const {
+        pushes[k].touches = false, contacts[k].overlap = 0.0;
+        springs[k] = {}, normals[k] = {};
+    }
+
+private:
+    /// What two balls do, which touch at one place.
+    DOSEKI_DEVICE_FN void push_balls(std::size_t k, double dt) const {
+        const auto overlap = overlap_of(bodies.points, pairs[k].first(), pairs[k].second(), domain);
+        if (!overlap) return part(k);
+        pushes[k] = push_at(k, *overlap, dt, 1.0);
+    }
+    DOSEKI_DEVICE_FN PairPush<D> push_at(std::size_t k, const Overlap<D>& overlap, double dt,
+                                         double share) const;
+};
+
+template <int D>
+DOSEKI_DEVICE_FN Overlaps<D> ContactRows<D>::overlaps(std::size_t k) const {
+    const ContactPair& pair = pairs[k];
+    if constexpr (D == 2)
+        if (const Surface<D>* surface = bodies.surface(pair))
+            return overlap_of(bodies.points, pair.first(), *surface, contacts[k].vertex, domain);
+    if (!pair.with_shape()) return overlap_of(bodies.points, pair.first(), pair.second(), domain);
+    return overlaps_of(bodies.points, pair.first(), bodies.solids[pair.shape()], domain);
+}
+
+template <int D>
+DOSEKI_DEVICE_FN double ContactRows<D>::gap(std::size_t k, double margin) const {
+    const ContactPair& pair = pairs[k];
+    const Vec<double, D>& x = bodies.points.position[pair.first()];
+    const double radius = bodies.points.radius[pair.first()];
+    if constexpr (D == 2)
+        if (const Surface<D>* surface = bodies.surface(pair)) {
+            const auto foot = surface->foot(x, contacts[k].vertex, domain);
+            return foot ? std::max(0.0, -foot->depth) : 0.0;
+        }
+    if (!pair.with_shape()) {
+        const Vec<double, D> r = nearest_image(domain, bodies.points.position[pair.second()] - x);
+        return std::max(0.0, norm(r) - radius - bodies.points.radius[pair.second()]);
+    }
+    const ContactSolid<D>& solid = bodies.solids[pair.shape()];
+    const Vec<double, D> r = nearest_image(domain, x - solid.centre);
+    const auto places = solid.surface->touched_by(rotated_back(solid.rotation, r), radius + margin);
+    return places.empty() ? margin : std::max(0.0, places[0].distance - radius);
+}
+
+template <int D>
+DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const {
+    const std::size_t rows = run_from(k);
+    if (rows == 0) return;
+    if (!pairs[k].with_shape()) return push_balls(k, dt);
+    const Overlaps<D> found = overlaps(k);
+    const auto share = shares_of(found);
+    const auto row = rows_of(found, std::span<const Vec<double, D>>(normals.data() + k, rows));
+    for (std::size_t n = k; n < k + rows; ++n) pushes[n] = {}, contacts[n].overlap = 0.0;
+    for (std::size_t place = 0; place < std::min(found.size(), rows); ++place) {
+        const std::size_t n = k + row[place];
+        pushes[n] = push_at(n, found[place], dt, share[place]);
+    }
+    for (std::size_t n = k; n < k + rows; ++n)
+        if (!pushes[n].touches) part(n);
+}
+
+template <int D>
+DOSEKI_DEVICE_FN PairPush<D> ContactRows<D>::push_at(std::size_t k, const Overlap<D>& overlap,
+                                                     double dt, double share) const {
+    PairContact& contact = contacts[k];
+    const bool begins = dot(normals[k], normals[k]) == 0.0;
+    normals[k] = overlap.normal;
+    const ContactPointSpans<D>& points = bodies.points;
+    const MotionAt<D> b = motion_of_second(bodies, pairs[k], overlap);
+    const std::size_t a = pairs[k].first();
+    const Vec<double, D> v_a =
+                             points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
+                         v_b = b.velocity + turning_velocity(b.spin, overlap.lever_b);
+    ContactAction on_a = contact.law.act(springs[k], overlap.depth, in_space(overlap.normal),
+                                         {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
+    contact.overlap = overlap.depth - springs[k][rest_overlap];
+    on_a.force = share * on_a.force, on_a.moment = share * on_a.moment;
+    auto torque = [&](const Vec<double, D>& lever) {
+        return cross(in_space(lever), on_a.force) + on_a.moment;
+    };
+    const double approach = begins ? dot(v_a - v_b, overlap.normal) : 0.0;
+    return {true,
+            overlap,
+            in_run<D>(on_a.force),
+            torque(overlap.lever_a),
+            -1.0 * torque(overlap.lever_b),
+            std::max(0.0, approach),
+            share};
+}
+
+}  // namespace doseki

@@ -1,0 +1,101 @@
+#pragma once
+// The sums of deformable bodies: on the threads of the processor or, where no bonds break, where
+// the points are.
+
+#include "base/bulk.hpp"
+#include "bodies/elastic/total_lagrangian.hpp"
+#include "device/backend_of_build.hpp"
+
+namespace doseki {
+
+/// Where loops run: on the threads of the processor,
+struct OnThreads {
+    using Backend = BackendOfBuild<double>;
+
+    template <class F>
+    static void for_each(std::size_t count, const F& f) {
+        for_each_particle(count, f);
+    }
+    template <class... Arguments>
+    static void sum_pairs(const Arguments&... arguments) {
+        Backend::sum_pairs_on_threads(arguments...);
+    }
+};
+/// or where all particles are.
+struct WhereParticlesAre {
+    using Backend = BackendOfBuild<double>;
+
+    template <class F>
+    static void for_each(std::size_t count, const F& f) {
+        bulk::for_each(count, f);
+    }
+    template <class... Arguments>
+    static void sum_pairs(const Arguments&... arguments) {
+        Backend::sum_pairs(arguments...);
+    }
+};
+
+template <int D>
+struct PredictPoint {
+    SolidSpans<D> solids;
+    std::span<const std::uint32_t> which;
+    double half_dt;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t n) const { solids.predict(which[n], half_dt); }
+};
+
+template <int D>
+struct UpdatePoint {
+    SolidSpans<D> solids;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p,
+                                     const DeformationAccumulators<double, D>& sums) const {
+        solids.update(p, sums);
+    }
+};
+
+template <int D>
+struct DampSprings {
+    SolidSpans<D> solids;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const MisfitMoments<double, D>& sums) const {
+        solids.damp_springs(p, sums);
+    }
+};
+
+template <int D>
+struct AcceleratePoint {
+    SolidSpans<D> solids;
+    Vec<double, D> gravity;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const InternalForce<double, D>& force) const {
+        solids.accelerate(p, force, gravity);
+    }
+};
+
+template <int D>
+template <class Where, class Term, class Epilogue>
+void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
+    const PairsOf<typename Where::Backend, D> pairs{
+        neighbours_.clusters(), motion_, {}, {.only = stepped_.clusters()}};
+    Where::sum_pairs(neighbours_, pairs, term, epilogue);
+}
+
+template <int D>
+template <class Where>
+void TotalLagrangian<D>::predict(double half_dt) {
+    const std::span<const std::uint32_t> which = stepped_.points();
+    Where::for_each(which.size(), PredictPoint<D>{spans(), which, half_dt});
+}
+
+/// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead.
+template <int D>
+template <class Where, class F>
+void TotalLagrangian<D>::sum_whole_forces(double half_dt, const F& take) {
+    predict<Where>(half_dt);
+    sum_over_pairs<Where>(DeformationTerm<D>{records()}, UpdatePoint<D>{spans()});
+    if (springs_damp_) sum_over_pairs<Where>(SpringTerm<D>{records()}, DampSprings<D>{spans()});
+    sum_over_pairs<Where>(InternalForceTerm<D>{records()}, take);
+}
+
+}  // namespace doseki

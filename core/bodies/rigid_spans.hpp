@@ -1,0 +1,92 @@
+#pragma once
+#include <span>
+
+#include "base/matrix.hpp"
+#include "bodies/rigid_body.hpp"
+
+namespace doseki {
+
+/// Rigid bodies, as loops over them refer to them.
+template <int D>
+struct RigidBodiesSeen {
+    std::span<const RigidBody<D>> bodies;
+    std::span<const RigidBodyState<D>> states;
+    std::span<const Mat<double, 3>> inverse_inertia;  // 3-D: of bodies that do not turn alike
+    std::span<const std::uint8_t> turns_alike;        // about all axes, as balls do
+    std::span<const Shape<D>> shapes;
+
+    DOSEKI_DEVICE_FN bool is_free(std::size_t k) const {
+        return !bodies[k].fixed && !states[k].is_removed();
+    }
+    DOSEKI_DEVICE_FN const Shape<D>& shape(std::size_t k) const {
+        return shapes[static_cast<std::size_t>(bodies[k].shape)];
+    }
+    /// omega = R I^-1 R^T L (eq. 51).
+    DOSEKI_DEVICE_FN Vec3 spin_of(std::size_t k, const Vec3& L) const {
+        if (bodies[k].fixed) return L;
+        if (turns_alike[k]) {
+            const double I = bodies[k].inertia(2, 2);
+            Vec3 spin;
+            for (int c = 0; c < 3; ++c) spin[c] = L[c] / I;
+            return spin;
+        }
+        const Mat<double, 3> R = states[k].orientation.matrix();
+        return rotated(R, inverse_inertia[k] * rotated_back(R, L));
+    }
+    DOSEKI_DEVICE_FN Vec3 spin(std::size_t k) const {
+        return spin_of(k, states[k].angular_momentum);
+    }
+    /// When the fluid will have acted for `ahead` more.
+    DOSEKI_DEVICE_FN Vec3 spin(std::size_t k, double ahead) const {
+        return spin_of(k, states[k].angular_momentum + ahead * states[k].flow_torque);
+    }
+    /// The same of the centre.
+    DOSEKI_DEVICE_FN Vec<double, D> velocity(std::size_t k, double ahead) const {
+        return states[k].velocity + (ahead / bodies[k].mass) * states[k].flow_force;
+    }
+    DOSEKI_DEVICE_FN double kinetic_energy(std::size_t k) const {
+        return 0.5 * bodies[k].mass * dot(states[k].velocity, states[k].velocity) +
+               0.5 * dot(spin(k), states[k].angular_momentum);
+    }
+};
+
+/// The same, to be moved.
+template <int D>
+struct RigidBodiesMoved {
+    RigidBodiesSeen<D> seen;
+    std::span<RigidBodyState<D>> states;
+    std::span<Vec<double, D>> contact_force;  // of the last contact step
+    std::span<Vec3> contact_torque;
+    std::span<Vec3> ball_turn;  // within a step: contacts do not see how a ball is turned
+
+    /// Position and orientation; returns the largest distance that a point of the surface goes.
+    DOSEKI_DEVICE_FN double drift(std::size_t k, double dt) const {
+        if (!seen.is_free(k)) return 0.0;
+        RigidBodyState<D>& state = states[k];
+        const Vec3 turn = dt * seen.spin(k);
+        const double distance = dt * norm(state.velocity);
+        state.centre = state.centre + dt * state.velocity;
+        if (seen.shape(k).is_ball()) {
+            ball_turn[k] = ball_turn[k] + turn;
+            return distance;
+        }
+        state.orientation = state.orientation.turned(turn);
+        return distance + seen.shape(k).radius * norm(turn);
+    }
+    DOSEKI_DEVICE_FN void push_by_contacts(std::size_t k, double dt) const {
+        RigidBodyState<D>& state = states[k];
+        state.contact_impulse = state.contact_impulse + dt * contact_force[k];
+        if (!seen.is_free(k)) return;
+        state.velocity = state.velocity + (dt / seen.bodies[k].mass) * contact_force[k];
+        state.angular_momentum = state.angular_momentum + dt * contact_torque[k];
+    }
+    /// By the forces that the fluid had when it was evaluated.
+    DOSEKI_DEVICE_FN void push_by_flow(std::size_t k, double dt) const {
+        if (!seen.is_free(k)) return;
+        RigidBodyState<D>& state = states[k];
+        state.velocity = state.velocity + (dt / seen.bodies[k].mass) * state.flow_force;
+        state.angular_momentum = state.angular_momentum + dt * state.flow_torque;
+    }
+};
+
+}  // namespace doseki
