@@ -13,7 +13,7 @@ struct PushPair {
     std::span<const std::size_t> which;
     double moved, dt;
 
-    DOSEKI_DEVICE_FN void operator()(std::size_t n) const {
+    DOSEKI_WHOLE_DEVICE_FN void operator()(std::size_t n) const {
         const std::size_t k = which[n];
         if (rows.contacts[k].gap > rows.contacts[k].approach(moved))
             rows.part(k);

@@ -34,11 +34,12 @@ LEAST_KERNELS = {
     "contacts": 36,
     "solids": 14,
 }
+# Of kernels, and of functions that they call, which have no line of registers.
 PROPERTIES = re.compile(
     r"Function properties for (?P<name>\S+)\s+"
     r"\d+ bytes stack frame, (?P<stores>\d+) bytes spill stores, "
-    r"(?P<loads>\d+) bytes spill loads\s+"
-    r"ptxas info\s*: Used (?P<registers>\d+) registers"
+    r"(?P<loads>\d+) bytes spill loads"
+    r"(\s+ptxas info\s*: Used (?P<registers>\d+) registers)?"
 )
 OPTIONS = [
     "-arch=sm_90", "-std=c++20", "-rdc=true", "--expt-relaxed-constexpr",
@@ -61,8 +62,9 @@ def test_kernels_compile_without_spills(tmp_path, unit):
     )
     report = done.stdout + done.stderr
     assert done.returncode == 0, report
-    kernels = list(PROPERTIES.finditer(report))
-    for kernel in kernels:
-        print(f"{kernel['registers']} registers: {kernel['name']}")
-        assert int(kernel["stores"]) == int(kernel["loads"]) == 0, kernel["name"]
+    functions = list(PROPERTIES.finditer(report))
+    for function in functions:
+        print(f"{function['registers']} registers: {function['name']}")
+        assert int(function["stores"]) == int(function["loads"]) == 0, function["name"]
+    kernels = [function for function in functions if function["registers"]]
     assert len(kernels) >= LEAST_KERNELS[unit]
