@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from doseki.figures.movie import make_movie
+from doseki.figures.nothing import NothingToDrawError
 from doseki.figures.plot import figures
 from doseki.figures.space.box import Space
 from doseki.figures.space.ground import ground_behind
@@ -16,7 +18,7 @@ from doseki.figures.space.surfaces import Camera
 from doseki.figures.space.way import Way, dots_beside, extent_beside
 from doseki.geodata.grid import Raster
 from doseki.geodata.raster import write_raster
-from doseki.measure.views import whole_space
+from doseki.measure.views import View, whole_space
 from doseki.record.reader import load
 
 from ..synthetic_runs import make_plain_state
@@ -124,6 +126,15 @@ def test_what_stays_where_it_is_has_no_way(slide):
     run = slide(0)
     assert Way.between([run[0], run[0]]) is None
     assert Way.between([]) is None
+
+
+def test_a_window_that_nothing_reaches_is_no_picture(slide):
+    run = slide(0)
+    far = View(np.append(MIDDLE - 49, 0.0), np.append(MIDDLE - 40, 2000.0))
+    way, space = Way.between(list(run)), Space.around(list(run), whole_space(3), "terrain")
+    clouds = [dots_beside(snapshot, way, replace(space, view=far), None) for snapshot in run]
+    with pytest.raises(NothingToDrawError, match="nothing to see"):
+        extent_beside(clouds)
 
 
 def test_a_movie_of_a_run_on_a_terrain_has_its_ground(slide, tmp_path):

@@ -11,6 +11,7 @@ from ...geodata.raster import Raster
 from ...record.reader import Run, Snapshot
 from ..dots import MARGIN, Dots, ends_of_most, grain_radius
 from ..layout import Extent
+from ..nothing import NothingToDrawError
 from .box import Space
 from .surfaces import Camera
 
@@ -65,8 +66,13 @@ def dots_beside(snapshot: Snapshot, way: Way, space: Space, material: str | None
 
 
 def extent_beside(clouds: Sequence[Dots]) -> Extent:
-    """What holds all dots but drops that fly far from all others."""
+    """What holds all dots but drops that fly far from all others.
+
+    Raises NothingToDrawError where there is none.
+    """
     ends = [ends_of_most(cloud.points) for cloud in clouds if len(cloud.index)]
+    if not ends:
+        raise NothingToDrawError("there is nothing to see")
     low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
     margin = MARGIN * float(np.max(high - low)) + max(
         c.radius.max() for c in clouds if len(c.index)
