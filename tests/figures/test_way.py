@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from doseki.figures.kinds.panels import Panels
+from doseki.figures.kinds.spatial import draw_spatial
 from doseki.figures.movie import make_movie
 from doseki.figures.nothing import NothingToDrawError
 from doseki.figures.plot import figures
@@ -18,6 +20,7 @@ from doseki.figures.space.surfaces import Camera
 from doseki.figures.space.way import Way, dots_beside, extent_beside
 from doseki.geodata.grid import Raster
 from doseki.geodata.raster import write_raster
+from doseki.measure.moments import Moment
 from doseki.measure.views import View, whole_space
 from doseki.record.reader import load
 
@@ -120,6 +123,12 @@ def test_a_run_on_a_terrain_has_the_view_from_beside_its_way(slide):
     bed = section.collections[0].get_paths()[0].vertices
     inside = (bed[:, 0] > -4) & (bed[:, 0] < 44) & (bed[:, 1] > section.get_ylim()[0] + 0.1)
     assert bed[inside, 1] == pytest.approx(910 - 0.5 * bed[inside, 0], abs=1.0)
+
+
+def test_the_way_of_one_moment_is_that_of_the_run(slide):
+    run = slide(37)
+    figure = draw_spatial(run, [Moment(1, "")], Panels(whole_space(3), ("material",)))
+    assert figure.axes[2].get_title(loc="left") == "from beside its way"
 
 
 def test_what_stays_where_it_is_has_no_way(slide):

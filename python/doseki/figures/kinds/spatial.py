@@ -65,7 +65,8 @@ def draw_spatial(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
 
 
 def _section(run: Run, snapshots: Sequence[Snapshot], space: Space, what: Panels) -> _Section:
-    way = None if space.buried is None else Way.between(snapshots)
+    all_the_way = [run[0], *snapshots, run[-1]]
+    way = None if space.buried is None else Way.between(all_the_way)
     if way is None:
         return _Section(run, snapshots, what)
     return _BesideWay(run, snapshots, what, way, space)
