@@ -36,8 +36,8 @@ struct Inflow {
     double mass = 0.0, density = 0.0, smoothing_length = 0.0;  // of one particle
     std::int16_t material = 0;
     std::int32_t body = 0;
-    // Of a flow that rises and falls: heights of the points of a layer above the bed, and that of
-    // the flow at the times of `speed` [m]. Empty: every layer is whole.
+    // Of a flow that rises and falls: its heights from which a layer has each point, and those at
+    // the times of `speed` [m]. Empty: every layer is whole.
     Array<double> row_height, thickness;
 
     // State: layers set free so far, and whether the buffer exists.

@@ -65,6 +65,12 @@ auto sums_of_particle(const Lists& lists, const Pairs& pairs, const Term& term, 
     return kept[0];
 }
 
+/// What an epilogue keeps for the cluster of particle p, see the back end's `summaries`.
+template <class real, class Summary>
+DOSEKI_DEVICE_FN Summary& summary_of(std::span<Summary> summaries, std::size_t p) {
+    return summaries[p / static_cast<std::size_t>(lanes<real>) % summaries.size()];
+}
+
 /// `Real` is the number of pair sums; `width` how many particles share a list.
 template <class B, int D>
 concept Backend = requires {

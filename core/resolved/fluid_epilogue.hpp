@@ -110,7 +110,7 @@ private:
         return state_.surface[p] > FreeSurfaceIndicator::surface;
     }
     DOSEKI_DEVICE_FN FlowSummary<D>& summary(std::size_t p) const {
-        return summaries_[p / static_cast<std::size_t>(lanes<real>) % summaries_.size()];
+        return summary_of<real>(summaries_, p);
     }
 
     /// Gradients of first order: those of the kernel times B, the inverse of their moment.

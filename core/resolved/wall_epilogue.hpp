@@ -32,8 +32,7 @@ public:
         Vec<double, D> force = sums.force;
         const double before = wall.pressure[p];
         wall.pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
-        FlowSummary<D>& summary =
-            summaries_[p / static_cast<std::size_t>(lanes<real>) % summaries_.size()];
+        FlowSummary<D>& summary = summary_of<real>(summaries_, p);
         if (wall.face[p] != Face::none) {
             const Vec<double, D> film = film_force(p, sums, before);
             force = force + film;

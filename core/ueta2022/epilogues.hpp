@@ -42,12 +42,6 @@ struct MotionPacker {
     }
 };
 
-/// That of the cluster of particle p, see Backend::summaries.
-template <class real>
-DOSEKI_DEVICE_FN StepSummary& summary_of(std::span<StepSummary> summaries, std::size_t p) {
-    return summaries[p / static_cast<std::size_t>(lanes<real>) % summaries.size()];
-}
-
 /// Between the passes: Eqs. (11), (8), (4) or (7) and Balsara's switch of one particle.
 template <class real, int D>
 struct StressEpilogue {

@@ -45,13 +45,17 @@ def dots(snapshot: Snapshot, view: View, size: str = "grain", material: str | No
     (its radius is H h, as in the figures of the paper).
     """
     position = view.coordinates(snapshot["position"])
-    mask = _in_slice(position, snapshot, view)
-    if material is not None:
-        mask &= snapshot["material"] == material
-    index = np.flatnonzero(mask)
-    index = index[np.lexsort((snapshot["density"][index], ~snapshot["fixed"][index]))]
+    index = drawing_order(snapshot, _in_slice(position, snapshot, view), material)
     radius = SUPPORT * snapshot["smoothing_length"] if size == "support" else grain_radius(snapshot)
     return Dots(index, position[index][:, [0, -1]], radius[index])
+
+
+def drawing_order(snapshot: Snapshot, shown: np.ndarray, material: str | None) -> np.ndarray:
+    """Indices (n,) of the particles `shown` (N,), of one material where it is given, see `dots`."""
+    if material is not None:
+        shown = shown & (snapshot["material"] == material)
+    index = np.flatnonzero(shown)
+    return np.asarray(index[np.lexsort((snapshot["density"][index], ~snapshot["fixed"][index]))])
 
 
 def grain_radius(snapshot: Snapshot) -> np.ndarray:
@@ -92,15 +96,21 @@ def extent_of(snapshots: Sequence[Snapshot], view: View, size: str = "grain") ->
 def _ends(clouds: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
     """Least and greatest coordinates of points (n, 2), of which some are fixed (n,)."""
     walls = np.concatenate([points[fixed] for points, fixed in clouds])
-    free = [ends_of_most(points[~fixed]) for points, fixed in clouds if not fixed.all()]
+    free = [points[~fixed] for points, fixed in clouds if not fixed.all()]
     if not free:
         return walls.min(axis=0), walls.max(axis=0)
-    low, high = np.min([ends[0] for ends in free], axis=0), np.max([e[1] for e in free], axis=0)
+    low, high = ends_of_clouds(free)
     if len(walls):
         room = ROOM * np.max(high - low)
         low = np.minimum(low, np.maximum(walls.min(axis=0), low - room))
         high = np.maximum(high, np.minimum(walls.max(axis=0), high + room))
     return low, high
+
+
+def ends_of_clouds(clouds: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates of most points of each cloud (n, k); there is one or more."""
+    low, high = zip(*(ends_of_most(points) for points in clouds), strict=True)
+    return np.min(low, axis=0), np.max(high, axis=0)
 
 
 def ends_of_most(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

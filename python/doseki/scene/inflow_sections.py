@@ -42,9 +42,7 @@ class InflowSection:
     buffer_layers: int
     jitter: float  # random displacement of a particle, in spacings
     thickness: np.ndarray  # (k,) at `times`, m; none: every layer is whole
-    row_height: (
-        np.ndarray
-    )  # (n,) thickness from which a layer has the particle, m, where there is one
+    row_height: np.ndarray  # (n,) the thickness from which a layer has each particle, m
 
     @property
     def start(self) -> float:
@@ -93,10 +91,7 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     inflow, dp, dim = scenario.inflow[name], scenario.dp, scenario.dim
     material = scenario.materials[inflow.material]
     direction = inflow.direction / np.linalg.norm(inflow.direction)
-    rows = rows_of(scenario, name)
-    rows = rows[above_ground(scenario, rows, direction)]
-    if inflow.surge is not None:
-        rows = _enough_rows(scenario, name, rows)
+    rows = _rows_above_ground(scenario, name)
     if not len(rows):
         raise scenario.where.error(
             ("inflow", name, "position"), f"inflow.{name}: all of its section lies in the ground"
@@ -128,18 +123,21 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     )
 
 
-def _enough_rows(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
-    """More rows on top of those above the ground, as many as the largest area of a surge needs.
+def _rows_above_ground(scenario: Scenario, name: str) -> np.ndarray:
+    """The rows of a layer that lie above a terrain; of a surge as many as its largest area needs.
 
-    Where banks leave no room for particles these lie higher than the thickness.
+    Where banks leave no room for particles, more of them lie on top, higher than the thickness.
     """
-    direction = scenario.inflow[name].direction / np.linalg.norm(scenario.inflow[name].direction)
-    needed = _areas(scenario, name, np.array([scenario.inflow[name].height]))[0] / _cell(scenario)
-    for more in range(1, MOST_ROWS_MORE + 1):
-        if len(rows) >= needed:
-            break
+    inflow, needed, most_more = scenario.inflow[name], 0.0, 0
+    if inflow.surge is not None:
+        needed = _areas(scenario, name, np.array([inflow.height]))[0] / _cell(scenario)
+        most_more = MOST_ROWS_MORE
+    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    for more in range(most_more + 1):
         rows = rows_of(scenario, name, more)
         rows = rows[above_ground(scenario, rows, direction)]
+        if len(rows) >= needed:
+            break
     return rows
 
 

@@ -37,12 +37,13 @@ def draw_spatial(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
     section = _section(run, snapshots, space, what)
     cameras = [section.slanting, Camera.looking(DOWN)]
     extents = [seen_extent(space, snapshots, camera) for camera in cameras]
-    behind = [
-        ground_behind(run, space, *each, PIXELS) for each in zip(cameras, extents, strict=True)
-    ]
     plan = None if what.view.rotate else relief(run, extents[1], PIXELS)
-    if plan is not None:
-        behind[1] = Background.flat(plan)
+    behind = [
+        ground_behind(run, space, cameras[0], extents[0], PIXELS),
+        ground_behind(run, space, cameras[1], extents[1], PIXELS)
+        if plan is None
+        else Background.flat(plan),
+    ]
     rows = list(product(zip(moments, snapshots, strict=True), what.colours))
     grid = ViewRows(len(rows), [*extents, section.extent], what.title)
     colours = {name: colouring(run, snapshots, name, what.view) for name in what.colours}

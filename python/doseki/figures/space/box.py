@@ -11,7 +11,7 @@ from ...measure.census import keep_their_shape
 from ...measure.views import View, fluid_names
 from ...record.reader import Run, Snapshot
 from ..colouring import Colouring
-from ..dots import ROOM, ends_of_most, grain_radius
+from ..dots import ROOM, ends_of_clouds, grain_radius
 from ..layout import Extent
 from ..nothing import NothingToDrawError
 from .surfaces import Balls, Camera
@@ -38,14 +38,14 @@ class Space:
 
         Raises NothingToDrawError where there is no particle at any of them.
         """
-        ends = []
+        clouds = []
         for snapshot in (each for each in snapshots if len(each["id"])):
             position = view.coordinates(snapshot["position"])
             moves = ~snapshot["fixed"] & view.contains(snapshot["position"])
-            ends.append(ends_of_most(position[moves] if moves.any() else position))
-        if not ends:
+            clouds.append(position[moves] if moves.any() else position)
+        if not clouds:
             raise NothingToDrawError("there are no particles")
-        low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
+        low, high = ends_of_clouds(clouds)
         return cls(view, np.maximum(low, view.lower), np.minimum(high, view.upper), buried)
 
     def is_near(self, position: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...geodata.raster import Raster
 from ...record.reader import Run, Snapshot
-from ..dots import MARGIN, Dots, ends_of_most, grain_radius
+from ..dots import MARGIN, Dots, drawing_order, ends_of_clouds, grain_radius
 from ..layout import Extent
 from ..nothing import NothingToDrawError
 from .box import Space
@@ -28,13 +28,14 @@ class Way:
     @classmethod
     def between(cls, snapshots: Sequence[Snapshot]) -> Way | None:
         """From the first moment at which something can move to the last; None without a way."""
-        middles = [s["position"][~s["fixed"], :2].mean(axis=0) for s in snapshots if moves(s)]
-        if not middles:
+        moving = [snapshot for snapshot in snapshots if (~snapshot["fixed"]).any()]
+        if not moving:
             return None
-        first, last = middles[0], middles[-1]
+        ends = moving[0], moving[-1]
+        first, last = (end["position"][~end["fixed"], :2].mean(axis=0) for end in ends)
         length = float(np.linalg.norm(last - first))
-        sizes = [2 * grain_radius(s).max() for s in snapshots if moves(s)]
-        return cls(first, (last - first) / length) if length > max(sizes) else None
+        size = 2 * max(grain_radius(end).max() for end in ends)
+        return cls(first, (last - first) / length) if length > size else None
 
     def looking_back(self) -> Camera:
         """The camera that stands in front of the flow, above it and somewhat beside it."""
@@ -48,20 +49,12 @@ class Way:
         return np.column_stack([(position[:, :2] - self.start) @ self.direction, position[:, 2]])
 
 
-def moves(snapshot: Snapshot) -> bool:
-    """Whether anything in it can move."""
-    return bool((~snapshot["fixed"]).any())
-
-
 def dots_beside(snapshot: Snapshot, way: Way, space: Space, material: str | None) -> Dots:
     """All that moves and structures near it, seen from beside the way: structures first."""
     position = snapshot["position"]
     shown = space.view.contains(position) & (snapshot["body"] != space.buried)
     shown &= ~snapshot["fixed"] | space.is_near(space.view.coordinates(position))
-    if material is not None:
-        shown &= snapshot["material"] == material
-    index = np.flatnonzero(shown)
-    index = index[np.lexsort((snapshot["density"][index], ~snapshot["fixed"][index]))]
+    index = drawing_order(snapshot, shown, material)
     return Dots(index, way.points(position[index]), grain_radius(snapshot)[index])
 
 
@@ -70,13 +63,12 @@ def extent_beside(clouds: Sequence[Dots]) -> Extent:
 
     Raises NothingToDrawError where there is none.
     """
-    ends = [ends_of_most(cloud.points) for cloud in clouds if len(cloud.index)]
-    if not ends:
+    clouds = [cloud for cloud in clouds if len(cloud.index)]
+    if not clouds:
         raise NothingToDrawError("there is nothing to see")
-    low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
-    margin = MARGIN * float(np.max(high - low)) + max(
-        c.radius.max() for c in clouds if len(c.index)
-    )
+    low, high = ends_of_clouds([cloud.points for cloud in clouds])
+    largest = max(float(cloud.radius.max()) for cloud in clouds)
+    margin = MARGIN * float(np.max(high - low)) + largest
     return low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin
 
 
