@@ -69,7 +69,8 @@ public:
     void give_rigid(std::size_t n, std::size_t rigid, const Vec<double, D>& centre) {
         bodies_[n].rigid = rigid, bodies_[n].centre = centre, bodies_[n].orientation = {};
     }
-    /// Call when bodies or the points of rigid ones have changed.
+    /// Call when bodies or the points of rigid ones have changed. A number of a rigid point is that
+    /// of one deformable point for good, so that particles that are bound to an old one find it.
     void index(std::size_t rigid_bodies, const DeformableBodies<D>& deformable);
     /// Finds out what a body bears with the cracks that it has.
     void weigh_cracks(std::size_t n, const DeformableBodies<D>& deformable) {
@@ -147,6 +148,7 @@ private:
 template <int D>
 void BreakableBodies<D>::start(std::size_t rigid_bodies, const DeformableBodies<D>& deformable) {
     for (BreakableBody<D>& body : bodies_) measure(body, deformable);
+    deformable_point_.clear();
     index(rigid_bodies, deformable);
 }
 
@@ -177,7 +179,6 @@ void BreakableBodies<D>::index(std::size_t rigid_bodies, const DeformableBodies<
     for (std::size_t n = 0; n < size(); ++n)
         if (bodies_[n].has_rigid()) of_rigid_[bodies_[n].rigid] = static_cast<std::int32_t>(n);
     const Array<std::int32_t>& points = deformable.rigid_points();
-    deformable_point_.clear();
     for (std::size_t p = 0; p < points.size(); ++p) {
         if (points[p] < 0) continue;
         const auto own = static_cast<std::size_t>(points[p]);

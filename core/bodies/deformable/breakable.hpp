@@ -88,20 +88,21 @@ double TotalLagrangian<D>::least_intactness(std::size_t body) const {
     return least;
 }
 
+/// Where the point of a particle is now, however often its body has changed since it was bound.
+/// Points that are gone are deformable ones, from where dust takes them: see bind_dust.
 template <int D>
 void DeformableBodies<D>::rebind(Particles<D>& particles, std::size_t p,
                                  const Array<std::int32_t>& of_rigid) const {
-    if (has(particles, p)) {
-        const std::size_t k = particles.point(p);
-        if (solids_.is_rigid(static_cast<std::size_t>(solids_.body(k))))
-            particles.set_point(p, BodyKind::rigid, static_cast<std::size_t>(rigid_point_[k]));
-    } else if (particles.is_point_of(p, BodyKind::rigid) && particles.point(p) < of_rigid.size()) {
-        const std::int32_t k = of_rigid[particles.point(p)];
-        if (k < 0) return;
-        const auto own = static_cast<std::size_t>(k);
-        if (!solids_.is_rigid(static_cast<std::size_t>(solids_.body(own))))
-            particles.set_point(p, BodyKind::deformable, own);
+    std::size_t k = particles.point(p);
+    if (!has(particles, p)) {
+        if (!particles.is_point_of(p, BodyKind::rigid) || k >= of_rigid.size() || of_rigid[k] < 0)
+            return;
+        k = static_cast<std::size_t>(of_rigid[k]);
     }
+    if (!solids_.gone(k) && solids_.is_rigid(static_cast<std::size_t>(solids_.body(k))))
+        particles.set_point(p, BodyKind::rigid, static_cast<std::size_t>(rigid_point_[k]));
+    else
+        particles.set_point(p, BodyKind::deformable, k);
 }
 
 }  // namespace doseki

@@ -201,3 +201,16 @@ def test_parts_leave_through_an_outflow(build, dim, rests):
     if dim == 2:
         # What leaves while it vibrates takes the error of its steps along.
         assert found[region] == pytest.approx(found[""], rel=1e-9 if rests else 1e-6)
+
+
+@pytest.mark.parametrize(("share", "turn"), [(5.25, 1.1), (6.0, 1.1), (7.0, 0.3), (8.0, 1.1)])
+def test_particles_follow_bodies_that_change_often_within_a_step(build, share, turn):
+    """Rigid discs are struck, break into parts that are rigid in the end, and shed dust: at once."""
+    simulation = build(struck(2, share, turn))
+    mass, momentum, _ = sums(simulation)
+    simulation.advance(limit=0.002, pause=0.002, max_steps=1)
+    assert simulation.time == 0.002
+    totals = simulation.totals()
+    assert min(totals["parts"], totals["dust_grains"]) > 0
+    np.testing.assert_allclose(sums(simulation)[1], momentum, rtol=0, atol=1e-12 * mass * MEETS)
+    assert (simulation.state()["grain"] >= 0).all()
