@@ -92,7 +92,7 @@ def test_damage_is_where_bonds_are_broken(dropped):
 
 def test_a_mirrored_drop_has_the_same_account(tmp_path):
     """Until it shatters, which tells the sides of the disc apart by rounding."""
-    short = ("time_max=0.001", "time_out=0.001")
+    short = ("time_max=0.0008", "time_out=0.0008")
     left, right = (drop(tmp_path / sign, sign, 1, *short).history for sign in ("-", "+"))
     assert right["fracture_work"][-1] > 0.01
     for name in BODY_ENERGIES:

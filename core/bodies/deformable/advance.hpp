@@ -6,7 +6,6 @@
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/deformable/internal_forces.hpp"
-#include "bodies/elastic/outer.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "physics/hyperelastic/strain.hpp"
 #include "physics/wall.hpp"

@@ -95,13 +95,26 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     tension_[p] = largest_principal(material_stress(deformation_[p], stress_[p])).value;
 }
 
-/// For the places and velocities in the records.
+/// For the places and velocities in the records, of the points in these clusters; none: of all.
 template <int D>
-void TotalLagrangian<D>::update_deformations() {
+void TotalLagrangian<D>::update_deformations(const Array<std::uint32_t>& clusters) {
     auto update = [this](std::size_t p, const BondedDeformation<double, D>& sums) {
         update_bonded(p, sums.now, sums.shape);
     };
-    sum_over_pairs<OnThreads>(BondedDeformationTerm<D>{{records()}, bonds_.rows()}, update);
+    sum_over_pairs<OnThreads>(BondedDeformationTerm<D>{{records()}, bonds_.rows()}, update,
+                              clusters.empty() ? stepped_.clusters() : &clusters);
+}
+
+/// In which there are points of bonds that have cracks.
+template <int D>
+Array<std::uint32_t> TotalLagrangian<D>::cracked_clusters() const {
+    Array<std::uint8_t> has_cracks(neighbours_.clusters().size(), 0);
+    bonds_.for_each_cracked_point(
+        [&](std::uint32_t p) { has_cracks[p / static_cast<std::size_t>(lanes<double>)] = 1; });
+    Array<std::uint32_t> clusters;
+    for (std::uint32_t c = 0; c < has_cracks.size(); ++c)
+        if (has_cracks[c] != 0) clusters.push_back(c);
+    return clusters;
 }
 
 template <int D>
@@ -116,7 +129,9 @@ template <int D>
 void TotalLagrangian<D>::advance_bonds(double dt) {
     auto point = [this](std::size_t p) { return bond_point(p); };
     auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
-    bonds_.advance(dt, point, body, [this](std::size_t p) { return tension_[p]; });
+    bonds_.advance(
+        dt, point, body, [this](std::size_t p) { return tension_[p]; },
+        [this] { update_deformations(cracked_clusters()); });
     bonds_.settle(
         point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
         [this](std::size_t p, const Mat<double, D>& shape) { take_shape(p, shape); });

@@ -75,10 +75,17 @@ struct AcceleratePoint {
 
 template <int D>
 template <class Where, class Term, class Epilogue>
-void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
+void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue,
+                                        const Array<std::uint32_t>* only) const {
     const PairsOf<typename Where::Backend, D> pairs{
-        neighbours_.clusters(), motion_, {}, {.only = stepped_.clusters()}};
+        neighbours_.clusters(), motion_, {}, {.only = only}};
     Where::sum_pairs(neighbours_, pairs, term, epilogue);
+}
+
+template <int D>
+template <class Where, class Term, class Epilogue>
+void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue) const {
+    sum_over_pairs<Where>(term, epilogue, stepped_.clusters());
 }
 
 template <int D>

@@ -137,15 +137,25 @@ struct BondPoint {
 };
 
 /// What one step did to bonds: energy that went into them [J], 2-D: [J/m], how many ceased to bear
-/// tension, and how many are gone.
+/// tension, how many are gone, and how often any moved.
 struct BondChange {
     double work = 0.0;
-    std::size_t broken = 0, gone = 0;
+    std::size_t broken = 0, gone = 0, moved = 0;
 
     BondChange operator+(const BondChange& other) const {
-        return {work + other.work, broken + other.broken, gone + other.gone};
+        return {work + other.work, broken + other.broken, gone + other.gone, moved + other.moved};
     }
 };
+
+/// Force over its weight with which each of the points of a bond resists a change of the jump, Eq.
+/// (109), before the cracks of a step move.
+template <int D>
+struct FirstPulls {
+    Vec<double, D> of_a, of_b;
+};
+
+template <int D>
+class BondStep;
 
 /// The pair of points a < b of a bond, and -F of Eq. (25) at rest.
 struct BondEnds {
@@ -164,6 +174,11 @@ public:
     /// All numbers but 0, which is that of pairs that cannot break.
     std::size_t size() const { return pairs_.size(); }
 
+    /// The points of those that have cracks, in the last step of these; more than once.
+    template <class F>
+    void for_each_cracked_point(const F& f) const {
+        for (const std::uint32_t n : cracked_) f(pairs_[n].a), f(pairs_[n].b);
+    }
     /// A bond between points a < b, `weight` = -F of Eq. (25) at rest.
     void add(std::uint32_t a, std::uint32_t b, double weight) {
         pairs_.push_back({a, b, weight});
@@ -262,9 +277,11 @@ public:
     double opening(const Point& point, const Body& body) const;
 
     /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody, tension(p) the
-    /// largest principal value of its material_stress.
-    template <class Point, class Body, class Tension>
-    void advance(double dt, const Point& point, const Body& body, const Tension& tension);
+    /// largest principal value of its material_stress; update() brings points to the
+    /// jumps that their bonds have now: for_each_cracked_point.
+    template <class Point, class Body, class Tension, class Update>
+    void advance(double dt, const Point& point, const Body& body, const Tension& tension,
+                 const Update& update);
     /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
     /// share), the places after a share of a step; tells of the points that lost some the moment of
     /// those that are left: take_shape(p, moment).
@@ -302,7 +319,19 @@ private:
                          const Place& place, const Counts& counts) const;
     /// Of the cracks around each point.
     template <class Point>
-    void find_moments(const Point& point);
+    void find_moments(std::span<const std::uint32_t> bonds, const Point& point);
+    template <class Point>
+    void find_tips(const Point& point);
+    template <class Point, class Body, class Tension>
+    void find_cracked(const Point& point, const Body& body, const Tension& tension);
+    template <class Point, class Body>
+    BondStep<D> step_of(std::uint32_t n, const Point& point, const Body& body);
+    template <class F>
+    BondChange sum_over_cracked(const F& f);
+    template <class Point, class Body>
+    BondChange begin_cracks(double dt, const Point& point, const Body& body);
+    template <class Point, class Body>
+    BondChange end_cracks(const Point& point, const Body& body);
     template <class Point, class Body>
     double first_halves(std::size_t p, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {
@@ -324,6 +353,8 @@ private:
     Array<std::uint32_t> stepped_;  // numbers of bonds, rising
     Array<std::uint8_t> settled_;   // see BondPoint
     Array<CrackTip<D>> tip_;        // of the points of stepped bonds, in a step
+    Array<std::uint32_t> cracked_;  // of stepped_, in a step
+    Array<FirstPulls<D>> first_;    // of cracked_
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;

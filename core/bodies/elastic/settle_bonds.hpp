@@ -86,9 +86,10 @@ double Bonds<D>::first_halves(std::size_t p, const Point& point, const Body& bod
     for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
         const BondEnds& ends = pairs_[bond_[k]];
         BondState<D>& state = state_[bond_[k]];
-        if (state.whole != 0.0 && state.cracked())
-            sum +=
-                BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).first_half(p);
+        if (state.whole == 0.0 || !state.cracked()) continue;
+        const auto at = std::ranges::lower_bound(cracked_, bond_[k]) - cracked_.begin();
+        sum += BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
+                   .first_half(p, first_[at]);
     }
     return sum;
 }

@@ -298,6 +298,9 @@ private:
 
     // Where loops may run elsewhere: bodies/deformable/internal_forces.hpp.
     template <class Where, class Term, class Epilogue>
+    void sum_over_pairs(const Term& term, const Epilogue& epilogue,
+                        const Array<std::uint32_t>* only) const;  // none: all clusters
+    template <class Where, class Term, class Epilogue>
     void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
     template <class Where>
     void predict(double half_dt);
@@ -316,7 +319,8 @@ private:
     void sum_bonded_forces(const F& take);
     void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
                        const Mat<double, D>& shape);
-    void update_deformations();
+    void update_deformations(const Array<std::uint32_t>& clusters = {});
+    Array<std::uint32_t> cracked_clusters() const;
     void advance_bonds(double dt);
 
     void choose_stepped() {

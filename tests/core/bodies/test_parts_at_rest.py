@@ -92,7 +92,8 @@ def test_contacts_make_no_energy_when_parts_come_off(build, share, turn):
     core = getattr(simulation, "_core", simulation)
     start, before = energy(simulation), 0.0
     for time in np.arange(1e-5, 0.0025, 1e-5):
-        run(simulation, time)
+        for left in (7.5e-6, 5e-6, 2.5e-6, 0.0):  # the error of a step falls with its square
+            run(simulation, time - left)
         stored = core.body_energy()["contacts"]
         given = simulation.totals()["contact_work"] + stored
         assert given < before + 1e-3 * start
