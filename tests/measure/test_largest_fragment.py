@@ -10,7 +10,7 @@ from doseki.record.reader import load
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
-SPEEDS = (2.5, 4.0, 8.0)  # m/s
+SPEEDS = (2.0, 4.0, 8.0)  # m/s
 
 pytestmark = pytest.mark.minutes
 
@@ -21,7 +21,7 @@ def gradings(tmp_path_factory):
     found = {}
     for speed in SPEEDS:
         folder = tmp_path_factory.mktemp("drop") / "run"
-        settings = [f"speed={speed}", "across=20", "time_max=0.0004", "time_out=0.0004"]
+        settings = [f"speed={speed}", "across=24", "time_max=0.0004", "time_out=0.0004"]
         run_scenario(load_scenario("drop-weight", settings), folder, RunOptions(threads=1))
         found[speed] = grading_of(load(folder)[-1])
     return found
