@@ -9,7 +9,13 @@ from typing import Any
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding
-from ..inflow_sections import InflowSection, build_inflows, rows_of, surge_volumes
+from ..inflow_sections import (
+    InflowSection,
+    build_inflows,
+    height_above_ground,
+    rows_of,
+    surge_volumes,
+)
 from ..kinds.body import Body
 from ..kinds.release import ReleaseBody
 
@@ -76,6 +82,19 @@ class CutInflow(Finding):
 
 
 @dataclass(frozen=True)
+class HangingInflow(Finding):
+    """An inflow that begins in the air."""
+
+    height: float  # m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: its section begins {self.height:.3g} m above the ground, so what "
+            "enters falls; let position be a corner below the bed"
+        )
+
+
+@dataclass(frozen=True)
 class CoarseSurge(Finding):
     """A surge of which the particles of a layer are not what its thickness asks for."""
 
@@ -127,6 +146,9 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
 def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Finding]:
     """Doubts about one inflow."""
     place = f"inflow.{section.name}"
+    height = height_above_ground(scenario, section.name)
+    if height > scenario.dp:
+        yield HangingInflow(place, height)
     if scenario.inflow[section.name].surge is None:
         rows, all_rows = len(section.rows), len(rows_of(scenario, section.name))
         if rows < all_rows:
