@@ -93,7 +93,7 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        raster = _used(_with_heights(path, read_raster(path)), terrain)
+        raster = _used(_with_heights(path, _read(path, where)), terrain)
     except GeodataError as error:
         raise where.error(("terrain",), f"terrain: {error}") from None
     if dim == 3:
@@ -105,6 +105,16 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
             "or give a CSV file with columns x and z",
         )
     return _bed_of_section(raster, terrain, dp, where)
+
+
+def _read(path: Path, where: Where) -> Raster:
+    """The raster of a file; one that cannot be opened or is damaged is named with its key."""
+    try:
+        return read_raster(path)
+    except GeodataError:
+        raise
+    except UserError as error:
+        raise where.error(("terrain", "file"), f"terrain.file: {error}") from None
 
 
 def _with_heights(path: Path, raster: Raster) -> Raster:
