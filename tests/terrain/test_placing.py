@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from doseki.errors import UserError
@@ -93,4 +94,13 @@ def test_a_map_that_cannot_be_read_is_named_with_its_key(tmp_path, content):
     if content is not None:
         (tmp_path / "dem.tif").write_bytes(content)
     with pytest.raises(UserError, match=r"line \d+: terrain.file: .*dem.tif: "):
+        load_scenario(path)
+
+
+@pytest.mark.parametrize("window", ["", "window = [1, 1, 3, 3]"])
+def test_a_map_without_data_is_named_with_its_key(tmp_path, window):
+    grid(tmp_path / "terrain.asc", lambda x, y: np.full(x.shape, np.nan))
+    path = tmp_path / "case.toml"
+    path.write_text(text(3, dp=0.1, more=SQUARE).replace("[terrain]", f"[terrain]\n{window}"))
+    with pytest.raises(UserError, match=r"line \d+: terrain.file: .*terrain.asc: no cell .* data"):
         load_scenario(path)

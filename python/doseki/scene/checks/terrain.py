@@ -20,6 +20,7 @@ from ..kinds.body import Body
 from ..kinds.release import ReleaseBody
 
 VOLUME = 0.01  # by which the particles of a release may miss what is asked for
+STRETCH = 0.01  # by which lengths on a map may differ from those on the ground
 SURGE = 0.1  # by which the layers of a surge may
 FEW_LAYERS = 2.0
 
@@ -48,6 +49,23 @@ class Coarse(Finding):
         return (
             f"{self.place}: cells of {self.cell:g} m are smaller than particles (dp = {self.dp:g} "
             f"m), which cannot follow them; terrain.resample = {self.dp:g} averages them"
+        )
+
+
+@dataclass(frozen=True)
+class Stretched(Finding):
+    """A map on which lengths are not those on the ground, as in Web Mercator."""
+
+    factor: float
+    latitude: float  # degrees
+    utm: int
+
+    def __str__(self) -> str:
+        side = "N" if self.latitude >= 0 else "S"
+        return (
+            f"{self.place}: lengths on this map are {self.factor:.3g} times those on the ground "
+            f"(at {abs(self.latitude):.3g} degrees {side}), and are taken as metres: convert it to "
+            f"UTM, gdalwarp -t_srs EPSG:{self.utm} IN OUT, or to a national grid"
         )
 
 
@@ -129,6 +147,9 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         return
     if bed.unknown.any():
         yield Unknown(TERRAIN, bed.unknown_share)
+    scale = bed.scale
+    if scale is not None and abs(scale.factor - 1.0) > STRETCH:
+        yield Stretched(f"{TERRAIN}.file", scale.factor, scale.latitude, scale.utm)
     if bed.cell < 0.5 * scenario.dp:
         yield Coarse(TERRAIN, bed.cell, scenario.dp)
     for section in build_inflows(scenario, list(scenario.inflow)):
