@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from doseki.assess.summary import summary_text
+from doseki.assess.summary import duration_text, summary_text
 from doseki.record.reader import load
 
 
@@ -23,3 +23,10 @@ def test_summary_of_a_flow(flow_folder):
 def test_summary_without_snapshots_or_history(tmp_path, record_run):
     record_run(tmp_path / "run", times=())
     assert "synthetic" in summary_text(load(tmp_path / "run"))
+
+
+def test_long_times_are_in_hours():
+    assert duration_text(9.96) == "10.0 s"
+    assert duration_text(75) == "1 min 15 s"
+    assert duration_text(3599) == "59 min 59 s"
+    assert duration_text(87884) == "24 h 25 min"

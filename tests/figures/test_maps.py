@@ -12,12 +12,14 @@ from matplotlib.image import imread
 from doseki.cli.app import app
 from doseki.errors import UserError
 from doseki.figures.maps.drawing import draw_map, draw_profile
-from doseki.figures.maps.output import MapOptions, write_pictures
+from doseki.figures.maps.output import MapOptions, map_makers, write_pictures
+from doseki.figures.maps.structures import COLOUR, Structures
 from doseki.figures.nothing import NothingToDrawError
 from doseki.geodata.grid import Raster
 from doseki.geodata.raster import read_raster, write_raster
 from doseki.measure.maps.profile import along_path
 from doseki.measure.maps.quantities import ARRIVAL_TIME, PEAK_DEPTH, QUANTITIES
+from doseki.record.reader import load
 
 WEST, SOUTH = 460_000.0, 5_200_000.0
 TITLE = "a slide"
@@ -55,6 +57,99 @@ def slide(tmp_path, record_run):
     recorder.close({"status": "done"})
     write_raster(tmp_path / "run/terrain.asc", hill())
     return tmp_path / "run"
+
+
+DAM = np.array([WEST + 55, SOUTH + 24])  # middle of a dam, 16 m long, 4 m thick and 6 m high
+
+
+def dam(angle):
+    """Particles of a dam at an angle (degrees) from the east, as far above the slope as in it."""
+    axes = [np.arange(-a + 0.5, a, 1.0) for a in (8, 2, 3)]
+    along, across, up = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    x, y = c * along - s * across, s * along + c * across
+    return np.stack([DAM[0] + x, DAM[1] + y, 900 - 0.5 * (55 + x) + up], axis=1)
+
+
+def with_dam(angle, height=0.0):
+    """The sliding block above a dam that is moved upwards, m."""
+
+    def state(time):
+        block, bodies = sliding(time), dam(angle) + np.array([0, 0, height])
+        n = len(bodies)
+        wall = {key: np.zeros((n, *value.shape[1:]), value.dtype) for key, value in block.items()}
+        wall |= {
+            "position": bodies, "mass": np.full(n, 1000.0), "density": np.full(n, 1000.0),
+            "smoothing_length": np.full(n, 1.2), "body": np.full(n, 2, np.int32),
+            "motion": np.ones(n, np.int32), "id": len(block["id"]) + np.arange(n),
+            "grain": np.full(n, -1),
+        }  # fmt: skip
+        return {key: np.concatenate([block[key], wall[key]]) for key in block}
+
+    return state
+
+
+@pytest.fixture
+def dammed(tmp_path, record_run):
+    """A function that makes a run of the block, with maps, and a dam at an angle and a height."""
+
+    def make(angle, height=0.0):
+        path = tmp_path / f"{angle}_{height}"
+        recorder, _ = record_run(
+            path, dim=3, times=(0.0, 2.5, 5.0), state_at=with_dam(angle, height)
+        )
+        recorder.close({"status": "done"})
+        write_raster(path / "terrain.asc", hill())
+        return path
+
+    return make
+
+
+def grey_of(figure, points):
+    """Whether a figure has the colour of structures at points (n, 2) of its map."""
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3] / 255
+    at = figure.axes[0].transData.transform(points).astype(int)
+    seen = pixels[len(pixels) - 1 - at[:, 1], at[:, 0]]
+    return np.abs(seen - float(COLOUR)).max(axis=1) < 0.01
+
+
+@pytest.mark.parametrize("angle", [0, 37, 90, 215])
+def test_a_map_shows_the_dam_that_stands_on_it(dammed, angle):
+    path = dammed(angle)
+    write_pictures(path, MapOptions())
+    scenario = path / "scenario.toml"
+    scenario.write_text(scenario.read_text() + "\n[maps]\n")
+    figures = dict(map_makers(load(path)))
+    inside = dam(angle)[:, :2]
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    away = DAM + 1.4 * 2 * np.array([[-s, c], [s, -c]])  # 0.8 m beside its faces
+    for name in ("peak_depth", "arrival_time"):
+        figure = figures[name]()
+        assert grey_of(figure, inside).mean() > 0.98
+        assert not grey_of(figure, away).any()
+        (key,) = figure.axes[0].get_legend().get_texts()
+        assert key.get_text() == "fixed bodies"
+        box, scale = key.get_window_extent(), figure.axes[1].get_window_extent()
+        assert box.y1 <= scale.y0
+        assert box.y0 >= 0
+        assert box.x1 <= figure.bbox.x1
+
+
+def test_runs_with_other_dams_share_none(dammed):
+    runs = [load(dammed(angle)) for angle in (0, 90)]
+    assert len(Structures.of_all(runs).place) == len(dam(0)) // 2
+    table = "\n[body.dam]\nfixed = true\nmin = [0, 0, {}]\n"
+    for k, run in enumerate(runs):
+        path = run.folder.scenario
+        path.write_text(path.read_text() + table.format(k))
+    assert Structures.of_all([load(run.directory) for run in runs]) is None
+
+
+@pytest.mark.parametrize("height", [-10.0, 10.0])
+def test_a_body_in_the_ground_is_not_on_the_map(dammed, height):
+    path = dammed(0, height)
+    assert (Structures.of(load(path)) is None) == (height < 0)
 
 
 def test_a_run_without_maps_is_mapped_from_its_snapshots(slide):

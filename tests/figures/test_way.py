@@ -15,7 +15,7 @@ from doseki.figures.movie import make_movie
 from doseki.figures.nothing import NothingToDrawError
 from doseki.figures.plot import figures
 from doseki.figures.space.box import Space
-from doseki.figures.space.ground import ground_behind
+from doseki.figures.space.ground import ground_behind, space_of
 from doseki.figures.space.surfaces import Camera
 from doseki.figures.space.way import Way, dots_beside, extent_beside
 from doseki.geodata.grid import Raster
@@ -44,18 +44,33 @@ def slope(angle):
     return grid.with_values(900 - 0.5 * along + 0.05 * across**2)
 
 
+def dam_across(angle):
+    """Particles of a dam 28 to 32 m down the channel, 20 m wide, 5 m in and 5 m above the bed."""
+    axes = [np.arange(-a, a, 1.0) + 0.5 for a in (2, 10, 5)]
+    along, across, up = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
+    plan = MIDDLE + np.outer(along + 30, towards(angle)) + np.outer(across, towards(angle + 90))
+    return np.column_stack([plan, 885 + up])
+
+
 @pytest.fixture
 def slide(tmp_path, record_run):
     """A function that makes a run of a block that slides 40 m down the channel of that angle."""
 
-    def at(angle):
+    def at(angle, dam=False):
         def state(time):
             axes = [np.arange(-a, a, 1.0) + 0.5 for a in (6, 3, 1)]
             along, across, up = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
             along = along - 20 + 10 * time
             plan = MIDDLE + np.outer(along, towards(angle)) + np.outer(across, towards(angle + 90))
             position = np.column_stack([plan, 902 - 0.5 * along + up])
-            return make_plain_state(position, np.zeros_like(position), np.zeros(len(position), int))
+            kind = np.zeros(len(position), int)
+            if dam:
+                wall = dam_across(angle)
+                position, kind = (
+                    np.concatenate([position, wall]),
+                    np.repeat([0, 2], [len(position), len(wall)]),
+                )
+            return make_plain_state(position, np.zeros_like(position), kind)
 
         folder = tmp_path / f"at_{angle}"
         recorder, _ = record_run(folder, dim=3, times=(0.0, 2.0, 4.0), state_at=state)
@@ -123,6 +138,33 @@ def test_a_run_on_a_terrain_has_the_view_from_beside_its_way(slide):
     bed = section.collections[0].get_paths()[0].vertices
     inside = (bed[:, 0] > -4) & (bed[:, 0] < 44) & (bed[:, 1] > section.get_ylim()[0] + 0.1)
     assert bed[inside, 1] == pytest.approx(910 - 0.5 * bed[inside, 0], abs=1.0)
+
+
+@pytest.mark.parametrize("angle", [37, 90])
+def test_the_dam_that_a_flow_meets_is_drawn_but_for_its_foot(slide, angle):
+    run = slide(angle, dam=True)
+    snapshot = run[-1]
+    space = space_of(run, list(run), whole_space(3))
+    fixed, height = snapshot["fixed"], snapshot["position"][:, 2]
+    below = height < run.ground.sampled(*snapshot["position"][:, :2].T) - 0.2
+    away = Way.between(list(run)).looking_back().away
+    shown = space.shows(snapshot, snapshot["position"], away)
+    assert shown[fixed & ~below & space.is_near(snapshot["position"])].all()
+    assert not shown[fixed & below].any()
+    assert shown[~fixed].all()
+
+
+@pytest.mark.parametrize("angle", [37, 90])
+def test_from_beside_there_is_ground_below_and_behind_a_dam(slide, angle):
+    section = dict(figures(slide(angle, dam=True)))["overview"].axes[2]
+    left, right = section.get_xlim()
+    bed = section.collections[0].get_paths()[0].vertices
+    top = bed[bed[:, 1] > section.get_ylim()[0] + 0.1]
+    assert right > 50 + 1.5
+    assert top[:, 0].min() < left + 1.2
+    assert top[:, 0].max() > right - 1.2
+    behind = top[:, 0] > 47
+    assert top[behind, 1] == pytest.approx(910 - 0.5 * top[behind, 0], abs=1.2)
 
 
 def test_the_way_of_one_moment_is_that_of_the_run(slide):

@@ -75,13 +75,17 @@ def test_terrain_is_drawn(map_run, tmp_path):
     raster = Raster(heights, CORNER[0] - 1.0, CORNER[1] - 1.5, 0.1)
     write_raster(map_run / "terrain.asc", raster)
     page = write_report(map_run).path
-    assert state_of(page, "", tmp_path / "profile")["terrain"]
+    state = state_of(page, "", tmp_path / "profile")
+    assert state["terrain"]
+    assert not state["cut"]  # what stands in front on a map may be the dam
     terrain = picture_of(page, "elevation=60", tmp_path / "with")
     assert near(terrain, soil, 25) > near(without, soil, 25) + 20000
     (map_run / "terrain.asc").write_text("ncols 5\nnrows")
     written = write_report(map_run)
     assert any("terrain.asc is left out" in note for note in written.notes)
-    assert not state_of(page, "", tmp_path / "profile")["terrain"]
+    state = state_of(page, "", tmp_path / "profile")
+    assert not state["terrain"]
+    assert state["cut"]
 
 
 def test_a_flat_run_is_drawn_face_on_in_place(drawn_flow, tmp_path):

@@ -94,6 +94,19 @@ def test_a_wall_without_a_gauge_is_not_looked_at(tmp_path):
     assert not findings(path, Shallow)
 
 
+def test_a_dam_beside_the_map_is_told_only_that(tmp_path):
+    path = valley_wall(tmp_path, 0.5)
+    there, beyond = ("min = [3.0, ", "max = [4.2, "), ("min = [3000.0, ", "max = [3001.2, ")
+    content = path.read_text()
+    for old, new in zip(there, beyond, strict=True):
+        assert old in content
+        content = content.replace(old, new)
+    path.write_text(content)
+    doubts = filled_simulation(load_scenario(path)).warnings
+    (one,) = (each for each in doubts if each.place == "body.dam")
+    assert "lies beyond the terrain" in str(one)
+
+
 @pytest.mark.parametrize(
     ("thickness", "keys", "told"),
     [(0.5, "", True), (0.8, "", True), (0.9, "", False), (0.5, "normal = [-1, 0]", False)],

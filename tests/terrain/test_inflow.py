@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
 from doseki.scene.checks.terrain import terrain_findings
@@ -193,3 +194,31 @@ def test_a_dry_channel_waits_for_what_comes_later(path):
     simulation.advance(limit=0.8, pause=0.8, max_steps=10**6)
     assert simulation.totals()["mass_entered"] > 100
     assert fluid(simulation.state()).any()
+
+
+@pytest.mark.parametrize("inflow", [INFLOW, SURGE])
+def test_one_beyond_the_map_is_refused(path, inflow):
+    """All that entered there would leave at once."""
+    path.write_text(text(3, dp=0.1, speed=5.0, more=inflow))
+    for place in ("[5000.0, 0.5, 1.2]", "[1.0, 2.5, 2.8]"):  # far away, and half of its width
+        scenario = load_scenario(path, [f"inflow.flood.position={place}"])
+        with pytest.raises(UserError, match=r"flood: its section reaches beyond the terrain"):
+            build_inflows(scenario, ["terrain", "flood"])
+
+
+@pytest.mark.parametrize("inflow", [INFLOW, SURGE])
+def test_one_in_the_air_is_warned_about(path, inflow):
+    path.write_text(text(3, dp=0.1, speed=5.0, more=inflow))
+    high = load_scenario(path, ["inflow.flood.position=[1.0, 0.5, 7.0]"])
+    said = [str(each) for each in terrain_findings(high, {})]
+    assert any("its section begins 4.36" in each for each in said)
+    low = load_scenario(path)
+    assert not any("its section begins" in str(each) for each in terrain_findings(low, {}))
+
+
+def test_what_a_dry_scene_takes_is_not_known_before_something_enters(path):
+    """Every quantity is that of particles, and there are none to measure."""
+    late = load_scenario(path, ["inflow.flood.start=0.9", "time_max=0.1"])
+    said = check_scenario(late)
+    assert "not known: nothing has entered" in said
+    assert "begins" not in said

@@ -11,6 +11,7 @@ from doseki.errors import UserError
 from doseki.geodata.raster import Raster, write_raster
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_scene
+from doseki.scene.ground import Ground
 from doseki.scene.kinds.registry import body_of
 
 from .scenes import grid, profile, text
@@ -148,6 +149,51 @@ max = [6, 0.8]
     x, z = scene.particles.position.T
     assert (z > 0.2 * (x - 3) ** 2).all()
     assert scene.particles.mass.sum() == pytest.approx(1000 * 4 / 3 * 0.8 * 2, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("about", "said"),
+    [
+        ({"Thickness": 0.5}, "no attribute thickness, .*; did you mean Thickness?"),
+        ({"depth": 0.5}, "no attribute thickness, .*; known: depth"),
+        ({}, "no attribute thickness, .* give body.slide.thickness$"),
+        ({"thickness": "0.5"}, "thickness = '0.5', not a length"),
+    ],
+)
+def test_polygons_without_a_thickness_are_refused(case, tmp_path, about, said):
+    ring = [[1, 1], [4, 1], [4, 3], [1, 3], [1, 1]]
+    area = {"type": "Polygon", "coordinates": [ring]}
+    feature = {"type": "Feature", "properties": about, "geometry": area}
+    (tmp_path / "area.geojson").write_text(json.dumps(feature))
+    with pytest.raises(UserError, match=said):
+        load_scenario(case('file = "area.geojson"'))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_one_that_is_far_away_is_refused_before_it_is_filled(case, monkeypatch, dim):
+    """As that of another map; filled, it would be as many layers as the machine has memory for."""
+
+    def layer(*_):
+        raise AssertionError("layers of a release that is not on the map")
+
+    monkeypatch.setattr(Ground, "layer", layer)
+    monkeypatch.setattr(Ground, "tile", layer)
+    keys = "polygon = [[3e6, 1], [3.1e6, 1], [3e6, 3e5]]" if dim == 3 else "between = [3e6, 4e6]"
+    with pytest.raises(UserError, match=r"reaches beyond the terrain, .* as at \[3000000.0"):
+        build_scene(load_scenario(case(keys + "\nthickness = 0.5", dim=dim)))
+
+
+def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):
+    from rasterio.crs import CRS
+
+    path = case('file = "depth.asc"')
+    (tmp_path / "terrain.prj").write_text(CRS.from_epsg(32633).to_wkt())
+    depth = Raster(np.full((20, 30), 0.5), 1.0, 1.0, 0.1, CRS.from_epsg(31287).to_wkt())
+    write_raster(tmp_path / "depth.asc", depth)
+    with pytest.raises(UserError, match=r"slide.file: .*depth.asc and the terrain have different"):
+        build_scene(load_scenario(path))
+    (tmp_path / "depth.prj").unlink()
+    build_scene(load_scenario(path))
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 import time
 from dataclasses import dataclass
@@ -40,13 +41,19 @@ class Estimate:
 
 
 def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) -> Estimate:
-    """Measure on a started `simulation`, which is stepped, and extrapolate to time_max."""
+    """Measure on a started `simulation`, which is stepped, and extrapolate to time_max.
+
+    Where nothing has entered a dry scene by then, what particles take is nan.
+    """
     start = len(simulation)
     rate, timestep = _burst(simulation, scenario.time_max)
     mean, most = _particles(scenario, body_names, start)
     done, now, end = simulation.steps, simulation.time, scenario.time_max
     steps = done + steps_between(now, end, timestep, scenario.sampled_intervals)
     unhindered = done + steps_between(now, end, timestep, ())
+    if not len(simulation):
+        unknown = (math.nan,) * 4
+        return Estimate(start, most, *unknown, steps, steps - unhindered, math.nan, timestep)
     snapshot_bytes, snapshot_seconds = _snapshot(scenario, simulation, body_names)
     per_particle = simulation.bytes_per_particle
     length = scenario.time_max - scenario.begins_at

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -159,6 +160,10 @@ def _first(scenario: Scenario, name: str) -> str:
 
 def _costs(expected: Estimate) -> Iterator[str]:
     yield _line("most particles", f"{expected.most_particles:,.0f}, if nothing leaves")
+    if math.isnan(expected.memory):
+        yield _line("steps", f"{expected.steps:,.0f} or more")
+        yield _line("cost", "not known: nothing has entered within a burst of a second")
+        return
     free = available_bytes()
     yield _line("memory", f"{_size(expected.memory)} of {_size(free)} free")
     yield _line("state", f"{_size(expected.state)} of it, which steps work on")

@@ -78,7 +78,10 @@ def _computed(run: Run) -> Iterator[Row]:
 
 
 def duration_text(seconds: float) -> str:
-    """Minutes and seconds, or seconds alone."""
+    """Seconds, minutes and seconds, or hours and minutes."""
+    if seconds >= 3600:
+        hours, over = divmod(round(seconds / 60), 60)
+        return f"{hours} h {over} min"
     minutes, rest = divmod(seconds, 60)
     return f"{minutes:.0f} min {rest:.0f} s" if minutes else f"{rest:.1f} s"
 

@@ -18,8 +18,8 @@ from .colouring import colouring
 from .dots import dots, extent_of, picture
 from .layout import time_text
 from .nothing import NothingToDrawError
-from .space.box import Space, balls_of, seen_extent
-from .space.ground import ground_behind, terrain_of
+from .space.box import balls_of, seen_extent
+from .space.ground import ground_behind, space_of
 from .space.surfaces import Camera, render
 from .space.way import Way
 from .stage import WIDTH, Stage
@@ -75,7 +75,7 @@ class _Camera:
         samples = [*run[::step], run[-1]]
         self._side: Camera | None = None
         if run.scenario["dim"] == 3:
-            self._space = Space.around(samples, self._view, terrain_of(run))
+            self._space = space_of(run, samples, self._view)
             way = None if self._space.buried is None else Way.between(samples)
             self._side = Camera.looking(SIDEWAYS) if way is None else way.looking_back()
             self._extent = seen_extent(self._space, samples, self._side)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+from dataclasses import dataclass
 
 from .errors import GeodataError
 
@@ -17,6 +19,9 @@ COMPOUND = ("COMPD_CS", "COMPOUNDCRS")
 MAP_PART = re.compile(r"PROJC(?:S|RS)\[")
 MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG
 IN_DEGREES = re.compile(r"(?:^|:)(?:CRS84h?|EPSG:[^:]*:?(?:4326|4258|4979))$", re.IGNORECASE)
+
+BESIDE = 100.0  # m on a map, over which its scale is taken
+EQUATOR, FLATTENED = 6_378_137.0, 0.00669438  # radius, m, and squared eccentricity of the Earth
 
 
 def check_map_coordinates(path: object, crs: str) -> None:
@@ -84,6 +89,61 @@ def epsg_code(crs: str | None) -> int | None:
     except CRSError:
         return None
     return None if code is None else int(code)
+
+
+@dataclass(frozen=True)
+class MapScale:
+    """How many metres of a map one on the ground has, at a latitude, degrees, and UTM's system."""
+
+    factor: float
+    latitude: float
+    utm: int  # number with EPSG of the zone in which the place lies
+
+
+def map_scale(crs: str | None, x: float, y: float) -> MapScale | None:
+    """The scale of a system (WKT or name) at a place, m: along the axis where it is farther from 1.
+
+    None where the system is not known, is not one of the Earth, or rasterio is not installed.
+    """
+    if crs is None:
+        return None
+    try:
+        from rasterio import Env
+        from rasterio.crs import CRS
+        from rasterio.warp import transform
+    except ImportError:
+        return None
+    places = [x, x + BESIDE, x], [y, y, y + BESIDE]
+    try:
+        with Env():
+            of_map = CRS.from_wkt(_horizontal(CRS.from_user_input(crs).to_wkt()))
+            if not of_map.is_projected:
+                return None
+            found = transform(of_map, CRS.from_epsg(4326), *places)
+    except Exception:  # GDAL's own, of places where there is no such map, have no public class
+        return None
+    longitude, latitude = found[:2]
+    if not all(map(math.isfinite, (*longitude, *latitude))):
+        return None
+    start = longitude[0], latitude[0]
+    ends = zip(longitude[1:], latitude[1:], strict=True)
+    lengths = [_length(start, end) for end in ends]
+    if min(lengths) <= 0:
+        return None
+    factors = [BESIDE / length for length in lengths]
+    factor = max(factors, key=lambda each: abs(math.log(each)))
+    zone = int((start[0] + 180) // 6) % 60 + 1
+    return MapScale(factor, start[1], (32600 if start[1] >= 0 else 32700) + zone)
+
+
+def _length(start: tuple[float, float], end: tuple[float, float]) -> float:
+    """How far two near places (longitude, latitude), degrees, are apart on the ellipsoid, m."""
+    latitude = math.radians(start[1])
+    flat = 1 - FLATTENED * math.sin(latitude) ** 2
+    east = math.radians((end[0] - start[0] + 180) % 360 - 180)
+    north = math.radians(end[1] - start[1])
+    across = EQUATOR / math.sqrt(flat) * math.cos(latitude)
+    return math.hypot(across * east, EQUATOR * (1 - FLATTENED) / flat**1.5 * north)
 
 
 def in_degrees(path: object) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ..errors import UserError
+from ..geodata.crs import MapScale, map_scale
 from ..geodata.errors import GeodataError
 from ..geodata.ground import Profile
 from ..geodata.raster import Raster, read_raster
@@ -35,6 +36,7 @@ class Bed:
             nodes that the map knows nothing of have the height of the nearest one that it knows.
         unknown: the same shape, 1 at such nodes.
         raster: 3-D: the map as it is used, after window, resampling and smoothing; in 2-D None.
+        scale: how long a metre is on the map, where that is known.
 
     """
 
@@ -43,6 +45,7 @@ class Bed:
     heights: np.ndarray
     unknown: np.ndarray
     raster: Raster | None = None
+    scale: MapScale | None = None
 
     @cached_property
     def table(self) -> dict[str, object]:
@@ -93,18 +96,28 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        raster = _used(_with_heights(path, read_raster(path)), terrain)
+        raster = _used(_with_heights(path, _read(path, where)), terrain)
     except GeodataError as error:
         raise where.error(("terrain",), f"terrain: {error}") from None
     if dim == 3:
-        return _bed_of_raster(path, raster)
+        return _bed_of_raster(path, raster, where)
     if terrain.section is None:
         raise where.error(
             ("terrain",),
             "terrain.section is missing: a 2-D run cuts a grid along a line, [[x, y], [x, y]]; "
             "or give a CSV file with columns x and z",
         )
-    return _bed_of_section(raster, terrain, dp, where)
+    return _bed_of_section(path, raster, terrain, dp, where)
+
+
+def _read(path: Path, where: Where) -> Raster:
+    """The raster of a file; one that cannot be opened or is damaged is named with its key."""
+    try:
+        return read_raster(path)
+    except GeodataError:
+        raise
+    except UserError as error:
+        raise _error(where, str(error)) from None
 
 
 def _with_heights(path: Path, raster: Raster) -> Raster:
@@ -130,15 +143,22 @@ def _used(raster: Raster, terrain: Terrain) -> Raster:
     return raster
 
 
-def _bed_of_raster(path: Path, raster: Raster) -> Bed:
+def _bed_of_raster(path: Path, raster: Raster, where: Where) -> Bed:
     if min(raster.shape) < 2:
-        raise UserError(f"{path}: {raster.shape} cells; a terrain needs 2 along each axis")
-    heights, unknown = _filled(path, raster.values[::-1])
+        raise _error(where, f"{path}: {raster.shape} cells; a terrain needs 2 along each axis")
+    heights, unknown = _filled(path, raster.values[::-1], where)
     origin = np.array([raster.west, raster.south]) + 0.5 * raster.cell
-    return Bed(origin, raster.cell, heights, unknown, raster)
+    west, south, east, north = raster.extent
+    scale = map_scale(raster.crs, 0.5 * (west + east), 0.5 * (south + north))
+    return Bed(origin, raster.cell, heights, unknown, raster, scale)
 
 
-def _bed_of_section(raster: Raster, terrain: Terrain, dp: float, where: Where) -> Bed:
+def _error(where: Where, text: str) -> UserError:
+    """What is wrong with the file, with its key."""
+    return where.error(("terrain", "file"), f"terrain.file: {text}")
+
+
+def _bed_of_section(path: Path, raster: Raster, terrain: Terrain, dp: float, where: Where) -> Bed:
     """Along a line on the map; x is the distance from its first end."""
     assert terrain.section is not None
     start, end = (np.array(place) for place in terrain.section)
@@ -151,8 +171,8 @@ def _bed_of_section(raster: Raster, terrain: Terrain, dp: float, where: Where) -
         raise where.error(
             ("terrain", "section"), "terrain.section: an end lies where the map has no data"
         )
-    filled, unknown = _filled(Path(terrain.file), heights)
-    return Bed(x[:1], cell, filled, unknown)
+    filled, unknown = _filled(path, heights, where)
+    return Bed(x[:1], cell, filled, unknown, scale=map_scale(raster.crs, *(start + end) / 2))
 
 
 def _bed_of_profile(path: Path, terrain: Terrain, dp: float, where: Where) -> Bed:
@@ -164,11 +184,11 @@ def _bed_of_profile(path: Path, terrain: Terrain, dp: float, where: Where) -> Be
     try:
         x, z = (np.array(numbers_in(columns, name, LENGTH, PROFILE_EXAMPLE)) for name in "xz")
     except ValueError as error:
-        raise UserError(f"{path}: {error}") from None
+        raise _error(where, f"{path}: {error}") from None
     if len(x) < 2 or not (np.diff(x) > 0).all():
-        raise UserError(f"{path}: x must go up from row to row, in two rows or more")
+        raise _error(where, f"{path}: x must go up from row to row, in two rows or more")
     if not (np.isfinite(x).all() and np.isfinite(z).all()):
-        raise UserError(f"{path}: holds numbers that are not finite")
+        raise _error(where, f"{path}: holds numbers that are not finite")
     cell = terrain.resample or dp
     nodes = _nodes(float(x[0]), float(x[-1]), cell, where)
     heights = np.interp(nodes, x, z)
@@ -189,11 +209,11 @@ def _nodes(low: float, high: float, cell: float, where: Where) -> np.ndarray:
     return low + cell * np.arange(int(count + 1e-9) + 1)
 
 
-def _filled(path: Path, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _filled(path: Path, heights: np.ndarray, where: Where) -> tuple[np.ndarray, np.ndarray]:
     """Heights everywhere, and where they are not known."""
     unknown = np.isnan(heights)
     if unknown.all():
-        raise UserError(f"{path}: has no data at all in the part that is used")
+        raise _error(where, f"{path}: no cell of the part that is used has data")
     if unknown.any():
         nearest = distance_transform_edt(unknown, return_distances=False, return_indices=True)
         heights = heights[tuple(nearest)]

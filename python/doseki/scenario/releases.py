@@ -11,6 +11,7 @@ from ..geodata.crs import same_crs
 from ..geodata.errors import GeodataError
 from ..geodata.features import Polygon, read_features
 from ..geodata.inside import crossing_of
+from ..util.spelling import suggestion
 from .tables.terrain.release import Release
 from .values.toml_source import Where
 
@@ -105,7 +106,14 @@ def _from_file(
         return polygons, release.thickness
     thickness = []
     for polygon in features.polygons:
-        number = polygon.attributes.get(FIELD)
+        if FIELD not in polygon.attributes:
+            like = suggestion(FIELD, polygon.attributes)
+            raise where.error(
+                keys,
+                f"{place}: a polygon of {path} has no attribute {FIELD}, in m: add it, or give "
+                f"body.{name}.thickness{like}",
+            )
+        number = polygon.attributes[FIELD]
         if not isinstance(number, int | float) or not 0 < number < np.inf:
             raise where.error(
                 keys,

@@ -24,6 +24,7 @@ from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
+from .checks.placing import placing_findings
 from .checks.resolution import resolution_warnings
 from .checks.terrain import terrain_findings
 from .contacts import contact_groups
@@ -105,6 +106,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
     check_particles(scenario, particles, names)
     warnings += list(terrain_findings(scenario, bodies))
+    warnings += list(placing_findings(scenario, particles, names))
     warnings += find_overlaps(particles, names, scenario.carried)
     if carried is None:
         return Scene(particles, names, rigid, warnings)

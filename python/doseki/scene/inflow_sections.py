@@ -96,6 +96,7 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
         raise scenario.where.error(
             ("inflow", name, "position"), f"inflow.{name}: all of its section lies in the ground"
         )
+    _check_on_map(scenario, name, rows)
     times, rate = inflow.rows.T
     area = len(rows) * dp ** (dim - 1) * (inflow.width if dim == 2 else 1.0)
     speeds, thickness, heights = rate / area, np.zeros(0), np.zeros(0)
@@ -139,6 +140,26 @@ def _rows_above_ground(scenario: Scenario, name: str) -> np.ndarray:
         if len(rows) >= needed:
             break
     return rows
+
+
+def _check_on_map(scenario: Scenario, name: str, rows: np.ndarray) -> None:
+    """Refuse a section beyond the map, where all that enters would leave at once."""
+    if scenario.bed is None:
+        return
+    places = np.ascontiguousarray(rows[:, :-1])
+    unknown = ground_of(scenario.bed).field.at(places)["unknown"].astype(bool)
+    if unknown.any():
+        at = np.round(places[unknown][0], 3).tolist()
+        raise scenario.where.error(
+            ("inflow", name, "position"),
+            f"inflow.{name}: its section reaches beyond the terrain, or where it has no data, as "
+            f"at {at} m",
+        )
+
+
+def height_above_ground(scenario: Scenario, name: str) -> float:
+    """How far the foot of a section is above the ground at least, m; 0 where a part is in it."""
+    return 0.0 if scenario.bed is None else max(0.0, -float(_bed_across(scenario, name).max()))
 
 
 def _cell(scenario: Scenario) -> float:

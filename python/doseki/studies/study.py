@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -181,6 +182,9 @@ def _described(plan: Plan) -> Iterator[str]:
 
 def _costs(plan: Plan, expected: Estimate, count: int, together: int) -> Iterator[str]:
     """Time, memory and disk, as one run in the middle has them."""
+    if math.isnan(expected.seconds):
+        yield _line("one run", "not known: nothing has entered within a burst of a second")
+        return
     rounds = -(-count // together)
     disk = expected.disk * count
     yield _line("one run", f"{duration_text(expected.seconds)}, in the middle of the ranges")

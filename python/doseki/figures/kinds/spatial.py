@@ -20,7 +20,7 @@ from ..colouring import colouring
 from ..dots import Dots, dots, draw_particles, extent_of, outside_text
 from ..layout import SMALL, Extent, ViewRows, moment_text, name_axes, scale_bar
 from ..space.box import Space, balls_of, seen_extent
-from ..space.ground import COLOUR, ground_behind, relief, terrain_of
+from ..space.ground import COLOUR, ground_behind, relief, space_of
 from ..space.surfaces import Background, Camera, render
 from ..space.way import Way, bed_beside, dots_beside, extent_beside
 from .panels import Panels
@@ -33,7 +33,7 @@ PIXELS = 640  # across a picture
 def draw_spatial(run: Run, moments: Sequence[Moment], what: Panels) -> Figure:
     """For each moment and colour a slanting view, and a plan and a section side by side."""
     snapshots = [run[moment.index] for moment in moments]
-    space = Space.around(snapshots, what.view, terrain_of(run))
+    space = space_of(run, snapshots, what.view)
     section = _section(run, snapshots, space, what)
     cameras = [section.slanting, Camera.looking(DOWN)]
     extents = [seen_extent(space, snapshots, camera) for camera in cameras]
@@ -102,8 +102,7 @@ class _BesideWay(_Section):
         self.slanting = way.looking_back()
         clouds = [self.dots(snapshot) for snapshot in snapshots]
         self.extent = extent_beside(clouds)
-        cell = 2 * max(float(cloud.radius.max()) for cloud in clouds if len(cloud.index))
-        self._bed = bed_beside(run, way, snapshots, cell)
+        self._bed = bed_beside(run, way, snapshots, space, self.extent[:2])
 
     def dots(self, snapshot: Snapshot) -> Dots:
         return dots_beside(snapshot, self._way, self._space, self._what.material)

@@ -15,6 +15,7 @@ from ...measure.maps.quantities import ARRIVAL_TIME, DEPOSIT, PEAK_DEPTH, PEAK_S
 from ..layout import chart_grid
 from ..nothing import NothingToDrawError
 from ..space.ground import hillshade
+from .structures import Structures, draw_structures
 
 LONGEST = 7.0  # inches of the longer side of a map
 SHORTEST = 2.5  # inches of the shorter one
@@ -29,8 +30,16 @@ COLOURS = {ARRIVAL_TIME.name: "viridis_r", DEPOSIT.name: "YlOrBr"}
 OTHERS = "plasma_r"
 
 
-def draw_map(quantity: MapQuantity, values: Raster, bed: Raster, title: str) -> Figure:
+def draw_map(
+    quantity: MapQuantity,
+    values: Raster,
+    bed: Raster,
+    title: str,
+    structures: Structures | None = None,
+) -> Figure:
     """One quantity where anything has flowed, over the relief of the bed, at map coordinates.
+
+    Bodies that are fixed on it are drawn, too.
 
     Raises:
         NothingToDrawError: there is none of it.
@@ -53,7 +62,9 @@ def draw_map(quantity: MapQuantity, values: Raster, bed: Raster, title: str) -> 
         cmap=COLOURS.get(quantity.name, OTHERS), zorder=2,
         vmin=None if quantity == ARRIVAL_TIME else 0.0,
     )  # fmt: skip
-    figure.colorbar(image, ax=axes, label=f"{quantity.label} ({quantity.unit})", shrink=0.8)
+    label = f"{quantity.label} ({quantity.unit})"
+    scale = figure.colorbar(image, ax=axes, label=label, shrink=0.8)
+    draw_structures(axes, scale.ax, structures)
     axes.set_title(title, fontsize="medium")
     return figure
 

@@ -29,6 +29,7 @@ from ...util.files import write_whole, write_whole_text
 from ..nothing import NothingToDrawError
 from ..text import plain_text
 from .drawing import draw_map, draw_profile
+from .structures import Structures
 
 
 @dataclass(frozen=True)
@@ -106,8 +107,12 @@ def _makers(
     run: Run, maps: Mapping[str, Raster], bed: Raster
 ) -> Iterator[tuple[str, Callable[[], Figure]]]:
     title = str(run.scenario.get("title", ""))
+    structures = Structures.of(run)
     for quantity in QUANTITIES:
-        yield quantity.name, partial(draw_map, quantity, maps[quantity.name], bed, title)
+        yield (
+            quantity.name,
+            partial(draw_map, quantity, maps[quantity.name], bed, title, structures),
+        )
 
 
 def _draw(run: Run, maps: Mapping[str, Raster], bed: Raster) -> Iterator[Path]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...geodata.raster import Raster
 from ...measure.census import keep_their_shape
 from ...measure.views import View, fluid_names
 from ...record.reader import Run, Snapshot
@@ -24,16 +25,24 @@ ROUND = ("disc", "sphere")
 class Space:
     """What of the space is drawn: a box around what moves, corners (3,), and walls near it.
 
-    Particles of the body `buried` are not: those of a terrain, which is drawn itself.
+    Particles of the body `buried` are not: those of a terrain, which is drawn itself; nor is what
+    is fixed below its `ground`.
     """
 
     view: View
     low: np.ndarray
     high: np.ndarray
     buried: str | None = None
+    ground: Raster | None = None
 
     @classmethod
-    def around(cls, snapshots: Sequence[Snapshot], view: View, buried: str | None = None) -> Space:
+    def around(
+        cls,
+        snapshots: Sequence[Snapshot],
+        view: View,
+        buried: str | None = None,
+        ground: Raster | None = None,
+    ) -> Space:
         """The box around what moves at some moments, within the view.
 
         Raises NothingToDrawError where there is no particle at any of them.
@@ -46,7 +55,7 @@ class Space:
         if not clouds:
             raise NothingToDrawError("there are no particles")
         low, high = ends_of_clouds(clouds)
-        return cls(view, np.maximum(low, view.lower), np.minimum(high, view.upper), buried)
+        return cls(view, np.maximum(low, view.lower), np.minimum(high, view.upper), buried, ground)
 
     def is_near(self, position: np.ndarray) -> np.ndarray:
         """Mask (N,) of what is in the box, or not far from it."""
@@ -55,17 +64,29 @@ class Space:
         return np.all(inside, axis=1)
 
     def shows(self, snapshot: Snapshot, position: np.ndarray, away: np.ndarray) -> np.ndarray:
-        """Mask (N,) of what is drawn: walls near what moves, but none between it and the viewer."""
+        """Mask (N,) of what is drawn: walls near what moves, but none between it and the viewer.
+
+        On a terrain, which is no box, these are drawn, too: the dam that a flow meets is one.
+        """
         shown = self.view.contains(snapshot["position"])
         shown &= ~snapshot["fixed"] | self.is_near(position)
         if self.buried is not None:
-            shown &= snapshot["body"] != self.buried
+            return shown & (snapshot["body"] != self.buried) & ~self._in_the_ground(snapshot)
         before = np.zeros(len(position), bool)
         for axis, towards in enumerate(away):
             if abs(towards) > HIDES:
                 end = self.low[axis] if towards > 0 else self.high[axis]
                 before |= np.sign(towards) * (position[:, axis] - end) < 0
         return shown & ~(before & snapshot["fixed"])
+
+    def _in_the_ground(self, snapshot: Snapshot) -> np.ndarray:
+        """Mask (N,) of what is fixed below the ground, but for a layer that the ground hides."""
+        below = snapshot["fixed"].copy()
+        if self.ground is None:
+            return np.zeros_like(below)
+        x, y, z = snapshot["position"][below].T
+        below[below] = z + 2 * grain_radius(snapshot)[below] < self.ground.sampled(x, y)
+        return below
 
 
 def balls_of(

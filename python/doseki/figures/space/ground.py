@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LightSource
@@ -9,7 +11,7 @@ from matplotlib.colors import LightSource
 from ...geodata.ground import Profile
 from ...geodata.raster import Raster
 from ...measure.views import View
-from ...record.reader import Run
+from ...record.reader import Run, Snapshot
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ..layout import Extent
 from .box import Space
@@ -20,7 +22,8 @@ SPACE_COLOUR = np.array([0.95, 0.94, 0.88])  # lighter than what stands on it
 SUN = {"azdeg": 315.0, "altdeg": 45.0}
 TO_THE_SUN = np.array([-0.5, 0.5, np.sqrt(0.5)])
 DARKEST = 0.62  # grey of what faces away from the sun
-ACROSS = 240  # points of the ground along the longer side of what is drawn
+AROUND = 0.3  # of the size of the flow: beyond the structures that are shown
+ACROSS = 360  # points of the ground along the longer side of what is drawn
 
 
 def draw_ground(axes: Axes, run: Run, view: View, extent: Extent) -> None:
@@ -37,6 +40,15 @@ def draw_ground(axes: Axes, run: Run, view: View, extent: Extent) -> None:
 def terrain_of(run: Run) -> str | None:
     """The body that a map makes the ground of a 3-D run; None without one."""
     return TERRAIN if isinstance(run.ground, Raster) else None
+
+
+def space_of(run: Run, snapshots: Sequence[Snapshot], view: View) -> Space:
+    """What of a 3-D run is drawn at some moments; on a terrain what is in the ground is not.
+
+    Raises NothingToDrawError where there is no particle at any of them.
+    """
+    ground = run.ground if isinstance(run.ground, Raster) else None
+    return Space.around(snapshots, view, terrain_of(run), ground)
 
 
 def relief(run: Run, extent: Extent, width: int) -> np.ndarray | None:
@@ -92,7 +104,7 @@ def ground_behind(
 
 def _balls_below(ground: Raster, space: Space) -> tuple[np.ndarray, np.ndarray]:
     """Positions (n, 3) and radii (n,) of balls whose tops are at the surface."""
-    room = 0.15 * float(np.max(space.high - space.low))
+    room = AROUND * float(np.max(space.high - space.low))
     low, high = (space.low - room)[:2], (space.high + room)[:2]
     step = float(np.max(high - low)) / ACROSS
     x, y = (np.arange(a, b, step) for a, b in zip(low, high, strict=True))

@@ -51,11 +51,15 @@ class Way:
 
 def dots_beside(snapshot: Snapshot, way: Way, space: Space, material: str | None) -> Dots:
     """All that moves and structures near it, seen from beside the way: structures first."""
+    index = drawing_order(snapshot, _near(snapshot, space), material)
+    return Dots(index, way.points(snapshot["position"][index]), grain_radius(snapshot)[index])
+
+
+def _near(snapshot: Snapshot, space: Space) -> np.ndarray:
+    """Mask (N,) of what moves, and of structures near it, in the view."""
     position = snapshot["position"]
-    shown = space.view.contains(position) & (snapshot["body"] != space.buried)
-    shown &= ~snapshot["fixed"] | space.is_near(space.view.coordinates(position))
-    index = drawing_order(snapshot, shown, material)
-    return Dots(index, way.points(position[index]), grain_radius(snapshot)[index])
+    near: np.ndarray = space.view.contains(position) & (snapshot["body"] != space.buried)
+    return near & (~snapshot["fixed"] | space.is_near(space.view.coordinates(position)))
 
 
 def extent_beside(clouds: Sequence[Dots]) -> Extent:
@@ -72,19 +76,41 @@ def extent_beside(clouds: Sequence[Dots]) -> Extent:
     return low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin
 
 
-def bed_beside(run: Run, way: Way, snapshots: Sequence[Snapshot], cell: float) -> np.ndarray:
-    """Where the ground below the flow is lowest: distance and height (n, 2), one each `cell`, m."""
+def bed_beside(
+    run: Run, way: Way, snapshots: Sequence[Snapshot], space: Space, ends: tuple[float, float]
+) -> np.ndarray:
+    """Where the ground below flow and structures is lowest: distance and height (n, 2), m.
+
+    It goes on to both `ends`, m, along the way, beside what is drawn there.
+    """
     ground = run.ground
     assert isinstance(ground, Raster)
-    position = np.concatenate([s["position"][~s["fixed"]] for s in snapshots])
-    height = ground.sampled(position[:, 0], position[:, 1])
-    known = ~np.isnan(height)
-    if not known.any():
-        return np.zeros((0, 2))
-    along = way.points(position[known])[:, 0]
-    first = np.floor(along.min() / cell)
-    number = (np.floor(along / cell) - first).astype(int)
-    lowest = np.full(number.max() + 1, np.inf)
-    np.minimum.at(lowest, number, height[known])
+    cell = 2 * max(float(grain_radius(s).max()) for s in snapshots)
+    first = int(np.floor(ends[0] / cell))
+    lowest = np.full(int(np.floor(ends[1] / cell)) - first + 1, np.inf)
+    for place in _places_beside(way, snapshots, space, ends, cell):
+        height = ground.sampled(place[:, 0], place[:, 1])
+        number = np.floor((place - way.start) @ way.direction / cell).astype(int) - first
+        known = ~np.isnan(height) & (number >= 0) & (number < len(lowest))
+        known[known] &= np.isinf(lowest[number[known]])
+        np.minimum.at(lowest, number[known], height[known])
     middle = (first + np.arange(len(lowest)) + 0.5) * cell
     return np.column_stack([middle, lowest])[np.isfinite(lowest)]
+
+
+def _places_beside(
+    way: Way, snapshots: Sequence[Snapshot], space: Space, ends: tuple[float, float], cell: float
+) -> list[np.ndarray]:
+    """Places (n, 2) over which the ground is drawn; those that come first have precedence.
+
+    Below the flow; below structures, and beside their corners; and as far as both ends.
+    """
+    flow, walls = (
+        np.concatenate([s["position"][_near(s, space) & (s["fixed"] == f), :2] for s in snapshots])
+        for f in (False, True)
+    )
+    corners = np.concatenate([walls + k * cell * way.direction for k in range(-2, 3)])
+    drawn = np.concatenate([flow, walls])
+    along = (drawn - way.start) @ way.direction
+    gaps = ends[0] - along.min(), ends[1] - along.max()
+    return [flow, corners, *(drawn + gap * way.direction for gap in gaps)]

@@ -35,8 +35,9 @@ function checkboxes(viewer) {
   if (camera.flat) return boxes;
   const clear = checkbox(viewer, "clear flow", (on) => (viewer.clear = on));
   viewer.clearBox = clear.querySelector("input");
-  const cut = scene.walls ? [checkbox(viewer, "cut walls in front", (on) => (viewer.hides = on))] : [];
-  return [...boxes, clear, ...cut];
+  const cut = checkbox(viewer, "cut walls in front", (on) => (viewer.hides = on));
+  cut.querySelector("input").checked = viewer.hides;
+  return [...boxes, clear, ...(scene.walls ? [cut] : [])];
 }
 
 function checkbox(viewer, name, set) {

@@ -15,7 +15,7 @@ class Viewer {
     this.frame = scene.start;
     this.field = scene.fields[0];
     this.shown = Object.fromEntries(LAYERS.map((name) => [name, true]));
-    this.hides = true;
+    this.hides = !scene.terrain; // on a map what is in front may be the dam that matters
     this.clear = false;
     this.fine = true;
     this.playing = false;
@@ -201,7 +201,8 @@ class Viewer {
     return {
       ready: true, frame: this.frame, frames: scene.frames.length, time: scene.frames[this.frame].time,
       field: field.name, fields: this.names, low: field.low, high: field.high, legend: field.names,
-      ...this.counts, walls: this.painter.walls.count, terrain: Boolean(this.painter.terrain),
+      ...this.counts, walls: this.painter.walls.count, cut: this.hides,
+      terrain: Boolean(this.painter.terrain),
       dim: scene.dim, azimuth: camera.azimuth, elevation: camera.elevation, height: camera.height,
       target: camera.target.map((v, k) => v + scene.corner[k]), clear: this.clear, playing: this.playing, drawn: this.drawn,
     };

@@ -93,7 +93,10 @@ def _one_face(scenario: Scenario, name: str, gauge: str, box: Box) -> Iterator[F
 def _shallow(
     scenario: Scenario, name: str, gauge: str, position: np.ndarray, normal: np.ndarray
 ) -> Iterator[Finding]:
-    """Follows the body down into the ground from where its surface comes out of it."""
+    """Follows the body down into the ground from where its surface comes out of it.
+
+    Where the map knows nothing of the ground there is nothing to follow it into.
+    """
     assert scenario.bed is not None
     from scipy.spatial import cKDTree
 
@@ -101,7 +104,8 @@ def _shallow(
     ground, tree = ground_of(scenario.bed), cKDTree(position)
     found = ground.field.nearest(np.ascontiguousarray(position))
     height = found["distance"]
-    out = (height > 0) & (height < dp) & (np.linalg.norm(normal, axis=1) > 0)
+    unknown = ground.field.at(np.ascontiguousarray(position[:, :-1]))["unknown"]
+    out = (height > 0) & (height < dp) & (np.linalg.norm(normal, axis=1) > 0) & (unknown == 0)
     if not out.any():
         return
     # Along the face: the ground may slope across it.

@@ -9,11 +9,18 @@ from typing import Any
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding
-from ..inflow_sections import InflowSection, build_inflows, rows_of, surge_volumes
+from ..inflow_sections import (
+    InflowSection,
+    build_inflows,
+    height_above_ground,
+    rows_of,
+    surge_volumes,
+)
 from ..kinds.body import Body
 from ..kinds.release import ReleaseBody
 
 VOLUME = 0.01  # by which the particles of a release may miss what is asked for
+STRETCH = 0.01  # by which lengths on a map may differ from those on the ground
 SURGE = 0.1  # by which the layers of a surge may
 FEW_LAYERS = 2.0
 
@@ -46,6 +53,23 @@ class Coarse(Finding):
 
 
 @dataclass(frozen=True)
+class Stretched(Finding):
+    """A map on which lengths are not those on the ground, as in Web Mercator."""
+
+    factor: float
+    latitude: float  # degrees
+    utm: int
+
+    def __str__(self) -> str:
+        side = "N" if self.latitude >= 0 else "S"
+        return (
+            f"{self.place}: lengths on this map are {self.factor:.3g} times those on the ground "
+            f"(at {abs(self.latitude):.3g} degrees {side}), and are taken as metres: convert it to "
+            f"UTM, gdalwarp -t_srs EPSG:{self.utm} IN OUT, or to a national grid"
+        )
+
+
+@dataclass(frozen=True)
 class WrongVolume(Finding):
     """A release that particles do not fill well."""
 
@@ -72,6 +96,19 @@ class CutInflow(Finding):
         return (
             f"{self.place}: {self.rows} of {self.all_rows} particles of a layer lie above the "
             f"ground; these carry all of the discharge, at up to {self.speed:.3g} m/s"
+        )
+
+
+@dataclass(frozen=True)
+class HangingInflow(Finding):
+    """An inflow that begins in the air."""
+
+    height: float  # m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: its section begins {self.height:.3g} m above the ground, so what "
+            "enters falls; let position be a corner below the bed"
         )
 
 
@@ -110,6 +147,9 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         return
     if bed.unknown.any():
         yield Unknown(TERRAIN, bed.unknown_share)
+    scale = bed.scale
+    if scale is not None and abs(scale.factor - 1.0) > STRETCH:
+        yield Stretched(f"{TERRAIN}.file", scale.factor, scale.latitude, scale.utm)
     if bed.cell < 0.5 * scenario.dp:
         yield Coarse(TERRAIN, bed.cell, scenario.dp)
     for section in build_inflows(scenario, list(scenario.inflow)):
@@ -127,6 +167,9 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
 def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Finding]:
     """Doubts about one inflow."""
     place = f"inflow.{section.name}"
+    height = height_above_ground(scenario, section.name)
+    if height > scenario.dp:
+        yield HangingInflow(place, height)
     if scenario.inflow[section.name].surge is None:
         rows, all_rows = len(section.rows), len(rows_of(scenario, section.name))
         if rows < all_rows:

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...errors import UserError
+from ...geodata.crs import same_crs
 from ...geodata.errors import GeodataError
 from ...geodata.features import Polygon
 from ...geodata.raster import read_raster
@@ -72,9 +74,24 @@ class ReleaseBody(Shaped[Release]):
             )
         unknown = self.ground.field.at(np.ascontiguousarray(found.place))["unknown"]
         if unknown.any():
-            at = np.round(found.place[np.argmax(unknown)], 3).tolist()
-            raise self.error(f": reaches beyond the terrain, or where it has no data, as at {at} m")
+            raise self._beyond(found.place[np.argmax(unknown)])
         return found
+
+    def _beyond(self, place: np.ndarray) -> UserError:
+        at = np.round(place, 3).tolist()
+        return self.error(f": reaches beyond the terrain, or where it has no data, as at {at} m")
+
+    def _check_box(self, low: np.ndarray, high: np.ndarray) -> None:
+        """Refuse what lies in a box (dim - 1,) that goes beyond the terrain by more than dp.
+
+        Before layers are made: of a place that is far away there would be no end of them.
+        """
+        assert self.scenario.bed is not None
+        least, most = self.scenario.bed.extent
+        dp = self.scenario.dp
+        for corner in (low, high):
+            if (corner < least - dp).any() or (corner > most + dp).any():
+                raise self._beyond(corner)
 
     @cached_property
     def _parts(self) -> list[tuple[Parcels, float]]:
@@ -137,6 +154,8 @@ class ReleaseBody(Shaped[Release]):
         t, dp = self.table.thickness, self.scenario.dp
         assert isinstance(t, float)
 
+        self._check_box(np.array([low]), np.array([high]))
+
         def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
             return self.ground.tile([low], high - low, dp, height)
 
@@ -149,6 +168,7 @@ class ReleaseBody(Shaped[Release]):
         outer, *holes = (np.array(ring) for ring in rings)
         polygon = Polygon(outer, tuple(holes))
         dp = self.scenario.dp
+        self._check_box(outer.min(axis=0), outer.max(axis=0))
         low, high = outer.min(axis=0) - dp, outer.max(axis=0) + dp
 
         def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
@@ -177,6 +197,15 @@ class ReleaseBody(Shaped[Release]):
             raster = read_raster(path)
         except GeodataError as error:
             raise self.error(f".file: {error}", "file") from None
+        bed = self.scenario.bed
+        assert bed is not None
+        assert bed.raster is not None
+        if same_crs(raster.crs, bed.raster.crs) is False:
+            raise self.error(
+                f".file: {path} and the terrain have different coordinate reference systems; "
+                "convert it with gdalwarp -t_srs",
+                "file",
+            )
         west, _, _, north = raster.extent
         filled = np.argwhere(np.nan_to_num(raster.values) > 0)
         if not len(filled):
@@ -186,6 +215,7 @@ class ReleaseBody(Shaped[Release]):
         (top, left), (bottom, right) = filled.min(axis=0), filled.max(axis=0) + 1
         low = np.array([west + left * raster.cell, north - bottom * raster.cell])
         high = np.array([west + right * raster.cell, north - top * raster.cell])
+        self._check_box(low, high)
         dp = self.scenario.dp
 
         def thickness(place: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from ...errors import UserError
+from ...figures.maps.structures import Structures
 from ...geodata.grid import Raster
 from ...geodata.raster import write_raster
 from ...measure.maps.files import NODATA
@@ -37,11 +38,15 @@ class CurvePercentiles:
 
 @dataclass(frozen=True)
 class MapPercentiles:
-    """Rasters of percentiles, lowest first, and of the share of runs above a level."""
+    """Rasters of percentiles, lowest first, and of the share of runs above a level.
+
+    `structures` are those that stand alike on the bed of every run.
+    """
 
     percentiles: list[Raster]
     exceeded: Raster | None
     bed: Raster
+    structures: Structures | None
 
 
 def counted(band: Band, table: Table) -> list[Entry]:
@@ -103,7 +108,8 @@ def map_percentiles(band: MapBand, table: Table) -> MapPercentiles:
     bed = ground if isinstance(ground, Raster) else _with(first, np.full(first.shape, np.nan))
     if not bed.same_grid(first):
         bed = _resampled(bed, first)
-    return MapPercentiles([_with(first, each) for each in found], exceeded, bed)
+    percent = [_with(first, each) for each in found]
+    return MapPercentiles(percent, exceeded, bed, Structures.of_all(runs))
 
 
 def write_curve(path: Path, found: CurvePercentiles, band: Band) -> None:

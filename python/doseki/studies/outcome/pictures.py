@@ -75,7 +75,8 @@ class Pictures:
         for percent, raster in zip(band.percent, found.percentiles, strict=True):
             title = f"{name}: not exceeded by {percent:g} % of runs"
             self._save(
-                f"band-{name}-p{percent:g}", partial(draw_map, quantity, raster, found.bed, title)
+                f"band-{name}-p{percent:g}",
+                partial(draw_map, quantity, raster, found.bed, title, found.structures),
             )
         exceeded = found.exceeded
         if exceeded is not None:
@@ -83,7 +84,9 @@ class Pictures:
             share = MapQuantity(f"above-{band.exceed:g}", "-", words)
             self._save(
                 f"band-{name}-above",
-                lambda: draw_map(share, exceeded, found.bed, f"{name}: {quantity.label}"),
+                lambda: draw_map(
+                    share, exceeded, found.bed, f"{name}: {quantity.label}", found.structures
+                ),
             )
 
     def _save(self, name: str, draw: Callable[[], Figure]) -> None:

@@ -65,6 +65,11 @@ class Approach(FlowGauge):
         speed = float((share * around.mass) @ (around.velocity @ normal)) / mass
         return [[run.time, depth, speed, mass / volume]]
 
+    def feet(self, setting: Setting) -> np.ndarray:
+        """Where its columns stand (k, dim), m."""
+        _, across = section_axes(self.direction / np.linalg.norm(self.direction), setting.gravity)
+        return self._feet(across, setting)
+
     def _feet(self, across: np.ndarray | None, setting: Setting) -> np.ndarray:
         """Where the columns stand (k, dim), m."""
         if across is None or not self.width:

@@ -1,0 +1,106 @@
+"""Gauges and fixed bodies that no flow on a terrain gets to are warned about."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.errors import UserError
+from doseki.scenario.load import load_scenario
+from doseki.scene.build import build_scene
+
+from .scenes import grid, text
+
+SQUARE = """
+[body.slide]
+shape = "release"
+material = "water"
+polygon = [[1, 1], [2, 1], [2, 2], [1, 2]]
+thickness = 0.3
+"""
+APPROACH = """
+[gauge.one]
+kind = "approach"
+position = [{x}, 1.0, {z}]
+direction = [1, 0, 0]
+width = 1.0
+"""
+HEIGHT = """
+[gauge.one]
+kind = "surface_height"
+position = [{x}, 1.0, {z}]
+"""
+SECTION = """
+[gauge.one]
+kind = "section"
+left = [{x}, 3.0]
+right = [{x}, 1.0]
+"""
+DAM = """
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [{x}, 1.0, {z}]
+max = [{x}.4, 3.0, "= {z} + 1"]
+"""
+
+
+def hill(x, y):
+    return 2 - 0.2 * x + 0 * y
+
+
+@pytest.fixture
+def said(tmp_path):
+    """What is said of a thing at a place on a slope of 20 % that is 1.4 m high at x = 3."""
+
+    def find(more, x, z):
+        grid(tmp_path / "terrain.asc", hill)
+        path = tmp_path / "case.toml"
+        path.write_text(text(3, dp=0.1, more=SQUARE + more.format(x=x, z=z)))
+        doubts = build_scene(load_scenario(path)).warnings
+        return [str(each) for each in doubts if each.place in ("gauge.one", "body.dam")]
+
+    return find
+
+
+@pytest.mark.parametrize("gauge", [APPROACH, HEIGHT, SECTION, DAM])
+def test_beside_the_map(said, gauge):
+    (doubt,) = said(gauge, 3000, 1.4)
+    assert "lies beyond the terrain" in doubt
+
+
+@pytest.mark.parametrize("gauge", [APPROACH, HEIGHT])
+def test_a_gauge_off_the_bed(said, gauge):
+    assert said(gauge, 3, 1.4) == []
+    assert said(gauge, 3, 1.2) == []  # a column may begin a little below the bed
+    (below,) = said(gauge, 3, 0.4)
+    assert "position is 1 m below the bed" in below
+    assert "the bed is at 1.4 m" in below
+    (above,) = said(gauge, 3, 2.4)
+    assert "position is 1 m above the bed" in above
+
+
+def test_a_body_in_the_ground(said):
+    assert said(DAM, 3, 1.0) == []
+    (buried,) = said(DAM, 3, -0.2)
+    assert "all of it lies in the ground" in buried
+
+
+@pytest.mark.parametrize("content", [None, b"II*\0 and no more"])
+def test_a_map_that_cannot_be_read_is_named_with_its_key(tmp_path, content):
+    path = tmp_path / "case.toml"
+    path.write_text(text(3, dp=0.1, more=SQUARE).replace("terrain.asc", "dem.tif"))
+    if content is not None:
+        (tmp_path / "dem.tif").write_bytes(content)
+    with pytest.raises(UserError, match=r"line \d+: terrain.file: .*dem.tif: "):
+        load_scenario(path)
+
+
+@pytest.mark.parametrize("window", ["", "window = [1, 1, 3, 3]"])
+def test_a_map_without_data_is_named_with_its_key(tmp_path, window):
+    grid(tmp_path / "terrain.asc", lambda x, y: np.full(x.shape, np.nan))
+    path = tmp_path / "case.toml"
+    path.write_text(text(3, dp=0.1, more=SQUARE).replace("[terrain]", f"[terrain]\n{window}"))
+    with pytest.raises(UserError, match=r"line \d+: terrain.file: .*terrain.asc: no cell .* data"):
+        load_scenario(path)
