@@ -206,7 +206,7 @@ def test_parts_leave_through_an_outflow(build, dim, rests):
 
 @pytest.mark.parametrize(("share", "turn"), [(5.25, 1.1), (6.0, 1.1), (7.0, 0.3), (8.0, 1.1)])
 def test_particles_follow_bodies_that_change_often_within_a_step(build, share, turn):
-    """Rigid discs are struck, break into parts that are rigid in the end, and shed dust: at once."""
+    """Rigid discs are struck, break into parts that become rigid, and shed dust: all at once."""
     simulation = build(struck(2, share, turn))
     mass, momentum, _ = sums(simulation)
     simulation.advance(limit=0.002, pause=0.002, max_steps=1)
