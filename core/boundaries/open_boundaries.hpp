@@ -138,6 +138,7 @@ template <int D>
 struct Ledger {
     double initial = 0.0, requested = 0.0;
     Passed<D> inflow, outflow;
+    double through_ground = 0.0;  // of what is in outflow
 };
 
 /// Everything that adds or removes particles, with its account.
@@ -211,6 +212,7 @@ template <int D>
 void OpenBoundaries<D>::serialise(Archive& archive) {
     archive("mass_initial", ledger.initial), archive("mass_asked", ledger.requested);
     archive("entered", ledger.inflow), archive("left", ledger.outflow);
+    archive.optional("through_ground", ledger.through_ground);
     archive("next_id", next_id);
     for (std::size_t k = 0; k < inflows.size(); ++k)
         archive.nested(std::to_string(k) + "_", inflows[k]);

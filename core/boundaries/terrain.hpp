@@ -83,6 +83,13 @@ public:
         return is_there() && field_->is_unknown(horizontal(x));
     }
 
+    /// Whether a place is so far below the ground that what is there has gone through it, and
+    /// falls.
+    bool is_far_below(const Vec<double, D>& x) const {
+        return is_there() &&
+               x[axes] < field_->height(horizontal(x)) - far * wall_.layers * wall_.dp;
+    }
+
     void serialise(Archive& archive) {
         if (is_there()) there_.serialise(archive);
     }
@@ -94,6 +101,7 @@ private:
     /// an edge must not make and drop particles at each list.
     static constexpr double slack = 0.5;
     static constexpr double min_share = 0.02;  // of a cell, that is worth a particle
+    static constexpr double far = 4.0;         // thicknesses of the wall, below the ground
 
     bool is_own(const Particles<D>& particles, std::size_t p) const {
         return particles.is_fixed(p) && particles.tag[p].body == wall_.body;

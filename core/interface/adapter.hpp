@@ -157,6 +157,7 @@ public:
         table["shear_energy"] = sum.shear_energy, table["av_dissipation"] = sim_.dissipation();
         table["mass_initial"] = ledger.initial, table["mass_asked"] = ledger.requested;
         table["mass_entered"] = ledger.inflow.mass, table["mass_left"] = ledger.outflow.mass;
+        table["mass_through_ground"] = ledger.through_ground;
         table["volume_entered"] = ledger.inflow.volume;
         table["volume_left"] = ledger.outflow.volume;
         table["momentum_entered"] = list_of(ledger.inflow.momentum);

@@ -7,6 +7,7 @@ import pytest
 
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import empty_simulation, filled_simulation
+from doseki.solver.restoring import check_state
 
 from .scenes import fluid, grid, profile, simulation_of, step, text
 
@@ -213,3 +214,26 @@ def test_the_scheme_of_the_paper_has_no_terrain(slide):
 
     with pytest.raises(UserError, match="terrain"):
         filled_simulation(load_scenario(slide, ["scheme=ueta2022", "xi=0.05"]))
+
+
+def test_what_has_gone_through_the_ground_is_taken_out_and_told(slide):
+    """Not what is within the walls; a checkpoint from before there was this account goes on."""
+    simulation, names = simulation_of(slide)
+    step(simulation, 20)
+    saved = {name: np.array(values) for name, values in simulation.checkpoint().items()}
+    free = np.flatnonzero(saved["motion"] == 0)
+    mass = simulation.totals()["mass"]
+    for below, gone in ((0.05, 0), (5.0, 2)):
+        state = {name: values.copy() for name, values in saved.items()}
+        state["position"][free[:2], 1] -= below
+        del state["through_ground"]
+        other = empty_simulation(load_scenario(slide), names)
+        check_state(other, state, 2, len(names))
+        other.restore(state)
+        end = other.time + 0.3
+        other.advance(limit=end, pause=end, max_steps=10**6)
+        totals = other.totals()
+        taken = saved["mass"][free[:gone]].sum()
+        assert totals["mass_through_ground"] == pytest.approx(taken, rel=1e-12)
+        assert totals["mass"] == pytest.approx(mass - taken, rel=1e-12)
+        assert other.checkpoint()["through_ground"][0] == totals["mass_through_ground"]

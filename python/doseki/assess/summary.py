@@ -113,6 +113,8 @@ def _ledger(run: Run) -> Iterator[Row]:
     residual = initial + entered - left - inside
     yield _line("mass", f"{initial:.6g} {unit} initial + {entered:.6g} entered")
     yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")
+    if through := said.get("mass_through_ground", 0.0):
+        yield _line("", f"{through:.3g} {unit} of that went through the ground")
 
 
 def _released(run: Run) -> Iterator[Row]:

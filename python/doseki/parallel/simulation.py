@@ -27,7 +27,7 @@ from .transport import Transport
 # Of a checkpoint: what each rank has its own part of, added up over the ranks, if at all.
 SUMMED = (
     "mass_initial", "entered", "left", "account", "av_dissipation", "av_power", "scheme_work",
-    "updates",
+    "through_ground", "updates",
 )  # fmt: skip
 # Of a checkpoint: what only the rank that wrote it can go on with.
 LISTS = ("lists_moving", "lists_fixed", "lists_entries", "lists_position", "stress_record")

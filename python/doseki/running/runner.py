@@ -91,6 +91,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "bytes_per_particle": simulation.bytes_per_particle,
         "list_entries_per_particle": simulation.entries_per_particle,
         "ledger_residual": balance,
+        "mass_through_ground": simulation.totals()["mass_through_ground"],
         "largest_overlap": simulation.grains()["worst_overlap"],
         "warnings": sentences(run.warnings) + (run.maps.remarks if run.maps else []),
         **({"released": released} if released else {}),

@@ -59,6 +59,7 @@ class Totals(TypedDict):
     mass_asked: float  # kg, that inflows should have brought
     mass_entered: float  # kg
     mass_left: float  # kg
+    mass_through_ground: float  # kg, of mass_left: what got through a terrain
     volume_entered: float  # m3; 2-D: m2
     volume_left: float  # the same
     count: list[int]  # free particles of each material

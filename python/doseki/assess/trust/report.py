@@ -21,6 +21,7 @@ from .checks import (
     overlap_check,
 )
 from .deformable import deformable_checks
+from .ground import ground_check
 from .ledger import ledger_of
 from .snapshots import is_resolved, look
 from .tension import tension_check
@@ -39,6 +40,7 @@ def trust_checks(run: Run) -> list[Check]:
         *([ledger.numerical_check()] if (ledger := ledger_of(run)) is not None else []),
         momentum_check(run, seen),
         depth_check(run, seen),
+        *ground_check(run),
         contact_check(seen, *given),
         *deformable_checks(run, seen),
         *([tension_check(seen.tension)] if is_resolved(scenario) else []),
