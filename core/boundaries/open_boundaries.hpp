@@ -195,6 +195,14 @@ public:
     template <class Leaves, class RemoveBodies>
     bool remove_outflow(const Particles<D>& particles, const Leaves& leaves,
                         const RemoveBodies& remove_bodies);
+    /// Marks in `removed`, which is as long, the free particles that have gone through the ground:
+    /// they would fall for ever, and ask for ever shorter steps.
+    template <class Ground>
+    void remove_fallen(const Particles<D>& particles, const Ground& ground) {
+        for (std::size_t p = 0; ground.is_there() && p < particles.size(); ++p)
+            if (particles.is_free(p) && ground.is_far_below(particles.position[p]))
+                removed[p] = 1, ledger.through_ground += particles.mass[p];
+    }
 
     Array<std::uint8_t> removed;
 

@@ -224,7 +224,6 @@ private:
             particles, [this] { return supports(); }, open_boundaries.removed);
     }
     bool remove_outflow();
-    void remove_what_fell();
     void drop_removed();
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
 
@@ -361,22 +360,11 @@ bool Simulation<Lists>::remove_outflow() {
     auto leaves = [&](auto p) {
         return particles.is_free(p) && terrain.contains(particles.position[p]);
     };
-    remove_what_fell();
+    open_boundaries.remove_fallen(particles, terrain);
     auto drain = [&](const auto& at, auto& left) { elastic += bodies.drain(particles, at, left); };
     const double any = open_boundaries.remove_outflow(particles, leaves, drain) ? 1.0 : 0.0;
     if (ranks().rank() == 0) open_boundaries.ledger.outflow.energy += elastic;
     return ranks().largest(any) > 0.0;
-}
-
-/// What has gone through the ground would fall for ever, and ask for ever shorter steps.
-template <class Lists>
-void Simulation<Lists>::remove_what_fell() {
-    if (!terrain.is_there()) return;
-    for (std::size_t p = 0; p < particles.size(); ++p) {
-        if (!particles.is_free(p) || !terrain.is_far_below(particles.position[p])) continue;
-        open_boundaries.removed[p] = 1;
-        open_boundaries.ledger.through_ground += particles.mass[p];
-    }
 }
 
 template <class Lists>
