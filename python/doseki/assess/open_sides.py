@@ -128,7 +128,7 @@ def _sources(state: State, names: dict[int, str], mask: np.ndarray) -> list[_Sou
 def _inflows(scenario: Scenario) -> Iterator[_Source]:
     """Points of each section, half a spacing apart."""
     for name, inflow in scenario.inflow.items():
-        direction = inflow.direction / np.linalg.norm(inflow.direction)
+        direction = inflow.along
         up, across = section_axes(direction, scenario.gravity)
         points = inflow.position + np.arange(0, inflow.height, 0.5 * scenario.dp)[:, None] * up
         if across is not None:
@@ -157,7 +157,7 @@ def _walls(
     walls = [state["position"][stays], state["position"][state["motion"] == DRIVEN]]
     for source in inflows:
         inflow = scenario.inflow[source.name]
-        direction = inflow.direction / np.linalg.norm(inflow.direction)
+        direction = inflow.along
         behind = source.points - 4 * scenario.dp * direction
         walls.append(behind)
         top = behind[fall.height(behind) > fall.height(behind).max() - scenario.dp]

@@ -138,7 +138,7 @@ def _normal_depth(where: Where, name: str, inflow: Inflow, gravity: np.ndarray) 
         )
     if inflow.ks is None:
         raise where.error(("inflow", name), f'{table}.ks is missing: depth = "normal" needs it')
-    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    direction = inflow.along
     pull = float(gravity @ direction)
     if pull <= 0:
         raise where.error(

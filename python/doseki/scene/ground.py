@@ -74,6 +74,12 @@ class Ground:
         return np.asarray(foot + height[:, None] * surface["normal"])
 
 
+def beyond_text(place: np.ndarray) -> str:
+    """What is said of a place (dim - 1,), m, of which the map says nothing."""
+    at = np.round(place, 3).tolist()
+    return f"reaches beyond the terrain, or where it has no data, as at {at} m"
+
+
 @lru_cache(maxsize=2)
 def ground_of(bed: Bed) -> Ground:
     """The ground of a bed, made once."""

@@ -9,7 +9,7 @@ import numpy as np
 from ..record.particles import FIXED, ParticleSet, check_size
 from ..scenario.model import Scenario
 from ..scenario.values.directions import section_axes
-from .ground import ground_of
+from .ground import beyond_text, ground_of
 from .lattices import ROUNDING
 
 INSTANTS = 2000  # at which the volume of a surge is looked at
@@ -90,7 +90,7 @@ def build_inflows(
 def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     inflow, dp, dim = scenario.inflow[name], scenario.dp, scenario.dim
     material = scenario.materials[inflow.material]
-    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    direction = inflow.along
     rows = _rows_above_ground(scenario, name)
     if not len(rows):
         raise scenario.where.error(
@@ -133,7 +133,7 @@ def _rows_above_ground(scenario: Scenario, name: str) -> np.ndarray:
     if inflow.surge is not None:
         needed = _areas(scenario, name, np.array([inflow.height]))[0] / _cell(scenario)
         most_more = MOST_ROWS_MORE
-    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    direction = inflow.along
     for more in range(most_more + 1):
         rows = rows_of(scenario, name, more)
         rows = rows[above_ground(scenario, rows, direction)]
@@ -149,11 +149,9 @@ def _check_on_map(scenario: Scenario, name: str, rows: np.ndarray) -> None:
     places = np.ascontiguousarray(rows[:, :-1])
     unknown = ground_of(scenario.bed).field.at(places)["unknown"].astype(bool)
     if unknown.any():
-        at = np.round(places[unknown][0], 3).tolist()
         raise scenario.where.error(
             ("inflow", name, "position"),
-            f"inflow.{name}: its section reaches beyond the terrain, or where it has no data, as "
-            f"at {at} m",
+            f"inflow.{name}: its section {beyond_text(places[unknown][0])}",
         )
 
 
@@ -174,7 +172,7 @@ def _appearance(scenario: Scenario, name: str, rows: np.ndarray) -> np.ndarray:
     any time as many as the area of the surge above the ground has room for.
     """
     inflow = scenario.inflow[name]
-    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    direction = inflow.along
     up, across = section_axes(direction, scenario.gravity)
     height = np.round((rows - inflow.position) @ up / scenario.dp, 6)
     aside = np.zeros(len(rows)) if across is None else (rows - inflow.position) @ across
@@ -208,7 +206,7 @@ def _bed_across(scenario: Scenario, name: str) -> np.ndarray:
     """Heights (n,) of the bed of a terrain above the foot of a section, evenly across it, m."""
     inflow, bed = scenario.inflow[name], scenario.bed
     assert bed is not None
-    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    direction = inflow.along
     up, across = section_axes(direction, scenario.gravity)
     places = inflow.position[None, :]
     if across is not None:
@@ -268,7 +266,7 @@ def rows_of(scenario: Scenario, name: str, more: int = 0) -> np.ndarray:
     There are so many rows `more` on top.
     """
     inflow = scenario.inflow[name]
-    direction = inflow.direction / np.linalg.norm(inflow.direction)
+    direction = inflow.along
     up, across = section_axes(direction, scenario.gravity)
     dp = scenario.dp
     high = _whole(scenario, name, "depth", inflow.height + _lowest_bed(scenario, name)) + more

@@ -54,6 +54,11 @@ class Inflow(Part):
     )
 
     @property
+    def along(self) -> np.ndarray:
+        """Unit vector of the flow."""
+        return np.asarray(self.direction / np.linalg.norm(self.direction))
+
+    @property
     def height(self) -> float:
         """The depth in m, once that of uniform flow has been worked out."""
         assert isinstance(self.depth, float)

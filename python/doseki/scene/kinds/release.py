@@ -17,7 +17,7 @@ from ...record.particles import FREE, ParticleSet
 from ...scenario.model import Scenario, file_of
 from ...scenario.releases import is_raster
 from ...scenario.tables.terrain.release import Release
-from ..ground import Ground, ground_of
+from ..ground import Ground, beyond_text, ground_of
 from .shaped import Shaped
 
 THINNEST = 0.6  # particles; thinner ones would be far from round
@@ -78,8 +78,7 @@ class ReleaseBody(Shaped[Release]):
         return found
 
     def _beyond(self, place: np.ndarray) -> UserError:
-        at = np.round(place, 3).tolist()
-        return self.error(f": reaches beyond the terrain, or where it has no data, as at {at} m")
+        return self.error(f": {beyond_text(place)}")
 
     def _check_box(self, low: np.ndarray, high: np.ndarray) -> None:
         """Refuse what lies in a box (dim - 1,) that goes beyond the terrain by more than dp.
