@@ -199,7 +199,7 @@ public:
     /// they would fall for ever, and ask for ever shorter steps.
     template <class Ground>
     void remove_fallen(const Particles<D>& particles, const Ground& ground) {
-        for (std::size_t p = 0; ground.is_there() && p < particles.size(); ++p)
+        for (std::size_t p = 0; p < particles.size(); ++p)
             if (particles.is_free(p) && ground.is_far_below(particles.position[p]))
                 removed[p] = 1, ledger.through_ground += particles.mass[p];
     }

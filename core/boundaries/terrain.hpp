@@ -86,8 +86,7 @@ public:
     /// Whether a place is so far below the ground that what is there has gone through it, and
     /// falls.
     bool is_far_below(const Vec<double, D>& x) const {
-        return is_there() &&
-               x[axes] < field_->height(horizontal(x)) - far * wall_.layers * wall_.dp;
+        return x[axes] < field_->height(horizontal(x)) - far * wall_.layers * wall_.dp;
     }
 
     void serialise(Archive& archive) {

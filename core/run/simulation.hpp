@@ -356,11 +356,13 @@ bool Simulation<Lists>::remove_outflow() {
     if (open_boundaries.outflows.empty() && !terrain.is_there()) return false;
     double elastic = 0.0;  // all ranks have all bodies
     open_boundaries.removed.resize(particles.size(), 0);
-    if (terrain.is_there()) elastic = bodies.drain(particles, terrain, open_boundaries.removed);
+    if (terrain.is_there()) {
+        elastic = bodies.drain(particles, terrain, open_boundaries.removed);
+        open_boundaries.remove_fallen(particles, terrain);
+    }
     auto leaves = [&](auto p) {
         return particles.is_free(p) && terrain.contains(particles.position[p]);
     };
-    open_boundaries.remove_fallen(particles, terrain);
     auto drain = [&](const auto& at, auto& left) { elastic += bodies.drain(particles, at, left); };
     const double any = open_boundaries.remove_outflow(particles, leaves, drain) ? 1.0 : 0.0;
     if (ranks().rank() == 0) open_boundaries.ledger.outflow.energy += elastic;

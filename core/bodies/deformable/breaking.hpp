@@ -131,7 +131,10 @@ void TotalLagrangian<D>::advance_bonds(double dt) {
     auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
     bonds_.advance(
         dt, point, body, [this](std::size_t p) { return tension_[p]; },
-        [this] { update_deformations(cracked_clusters()); });
+        [this, clusters = Array<std::uint32_t>()]() mutable {
+            if (clusters.empty()) clusters = cracked_clusters();
+            update_deformations(clusters);
+        });
     bonds_.settle(
         point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
         [this](std::size_t p, const Mat<double, D>& shape) { take_shape(p, shape); });

@@ -97,7 +97,7 @@ BondChange Bonds<D>::sum_over_cracked(const F& f) {
 template <int D>
 template <class Point, class Body, class Tension, class Update>
 void Bonds<D>::advance(double dt, const Point& point, const Body& body, const Tension& tension,
-                       const Update& update) {
+                       Update&& update) {
     constexpr int most_passes = 8;
     constexpr double tolerance = 0.005;  // of the strength
     find_tips(point);
@@ -124,8 +124,8 @@ BondChange Bonds<D>::begin_cracks(double dt, const Point& point, const Body& bod
     first_.resize(cracked_.size());
     return sum_over_cracked([&](std::size_t k) {
         BondStep<D> bond = step_of(cracked_[k], point, body);
-        const double work = bond.half_work();
         first_[k] = bond.pulls();
+        const double work = bond.second_half(first_[k]);
         state_[cracked_[k]].change = {};
         return BondChange{work} + bond.move(dt, 0.0);
     });
@@ -163,7 +163,8 @@ double Bonds<D>::opening(const Point& point, const Body& body) const {
         const BondEnds& ends = pairs_[stepped_[k]];
         BondState<D> state = state_[stepped_[k]];
         if (state.whole == 0.0 || !state.cracked()) return 0.0;
-        return BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state).half_work();
+        const BondStep<D> bond(ends, point(ends.a), point(ends.b), body(ends.a), state);
+        return bond.second_half(bond.pulls());
     });
 }
 

@@ -47,21 +47,20 @@ public:
           rest_(a.rest - b.rest),
           share_(ends.weight * a.volume * b.volume) {}
 
-    /// Of what the last change of the jump took, by the trapezoidal rule: half with the pull from
-    /// which it followed, half with that of the step after it, but for points that are settled.
-    double half_work() const {
-        return (a_.settled ? 0.0 : half_work(pull_of(a_, at_rest()))) +
-               (b_.settled ? 0.0 : half_work(pull_of(b_, at_rest())));
+    /// Of what a change of the jump takes, by the trapezoidal rule: half with the pulls before it,
+    double first_half(const BondPulls<D>& before) const {
+        return half_work(before.of_a + before.of_b);
     }
-    /// The first half, by the pulls before the change.
-    double first_half(const FirstPulls<D>& first) const {
-        return half_work(first.of_a + first.of_b);
+    double first_half(std::size_t p, const BondPulls<D>& before) const {
+        return half_work(p == ends_.a ? before.of_a : before.of_b);
     }
-    double first_half(std::size_t p, const FirstPulls<D>& first) const {
-        return half_work(p == ends_.a ? first.of_a : first.of_b);
+    /// and half with those of the step after it, but for points that are settled.
+    double second_half(const BondPulls<D>& after) const {
+        return (a_.settled ? 0.0 : half_work(after.of_a)) +
+               (b_.settled ? 0.0 : half_work(after.of_b));
     }
     /// On both of its points.
-    FirstPulls<D> pulls() const { return {pull_of(a_, at_rest()), pull_of(b_, at_rest())}; }
+    BondPulls<D> pulls() const { return {pull_of(a_, at_rest()), pull_of(b_, at_rest())}; }
     /// Whether it has a crack, or gets one now.
     bool cracks() { return state_.cracked() || begins(); }
     /// Tension [Pa] along the bond at which a crack begins.

@@ -148,9 +148,9 @@ struct BondChange {
 };
 
 /// Force over its weight with which each of the points of a bond resists a change of the jump, Eq.
-/// (109), before the cracks of a step move.
+/// (109).
 template <int D>
-struct FirstPulls {
+struct BondPulls {
     Vec<double, D> of_a, of_b;
 };
 
@@ -281,7 +281,7 @@ public:
     /// jumps that their bonds have now: for_each_cracked_point.
     template <class Point, class Body, class Tension, class Update>
     void advance(double dt, const Point& point, const Body& body, const Tension& tension,
-                 const Update& update);
+                 Update&& update);
     /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
     /// share), the places after a share of a step; tells of the points that lost some the moment of
     /// those that are left: take_shape(p, moment).
@@ -354,7 +354,7 @@ private:
     Array<std::uint8_t> settled_;   // see BondPoint
     Array<CrackTip<D>> tip_;        // of the points of stepped bonds, in a step
     Array<std::uint32_t> cracked_;  // of stepped_, in a step
-    Array<FirstPulls<D>> first_;    // of cracked_
+    Array<BondPulls<D>> first_;     // of cracked_, before they move
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;
