@@ -105,9 +105,9 @@ Value reduce(std::size_t count, const Value& start, const Combine& combine, cons
 }
 
 /// Where rows of these lengths start that lie one after another, and where the last one ends.
-template <class Length>
-Array<std::size_t> starts_of(std::size_t count, const Length& length) {
-    Array<std::size_t> starts(count + 1, 0);
+template <class Number, class Length>
+Array<Number> starts_of(std::size_t count, const Length& length) {
+    Array<Number> starts(count + 1, 0);
     const auto lengths =
         thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0), length);
     thrust::inclusive_scan(thrust::device, lengths, lengths + static_cast<std::ptrdiff_t>(count),
@@ -140,6 +140,14 @@ void for_each_contact(std::size_t count, const F& f) {
 template <class Value, class Combine, class F>
 Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
     return doseki::reduce(count, start, combine, f);
+}
+
+template <class Number, class Length>
+Array<Number> starts_of(std::size_t count, const Length& length) {
+    Array<Number> starts(count + 1, 0);
+    for (std::size_t k = 0; k < count; ++k)
+        starts[k + 1] = starts[k] + static_cast<Number>(length(k));
+    return starts;
 }
 
 inline Buckets sorted_by(const Array<std::uint32_t>& keys, std::size_t count) {

@@ -1,6 +1,8 @@
 #pragma once
 // Algebra of small matrices over a number type T (scalar or Pack).
 
+#include <cmath>
+
 #include "base/vec.hpp"
 
 namespace doseki {
@@ -97,6 +99,19 @@ DOSEKI_FN Sym<T, D> symmetric_part(const Mat<T, D>& m) {
     return result;
 }
 
+/// Bound on the sizes of the eigenvalues, whatever the axes are: the largest of them in 2-D, and in
+/// 3-D where two are the same.
+template <int D>
+DOSEKI_DEVICE_FN double largest_size(const Sym<double, D>& s) {
+    double sum = 0.0, squares = 0.0;
+    for (int a = 0; a < D; ++a) {
+        sum += s(a, a), squares += s(a, a) * s(a, a);
+        for (int b = a + 1; b < D; ++b) squares += 2.0 * s(a, b) * s(a, b);
+    }
+    const double mean = sum / D, variance = squares / D - mean * mean;
+    return (mean < 0.0 ? -mean : mean) + std::sqrt((D - 1) * (variance > 0.0 ? variance : 0.0));
+}
+
 /// Matrix of cofactors: inverse transposed times determinant.
 template <class T, int D>
 DOSEKI_FN Mat<T, D> cofactors(const Mat<T, D>& m) {
@@ -133,8 +148,9 @@ DOSEKI_DEVICE_FN Mat<double, D> inverse(const Mat<double, D>& m, double min_dete
     const double det = determinant(m, c);
     Mat<double, D> result{};
     if (!(det > min_determinant)) return result;
+    const double factor = 1.0 / det;
     for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) result(a, b) = c(b, a) / det;
+        for (int b = 0; b < D; ++b) result(a, b) = factor * c(b, a);
     return result;
 }
 

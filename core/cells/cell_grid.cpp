@@ -77,7 +77,6 @@ void CellGrid<D>::size(const Domain<D>& domain, std::span<const Vec<double, D>> 
     }
     cells = fold(wanted, position, members);
     fill_key_parts();
-    cell_start.assign(static_cast<std::size_t>(table_size(cells)) + 1, 0);
 }
 
 template <int D>
@@ -88,15 +87,16 @@ std::int64_t CellGrid<D>::table_size(const std::array<std::int64_t, D>& cells) {
     return product;
 }
 
-/// A table no larger than the particles warrant. Folding a direction only adds candidates, and
+/// No more groups than the particles warrant. Folding a direction only adds candidates, and
 /// fewest where one half is nearly empty: a long flow that splashes is folded upwards, not onto
 /// itself.
 template <int D>
 std::array<std::int64_t, D> CellGrid<D>::fold(std::array<std::int64_t, D> wanted,
                                               std::span<const Vec<double, D>> position,
                                               std::span<const std::uint32_t> members) const {
-    const std::int64_t limit =
-        std::max<std::int64_t>(4096, 4 * static_cast<std::int64_t>(members.size()));
+    constexpr std::int64_t fewest = 4096, largest = std::int64_t{1} << 31;  // cells
+    const std::int64_t limit = std::clamp<std::int64_t>(
+        4 * group_size * static_cast<std::int64_t>(members.size()), fewest, largest);
     if (table_size(wanted) <= limit) return wanted;
     std::array<Array<double>, D> layers;  // particles with the same cell along a direction
     for (int a = 0; a < D; ++a) {

@@ -12,9 +12,18 @@
 
 namespace doseki {
 
-/// Particles of one class: a contiguous range in sorted order with its table of cells.
+/// The particles of a cell: those in a row in storage.
+struct CellRange {
+    std::uint32_t first, last;
+};
+
+/// Particles of one class: a contiguous range in sorted order with its table of cells. Cells that
+/// follow each other in storage form groups, and only groups with particles have cells in memory.
 template <int D>
 struct CellGrid {
+    static constexpr int group_bits = 2 * D;
+    static constexpr std::uint32_t group_size = 1u << group_bits;  // cells
+
     bool fixed = false;
     std::uint32_t first = 0, last = 0;
     double support = 0.0;  // largest R of the class
@@ -25,9 +34,10 @@ struct CellGrid {
     std::array<std::int64_t, D> cells{};           // power of two, except in periodic directions
     std::array<Array<std::uint32_t>, D> key_part;  // Morton key = OR over directions
     Array<std::uint16_t> curve;                    // of the cells of a block
-    Array<std::uint32_t> cell_start;
+    Array<std::uint32_t> rank;        // of each group: how many before it have particles
+    Array<std::uint32_t> cell_start;  // of the cells of groups with particles, and the end
 
-    /// Makes the cells around `members`, none of which is counted yet.
+    /// Makes the cells around `members`, none of which is sorted into them yet.
     void size(const Domain<D>& domain, std::span<const Vec<double, D>> position,
               std::span<const std::uint32_t> members);
 
@@ -52,6 +62,15 @@ struct CellGrid {
         std::uint32_t key = 0;
         for (int a = 0; a < D; ++a) key |= key_along(wrap(cell_of(x[a], a), a), a);
         return place(key);
+    }
+    std::size_t groups() const {
+        return (static_cast<std::size_t>(table_size(cells)) + group_size - 1) / group_size;
+    }
+    DOSEKI_DEVICE_FN CellRange particles(std::uint32_t key) const {
+        const std::uint32_t at = place(key), group = at >> group_bits, number = rank[group];
+        if (rank[group + 1] == number) return {0, 0};
+        const std::uint32_t cell = number << group_bits | (at & (group_size - 1));
+        return {cell_start[cell], cell_start[cell + 1]};
     }
     /// Whether none of its particles can be within `radius` of the box.
     DOSEKI_DEVICE_FN bool is_beyond(const Vec<double, D>& low, const Vec<double, D>& high,

@@ -54,17 +54,64 @@ struct PlaceOfMember {
     }
 };
 
-struct NameMember {
-    std::span<const std::uint32_t> members, sorted;
-    std::uint32_t* order;
-    DOSEKI_DEVICE_FN void operator()(std::size_t k) const { order[k] = members[sorted[k]]; }
+struct GroupOfMember {
+    std::span<const std::uint32_t> places;
+    std::span<std::uint32_t> groups;
+    int bits;
+    DOSEKI_DEVICE_FN void operator()(std::size_t k) const { groups[k] = places[k] >> bits; }
 };
 
-struct CountFrom {
-    std::span<std::uint32_t> starts;
-    std::uint32_t first;
-    DOSEKI_DEVICE_FN void operator()(std::size_t k) const { starts[k] += first; }
+struct HasMembers {
+    std::span<const std::uint32_t> starts;
+    DOSEKI_DEVICE_FN std::uint32_t operator()(std::size_t group) const {
+        return starts[group + 1] > starts[group] ? 1 : 0;
+    }
 };
+
+/// Sorts the members of a group by cell, in the order that they have.
+template <int D>
+struct SortGroup {
+    static constexpr std::uint32_t size = CellGrid<D>::group_size;
+
+    std::span<const std::uint32_t> members, places, by_group, starts, rank;
+    std::uint32_t first;  // in storage
+    std::span<std::uint32_t> cell_start;
+    std::uint32_t* order;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t group) const {
+        const std::uint32_t start = starts[group], end = starts[group + 1];
+        if (start == end) return;
+        std::uint32_t next[size] = {};
+        for (std::uint32_t k = start; k < end; ++k) ++next[cell(by_group[k])];
+        std::uint32_t before = start;
+        for (std::uint32_t c = 0; c < size; ++c) {
+            const std::uint32_t count = next[c];
+            cell_start[rank[group] * size + c] = first + before;
+            next[c] = before, before += count;
+        }
+        for (std::uint32_t k = start; k < end; ++k)
+            order[next[cell(by_group[k])]++] = members[by_group[k]];
+    }
+
+private:
+    DOSEKI_DEVICE_FN std::uint32_t cell(std::uint32_t k) const { return places[k] & (size - 1); }
+};
+
+/// Sorts members into the cells of their grid; the first is stored at `grid.first`.
+template <int D>
+void sort_members(CellGrid<D>& grid, std::span<const std::uint32_t> members,
+                  std::span<const Vec<double, D>> position, std::uint32_t* order) {
+    Array<std::uint32_t> places(members.size()), keys(members.size());
+    bulk::for_each(members.size(), PlaceOfMember<D>{grid, position, members, places});
+    bulk::for_each(members.size(), GroupOfMember{places, keys, CellGrid<D>::group_bits});
+    const bulk::Buckets groups = bulk::sorted_by(std::move(keys), grid.groups());
+    grid.rank = bulk::starts_of<std::uint32_t>(grid.groups(), HasMembers{groups.starts});
+    grid.cell_start.resize(std::size_t{grid.rank.back()} * CellGrid<D>::group_size + 1);
+    bulk::for_each(grid.groups(),
+                   SortGroup<D>{members, places, groups.order, groups.starts, grid.rank, grid.first,
+                                grid.cell_start, order});
+    grid.cell_start.back() = grid.last;
+}
 
 }  // namespace
 
@@ -122,13 +169,7 @@ Array<std::uint32_t> SortedCells<D>::sort_classes(const bulk::Buckets& classes,
         grid.support =
             bulk::reduce(members.size(), 0.0, maximum, SupportOfMember{support, members});
         grid.size(domain_, position, members);
-
-        Array<std::uint32_t> places(members.size());
-        bulk::for_each(members.size(), PlaceOfMember<D>{grid, position, members, places});
-        auto cells = bulk::sorted_by(std::move(places), grid.cell_start.size() - 1);
-        bulk::for_each(members.size(), NameMember{members, cells.order, &order[start]});
-        bulk::for_each(cells.starts.size(), CountFrom{cells.starts, grid.first});
-        grid.cell_start.swap(cells.starts);
+        sort_members(grid, members, position, &order[start]);
     }
     return order;
 }
@@ -136,7 +177,8 @@ Array<std::uint32_t> SortedCells<D>::sort_classes(const bulk::Buckets& classes,
 template <int D>
 std::size_t SortedCells<D>::bytes_of_cells() const {
     std::size_t bytes = 0;
-    for (const auto& grid : grids_) bytes += grid.cell_start.capacity() * sizeof(std::uint32_t);
+    for (const auto& grid : grids_) 
+        bytes += (grid.rank.capacity() + grid.cell_start.capacity()) * sizeof(std::uint32_t);
     return bytes;
 }
 

@@ -60,8 +60,8 @@ private:
             key |= grid.key_along(wrapped, a);
             image += weight * static_cast<std::uint32_t>(turns + 1);
         }
-        const std::uint32_t place = grid.place(key);
-        for (std::uint32_t j = grid.cell_start[place]; j < grid.cell_start[place + 1]; ++j)
+        const CellRange there = grid.particles(key);
+        for (std::uint32_t j = there.first; j < there.last; ++j)
             if (is_near(p, j, shifts[image]) && (!by_faces || meet(p, j)))
                 keep(j | image << ListEntry::index_bits);
     }
@@ -143,7 +143,7 @@ void RowLists<D>::build(std::span<const Vec<double, D>> position, std::span<cons
                               skin};
     rows_.resize(n);
     bulk::for_each(n, CountRow<D>{search, rows_});
-    const Array<std::size_t> starts = bulk::starts_of(n, LengthOf{rows_});
+    const Array<std::size_t> starts = bulk::starts_of<std::size_t>(n, LengthOf{rows_});
     make_room(entries_, starts[n]);
     bulk::for_each(n, FillRow<D>{search, starts, entries_});
     cut_rows(starts);
@@ -170,7 +170,7 @@ void RowLists<D>::serialise(Archive& archive) {
         expect_fit(total <= entries_.size(), "lists_entries");
     }
     expect_fit(total == entries_.size(), "lists_entries");
-    cut_rows(bulk::starts_of(rows_.size(), LengthOf{rows_}));
+    cut_rows(bulk::starts_of<std::size_t>(rows_.size(), LengthOf{rows_}));
 }
 
 template class RowLists<2>;

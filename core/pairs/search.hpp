@@ -52,8 +52,9 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
     };
     auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
         const Vec<double, D>& shift = shifts[image];
-        const std::uint32_t code = image << ListEntry::index_bits, cell = grid.place(key);
-        for (std::uint32_t j = grid.cell_start[cell]; j < grid.cell_start[cell + 1]; ++j) {
+        const std::uint32_t code = image << ListEntry::index_bits;
+        const CellRange cell = grid.particles(key);
+        for (std::uint32_t j = cell.first; j < cell.last; ++j) {
             Lanes square = 0.0;
             for (int a = 0; a < D; ++a) {
                 const Lanes d = x[a] - (position[j][a] + shift[a]);

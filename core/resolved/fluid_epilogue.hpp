@@ -142,8 +142,8 @@ private:
                           0.0, 1.0);
     }
 
-    /// None near a free surface, where there is little pressure and the inverse is large. Bounded,
-    /// or a few particles in a hole would shorten the step of all (Eq. 41).
+    /// None near a free surface, where there is little pressure and the inverse is large. Bounded
+    /// in a hole.
     DOSEKI_DEVICE_FN Sym<double, D> correction_excess(const Summed& at,
                                                       const Mat<double, D>& B) const {
         constexpr double min_determinant = 0.3;  // of the moment
@@ -153,7 +153,7 @@ private:
             B(0, 0) > 0.0 && min_determinant * determinant(B) < 1.0;
         if (!corrected) return {};
         Sym<double, D> excess = symmetric_part(B - identity<double, D>());
-        const double share = max_excess / std::max(row_norm(excess), max_excess);
+        const double share = max_excess / std::max(largest_size(excess), max_excess);
         for (double& element : excess.element) element *= share;
         return excess;
     }
@@ -211,8 +211,8 @@ private:
             shifting_velocity(sums.concentration_gradient, strain, state_.smoothing_length[at.p]);
         if (sums.surface.value > FreeSurfaceIndicator::surface)
             velocity = tangential(velocity, sums.surface_gradient);
-        const double fastest = max_shift * c, speed = std::sqrt(dot(velocity, velocity));
-        if (speed > fastest) velocity = (fastest / speed) * velocity;
+        const double fastest = max_shift * c, square = dot(velocity, velocity);
+        if (square > fastest * fastest) velocity = (fastest / std::sqrt(square)) * velocity;
         state_.shift[at.p] = velocity;
         rates.density += dot(state_.pressure_gradient[at.p], velocity) / (c * c);
     }
@@ -274,13 +274,15 @@ private:
     DOSEKI_DEVICE_FN void limit_timestep(const Summed& at) const {
         const std::size_t p = at.p;
         const Vec<double, D>&a = state_.acceleration[p], &v = state_.velocity[p];
-        const double dt =
-            FlowTimestep::of(model_.options, at.fields, state_.smoothing_length[p],
-                             std::sqrt(dot(v, v)), std::sqrt(dot(a, a)), model_.constants.c)
-                .smallest();
+        const double aa = dot(a, a), vv = dot(v, v), h = state_.smoothing_length[p],
+                     c = model_.constants.c;
         FlowSummary<D>& of_cluster = summary(p);
-        of_cluster.limit(dt, static_cast<std::int64_t>(p));
-        of_cluster.fault.note_right_hand_side(dot(a, a) + state_.density_rate[p], p);
+        of_cluster.fault.note_right_hand_side(aa + state_.density_rate[p], p);
+        const Options<D>& options = model_.options;
+        if (!FlowTimestep::may_be_below(of_cluster.timestep, options, at.fields, h, vv, aa, c))
+            return;
+        const auto dt = FlowTimestep::of(options, at.fields, h, std::sqrt(vv), std::sqrt(aa), c);
+        of_cluster.limit(dt.smallest(), static_cast<std::int64_t>(p));
     }
 
     const ResolvedModel<D>& model_;
