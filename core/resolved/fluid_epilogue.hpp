@@ -272,17 +272,12 @@ private:
     }
 
     DOSEKI_DEVICE_FN void limit_timestep(const Summed& at) const {
-        const std::size_t p = at.p;
-        const Vec<double, D>&a = state_.acceleration[p], &v = state_.velocity[p];
-        const double aa = dot(a, a), vv = dot(v, v), h = state_.smoothing_length[p],
-                     c = model_.constants.c;
-        FlowSummary<D>& of_cluster = summary(p);
-        of_cluster.fault.note_right_hand_side(aa + state_.density_rate[p], p);
-        const Options<D>& options = model_.options;
-        if (!FlowTimestep::may_be_below(of_cluster.timestep, options, at.fields, h, vv, aa, c))
-            return;
-        const auto dt = FlowTimestep::of(options, at.fields, h, std::sqrt(vv), std::sqrt(aa), c);
-        of_cluster.limit(dt.smallest(), static_cast<std::int64_t>(p));
+        const auto limits = FlowTimestep<D>::of(model_, state_, at.fields, at.p);
+        FlowSummary<D>& of_cluster = summary(at.p);
+        of_cluster.fault.note_right_hand_side(limits.acceleration + state_.density_rate[at.p],
+                                              at.p);
+        if (limits.may_be_below(of_cluster.timestep))
+            of_cluster.limit(limits.smallest(), static_cast<std::int64_t>(at.p));
     }
 
     const ResolvedModel<D>& model_;

@@ -76,15 +76,12 @@ ForceTerms<D> force_terms(const FluidPass<D, real, Backend>& pass, const Resolve
     terms.acceleration.emplace_back("gravity", options.gravity);
     if (attraction > 0.0)
         terms.acceleration.emplace_back("attraction", -attraction * state.position[p]);
-    const Vec<double, D> a = state.acceleration[p], v = state.velocity[p];
 
     const auto record = converted<FluidFields<double, D>>(pass.records.fluid_fields[p]);
-    const auto limits =
-        FlowTimestep::of(options, record, state.smoothing_length[p], std::sqrt(dot(v, v)),
-                         std::sqrt(dot(a, a)), pass.model.constants.c);
-    terms.timestep = {{"the sound speed", limits.acoustic},
-                      {"the acceleration", limits.forced},
-                      {"the viscosity", limits.viscous}};
+    const auto limits = FlowTimestep<D>::of(pass.model, state, record, p);
+    terms.timestep = {{"the sound speed", limits.acoustic()},
+                      {"the acceleration", limits.forced()},
+                      {"the viscosity", limits.viscous()}};
     return terms;
 }
 

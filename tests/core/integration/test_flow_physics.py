@@ -43,6 +43,17 @@ def test_what_the_fluid_loses_the_walls_get(core, flows, dim, wall, steps):
     np.testing.assert_allclose(fluid + walls, 0, atol=1e-14 * size)
 
 
+def test_a_drop_that_flies_past_takes_the_same_steps(core, flows, dim):
+    """Only how fast neighbours come nearer counts; 8 m/s are 0.4 of the sound speed."""
+    swirl = ["= -0.5*y", "= 0.5*x"] + [0] * (dim - 2)
+    flight = ["= 8 - 0.5*y", "= 0.5*x"] + [0] * (dim - 2)
+    drops = [
+        advance(flows(DROP.format(dim=dim), f"body.drop.velocity={velocity}"), 10)
+        for velocity in (swirl, flight)
+    ]
+    assert drops[1].timestep == pytest.approx(drops[0].timestep, rel=1e-6)
+
+
 @WALLS
 def test_water_at_rest_and_walls_are_in_balance_at_any_depth(core, flows, wall):
     settings = [f"body.bed.wall={wall}", "body.bed.ks=0.01", "body.film.velocity=[0, 0]"]

@@ -546,7 +546,9 @@ class FlowReference:
         return self.past_edge & (self.nearby > SURFACE)
 
     def _set_timestep(self) -> None:
-        speed = np.linalg.norm(self.v, axis=1)
+        reach = SUPPORT[self.options.kernel] * self.h
+        gradient = np.linalg.norm(self.L, axis=(1, 2))
+        speed = np.minimum(np.linalg.norm(self.v, axis=1), reach * gradient)
         force = np.linalg.norm(self.acceleration, axis=1)
         limits = [
             self.options.cflnumber * self.h / (self.c + speed),
