@@ -12,7 +12,7 @@
 
 namespace doseki {
 
-/// The particles of a cell: those in a row in storage.
+/// The particles of a cell, which follow each other in storage.
 struct CellRange {
     std::uint32_t first, last;
 };
@@ -66,10 +66,11 @@ struct CellGrid {
     std::size_t groups() const {
         return (static_cast<std::size_t>(table_size(cells)) + group_size - 1) / group_size;
     }
+    /// Those of a cell, by its key.
     DOSEKI_DEVICE_FN CellRange particles(std::uint32_t key) const {
         const std::uint32_t at = place(key), group = at >> group_bits, number = rank[group];
         if (rank[group + 1] == number) return {0, 0};
-        const std::uint32_t cell = number << group_bits | (at & (group_size - 1));
+        const std::size_t cell = std::size_t{number} << group_bits | (at & (group_size - 1));
         return {cell_start[cell], cell_start[cell + 1]};
     }
     /// Whether none of its particles can be within `radius` of the box.

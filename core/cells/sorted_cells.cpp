@@ -86,7 +86,7 @@ struct SortGroup {
         std::uint32_t before = start;
         for (std::uint32_t c = 0; c < size; ++c) {
             const std::uint32_t count = next[c];
-            cell_start[rank[group] * size + c] = first + before;
+            cell_start[std::size_t{rank[group]} * size + c] = first + before;
             next[c] = before, before += count;
         }
         for (std::uint32_t k = start; k < end; ++k)
@@ -107,9 +107,8 @@ void sort_members(CellGrid<D>& grid, std::span<const std::uint32_t> members,
     const bulk::Buckets groups = bulk::sorted_by(std::move(keys), grid.groups());
     grid.rank = bulk::starts_of<std::uint32_t>(grid.groups(), HasMembers{groups.starts});
     grid.cell_start.resize(std::size_t{grid.rank.back()} * CellGrid<D>::group_size + 1);
-    bulk::for_each(grid.groups(),
-                   SortGroup<D>{members, places, groups.order, groups.starts, grid.rank, grid.first,
-                                grid.cell_start, order});
+    bulk::for_each(grid.groups(), SortGroup<D>{members, places, groups.order, groups.starts,
+                                               grid.rank, grid.first, grid.cell_start, order});
     grid.cell_start.back() = grid.last;
 }
 
@@ -177,7 +176,7 @@ Array<std::uint32_t> SortedCells<D>::sort_classes(const bulk::Buckets& classes,
 template <int D>
 std::size_t SortedCells<D>::bytes_of_cells() const {
     std::size_t bytes = 0;
-    for (const auto& grid : grids_) 
+    for (const auto& grid : grids_)
         bytes += (grid.rank.capacity() + grid.cell_start.capacity()) * sizeof(std::uint32_t);
     return bytes;
 }

@@ -16,8 +16,9 @@ struct FlowTimestep {
     double c, h, mu, rho;           // c at rest
     double approach, acceleration;  // squares of u and of |a|
 
-    /// Neighbours come nearer by what the velocity gradient makes of the reach of the kernel, however
-    /// fast all move; and by the particle's own speed, where few neighbours make a large gradient.
+    /// Neighbours come nearer by what the velocity gradient makes of the reach of the kernel,
+    /// however fast all move; and by the particle's own speed, where few neighbours make a large
+    /// gradient.
     DOSEKI_DEVICE_FN static FlowTimestep of(const ResolvedModel<D>& model,
                                             const ResolvedState<D>& state,
                                             const FluidFields<double, D>& record, std::size_t p) {
@@ -26,8 +27,9 @@ struct FlowTimestep {
         double gradient = 0.0;
         const Mat<double, D> L = state.velocity_gradient[p];
         for (double element : L.element) gradient += element * element;
-        return {model.options, model.constants.c, h, record.mu, record.rho,
-                std::min(dot(v, v), reach * reach * gradient), dot(a, a)};
+        return {model.options, model.constants.c, h,
+                record.mu,     record.rho,        std::min(dot(v, v), reach * reach * gradient),
+                dot(a, a)};
     }
 
     DOSEKI_DEVICE_FN double acoustic() const {
@@ -37,9 +39,7 @@ struct FlowTimestep {
         return force_timestep(h, std::sqrt(acceleration), options.cfl_force);
     }
     DOSEKI_DEVICE_FN double viscous() const { return 0.125 * h * h * rho / std::max(mu, 1e-300); }
-    DOSEKI_DEVICE_FN double smallest() const {
-        return std::min({acoustic(), forced(), viscous()});
-    }
+    DOSEKI_DEVICE_FN double smallest() const { return std::min({acoustic(), forced(), viscous()}); }
 
     /// Whether it may be shorter than `dt`, without roots and divisions: few particles limit the
     /// step.
