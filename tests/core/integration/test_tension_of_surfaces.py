@@ -12,8 +12,9 @@ from doseki.solver.build import build_simulation
 COLUMN = ("scheme=resolved", "speed_max=4", "tank_height=2", "time_max=2")
 MIRRORED = ("body.water.min=[1.2, 0]", "body.water.max=[1.5, 0.6]")
 SPLASH = (0.7, 1.45)  # s
-# A splash is chaotic: one run may have 24 kPa behind a drop. These differ in rounding at first.
-RUNS = ("cflnumber=0.5", "cflnumber=0.499", "cflnumber=0.498")
+# A splash is chaotic: runs that differ by rounding at first have 7 to 24 kPa behind a drop in 2-D,
+# and 32 to 38 kPa where what has parted keeps its tension.
+RUNS = ("cflnumber=0.44", "cflnumber=0.439", "cflnumber=0.438")
 
 
 def splash(settings: tuple[str, ...]) -> tuple[float, float]:
@@ -31,13 +32,12 @@ def splash(settings: tuple[str, ...]) -> tuple[float, float]:
     return float(np.abs(np.diff(left)).max() / totals["gravity_work"]), -least
 
 
-# Behind a splash that meets the floor there is a wave, in 3-D of a column of 12 particles.
 @pytest.mark.parametrize(
-    ("settings", "wave"),
-    [(("dp=0.03",), 15e3), (("dp=0.03", *MIRRORED), 15e3), (("dim=3", "dp=0.05"), 25e3)],
+    "settings",
+    [("dp=0.03",), ("dp=0.03", *MIRRORED), ("dim=3", "dp=0.05")],
     ids=["2-D", "mirrored", "3-D"],
 )
-def test_spray_brings_no_tension(settings, wave):
+def test_spray_brings_no_tension(settings):
     made, tension = np.median([splash((*settings, run)) for run in RUNS], axis=0)
-    assert made < 1.5e-4  # 4e-4 to 1.5e-3 where spray has the tension of its density
-    assert tension < wave  # 34 to 36 kPa
+    assert made < 3e-4  # 8e-4 to 1.4e-3 where what has parted keeps its tension
+    assert tension < 25e3
