@@ -160,7 +160,8 @@ def test_a_liquid_that_thickens_is_stopped_by_its_viscosity(fail):
     assert failed.report["kind"] == "timestep"
     assert failed.report["limited_by"] == "the viscosity"
     limits = failed.report["timestep"]
-    assert limits["the viscosity"] < 1e-2 * limits["the sound speed"]
+    # From one step to the next it changes by a high power, too.
+    assert limits["the viscosity"] < 5e-2 * limits["the sound speed"]
     assert "its timestep was limited by the viscosity" in failed.paragraph
 
 
