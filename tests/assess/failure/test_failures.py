@@ -156,12 +156,12 @@ def test_a_particle_far_outside_the_domain(fail, block):
 
 def test_a_liquid_that_thickens_is_stopped_by_its_viscosity(fail):
     """Its viscosity rises with a high power of the rate of shear, which is none until it lands."""
-    failed = fail(THICKENING, "speed_max=1", "time_max=0.1")
+    # How far the viscosity has come when it stops depends on the step.
+    failed = fail(THICKENING, "speed_max=1", "time_max=0.1", "cflnumber=0.5")
     assert failed.report["kind"] == "timestep"
     assert failed.report["limited_by"] == "the viscosity"
     limits = failed.report["timestep"]
-    # From one step to the next it changes by a high power, too.
-    assert limits["the viscosity"] < 5e-2 * limits["the sound speed"]
+    assert limits["the viscosity"] < 1e-2 * limits["the sound speed"]
     assert "its timestep was limited by the viscosity" in failed.paragraph
 
 
