@@ -11,7 +11,8 @@
 
 namespace doseki {
 
-/// What flows, sorted by the column of the bed that it is over.
+/// What flows, and the faces of bodies that water may stand under, sorted by the column of the bed
+/// that it is over.
 template <int D>
 class FluidColumns {
     using Grid = TileGrid<D>;
@@ -28,8 +29,8 @@ public:
         std::array<double, Grid::columns> lowest;            // of each column [m]
     };
 
-    FluidColumns(const Grid& grid, const Particles<D>& particles, double reach)
-        : grid_(grid), particles_(particles) {
+    FluidColumns(const Grid& grid, const Particles<D>& particles, double reach, bool faces)
+        : grid_(grid), particles_(particles), faces_(faces) {
         sort_particles();
         list_columns_in(reach);
     }
@@ -82,6 +83,10 @@ private:
         double gap;
     };
 
+    bool is_in(std::uint32_t p) const {
+        if (!particles_.is_wall(p)) return true;
+        return faces_ && particles_.wall.in_use && particles_.wall.face[p] >= Face::first_body;
+    }
     void sort_particles();
     void list_columns_in(double reach);
     const Over* find(std::int64_t tile) const {
@@ -102,6 +107,7 @@ private:
 
     const Grid& grid_;
     const Particles<D>& particles_;
+    bool faces_;
     Array<Entry> entries_;   // column by column
     Array<Over> tiles_;      // in the order of their numbers
     Array<Offset> offsets_;  // the nearest first
@@ -110,7 +116,7 @@ private:
 template <int D>
 void FluidColumns<D>::sort_particles() {
     for (std::uint32_t p = 0; p < particles_.size(); ++p) {
-        if (particles_.is_wall(p)) continue;
+        if (!is_in(p)) continue;
         const Index column = grid_.column_inside(horizontal(particles_.position[p]));
         const std::int64_t tile = grid_.number(Grid::tile_of(column));
         entries_.push_back({tile * Grid::columns + Grid::number_in_tile(column), p});

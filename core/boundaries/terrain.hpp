@@ -30,11 +30,12 @@ struct TerrainWall {
     double smoothing_length = 0.0;  // [m]
     std::int16_t material = 0;
     std::int32_t body = 0;
+    bool faces = false;  // water may stand between it and bodies that lie on it
 };
 
 /// A terrain: the surface, and the groups of wall particles below it that are there. A group comes
-/// when fluid may feel it and goes when all fluid has gone, so that memory grows with the flow and
-/// not with the map.
+/// when fluid, or the face of a body, may feel it and goes when all of these have gone, so that
+/// memory grows with the flow and not with the map.
 template <int D>
 class Terrain {
     static constexpr int axes = D - 1;
@@ -251,7 +252,7 @@ template <class Gather>
 bool Terrain<D>::look(const Particles<D>& particles, double support, double margin, int rank,
                       const Gather& gather, Array<std::uint8_t>& removed) {
     const double reach = support + margin, farthest = reach + slack * wall_.dp;
-    const FluidColumns<D> fluid(grid_, particles, farthest);
+    const FluidColumns<D> fluid(grid_, particles, farthest, wall_.faces);
     lay_out(fluid, farthest);
     wanted_ = WallGroups::merged(gather(felt(fluid, reach).as_numbers(rank)), wall_.layers);
     const bool adds = !there_.contains(wanted_), drops = !wanted_.contains(there_);
@@ -307,6 +308,8 @@ void Terrain<D>::add_particle(Particles<D>& particles, std::int64_t tile,
     particles.enter(p);
     particles.wall.normal[p] = slot.normal, particles.wall.bend[p] = slot.bend;
     particles.wall.depth[p] = slot.depth, particles.wall.cut[p] = 1.0 - slot.share;
+    particles.wall.face[p] = wall_.faces && slot.layer == 0 ? Face::fixed : Face::none;
+    particles.wall.rows[p] = 1.0;
     particles.wall.point[p] = static_cast<std::int32_t>(tile * TileGrid<D>::columns + slot.column);
 }
 

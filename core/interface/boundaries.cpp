@@ -93,7 +93,7 @@ TerrainWall BoundaryTables<D>::terrain_wall(const NamedValues& table) {
     Reader read(table, "terrain wall");
     read("dp", wall.dp), read("layers", wall.layers), read("density", wall.density);
     read("smoothing_length", wall.smoothing_length);
-    read("material", wall.material), read("body", wall.body);
+    read("material", wall.material), read("body", wall.body), read("faces", wall.faces);
     read.finish();
     return wall;
 }

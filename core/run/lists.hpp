@@ -99,11 +99,11 @@ public:
     }
 
 private:
-    /// Whether walls of any rank have faces that may meet.
+    /// Whether faces may meet, on any rank: those of walls that do not move never do.
     bool faces_meet(const State& state) const {
         const auto faces = state.wall.face.stored();
         const bool own = std::any_of(faces.begin(), faces.end(),
-                                     [](std::int32_t face) { return face != Face::none; });
+                                     [](std::int32_t face) { return face >= Face::first_body; });
         return halo_.ranks.largest(own ? 1.0 : 0.0) > 0.0;
     }
     Field<std::int32_t> faces_with_ghosts(const State& state);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from tests.terrain.scenes import grid, profile, text
+from tests.terrain.scenes import block_in_lake, grid, profile, text
 
 import doseki
 
@@ -45,6 +45,19 @@ def test_a_slide_on_two_ranks(command, tmp_path):
         # What nothing feels is dropped at the next look, which rounding may put a step later.
         apart = cKDTree(other["position"][~flow]).query(one["position"][walls][felt])[0]
         assert apart.max() == 0
+
+
+@pytest.mark.minutes
+def test_water_under_a_block_on_two_ranks(command, tmp_path):
+    """Faces of the ground on one rank and of the block on another."""
+    file = block_in_lake(tmp_path)
+    for ranks in (1, 2):
+        arguments = ("-o", tmp_path / str(ranks), "--no-figures", "--threads", 1)
+        done = command(ranks, "run", file, *arguments, "--set", "time_max=0.1")
+        assert done.returncode == 0, done.stderr
+    one, two = (doseki.load(tmp_path / str(ranks))[-1] for ranks in (1, 2))
+    for name in ("position", "velocity", "spin"):
+        np.testing.assert_allclose(two.grains[name], one.grains[name], atol=1e-7)
 
 
 DAM = """

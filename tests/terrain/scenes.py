@@ -21,6 +21,27 @@ file = "{file}"
 material = "basalt"
 wall = "{wall}"
 """
+STONE = """
+[material.stone]
+based_on = "basalt"
+rho0 = 2000
+friction = 0.8
+"""
+# A block on a slope, held by its friction, in a lake.
+BLOCK_IN_LAKE = """
+[body.lake]
+shape = "box"
+material = "water"
+min = [{west}, {floor}]
+max = [{east}, {level}]
+pressure = "= 9810*({level} - y)"
+[body.block]
+shape = "box"
+material = "stone"
+min = {corner}
+max = {opposite}
+rotate = {turn}
+"""
 GRAVITY = {2: [0, -9.81], 3: [0, 0, -9.81]}
 
 
@@ -45,6 +66,34 @@ def text(dim, dp=0.1, time=1.0, speed=5.0, wall="free_slip", more=""):
         dim=dim, dp=dp, time=time, speed=speed, wall=wall, file=file, gravity=GRAVITY[dim]
     )
     return head + more
+
+
+def block_in_lake(folder, sign=1, shift=(0.0, 0.0), side=0.1, across=12):
+    """A block of stone under water on a slope that falls with x, or against it."""
+    slope = 15.0
+    steep, turn = np.tan(np.radians(slope)), np.radians(slope)
+    profile(
+        folder / "terrain.csv",
+        lambda x: np.maximum(-steep * sign * x, 4 * (sign * x - 0.45)),
+        low=-0.8,
+        high=0.8,
+        cell=0.01,
+        shift=shift,
+    )
+    left = 0.0 if sign > 0 else -side * np.cos(turn)
+    corner = np.array([left, -steep * sign * left]) + shift
+    words = BLOCK_IN_LAKE.format(
+        west=shift[0] - 0.8,
+        east=shift[0] + 0.8,
+        floor=shift[1] - 0.3,
+        level=shift[1] + 0.16,
+        corner=corner.tolist(),
+        opposite=(corner + side).tolist(),
+        turn=-sign * slope,
+    )
+    path = folder / "case.toml"
+    path.write_text(text(2, dp=side / across, time=0.6, speed=2.0, more=STONE + words))
+    return path
 
 
 def simulation_of(path, settings=()):

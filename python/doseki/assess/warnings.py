@@ -235,7 +235,7 @@ def _voellmy(scenario: Scenario, state: State, names: dict[int, str]) -> Iterato
     depth = max(depths, default=math.inf) * scenario.dp
     for keys, wall in beds.items():
         mu, xi = wall.given("mu"), wall.given("turbulent_xi")
-        for name in _liquids(scenario):
+        for name in scenario.liquids:
             fluid = scenario.materials[name]
             if fluid.rheology not in {"newtonian", "mu_i"}:
                 continue
@@ -261,7 +261,7 @@ def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
 
 def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
     """Doubts about water between bodies that move."""
-    grains, liquids = _rigid_bodies(scenario, state), _liquids(scenario)
+    grains, liquids = _rigid_bodies(scenario, state), scenario.liquids
     if not len(grains) or not liquids:
         return
     if not scenario.uplift:
@@ -280,10 +280,6 @@ def _rigid_bodies(scenario: Scenario, state: State) -> np.ndarray:
     if scenario.scheme == UETA2022 or "grain" not in state:
         return np.zeros(0, np.int32)
     return state["grain"][state["grain"] >= 0]
-
-
-def _liquids(scenario: Scenario) -> list[str]:
-    return [name for name in scenario.material_names if scenario.materials[name].law == "fluid"]
 
 
 def _detached(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:

@@ -105,6 +105,11 @@ class Scenario(ScenarioTable):
         return names_in_use(self, self._particle_tables)
 
     @property
+    def liquids(self) -> list[str]:
+        """Those of them that are fluids."""
+        return [name for name in self.material_names if self.materials[name].law == "fluid"]
+
+    @property
     def constants(self) -> Mapping[str, Any]:
         """What expressions may use: the parameters and the top-level numbers."""
         return self._constants

@@ -37,23 +37,14 @@ def contact_faces(
     rows = np.ones(n)
     first_row = depth < scenario.dp
     face[first_row & (particles.motion == FIXED)] = FIXED_FACE
-    rigid = ~np.isin(np.arange(n), _may_deform(bodies))
-    of_body = first_row & (bodies.grain >= 0) & rigid
+    of_body = first_row & (bodies.grain >= 0)
     face[of_body] = FIRST_BODY + bodies.grain[of_body]
     volume = particles.mass / particles.density
     for members, offset in _members(scenario, particles, bodies):
-        if not rigid[members[0]]:
-            continue
         pairs = _Pairs.of(offset, scenario)
         area[members] = pairs.areas(volume[members])
         rows[members] = pairs.rows(area[members], first_row[members])
     return ContactFaces(face, area, rows)
-
-
-def _may_deform(bodies: Bodies) -> np.ndarray:
-    """Particles of rigid bodies that become deformable when they are struck: without faces."""
-    members = [body.members for body in bodies.elastic if body.rigid_first]
-    return np.concatenate([np.zeros(0, np.int32), *members])
 
 
 def _members(

@@ -14,7 +14,7 @@ from doseki.validate.cases.grains.under_water import (
     sliding,
     standing,
 )
-from doseki.validate.running import Running
+from doseki.validate.running import CASES, Running
 
 from ..flows import Flows, advance
 
@@ -94,6 +94,34 @@ def test_a_block_that_lies_on_a_bed_under_water_is_at_rest():
     run = Running(BLOCK, "across=6")
     run.advance(0.2)
     assert np.abs(moving_body(run, "velocity")).max() < 1e-5
+
+
+BREAKABLE = """
+fracture = "cohesive"
+tensile_strength = 3e5
+fracture_energy = 5
+young_modulus = 1e9
+poisson_ratio = 0.2
+"""
+
+
+def breakable_block(folder, **given):
+    """The block under water, of a material that breaks."""
+    tank = (CASES / "grains" / f"{BLOCK}.toml").read_text()
+    stone, block = '[material.stone]\nbased_on = "basalt"\n', "[body.block]\n"
+    assert stone in tank and block in tank
+    tank = tank.replace(stone, stone + BREAKABLE).replace("restitution = 0.2\n", "")
+    path = folder / "block.toml"
+    path.write_text(tank.replace(block, block + 'kinematics = "breakable"\n'))
+    return Running(str(path), "across=10", *(f"{key}={value}" for key, value in given.items()))
+
+
+def test_a_breakable_block_has_its_uplift_while_it_is_rigid(tmp_path):
+    run = breakable_block(tmp_path, depth=0.15)
+    times = np.linspace(0.1, 0.3, 41)
+    up = np.mean([flow_force(run, time)[1] for time in times]) / (9810 * SIDE**2)
+    assert up == pytest.approx(1, abs=CLOSE)
+    assert run.simulation.totals()["broken_bonds"] == 0
 
 
 def test_without_water_between_faces_it_has_not():

@@ -8,6 +8,9 @@ from ...case import Case, Control, Criterion, Curve, Outcome, Value, within
 from ...running import Running
 
 UPLIFT, FLOATS, FRICTION = "uplift", "depth at which it floats", "friction on a tilted bed"
+ON_TERRAIN = "uplift on a terrain"
+TANK, TERRAIN = "block-under-water", "block-on-terrain"  # scenarios
+UPLIFT_IN = {TANK: UPLIFT, TERRAIN: ON_TERRAIN}
 WATER, STONE = 1000.0, 2000.0  # kg/m3
 SIDE = 0.1  # m, of the block
 SUBMERGED, SHALLOW = 1.5, 0.75  # depth of the water over the side of the block: whole rows at 16
@@ -24,17 +27,19 @@ def block(across: float, *overrides: str) -> Outcome:
         # Water of this depth carries what that of the second one weighs.
         FLOATS: Value(SHALLOW, SHALLOW * shallow.values[UPLIFT].number),
         FRICTION: Value(sliding(across, *overrides), 1.0),
+        **lifted(across, SUBMERGED, *overrides, name=TERRAIN).values,
     }
     times = deep.curves[0].x
     archimedes = Curve("Archimedes", times, np.ones(len(times)))
     return Outcome(values, [*deep.curves, *shallow.curves], [archimedes])
 
 
-def lifted(across: float, depth: float, *overrides: str) -> Outcome:
-    """The late uplift in water of one depth."""
-    times, upward = standing(across, depth, *overrides)
+def lifted(across: float, depth: float, *overrides: str, name: str = TANK) -> Outcome:
+    """The late uplift in water of one depth, in the scenario of this name."""
+    times, upward = standing(across, depth, *overrides, name=name)
     late = float(upward[times > SETTLED * times[-1]].mean())
-    return Outcome({UPLIFT: Value(late, 1.0)}, [Curve(f"{depth:g} deep", times, upward)])
+    curve = Curve(f"{depth:g} deep", times, upward)
+    return Outcome({UPLIFT_IN[name]: Value(late, 1.0)}, [curve])
 
 
 def rubbed(across: float, *overrides: str) -> Outcome:
@@ -42,15 +47,22 @@ def rubbed(across: float, *overrides: str) -> Outcome:
     return Outcome({FRICTION: Value(sliding(across, *overrides), 1.0)})
 
 
-def standing(across: float, depth: float, *overrides: str) -> tuple[np.ndarray, np.ndarray]:
+def standing(
+    across: float, depth: float, *overrides: str, name: str = TANK
+) -> tuple[np.ndarray, np.ndarray]:
     """Times, and the upward force of the water over the weight of what the block displaces."""
     given = f"across={across:g}", f"side={SIDE:g}", f"depth={depth * SIDE:g}"
-    run = Running("block-under-water", *given, *overrides)
+    run = Running(name, *given, *overrides)
     gravity = np.asarray(run.scenario.gravity)
     displaced = WATER * SIDE**run.scenario.dim * min(depth, 1.0)
     times = np.linspace(0, run.scenario.time_max, SAMPLES + 1)[1:]
     force = np.array([flow_force(run, time) for time in times])
     return times, -(force @ gravity) / (displaced * float(gravity @ gravity))
+
+
+def on_terrain_without_film(across: float) -> Outcome:
+    """What water does that is not between faces."""
+    return lifted(across, SUBMERGED, NO_FILM, name=TERRAIN)
 
 
 def sliding(across: float, *overrides: str) -> float:
@@ -59,7 +71,7 @@ def sliding(across: float, *overrides: str) -> float:
     From its motion: what its momentum, its weight and the water leave for the contact.
     """
     tilted = f"tilt={SLOPE:g}", f"friction={COEFFICIENT:g}", f"density={STONE:g}"
-    run = Running("block-under-water", f"across={across:g}", f"side={SIDE:g}", *tilted, *overrides)
+    run = Running(TANK, f"across={across:g}", f"side={SIDE:g}", *tilted, *overrides)
     volume, gravity = SIDE**run.scenario.dim, np.asarray(run.scenario.gravity)
     times = np.linspace(SETTLED * run.scenario.time_max, run.scenario.time_max, SAMPLES)
     run.advance(times[0])
@@ -96,11 +108,13 @@ UNDER_WATER = Case(
             (within(0.03),),
             "that of its submerged weight; as it slides, water lifts it by some per cent",
         ),
+        Criterion(ON_TERRAIN, (within(0.03),), "Archimedes again: its walls are made for the flow"),
     ),
     axes=("time (s)", "upward force / weight of water displaced"),
     controls=(
         Control("no water between faces", UPLIFT, lambda n: lifted(n, SUBMERGED, NO_FILM)),
         Control("no water between faces", FRICTION, lambda n: rubbed(n, NO_FILM)),
+        Control("no water between faces", ON_TERRAIN, on_terrain_without_film),
     ),
 )
 CASES = (UNDER_WATER,)
