@@ -109,7 +109,8 @@ def breakable_block(folder, **given):
     """The block under water, of a material that breaks."""
     tank = (CASES / "grains" / f"{BLOCK}.toml").read_text()
     stone, block = '[material.stone]\nbased_on = "basalt"\n', "[body.block]\n"
-    assert stone in tank and block in tank
+    assert stone in tank
+    assert block in tank
     tank = tank.replace(stone, stone + BREAKABLE).replace("restitution = 0.2\n", "")
     path = folder / "block.toml"
     path.write_text(tank.replace(block, block + 'kinematics = "breakable"\n'))
