@@ -30,6 +30,7 @@ struct RigidBodyState {
     Vec3 flow_torque;
     Vec<double, D> flow_impulse, contact_impulse;  // since the start
     double removed;                                // 1: gone
+    double unwetted;  // share of its area that water around it does not see, Eq. (152)
 
     DOSEKI_DEVICE_FN bool is_removed() const { return removed != 0.0; }
 };

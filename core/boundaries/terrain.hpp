@@ -309,7 +309,6 @@ void Terrain<D>::add_particle(Particles<D>& particles, std::int64_t tile,
     particles.wall.normal[p] = slot.normal, particles.wall.bend[p] = slot.bend;
     particles.wall.depth[p] = slot.depth, particles.wall.cut[p] = 1.0 - slot.share;
     particles.wall.face[p] = wall_.faces && slot.layer == 0 ? Face::fixed : Face::none;
-    particles.wall.rows[p] = 1.0;
     particles.wall.point[p] = static_cast<std::int32_t>(tile * TileGrid<D>::columns + slot.column);
 }
 

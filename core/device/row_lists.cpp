@@ -3,6 +3,7 @@
 #include "device/row_lists.hpp"
 
 #include "base/bulk.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 namespace {
@@ -73,7 +74,7 @@ private:
         return dot(r, r) < limit * limit;
     }
     DOSEKI_DEVICE_FN bool meet(std::uint32_t p, std::uint32_t j) const {
-        return faces[j] != 0 && faces[p] != faces[j];
+        return Face::meet(faces[p], faces[j]);
     }
 };
 

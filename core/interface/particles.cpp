@@ -89,14 +89,12 @@ void ParticleTables<D>::set_faces(Particles<D>& particles, const NamedValues& co
     ColumnReader column(columns, "faces");
     const auto face = column.numbers<std::int32_t>("face");
     const auto area = column.vectors<D>("area");
-    const auto rows = column.numbers<double>("rows");
     column.finish();
     if (column.rows() != particles.size())
         throw std::invalid_argument("faces: one row for each particle");
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no walls");
     particles.wall.face.assign(face);
     particles.wall.area.assign(area);
-    particles.wall.rows.assign(rows);
 }
 
 template <int D>

@@ -8,6 +8,7 @@
 #include "base/field.hpp"
 #include "base/vec.hpp"
 #include "model/archive.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 
@@ -27,12 +28,6 @@ struct Tag {
     Motion motion;
 };
 
-/// Numbers of the faces of walls. Those of a body share one: fluid films lie between two that
-/// differ.
-struct Face {
-    static constexpr std::int32_t none = 0, fixed = 1, first_body = 2;
-};
-
 /// What wall particles have: those of fixed bodies and the points of bodies that move.
 template <int D>
 struct WallState {
@@ -49,9 +44,9 @@ struct WallState {
     WallField<Vec<double, D>> force;  // of the fluid on it [N], 2-D: [N/m]
     WallField<double> pressure;       // of the fluid at its place [Pa]
     // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
-    WallField<std::int32_t> face;    // none, of a fixed body, or of rigid body `face - first`
+    WallField<std::int32_t> face;    // see Face
     WallField<Vec<double, D>> area;  // of a body that moves, outwards [m^2], 2-D: [m]
-    WallField<double> rows;          // pressure force on all its rows over that on this one
+    WallField<double> wetted;        // share of it that fluid sees where nothing else does, else 0
     WallField<double> film_change;   // of its pressure in the last step [Pa]
     WallField<double> film_density;  // of the fluid that presses on it [kg/m^3]; 0: dry
     WallField<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
@@ -65,7 +60,7 @@ struct WallState {
         f("normal", normal), f("wall_bend", bend), f("wall_depth", depth), f("wall_cut", cut);
         f("edge_normals", edge_normals), f("edge_depths", edge_depths);
         f("wall_force", force), f("wall_pressure", pressure);
-        f("face", face), f("face_area", area), f("face_rows", rows);
+        f("face", face), f("face_area", area), f("face_wetted", wetted);
         f("film_change", film_change), f("film_density", film_density),
             f("film_traction", film_traction);
         f("body_kind", body_kind), f("point", point);

@@ -6,6 +6,7 @@
 #include "base/array.hpp"
 #include "base/parallel.hpp"
 #include "pairs/neighbour_lists.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 
@@ -48,7 +49,7 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
         const std::int32_t own = scratch.faces[std::min<std::uint32_t>(
                                first + static_cast<std::uint32_t>(lane), last)],
                            other = scratch.faces[j];
-        return own != 0 && other != 0 && own != other;
+        return Face::meet(own, other);
     };
     auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
         const Vec<double, D>& shift = shifts[image];

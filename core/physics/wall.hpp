@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "base/vec.hpp"
 
@@ -114,6 +115,17 @@ struct BedSpring {
     }
 };
 
+/// Numbers of the faces of walls. Those of a body share one: films lie between two that differ.
+/// Particles below the first row of a face have its number with a minus: films press on them, but
+/// no other face sees them.
+struct Face {
+    static constexpr std::int32_t none = 0, fixed = 1, first_body = 2;
+
+    DOSEKI_DEVICE_FN static constexpr bool meet(std::int32_t a, std::int32_t b) {
+        return a != none && b != none && a != b && a != -b && (a > none || b > none);
+    }
+};
+
 /// Sum of V W over a plane lattice of spacing dp at this distance.
 template <class Kernel, int D>
 double weight_of_row(double dp, double support, double distance) {
@@ -127,10 +139,16 @@ double weight_of_row(double dp, double support, double distance) {
     return weight;
 }
 
-/// What a face sees of another one when nothing fits between them any more: a gap of one spacing.
+/// What the first row of a face sees of another one when nothing fits between them any more: a gap
+/// of one spacing.
 template <class Kernel, int D>
 double full_cover(double dp, double support) {
     return weight_of_row<Kernel, D>(dp, support, 2.0 * dp);
+}
+/// The same of the row below, which sees no farther.
+template <class Kernel, int D>
+double full_cover_below(double dp, double support) {
+    return weight_of_row<Kernel, D>(dp, support, 0.92 * support);
 }
 
 }  // namespace doseki

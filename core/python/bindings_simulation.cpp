@@ -147,8 +147,7 @@ void bind_setup(Class& c) {
              nb::sig(
                  "def set_edges(self, *, normals: numpy.ndarray, depths: numpy.ndarray) -> None"))
         .def("set_faces", &P::set_faces,
-             nb::sig("def set_faces(self, *, face: numpy.ndarray, area: numpy.ndarray, "
-                     "rows: numpy.ndarray) -> None"))
+             nb::sig("def set_faces(self, *, face: numpy.ndarray, area: numpy.ndarray) -> None"))
         .def("set_walls", &P::set_walls,
              nb::sig("def set_walls(self, *, normal: numpy.ndarray, depth: numpy.ndarray, "
                      "curvature: numpy.ndarray) -> None"))

@@ -295,8 +295,11 @@ DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& grav
                         const T& inverse_support, const Pair<T, D>& pair, const WallPoint<T, D>& w,
                         const WallPoint<T, D>& v) {
     const T none = number<T>(Face::none), body = number<T>(Face::first_body);
-    const T apart = select(w.face != v.face && w.face != none && v.face != none, T(1), T(0));
-    const T W = apart * Kernel::value(pair.r, inverse_support), share = v.volume * W;
+    const T own = max(w.face, -w.face), other = max(v.face, -v.face);
+    const T W = select(own != other && own != none && other != none,
+                       Kernel::value(pair.r, inverse_support), T(0));
+    const T share = select(v.face > none, v.volume * W, T(0)),
+            of_other = select(w.face > none, w.volume * W, T(0));
     T head = v.pressure;
     for (int a = 0; a < D; ++a) {
         head += v.film_density * number<T>(gravity[a]) * pair.r_ij[a];
@@ -306,10 +309,9 @@ DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& grav
     sums.film_pressure += share * head;
     sums.film_density += share * v.film_density;
     // Two bodies that move have the force of one film each.
-    const T both = select(w.face >= body && v.face >= body, number<T>(0.5), T(1));
+    const T both = select(own >= body && other >= body, number<T>(0.5), T(1));
     for (int a = 0; a < D; ++a)
-        sums.film_force[a] +=
-            both * (share * w.film_traction[a] - w.volume * W * v.film_traction[a]);
+        sums.film_force[a] += both * (share * w.film_traction[a] - of_other * v.film_traction[a]);
 }
 
 }  // namespace doseki

@@ -49,7 +49,7 @@ struct ResolvedModel {
     Options<D> options;
     FlowConstants constants{};
     double lattice_concentration = 1.0, own_concentration = 0.0;  // of that, a particle's own
-    double full_cover = 1.0;                                      // see physics/wall.hpp
+    double full_cover = 1.0, full_cover_below = 1.0;              // see physics/wall.hpp
     std::array<double, D + 1> spacing_power{1.0};                 // dp^k
 
     ResolvedModel(Array<Material> given, const Options<D>& opts)
@@ -73,6 +73,9 @@ struct ResolvedModel {
         own_concentration = lattice.own_share;
         full_cover = flow.wide_kernel ? doseki::full_cover<WendlandC6<D>, D>(flow.dp, support)
                                       : doseki::full_cover<WendlandC2<D>, D>(flow.dp, support);
+        full_cover_below = flow.wide_kernel
+                               ? doseki::full_cover_below<WendlandC6<D>, D>(flow.dp, support)
+                               : doseki::full_cover_below<WendlandC2<D>, D>(flow.dp, support);
         constants.gradient_scale = 1.0 / lattice.moment;
         constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);
         constants.form = flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}

@@ -34,6 +34,7 @@ public:
         wall.pressure[p] = sums.weight > 0.0 ? sums.pressure / sums.weight : 0.0;
         FlowSummary<D>& summary = summary_of<real>(summaries_, p);
         if (wall.face[p] != Face::none) {
+            wall.wetted[p] = wetted(p, sums);
             const Vec<double, D> film = film_force(p, sums, before);
             force = force + film;
             // The film has no particles whose energy could pay for this.
@@ -76,7 +77,7 @@ private:
             wall.film_change[p] = 0.0;
             return {};
         }
-        const double weight = std::max(sums.weight + sums.cover, model_.full_cover);
+        const double weight = std::max(sums.weight + sums.cover, full_cover(p));
         const double mean = (sums.pressure + sums.film_pressure) / weight;
         wall.film_change[p] = mean - before + film_inertia * wall.film_change[p];
         wall.pressure[p] = before + wall.film_change[p];
@@ -91,7 +92,11 @@ private:
         const double size = std::sqrt(dot(hidden, hidden));
         if (size == 0.0) return {};
         const double pressure = pressure_at_surface(p, (1.0 / size) * hidden, sums);
-        return (-pressure / std::max(sums.cover, model_.full_cover)) * hidden;
+        return (-pressure / std::max(sums.cover, full_cover(p))) * hidden;
+    }
+
+    DOSEKI_DEVICE_FN double full_cover(std::size_t p) const {
+        return state_.wall.face[p] > Face::none ? model_.full_cover : model_.full_cover_below;
     }
 
     /// That of the film where it presses against the direction n. Faces that part stretch the film
@@ -111,8 +116,15 @@ private:
     DOSEKI_DEVICE_FN Vec<double, D> hidden_area(std::size_t p,
                                                 const WallAccumulators<double, D>& sums) const {
         const Vec<double, D>& all = state_.wall.area[p];
-        const Vec<double, D> hidden = all - volume(p) * sums.area;
-        return dot(hidden, all) > 0.0 ? state_.wall.rows[p] * hidden : Vec<double, D>{};
+        return dot(all, all) > 0.0 ? all - volume(p) * sums.area : Vec<double, D>{};
+    }
+
+    /// Eq. (152), where no other face is near.
+    DOSEKI_DEVICE_FN double wetted(std::size_t p, const WallAccumulators<double, D>& sums) const {
+        const Vec<double, D>& all = state_.wall.area[p];
+        const double square = dot(all, all);
+        if (sums.cover > 0.0 || square == 0.0) return 0.0;
+        return volume(p) * dot(sums.area, all) / square;
     }
 
     /// Velocity along the wall of the fluid around against it.

@@ -7,23 +7,24 @@ import pytest
 
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_scene
-from doseki.scene.contact_faces import contact_faces
+from doseki.scene.contact_faces import FIRST_BODY, contact_faces
 from doseki.validate.running import CASES
 
 
 @pytest.mark.parametrize(("dim", "across"), [(2, 5), (2, 6), (2, 12), (3, 5), (3, 6)])
-def test_the_first_row_of_a_face_has_the_area_of_all_rows(dim, across):
-    """Also beside edges, where deep particles see the outside below and beside the block."""
+def test_two_rows_of_a_face_have_all_of_its_area(dim, across):
+    """Below them there is next to none, and faces of a closed body add up to nothing."""
     block = str(CASES / "grains" / "block-under-water.toml")
     scenario = load_scenario(block, [f"across={across}", f"dim={dim}"])
     scene = build_scene(scenario)
     bodies, particles = scene.bodies, scene.particles
     faces = contact_faces(scenario, particles, bodies, bodies.depth)
-    height = particles.position[:, -1] / scenario.dp
-    lower = (bodies.grain == 0) & (height < 0.5 * across - 0.25)
-    first = lower & (faces.face > 0)
-    dealt = (faces.rows[first, None] * faces.area[first]).sum(axis=0)
-    assert dealt == pytest.approx(
-        faces.area[lower].sum(axis=0), abs=0.002 * across * scenario.dp ** (dim - 1)
-    )
-    assert np.all(faces.rows[lower] < 1.2)
+    member, row = bodies.grain == 0, np.floor(bodies.depth / scenario.dp)
+    assert np.all(faces.face[member & (row == 0)] == FIRST_BODY)
+    assert np.all(faces.face[member & (row == 1)] == -FIRST_BODY)
+    assert not faces.face[member & (row > 1)].any()
+    lower = member & (particles.position[:, -1] < (0.5 * across - 0.25) * scenario.dp)
+    in_rows = faces.area[lower & (faces.face != 0)].sum(axis=0)
+    assert in_rows == pytest.approx(faces.area[lower].sum(axis=0), abs=1e-9)
+    assert in_rows[-1] < -0.8 * (across * scenario.dp) ** (dim - 1)
+    assert np.abs(faces.area[member].sum(axis=0)).max() < 1e-12

@@ -15,6 +15,7 @@ struct Bearing {
     Mat<double, 3> rotation;
     Vec<double, D> centre, velocity, acceleration;
     Vec3 spin, spin_ahead, spin_rate;
+    double wetted;  // share of its area
 };
 
 template <int D>
@@ -31,7 +32,8 @@ struct FindBearing {
                     state.acceleration,
                     rigid.spin(k),
                     rigid.spin(k, ahead),
-                    state.spin_rate};
+                    state.spin_rate,
+                    1.0 - state.unwetted};
     }
 };
 
@@ -78,7 +80,7 @@ struct PlaceBound {
         particles.wall.bend[p] =
             turned_bend(particles.wall.bend[p], particles.wall.normal[p], normal);
         particles.wall.normal[p] = normal;
-        particles.wall.area[p] = rotated(R, point.area);
+        particles.wall.area[p] = body.wetted * rotated(R, point.area);
         particles.wall.edge_normals[p] = each_row(point.edge_normals, RotatedBy{R});
         particles.acceleration[p] = body.acceleration + turning_velocity(body.spin_rate, lever) +
                                     turning_velocity(body.spin, turning_velocity(body.spin, lever));
@@ -108,12 +110,28 @@ struct MoveBound {
     }
 };
 
+/// What Eq. (152) takes of a particle: the pressure on it and, of its area, what water sees.
+struct WettedPoint {
+    double pressure = 0.0, share = 0.0;
+};
+template <int D>
+struct WettedAtPoint {
+    const Particles<D>& particles;
+    std::span<WettedPoint> wetted;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (particles.is_point_of(p, BodyKind::rigid))
+            wetted[particles.point(p)] = {particles.wall.pressure[p], particles.wall.wetted[p]};
+    }
+};
+
 /// The sum over the points of a body, in rising order, whatever threads there are.
 template <int D>
-struct ForceOnBody {
+struct SumOfBody {
     std::span<const std::size_t> first, order;
     std::span<const RigidBodyPoint<D>> points;
     std::span<const Vec<double, D>> force;
+    std::span<const WettedPoint> wetted;
     std::span<RigidBodyState<D>> states;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
@@ -128,6 +146,29 @@ struct ForceOnBody {
             moment = moment + cross(in_space(lever), in_space(push));
         }
         state.flow_force = sum, state.flow_torque = moment;
+        wet(k);
+    }
+
+private:
+    static constexpr double deep = 0.5;    // of the highest pressure, that counts
+    static constexpr double steps = 10.0;  // over which the share goes to what is seen
+
+    /// Eq. (152). What is near the surface of the water sees less of it for that reason.
+    DOSEKI_DEVICE_FN void wet(std::size_t k) const {
+        double highest = 0.0, seen = 0.0, wet = 0.0, all = 0.0;
+        for (std::size_t n = first[k]; n < first[k + 1]; ++n)
+            highest = max(highest, wetted[order[n]].pressure);
+        for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
+            const WettedPoint& point = wetted[order[n]];
+            const Vec<double, D>& area = points[order[n]].area;
+            const double square = dot(area, area);
+            all += square;
+            if (point.share == 0.0 || !(point.pressure > deep * highest)) continue;
+            seen += square * point.share, wet += square;
+        }
+        if (!(wet > 0.0)) return;
+        const double before = 1.0 - states[k].unwetted, now = seen / wet * before;
+        states[k].unwetted = 1.0 - (before + wet / (wet + steps * all) * (now - before));
     }
 };
 
@@ -137,11 +178,14 @@ template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) {
     Array<Vec<double, D>> force(points_.size());
+    Array<WettedPoint> wetted(points_.size());
     bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::rigid, force});
+    bulk::for_each(particles.size(), WettedAtPoint<D>{particles, wetted});
     ranks.sum(numbers_of(force));
+    ranks.sum({&wetted.data()->pressure, 2 * wetted.size()});
     sort_by_body(bodies.size());
-    bulk::for_each(bodies.size(),
-                   ForceOnBody<D>{first_of_body_, of_body_, points_, force, bodies.moved().states});
+    bulk::for_each(bodies.size(), SumOfBody<D>{first_of_body_, of_body_, points_, force, wetted,
+                                               bodies.moved().states});
 }
 
 template <int D>

@@ -14,15 +14,15 @@ from .bodies import Bodies
 from .periodic import nearest_image, periods
 
 NO_FACE, FIXED_FACE, FIRST_BODY = 0, 1, 2  # numbers of the core's faces
-SAME_WAY = 0.5  # cosine of the angle; corners of a cube lean by 0.58 to its faces
 
 
 class ContactFaces(NamedTuple):
     """Of each particle: which face it belongs to, and how large its part of it is."""
 
-    face: np.ndarray  # (N,) int32: none, that of all fixed bodies, or FIRST_BODY + index of a body
+    # (N,) int32: none, that of all fixed bodies, or FIRST_BODY + index of a body; with a minus
+    # below its first row
+    face: np.ndarray
     area: np.ndarray  # (N, dim) outwards, m2 (2-D: m): what its own body leaves of its kernel
-    rows: np.ndarray  # (N,) pressure force on all rows of the face over that on the first
 
 
 def contact_faces(
@@ -30,21 +30,20 @@ def contact_faces(
 ) -> ContactFaces:
     """The faces of all rigid bodies and fixed walls: their first row, less than dp deep.
 
+    Of bodies that move the row below as well: the kernel reaches from there to another face.
     `depth` (N,) below the surface, m.
     """
     n = len(particles)
     face, area = np.full(n, NO_FACE, np.int32), np.zeros((n, scenario.dim))
-    rows = np.ones(n)
     first_row = depth < scenario.dp
     face[first_row & (particles.motion == FIXED)] = FIXED_FACE
-    of_body = first_row & (bodies.grain >= 0)
-    face[of_body] = FIRST_BODY + bodies.grain[of_body]
+    of_body = (depth < 2 * scenario.dp) & (bodies.grain >= 0)
+    number = FIRST_BODY + bodies.grain[of_body]
+    face[of_body] = np.where(first_row[of_body], number, -number)
     volume = particles.mass / particles.density
     for members, offset in _members(scenario, particles, bodies):
-        pairs = _Pairs.of(offset, scenario)
-        area[members] = pairs.areas(volume[members])
-        rows[members] = pairs.rows(area[members], first_row[members])
-    return ContactFaces(face, area, rows)
+        area[members] = _Pairs.of(offset, scenario).areas(volume[members])
+    return ContactFaces(face, area)
 
 
 def _members(
@@ -90,22 +89,6 @@ class _Pairs(NamedTuple):
         np.add.at(area, self.i, share)
         np.add.at(area, self.j, -share)
         return area
-
-    def rows(self, area: np.ndarray, first: np.ndarray) -> np.ndarray:
-        """1 + the areas of deeper particles over the own one, each at its neighbours in the first
-        row that face the same way.
-        """
-        size = np.linalg.norm(area, axis=1)
-        normal = area / np.where(size > 0, size, 1.0)[:, None]
-        deep, top = np.concatenate([self.i, self.j]), np.concatenate([self.j, self.i])
-        along = (normal[deep] * normal[top]).sum(axis=1)
-        faces = first[top] & ~first[deep] & (along > SAME_WAY)
-        deep, top, along = deep[faces], top[faces], along[faces]
-        share = -np.tile(self.factor, 2)[faces] * along
-        total, added = np.zeros(self.particles), np.zeros(self.particles)
-        np.add.at(total, deep, share * along)
-        np.add.at(added, top, share * (size[deep] / total[deep]))
-        return 1 + added / np.where(first & (size > 0), size, np.inf)
 
 
 def _gradient_factor(scenario: Scenario, r: np.ndarray) -> np.ndarray:

@@ -282,7 +282,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     )
     if scenario.uplift and len(bodies):
         faces = contact_faces(scenario, particles, bodies, depth)
-        simulation.set_faces(face=faces.face, area=faces.area, rows=faces.rows)
+        simulation.set_faces(face=faces.face, area=faces.area)
     add_bodies(simulation, scenario, bodies, body_names)
     check_panels(scenario, particles, body_names, {"normal": normal, "depth": depth})
     walls = scenario, particles, body_names, normal, depth

@@ -313,10 +313,10 @@ class CoreSimulation(Simulation, Protocol):
         """
         ...
 
-    def set_faces(self, *, face: NDArray[np.int32], area: Floats, rows: Floats) -> None:
-        """Faces (N,) between which water stands, their areas (N, dim), m2 (2-D: m), and the
-        pressure force on all rows over that on the first (N,); after set_walls and before
-        bind_points.
+    def set_faces(self, *, face: NDArray[np.int32], area: Floats) -> None:
+        """Faces (N,) between which water stands and their areas (N, dim), m2 (2-D: m).
+
+        After set_walls and before bind_points.
         """
         ...
 

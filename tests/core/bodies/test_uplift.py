@@ -7,8 +7,11 @@ import pytest
 
 from doseki.scenario.start import start_text
 from doseki.validate.cases.grains.under_water import (
+    BALL,
     SIDE,
     SUBMERGED,
+    UPLIFT,
+    ball,
     flow_force,
     moving_body,
     sliding,
@@ -133,6 +136,25 @@ def test_without_water_between_faces_it_has_not():
 @pytest.mark.parametrize("depth", [SUBMERGED, 4 / 6])
 def test_the_same_in_3d_and_where_it_stands_out_of_the_water(depth):
     assert uplift(depth=depth, dim=3, across=6) == pytest.approx(1, abs=CLOSE)
+
+
+@pytest.mark.minutes
+@pytest.mark.parametrize("across", [4, 6])
+def test_a_sphere_on_a_bed_has_its_uplift(across):
+    """Of its area only what water would see is hidden; a lattice that goes on would see more."""
+    assert ball(across, "dim=3").values[UPLIFT].number == pytest.approx(1, abs=0.05)
+
+
+def test_discs_on_both_sides_of_the_middle_are_lifted_alike():
+    """Each is the mirror image of the other, also where the lattice of the water does not fit."""
+    forces = []
+    for side in (-1, 1):
+        run = Running(BALL, "across=8", f"place={0.15 + side * 0.007}")
+        forces.append(np.mean([flow_force(run, time) for time in (0.04, 0.07, 0.1)], axis=0))
+    (along, up), (other, same) = forces
+    assert up == pytest.approx(np.pi / 4 * SIDE**2 * 9810, rel=0.1)
+    assert same == pytest.approx(up, rel=1e-6)
+    assert other == pytest.approx(-along, abs=1e-6 * up)
 
 
 @pytest.mark.parametrize(("density", "floats"), [(0.97, True), (1.03, False)])

@@ -9,7 +9,7 @@ from ..flows import FILM, advance
 
 WALL_FIELDS = (
     "normal", "wall_bend", "wall_depth", "edge_normals", "edge_depths", "wall_cut", "wall_force",
-    "wall_pressure", "face", "face_area", "face_rows", "film_change", "film_density",
+    "wall_pressure", "face", "face_area", "face_wetted", "film_change", "film_density",
     "film_traction", "body_kind", "point",
 )  # fmt: skip
 FLOW_FIELDS = (

@@ -9,12 +9,14 @@ from ...running import Running
 
 UPLIFT, FLOATS, FRICTION = "uplift", "depth at which it floats", "friction on a tilted bed"
 ON_TERRAIN = "uplift on a terrain"
-TANK, TERRAIN = "block-under-water", "block-on-terrain"  # scenarios
+TANK, TERRAIN, BALL = "block-under-water", "block-on-terrain", "ball-under-water"  # scenarios
 UPLIFT_IN = {TANK: UPLIFT, TERRAIN: ON_TERRAIN}
 WATER, STONE = 1000.0, 2000.0  # kg/m3
 SIDE = 0.1  # m, of the block
 SUBMERGED, SHALLOW = 1.5, 0.75  # depth of the water over the side of the block: whole rows at 16
 NO_FILM = "uplift=false"
+SHIFTS = 0.0, 0.25, 0.5  # of a ball against the lattice of the water, spacings
+DEEP = 2.0  # depth of the water over the diameter of a ball
 SLOPE, COEFFICIENT = 25.0, 0.3  # degrees; the block slides
 SETTLED, SAMPLES = 0.5, 60  # share of a run after which the film has its pressure
 
@@ -42,6 +44,17 @@ def lifted(across: float, depth: float, *overrides: str, name: str = TANK) -> Ou
     return Outcome({UPLIFT_IN[name]: Value(late, 1.0)}, [curve])
 
 
+def ball(across: float, *overrides: str) -> Outcome:
+    """The late uplift of a disc (3-D: a sphere), the mean over places on the lattice."""
+    found = []
+    for shift in SHIFTS:
+        times, upward = standing(across, DEEP, f"shift={shift:g}", *overrides, name=BALL)
+        late = float(upward[times > SETTLED * times[-1]].mean())
+        found.append((late, Curve(f"{shift:g} spacings aside", times, upward)))
+    mean = float(np.mean([late for late, _ in found]))
+    return Outcome({UPLIFT: Value(mean, 1.0)}, [curve for _, curve in found])
+
+
 def rubbed(across: float, *overrides: str) -> Outcome:
     """The friction alone."""
     return Outcome({FRICTION: Value(sliding(across, *overrides), 1.0)})
@@ -54,10 +67,15 @@ def standing(
     given = f"across={across:g}", f"side={SIDE:g}", f"depth={depth * SIDE:g}"
     run = Running(name, *given, *overrides)
     gravity = np.asarray(run.scenario.gravity)
-    displaced = WATER * SIDE**run.scenario.dim * min(depth, 1.0)
+    displaced = WATER * volume(name, run.scenario.dim) * min(depth, 1.0)
     times = np.linspace(0, run.scenario.time_max, SAMPLES + 1)[1:]
     force = np.array([flow_force(run, time) for time in times])
     return times, -(force @ gravity) / (displaced * float(gravity @ gravity))
+
+
+def volume(name: str, dim: int) -> float:
+    """Of the body in the scenario of this name, m3 (2-D: m2)."""
+    return SIDE**dim * (np.pi / (4 if dim == 2 else 6) if name == BALL else 1.0)
 
 
 def on_terrain_without_film(across: float) -> Outcome:
@@ -117,4 +135,14 @@ UNDER_WATER = Case(
         Control("no water between faces", ON_TERRAIN, on_terrain_without_film),
     ),
 )
-CASES = (UNDER_WATER,)
+BALL_UNDER_WATER = Case(
+    name="ball-under-water",
+    title="A ball on a bed under water",
+    across="d/dp",
+    resolutions=(4, 8, 16),
+    run=ball,
+    criteria=(Criterion(UPLIFT, (within(0.05),), "Archimedes: water sees all but where it lies"),),
+    axes=("time (s)", "upward force / weight of water displaced"),
+    controls=(Control("no water between faces", UPLIFT, lambda n: ball(n, NO_FILM)),),
+)
+CASES = UNDER_WATER, BALL_UNDER_WATER
