@@ -138,11 +138,44 @@ def test_the_same_in_3d_and_where_it_stands_out_of_the_water(depth):
     assert uplift(depth=depth, dim=3, across=6) == pytest.approx(1, abs=CLOSE)
 
 
-@pytest.mark.minutes
 @pytest.mark.parametrize("across", [4, 6])
 def test_a_sphere_on_a_bed_has_its_uplift(across):
     """Of its area only what water would see is hidden; a lattice that goes on would see more."""
     assert ball(across, "dim=3").values[UPLIFT].number == pytest.approx(1, abs=0.05)
+
+
+def pile_of_spheres(folder):
+    """Three on the bed and one on top, 4 spacings across."""
+    tank = (CASES / "grains" / "ball-under-water.toml").read_text()
+    ball = tank[tank.index("[body.ball]") :]
+    places = [(-0.5, -(3**0.5) / 6, 0.5), (0.5, -(3**0.5) / 6, 0.5), (0, 3**0.5 / 3, 0.5)]
+    spheres = [
+        f"""[body.sphere-{k}]
+shape = "sphere"
+material = "stone"
+centre = ["= width/2 + {x}*1.001*side", "= width/2 + {y}*1.001*side", "= {z}*1.001*side"]
+radius = "= side/2"
+"""
+        for k, (x, y, z) in enumerate([*places, (0, 0, 0.5 + (2 / 3) ** 0.5)])
+    ]
+    path = folder / "pile.toml"
+    base = CASES / "grains" / "block-under-water.toml"
+    tank = tank.replace('"block-under-water.toml"', f'"{base}"').replace(ball, "\n".join(spheres))
+    path.write_text(tank)
+    return Running(str(path), "dim=3", "across=4", "depth=0.3", "width=0.35", "friction=0.9")
+
+
+def test_a_pile_of_spheres_has_the_uplift_of_its_spheres(tmp_path):
+    """Films press between them as well, and water goes into their pores."""
+    run, forces = pile_of_spheres(tmp_path), []
+    for time in np.linspace(0.1, 0.25, 30):
+        run.advance(time)
+        grains = run.grains()
+        forces.append(grains["flow_force"][~grains["fixed"]])
+    uplift = np.mean(forces, axis=0) / (9810 * np.pi / 6 * SIDE**3)
+    assert uplift[:, 2].mean() == pytest.approx(1, abs=0.05)
+    assert uplift[:, 2] == pytest.approx(np.ones(4), abs=0.1)
+    assert np.abs(uplift[:, :2]).max() < 0.05
 
 
 def test_discs_on_both_sides_of_the_middle_are_lifted_alike():
