@@ -152,6 +152,17 @@ def test_discs_that_water_sees_smaller_lie_on_what_they_touch(doubts, foot, sett
     assert any("discs: touches nothing" in doubt for doubt in told) is hangs
 
 
+@pytest.mark.parametrize(
+    ("wetted", "settle", "closed"),
+    [(1.0, "true", True), (0.75, "true", False), (1.0, "false", False)],
+)
+def test_pores_between_discs_that_touch_are_told(doubts, wetted, settle, closed):
+    """Three discs that are strewn leave water its ways."""
+    discs = DISCS.format(foot=0, settle=settle).replace("wetted = 0.6", f"wetted = {wetted}")
+    told = doubts(more=discs.replace("max = [0.4", "max = [0.35"), scheme="resolved")
+    assert any("body.discs.wetted: discs that touch close the pores" in t for t in told) is closed
+
+
 # Water makes room for whole boxes, not for one that is cut.
 CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"')}
 

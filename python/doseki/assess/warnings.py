@@ -21,6 +21,8 @@ from .sound_speed import raised
 
 MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
 MIN_ACROSS_FLOW = 10  # particles over the depth; below, a film is too viscous
+LOOSE = 0.6  # solid fraction of discs; below, few touch two others
+OPEN = 0.9  # of `wetted`; below, water finds a way between discs that touch
 MAX_MACH = 0.1  # for which weak compressibility is a good approximation
 TOUCHING = 1.5  # spacings; beyond, two bodies are apart
 REACH = 4  # spacings within which a neighbour is looked for
@@ -135,6 +137,18 @@ class NoUplift(Finding):
             f"{self.place}: false: water does not press on bodies from below where they lie on a "
             "bed or on one another, so that these do not float and keep the friction of their full "
             "weight; set uplift = true"
+        )
+
+
+@dataclass(frozen=True)
+class ClosedPores(Finding):
+    """Grains of a plane that touch: no water goes in or out of the pores between them."""
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: discs that touch close the pores between them, which are open in space;"
+            " water there keeps whatever pressure it had, so that discs of a pile have 0.4 to 1.4"
+            " of their uplift: set it to 0.75, or dim = 3"
         )
 
 
@@ -266,6 +280,9 @@ def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
         return
     if not scenario.uplift:
         yield NoUplift("uplift")
+    for name, table in scenario.body.items():
+        if scenario.dim == 2 and isinstance(table, Grains) and _closes_pores(table):
+            yield ClosedPores(f"body.{name}.wetted")
     # The smaller gap between three equal discs that touch.
     count = np.unique(grains, return_counts=True)[1].min()
     diameter = 2 * (count / np.pi) ** 0.5 if scenario.dim == 2 else (6 * count / np.pi) ** (1 / 3)
@@ -273,6 +290,13 @@ def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
     for name in liquids:
         if scenario.materials[name].air_entry_suction > 0 and pore < 1:
             yield FinePores(f"material.{name}.air_entry_suction", float(pore))
+
+
+def _closes_pores(grains: Grains) -> bool:
+    """Whether most of its grains touch others and water sees them as wide as they are."""
+    fills_its_box = grains.count is None and grains.mass_total is None
+    dense = fills_its_box or grains.settle or (grains.packing or 0.0) > LOOSE
+    return bool(dense) and grains.wetted > OPEN
 
 
 def _rigid_bodies(scenario: Scenario, state: State) -> np.ndarray:
