@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from doseki.cli.simulate import resume
 from doseki.driver.checkpoint import CheckpointFolder
 from doseki.errors import UserError
 from doseki.record.reader import load
+from doseki.running import progress
 from doseki.running.resume import resume_run
 from doseki.running.runner import RunOptions
 
@@ -116,6 +118,16 @@ def test_a_run_that_dies_in_its_first_steps_goes_on(channel_file, uninterrupted,
         run_channel(channel_file, tmp_path / "run", progress=die)
     resume_run(tmp_path / "run", (), RunOptions(threads=1))
     assert_same_record(tmp_path / "run", uninterrupted)
+
+
+def test_progress_is_towards_the_new_end(channel_file, tmp_path, monkeypatch):
+    run_channel(channel_file, tmp_path / "run")
+    ends, bar = [], progress.progress_bar
+    monkeypatch.setattr(
+        progress, "progress_bar", lambda *given: ends.append(given[1]) or bar(*given)
+    )
+    resume(tmp_path / "run", settings=["time_max=0.08"], threads=1, figures=False)
+    assert ends == [0.08]
 
 
 def test_resume_further(channel_file, tmp_path):

@@ -198,13 +198,15 @@ def resume(
     from ..running.progress import progress_bar
     from ..running.resume import resume_run
     from ..running.runner import RunOptions
+    from ..scenario.load import load_scenario
 
     team = join(ranks)
     run = load(directory)
     scenario = run.scenario
+    time_max = load_scenario(run.folder.scenario, settings or []).time_max
     choose_device(device, lambda: count_of_record(run), team, _say)
     with team.holding(directory), ending_early():
-        with progress_bar(scenario.get("title", ""), scenario["time_max"]) as progress:
+        with progress_bar(scenario.get("title", ""), time_max) as progress:
             options = RunOptions(
                 threads,
                 progress=progress,
