@@ -14,6 +14,8 @@ from doseki.driver.ranks import OneRank
 from doseki.errors import PhysicsError, UserError
 from doseki.figures.plot import draw_run
 from doseki.geodata.raster import Raster, read_raster, write_raster
+from doseki.measure.maps.grid import MapSettings, map_grid
+from doseki.measure.maps.snapshots import maps_from_snapshots
 from doseki.record.folder import RunFolder
 from doseki.record.reader import load
 from doseki.running.resume import resume_run
@@ -55,6 +57,21 @@ NAMES = (
     "peak_depth", "peak_speed", "peak_pressure", "peak_total_pressure", "peak_momentum_flux",
     "peak_travel_angle", "arrival_time", "deposit",
 )  # fmt: skip
+
+
+DAM = f"""
+[material.rubber]
+based_on = "basalt"
+young_modulus = 1e7
+
+[body.dam]
+shape = "box"
+kinematics = "elastic"
+material = "rubber"
+min = [{WEST + 0.6}, {SOUTH}, 0]
+max = [{WEST + 0.8}, {SOUTH + 0.5}, 0.2]
+clamped = "= 0.06 - z"
+"""
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +198,7 @@ def test_a_terrain_in_the_folder_gives_the_cells(collapse, tmp_path):
         terrain = Raster(np.zeros((20, 40)), WEST - 0.5, SOUTH - 0.25, 0.05, nodata=-1.0)
         heights = np.tile(100 - slope * (terrain.x - WEST), (20, 1))
         write_raster(folder / "terrain.asc", terrain.with_values(heights))
-        maps = RunningMaps(scenario, RunFolder(folder), OneRank())
+        maps = RunningMaps(scenario, list(scenario.body), RunFolder(folder), OneRank())
         maps.look(simulation)
         maps.write(simulation)
         found[slope] = read_raster(folder / "maps/peak_total_pressure.asc")
@@ -246,3 +263,20 @@ def test_a_2d_run_has_no_maps(write, error_of):
         write("", "[body.b]\nshape='box'\nmaterial='water'\nmin=[0,0]\nmax=[1,1]\n[maps]\ncell=1\n")
     )
     assert "only a 3-D run has it" in said
+
+
+def test_a_clamped_body_is_no_part_of_the_flow(tmp_path):
+    """Nor do maps made afterwards count it."""
+    file = tmp_path / "dam.toml"
+    file.write_text(COLLAPSE + DAM)
+    scenario = load_scenario(file, ["time_max=0.02", "time_out=0.02", "dp=0.025"])
+    run_scenario(scenario, tmp_path / "run", RunOptions(1))
+    folder = RunFolder(tmp_path / "run")
+    kept = {name: read_raster(folder.maps / f"{name}.asc") for name in NAMES}
+    settings = MapSettings.of(scenario.maps.model_dump(exclude_none=True), scenario.dp)
+    made = maps_from_snapshots(load(tmp_path / "run"), map_grid(folder, settings), settings)
+    for maps in (kept, made):
+        depth = maps["peak_depth"].values
+        assert depth[:, 1:4].max() > 0.2, "the water"
+        assert not depth[:, 6:].any(), "the dam"
+        assert not maps["deposit"].values[:, 6:].any()

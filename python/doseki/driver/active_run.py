@@ -92,7 +92,7 @@ class ActiveRun:
             for gauge in build_gauges(scenario, body_names)
         ]
         readers = [gauge for gauge, _ in self.gauges]
-        self.maps = RunningMaps(scenario, self.folder, ranks) if scenario.maps else None
+        self.maps = RunningMaps(scenario, body_names, self.folder, ranks) if scenario.maps else None
         self.warnings = [*warnings, *(self.maps.findings if self.maps else ())]
         self.sensors = build_sensors(readers)
         self.means: dict[str, Means | LoadMeans | Counts] = {

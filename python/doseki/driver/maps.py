@@ -12,6 +12,7 @@ from ..measure.maps.files import rasters_of, write_maps
 from ..measure.maps.grid import MapSettings, few_particles, map_grid
 from ..measure.maps.peaks import Peaks, gravity_of
 from ..measure.maps.runout import runout
+from ..measure.maps.standing import clamped_bodies, flowing
 from ..record.folder import RunFolder
 from ..scenario.model import Scenario
 from ..solver.protocol import Simulation
@@ -35,9 +36,13 @@ class SmallCells(Finding):
 class RunningMaps:
     """The maps of a run: rank 0 has them, all ranks give it their particles."""
 
-    def __init__(self, scenario: Scenario, folder: RunFolder, ranks: OneRank) -> None:
+    def __init__(
+        self, scenario: Scenario, body_names: list[str], folder: RunFolder, ranks: OneRank
+    ) -> None:
         """Raises UserError where the run's grid cannot be used."""
         assert scenario.maps is not None
+        tables = {k: body.model_dump(exclude_none=True) for k, body in scenario.body.items()}
+        self._clamped = clamped_bodies(body_names, tables)
         table = scenario.maps.model_dump(exclude_none=True)
         self.settings = MapSettings.of(table, scenario.dp)
         self.times = OutputTimes(scenario.maps.interval or scenario.time_out, scenario.time_max)
@@ -70,13 +75,13 @@ class RunningMaps:
 
     def look(self, simulation: Simulation) -> None:
         """Take in the particles as they are now; all ranks must take part."""
-        state = simulation.state()
+        state = flowing(simulation.state(), self._clamped)
         if self._peaks is not None:
             self._peaks.look(simulation.time, state)
 
     def write(self, simulation: Simulation) -> None:
         """Write the maps so far, and the deposit as it is now; all ranks must take part."""
-        state, time = simulation.state(), simulation.time
+        state, time = flowing(simulation.state(), self._clamped), simulation.time
         self._ranks.on_root(lambda: self._write(state, time))
 
     def _write(self, state: Mapping[str, np.ndarray], time: float) -> None:

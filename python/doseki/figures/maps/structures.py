@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
 
 from ...geodata.raster import Raster
+from ...measure.maps.standing import KEYS, clamped_bodies, standing
 from ...record.reader import Run
 from ..space.ground import terrain_of
 
@@ -36,7 +37,9 @@ class Structures:
             return None
         assert isinstance(run.ground, Raster)
         snapshot = run[0]
-        chosen = snapshot["fixed"] & (snapshot["body"] != terrain_of(run))
+        clamped = clamped_bodies(snapshot.body_names, run.scenario.get("body", {}))
+        stands = standing({key: snapshot.stored(key) for key in KEYS}, clamped)
+        chosen = (snapshot["fixed"] & (snapshot["body"] != terrain_of(run))) | stands
         position = snapshot["position"][chosen]
         # Where the map knows nothing of the ground a body stands on it, too.
         out = ~(position[:, 2] <= run.ground.sampled(position[:, 0], position[:, 1]))
@@ -56,7 +59,7 @@ class Structures:
 
 def _fixed_tables(run: Run) -> dict[str, Any]:
     tables = run.scenario.get("body", {})
-    return {name: table for name, table in tables.items() if table.get("fixed")}
+    return {n: table for n, table in tables.items() if table.get("fixed") or "clamped" in table}
 
 
 def draw_structures(axes: Axes, scale: Axes, structures: Structures | None) -> None:

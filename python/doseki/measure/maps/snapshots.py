@@ -12,8 +12,9 @@ from ...record.reader import Run, Snapshot
 from .files import rasters_of
 from .grid import MapSettings
 from .peaks import Peaks, gravity_of
+from .standing import clamped_bodies, flowing
 
-KEYS = ("id", "position", "velocity", "mass", "density", "motion")
+KEYS = ("id", "position", "velocity", "mass", "density", "motion", "body", "grain")
 
 
 def maps_from_snapshots(run: Run, grid: Raster, settings: MapSettings) -> dict[str, Raster]:
@@ -29,9 +30,10 @@ def maps_from_snapshots(run: Run, grid: Raster, settings: MapSettings) -> dict[s
         raise UserError(f"{run.directory}: the run has no snapshot yet")
     gravity = gravity_of(np.array(run.scenario.get("gravity", [0.0])))
     peaks = Peaks(grid, settings.dry_below, gravity)
+    tables = run.scenario.get("body", {})
     state: Mapping[str, np.ndarray] = {}
     for snapshot in run:
-        state = _fields(snapshot)
+        state = flowing(_fields(snapshot), clamped_bodies(snapshot.body_names, tables))
         peaks.look(snapshot.time, state)
     return rasters_of(peaks, state, settings)
 
