@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import weakref
+
+import numpy as np
+import pytest
+
 from doseki.solver.placed import Placed
 from doseki.solver.protocol import CoreSimulation, Simulation, SimulationView
 
@@ -26,3 +31,24 @@ def test_every_call_of_a_simulation_is_known_to_have_places_or_none():
     moved = {name for name in vars(Placed) if not name.startswith("_")}
     assert moved <= calls
     assert calls - moved == WITHOUT_PLACES
+
+
+class Core:
+    """It keeps what it is given to call, as the compiled one does."""
+
+    def share_terrain(self, source):
+        self.source = source
+
+    make_room_in_terrain = share_terrain
+
+
+@pytest.mark.parametrize("call", ["share_terrain", "make_room_in_terrain"])
+def test_what_the_core_calls_does_not_keep_the_simulation(call):
+    """Python sees no cycle through compiled code: such a simulation would never be freed."""
+    core = Core()
+    placed = Placed(core, np.array([6e5, 5e6, 100.0]))
+    getattr(placed, call)(lambda part: np.array(part, float))
+    alive = weakref.ref(placed)
+    del placed
+    assert alive() is None
+    assert core.source is not None

@@ -84,10 +84,11 @@ class Placed:
 
     def share_terrain(self, source: Callable[[list[float]], np.ndarray]) -> None:
         """See CoreSimulation."""
+        height = self._origin[-1]  # the core keeps `near`, which must not keep the core
 
         def near(part: list[float]) -> np.ndarray:
             found = np.array(source(part))
-            found[: len(found) // 2] -= self._origin[-1]
+            found[: len(found) // 2] -= height
             return found
 
         self._core.share_terrain(near)
