@@ -18,7 +18,7 @@ def test_two_rows_of_a_face_have_all_of_its_area(dim, across):
     scenario = load_scenario(block, [f"across={across}", f"dim={dim}"])
     scene = build_scene(scenario)
     bodies, particles = scene.bodies, scene.particles
-    faces = contact_faces(scenario, particles, bodies, bodies.depth)
+    faces = contact_faces(scenario, particles, bodies, bodies.depth, bodies.normal)
     member, row = bodies.grain == 0, np.floor(bodies.depth / scenario.dp)
     assert np.all(faces.face[member & (row == 0)] == FIRST_BODY)
     assert np.all(faces.face[member & (row == 1)] == -FIRST_BODY)

@@ -14,6 +14,7 @@ from .bodies import Bodies
 from .periodic import nearest_image, periods
 
 NO_FACE, FIXED_FACE, FIRST_BODY = 0, 1, 2  # numbers of the core's faces
+NEXT_ROW = 0.9  # spacings from where a row would go on to one that is there, on any lattice
 
 
 class ContactFaces(NamedTuple):
@@ -26,17 +27,23 @@ class ContactFaces(NamedTuple):
 
 
 def contact_faces(
-    scenario: Scenario, particles: ParticleSet, bodies: Bodies, depth: np.ndarray
+    scenario: Scenario,
+    particles: ParticleSet,
+    bodies: Bodies,
+    depth: np.ndarray,
+    normal: np.ndarray,
 ) -> ContactFaces:
     """The faces of all rigid bodies and fixed walls: their first row, less than dp deep.
 
     Of bodies that move the row below as well: the kernel reaches from there to another face.
-    `depth` (N,) below the surface, m.
+    `depth` (N,) below the surface, m, whose `normal` (N, dim) points outwards.
     """
     n = len(particles)
     face, area = np.full(n, NO_FACE, np.int32), np.zeros((n, scenario.dim))
     first_row = depth < scenario.dp
-    face[first_row & (particles.motion == FIXED)] = FIXED_FACE
+    fixed = np.flatnonzero(first_row & (particles.motion == FIXED))
+    surface = particles.position[fixed] + depth[fixed, None] * normal[fixed]
+    face[fixed[~_is_covered(scenario, particles, surface, normal[fixed])]] = FIXED_FACE
     of_body = (depth < 2 * scenario.dp) & (bodies.grain >= 0)
     number = FIRST_BODY + bodies.grain[of_body]
     face[of_body] = np.where(first_row[of_body], number, -number)
@@ -44,6 +51,20 @@ def contact_faces(
     for members, offset in _members(scenario, particles, bodies):
         area[members] = _Pairs.of(offset, scenario).areas(volume[members])
     return ContactFaces(face, area)
+
+
+def _is_covered(
+    scenario: Scenario, particles: ParticleSet, surface: np.ndarray, normal: np.ndarray
+) -> np.ndarray:
+    """Mask (n,) of places on a wall that another one stands on: neither water nor air is there."""
+    from scipy.spatial import cKDTree
+
+    walls = particles.position[particles.motion == FIXED]
+    if not len(surface):
+        return np.zeros(0, bool)
+    gap, nearest = cKDTree(walls).query(surface + 0.5 * scenario.dp * normal)
+    above = ((walls[nearest] - surface) * normal).sum(axis=1) > 0.0
+    return above & (gap < NEXT_ROW * scenario.dp)
 
 
 def _members(

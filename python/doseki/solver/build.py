@@ -281,7 +281,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
         normals=edges.normals.reshape(len(depth), scenario.dim**2), depths=edges.depths
     )
     if scenario.uplift and len(bodies):
-        faces = contact_faces(scenario, particles, bodies, depth)
+        faces = contact_faces(scenario, particles, bodies, depth, normal)
         simulation.set_faces(face=faces.face, area=faces.area)
     add_bodies(simulation, scenario, bodies, body_names)
     check_panels(scenario, particles, body_names, {"normal": normal, "depth": depth})

@@ -128,6 +128,18 @@ def test_a_breakable_block_has_its_uplift_while_it_is_rigid(tmp_path):
     assert run.simulation.totals()["broken_bonds"] == 0
 
 
+@pytest.mark.parametrize("place", [0.05, 0.25])
+def test_a_block_in_a_corner_has_its_uplift(place):
+    """No air comes out of the bed below the wall: the film has no end there."""
+    run, forces = Running(BLOCK, "across=10", "depth=0.2", f"place={place}"), []
+    for time in np.linspace(0.5, 0.9, 81):
+        run.advance(time)
+        forces.append(flow_force(run, time))
+    along, up = np.mean(forces, axis=0) / (9810 * SIDE**2)
+    assert up == pytest.approx(1, abs=CLOSE)
+    assert abs(along) < 0.015
+
+
 def test_without_water_between_faces_it_has_not():
     assert uplift("uplift=false") < -0.4  # water presses on its top alone
 
