@@ -151,24 +151,27 @@ struct SumOfBody {
 
 private:
     static constexpr double deep = 0.5;    // of the highest pressure, that counts
+    static constexpr double least = 0.6;   // of its area, that a point in water has
     static constexpr double steps = 10.0;  // over which the share goes to what is seen
 
-    /// Eq. (152). What is near the surface of the water sees less of it for that reason.
+    /// Eq. (152). What is near the surface of the water, or only splashed on, sees less of it for
+    /// that reason.
     DOSEKI_DEVICE_FN void wet(std::size_t k) const {
+        const double before = 1.0 - states[k].unwetted;
         double highest = 0.0, seen = 0.0, wet = 0.0, all = 0.0;
         for (std::size_t n = first[k]; n < first[k + 1]; ++n)
             highest = max(highest, wetted[order[n]].pressure);
         for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
             const WettedPoint& point = wetted[order[n]];
             const Vec<double, D>& area = points[order[n]].area;
-            const double square = dot(area, area);
+            const double square = dot(area, area), share = before * point.share;
             all += square;
-            if (point.share == 0.0 || !(point.pressure > deep * highest)) continue;
-            seen += square * point.share, wet += square;
+            if (share < least || !(point.pressure > deep * highest)) continue;
+            seen += square * share, wet += square;
         }
         if (!(wet > 0.0)) return;
-        const double before = 1.0 - states[k].unwetted, now = seen / wet * before;
-        states[k].unwetted = 1.0 - (before + wet / (wet + steps * all) * (now - before));
+        const double now = before + wet / (wet + steps * all) * (seen / wet - before);
+        states[k].unwetted = 1.0 - min(1.0, now);
     }
 };
 
