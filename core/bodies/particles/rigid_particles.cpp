@@ -150,9 +150,9 @@ struct SumOfBody {
     }
 
 private:
-    static constexpr double deep = 0.5;               // of the highest pressure, that counts
-    static constexpr double least = 0.6, most = 1.1;  // of its area, that a point in water has
-    static constexpr double steps = 10.0;             // over which the share goes to what is seen
+    static constexpr double deep = 0.5;    // of the highest pressure, that counts
+    static constexpr double least = 0.6;   // of its area, that a point in water has
+    static constexpr double steps = 10.0;  // over which the share goes to what is seen
 
     /// Eq. (152). What is near the surface of the water, or only splashed on, sees less of it for
     /// that reason.
@@ -171,7 +171,7 @@ private:
         }
         if (!(wet > 0.0)) return;
         const double now = before + wet / (wet + steps * all) * (seen / wet - before);
-        states[k].unwetted = 1.0 - min(most, now);
+        states[k].unwetted = max(-0.1, 1.0 - now);
     }
 };
 
