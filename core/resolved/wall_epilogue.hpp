@@ -100,13 +100,13 @@ private:
     }
 
     /// That of the film where it presses against the direction n. Faces that part stretch the film
-    /// between them, or its pressure would do work on them that no water brings. No film holds
-    /// tension.
+    /// between them, or its pressure would do work on them that no water brings. Those that close
+    /// squeeze it out, which water around them resists. No film holds tension.
     DOSEKI_DEVICE_FN double pressure_at_surface(std::size_t p, const Vec<double, D>& n,
                                                 const WallAccumulators<double, D>& sums) const {
         const WallState<D>& wall = state_.wall;
         const Vec<double, D> around = (1.0 / sums.cover) * sums.face_velocity;
-        const double opening = dot(around - state_.velocity[p], n);
+        const double opening = std::max(0.0, dot(around - state_.velocity[p], n));
         const double slope = dot(model_.options.gravity, n) * wall.depth[p];
         return std::max(
             0.0, wall.pressure[p] + wall.film_density[p] * (slope - model_.constants.c * opening));

@@ -8,6 +8,7 @@ import pytest
 from doseki.scenario.start import start_text
 from doseki.validate.cases.grains.under_water import (
     BALL,
+    NO_FILM,
     SIDE,
     SUBMERGED,
     UPLIFT,
@@ -200,6 +201,29 @@ def test_discs_on_both_sides_of_the_middle_are_lifted_alike():
     assert up == pytest.approx(np.pi / 4 * SIDE**2 * 9810, rel=0.1)
     assert same == pytest.approx(up, rel=1e-6)
     assert other == pytest.approx(-along, abs=1e-6 * up)
+
+
+def rebound(folder, *overrides):
+    """Speed at which a disc comes back that is thrown at the floor of a pool, m/s."""
+    tank = (CASES / "grains" / "ball-under-water.toml").read_text()
+    base = CASES / "grains" / "block-under-water.toml"
+    tank = tank.replace('"block-under-water.toml"', f'"{base}"')
+    thrown = tank.replace('"= side/2"], d3', '"= 0.6*side"], d3') + "velocity = [0, -3]\n"
+    path = folder / "thrown.toml"
+    path.write_text(thrown + "[material.stone]\nrestitution = 0.8\n")
+    given = "across=10", "depth=0.3", "width=0.5", "speed_max=5", "density=2500"
+    run, fastest = Running(str(path), *given, *overrides), 0.0
+    for time in np.linspace(0.002, 0.03, 57):
+        run.advance(time)
+        fastest = max(fastest, moving_body(run, "velocity")[1])
+    return fastest
+
+
+def test_films_do_not_cushion_what_meets_under_water(tmp_path):
+    """Water is squeezed out between faces that close, as without films."""
+    without = rebound(tmp_path, NO_FILM)
+    assert without > 0.5
+    assert rebound(tmp_path) == pytest.approx(without, rel=0.15)
 
 
 @pytest.mark.parametrize(("density", "floats"), [(0.97, True), (1.03, False)])

@@ -39,7 +39,7 @@ def test_the_table_of_maps(tmp_path):
             scenario = load_scenario(file, settings)
             simulation, _, _ = filled_simulation(scenario)
             simulation.start()
-            maps = RunningMaps(scenario, RunFolder(tmp_path), OneRank())
+            maps = RunningMaps(scenario, list(scenario.body), RunFolder(tmp_path), OneRank())
             maps.look(simulation)
             maps.write(simulation)
         except UserError:
