@@ -122,7 +122,8 @@ struct Face {
     static constexpr std::int32_t none = 0, fixed = 1, first_body = 2;
 
     DOSEKI_DEVICE_FN static constexpr bool meet(std::int32_t a, std::int32_t b) {
-        return a != none && b != none && a != b && a != -b && (a > none || b > none);
+        const bool of_one_body = a == b || std::int64_t{a} + b == 0;
+        return a != none && b != none && !of_one_body && (a > none || b > none);
     }
 };
 
