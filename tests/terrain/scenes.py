@@ -27,14 +27,18 @@ based_on = "basalt"
 rho0 = 2000
 friction = 0.8
 """
-# A block on a slope, held by its friction, in a lake.
-BLOCK_IN_LAKE = """
+LAKE = """
 [body.lake]
 shape = "box"
 material = "water"
 min = [{west}, {floor}]
 max = [{east}, {level}]
 pressure = "= 9810*({level} - y)"
+"""
+# On a slope, held by its friction.
+BLOCK_IN_LAKE = (
+    LAKE
+    + """
 [body.block]
 shape = "box"
 material = "stone"
@@ -42,6 +46,7 @@ min = {corner}
 max = {opposite}
 rotate = {turn}
 """
+)
 GRAVITY = {2: [0, -9.81], 3: [0, 0, -9.81]}
 
 

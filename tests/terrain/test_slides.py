@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from .scenes import fluid, grid, profile, simulation_of, text
+from .scenes import LAKE, fluid, grid, profile, simulation_of, text
 
 MASS = """
 [material.debris]
@@ -176,16 +176,6 @@ def test_a_plane_of_a_map_is_as_good_as_a_box(tmp_path, wall, ks):
     start = 2.0 + 0.15 * math.sin(tilt)
     assert on_map[-1] - start == pytest.approx(on_box[-1] - start, rel=0.02)
     assert on_map[-1] - start > 0.05
-
-
-LAKE = """
-[body.lake]
-shape = "box"
-material = "water"
-min = [{west}, {floor}]
-max = [{east}, {level}]
-pressure = "= 9810*({level} - y)"
-"""
 
 
 def lake(folder, sign=1, moved=0.0, shift=(0.0, 0.0), relax=2.0):

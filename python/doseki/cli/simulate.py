@@ -203,7 +203,9 @@ def resume(
     team = join(ranks)
     run = load(directory)
     scenario = run.scenario
-    time_max = load_scenario(run.folder.scenario, settings or []).time_max
+    time_max = scenario["time_max"]
+    if settings:
+        time_max = load_scenario(run.folder.scenario, settings).time_max
     choose_device(device, lambda: count_of_record(run), team, _say)
     with team.holding(directory), ending_early():
         with progress_bar(scenario.get("title", ""), time_max) as progress:

@@ -75,18 +75,18 @@ class RunningMaps:
 
     def look(self, simulation: Simulation) -> None:
         """Take in the particles as they are now; all ranks must take part."""
-        state = flowing(simulation.state(), self._clamped)
+        state = simulation.state()
         if self._peaks is not None:
-            self._peaks.look(simulation.time, state)
+            self._peaks.look(simulation.time, flowing(state, self._clamped))
 
     def write(self, simulation: Simulation) -> None:
         """Write the maps so far, and the deposit as it is now; all ranks must take part."""
-        state, time = flowing(simulation.state(), self._clamped), simulation.time
+        state, time = simulation.state(), simulation.time
         self._ranks.on_root(lambda: self._write(state, time))
 
     def _write(self, state: Mapping[str, np.ndarray], time: float) -> None:
         assert self._peaks is not None
-        rasters = rasters_of(self._peaks, state, self.settings)
+        rasters = rasters_of(self._peaks, flowing(state, self._clamped), self.settings)
         write_maps(self._folder, rasters, self.settings, time)
         self.runout = asdict(runout(rasters, self._peaks.grid))
 

@@ -167,15 +167,14 @@ class Scenario(ScenarioTable):
     def pore_pressure_ratios(self) -> dict[float, str]:
         """Every pore pressure ratio that fluids in use have, with the first fluid that has it."""
         found: dict[float, str] = {}
-        for name in self.material_names:
-            if self.materials[name].law == "fluid":
-                found.setdefault(self.materials[name].of_laws["pore_pressure_ratio"], name)
+        for name in self.liquids:
+            found.setdefault(self.materials[name].of_laws["pore_pressure_ratio"], name)
         return found
 
     @property
     def is_dry(self) -> bool:
         """Whether it has no fluid at all."""
-        return all(self.materials[name].law != "fluid" for name in self.material_names)
+        return not self.liquids
 
     @property
     def acoustic_timestep(self) -> float:

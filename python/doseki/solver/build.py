@@ -214,7 +214,7 @@ def _terrain_wall(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
         "smoothing_length": scenario.eta * scenario.dp,
         "material": scenario.material_names.index(name),
         "body": body_names.index(TERRAIN),
-        "faces": scenario.uplift and bool(scenario.liquids),
+        "faces": scenario.uplift and not scenario.is_dry,
     }
 
 

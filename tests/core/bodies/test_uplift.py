@@ -157,9 +157,16 @@ def test_a_sphere_on_a_bed_has_its_uplift(across):
     assert ball(across, "dim=3").values[UPLIFT].number == pytest.approx(1, abs=0.05)
 
 
+def tank_of_the_ball():
+    """The text of its scenario, for a file in another folder."""
+    folder = CASES / "grains"
+    tank = (folder / f"{BALL}.toml").read_text()
+    return tank.replace(f'"{BLOCK}.toml"', f'"{folder / BLOCK}.toml"')
+
+
 def pile_of_spheres(folder):
     """Three on the bed and one on top, 4 spacings across."""
-    tank = (CASES / "grains" / "ball-under-water.toml").read_text()
+    tank = tank_of_the_ball()
     ball = tank[tank.index("[body.ball]") :]
     places = [(-0.5, -(3**0.5) / 6, 0.5), (0.5, -(3**0.5) / 6, 0.5), (0, 3**0.5 / 3, 0.5)]
     spheres = [
@@ -172,9 +179,7 @@ radius = "= side/2"
         for k, (x, y, z) in enumerate([*places, (0, 0, 0.5 + (2 / 3) ** 0.5)])
     ]
     path = folder / "pile.toml"
-    base = CASES / "grains" / "block-under-water.toml"
-    tank = tank.replace('"block-under-water.toml"', f'"{base}"').replace(ball, "\n".join(spheres))
-    path.write_text(tank)
+    path.write_text(tank.replace(ball, "\n".join(spheres)))
     return Running(str(path), "dim=3", "across=4", "depth=0.3", "width=0.35", "friction=0.9")
 
 
@@ -205,10 +210,8 @@ def test_discs_on_both_sides_of_the_middle_are_lifted_alike():
 
 def rebound(folder, *overrides):
     """Speed at which a disc comes back that is thrown at the floor of a pool, m/s."""
-    tank = (CASES / "grains" / "ball-under-water.toml").read_text()
-    base = CASES / "grains" / "block-under-water.toml"
-    tank = tank.replace('"block-under-water.toml"', f'"{base}"')
-    thrown = tank.replace('"= side/2"], d3', '"= 0.6*side"], d3') + "velocity = [0, -3]\n"
+    thrown = tank_of_the_ball()
+    thrown = thrown.replace('"= side/2"], d3', '"= 0.6*side"], d3') + "velocity = [0, -3]\n"
     path = folder / "thrown.toml"
     path.write_text(thrown + "[material.stone]\nrestitution = 0.8\n")
     given = "across=10", "depth=0.3", "width=0.5", "speed_max=5", "density=2500"

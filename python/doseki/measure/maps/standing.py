@@ -33,5 +33,7 @@ def standing(state: Mapping[str, np.ndarray], clamped: np.ndarray) -> np.ndarray
 
 def flowing(state: Mapping[str, np.ndarray], clamped: np.ndarray) -> dict[str, np.ndarray]:
     """The rest of a state."""
+    if not len(clamped):
+        return dict(state)
     rest = ~standing(state, clamped)
     return {key: values[rest] for key, values in state.items() if len(values) == len(rest)}

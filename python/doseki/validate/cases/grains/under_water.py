@@ -39,20 +39,23 @@ def block(across: float, *overrides: str) -> Outcome:
 def lifted(across: float, depth: float, *overrides: str, name: str = TANK) -> Outcome:
     """The late uplift in water of one depth, in the scenario of this name."""
     times, upward = standing(across, depth, *overrides, name=name)
-    late = float(upward[times > SETTLED * times[-1]].mean())
     curve = Curve(f"{depth:g} deep", times, upward)
-    return Outcome({UPLIFT_IN[name]: Value(late, 1.0)}, [curve])
+    return Outcome({UPLIFT_IN[name]: Value(late(times, upward), 1.0)}, [curve])
 
 
 def ball(across: float, *overrides: str) -> Outcome:
     """The late uplift of a disc (3-D: a sphere), the mean over places on the lattice."""
-    found = []
+    curves = []
     for shift in SHIFTS:
-        times, upward = standing(across, DEEP, f"shift={shift:g}", *overrides, name=BALL)
-        late = float(upward[times > SETTLED * times[-1]].mean())
-        found.append((late, Curve(f"{shift:g} spacings aside", times, upward)))
-    mean = float(np.mean([late for late, _ in found]))
-    return Outcome({UPLIFT: Value(mean, 1.0)}, [curve for _, curve in found])
+        found = standing(across, DEEP, f"shift={shift:g}", *overrides, name=BALL)
+        curves.append(Curve(f"{shift:g} spacings aside", *found))
+    mean = float(np.mean([late(curve.x, curve.y) for curve in curves]))
+    return Outcome({UPLIFT: Value(mean, 1.0)}, curves)
+
+
+def late(times: np.ndarray, upward: np.ndarray) -> float:
+    """The mean once the film has its pressure."""
+    return float(upward[times > SETTLED * times[-1]].mean())
 
 
 def rubbed(across: float, *overrides: str) -> Outcome:
@@ -90,14 +93,14 @@ def sliding(across: float, *overrides: str) -> float:
     """
     tilted = f"tilt={SLOPE:g}", f"friction={COEFFICIENT:g}", f"density={STONE:g}"
     run = Running(TANK, f"across={across:g}", f"side={SIDE:g}", *tilted, *overrides)
-    volume, gravity = SIDE**run.scenario.dim, np.asarray(run.scenario.gravity)
+    size, gravity = volume(TANK, run.scenario.dim), np.asarray(run.scenario.gravity)
     times = np.linspace(SETTLED * run.scenario.time_max, run.scenario.time_max, SAMPLES)
     run.advance(times[0])
     start = moving_body(run, "velocity")
     water = np.mean([flow_force(run, time) for time in times[1:]], axis=0)
-    rate = STONE * volume * (moving_body(run, "velocity") - start) / (times[-1] - times[0])
-    contact = rate - STONE * volume * gravity - water
-    return float(-contact[0] / (COEFFICIENT * (WATER - STONE) * volume * gravity[-1]))
+    rate = STONE * size * (moving_body(run, "velocity") - start) / (times[-1] - times[0])
+    contact = rate - STONE * size * gravity - water
+    return float(-contact[0] / (COEFFICIENT * (WATER - STONE) * size * gravity[-1]))
 
 
 def flow_force(run: Running, time: float) -> np.ndarray:
