@@ -112,6 +112,18 @@ DOSEKI_DEVICE_FN double largest_size(const Sym<double, D>& s) {
     return (mean < 0.0 ? -mean : mean) + std::sqrt((D - 1) * (variance > 0.0 ? variance : 0.0));
 }
 
+/// Scales s such that largest_size(s) is no more than `most`. That is at most the square root of
+/// the sum of squares, so that few need a root.
+template <int D>
+DOSEKI_DEVICE_FN void bound_size(Sym<double, D>& s, double most) {
+    double squares = 0.0;
+    for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) squares += s(min(a, b), max(a, b)) * s(min(a, b), max(a, b));
+    if (squares <= most * most) return;
+    const double share = most / max(largest_size(s), most);
+    for (double& element : s.element) element *= share;
+}
+
 /// Matrix of cofactors: inverse transposed times determinant.
 template <class T, int D>
 DOSEKI_FN Mat<T, D> cofactors(const Mat<T, D>& m) {

@@ -26,6 +26,7 @@ struct WallCondition {
     double mu = 0.0;       // coefficient of friction
     double turbulent_xi = std::numeric_limits<double>::infinity();  // [m/s^2]
     double effective_share = 1.0;  // of the normal stress, that grains carry and not pore water
+    bool moves = false;            // and its particles with it; those of a belt stay
 
     DOSEKI_DEVICE_FN bool has_friction() const { return ks > 0.0 || voellmy; }
 
@@ -33,7 +34,7 @@ struct WallCondition {
     void members(F&& f) {
         f("no_slip", no_slip), f("ks", ks), f("voellmy", voellmy, optional);
         f("mu", mu, optional), f("turbulent_xi", turbulent_xi, optional);
-        f("effective_share", effective_share, optional);
+        f("effective_share", effective_share, optional), f("moves", moves, optional);
     }
 };
 

@@ -61,6 +61,10 @@ DOSEKI_DEVICE_FN Mat<double, D> inverse_moment(const Sym<double, D>& m) {
     return inverse(full(m), min_determinant);
 }
 
+/// The greatest rate |L| of shifting_velocity() over 1/dt with which a step does not go past the
+/// place that a particle is shifted to, Eq. (153). Twice this makes disorder.
+inline constexpr double max_shifting_rate = 0.0075;
+
 /// Velocity at which particles are shifted towards where they are scarce (Lind et al., J. Comput.
 /// Phys. 231, 2012; Sun et al. 2017), -A h^2 |L| grad C, at most 10 h |L|: what disorder the flow
 /// makes in the time 1/|L| is undone in about that time, however fast the frame moves.

@@ -39,7 +39,9 @@ template <class Kernel, class real, int D>
 nb::list work_of_resolved() {
     nb::list rows;
     rows.append(named(work_of_pair<FluidPoint, MotionPoint, FluidFields>(
-        "pass_2", FluidTerm<Kernel, real, D>{})));
+        "continuity", ContinuityTerm<Kernel, real, D>{})));
+    rows.append(named(
+        work_of_pair<FluidPoint, MotionPoint, FluidFields>("force", ForceTerm<Kernel, real, D>{})));
     return rows;
 }
 

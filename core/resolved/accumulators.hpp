@@ -17,23 +17,21 @@ struct FlowConstants {
     double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
     double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
     ViscousForm<double> form;
+    double roughest = 0.0;  // rate at which a fluid pair damps over that of Morris' form, Eq. (154)
     double suction = 0.0;   // that water at bodies bears, Eq. (85) [Pa]
     bool harmonic = false;  // see pair_viscosity
 };
 
-/// Over the neighbours of a fluid particle i; gradients are those of the plain kernel.
+/// What a fluid particle i sums over its neighbours for its density, half a step before its forces;
+/// gradients are those of the plain kernel.
 template <class T, int D>
-struct FluidAccumulators {
-    Vec<T, D> force;                   // of viscosity, dissipation and shifting, over V_i/2
-    Vec<T, D> traction;                // of beds with friction, over V_i
+struct ContinuityAccumulators {
     T density_rate{};                  // over rho_i
     T sliding_rate{}, sliding_size{};  // see edge_rate
     T power{};                         // that pairs dissipate, over V_i
-    T made_power{};                    // that shifting and walls make, over V_i
-    Vec<T, D> pressure_gradient, concentration_gradient, surface_gradient;
-    Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
     Mat<T, D> velocity_gradient;
     Sym<T, D> moment;
+    Vec<T, D> concentration_gradient, surface_gradient;
     T concentration{};   // sum of rest volumes times W
     T wall_share{};      // of walls in it
     Largest<T> surface;  // of the neighbours' free-surface indicators
@@ -41,12 +39,31 @@ struct FluidAccumulators {
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.force...), f(self.traction...), f(self.density_rate...), f(self.power...);
-        f(self.sliding_rate...), f(self.sliding_size...), f(self.made_power...);
+        f(self.density_rate...), f(self.sliding_rate...), f(self.sliding_size...);
+        f(self.power...), f(self.velocity_gradient...), f(self.moment...);
+        f(self.concentration_gradient...), f(self.surface_gradient...);
+        f(self.concentration...), f(self.wall_share...), f(self.surface...), f(self.at_body...);
+    }
+};
+
+/// And for its forces.
+template <class T, int D>
+struct ForceAccumulators {
+    Vec<T, D> force;     // of viscosity, dissipation and shifting, over V_i/2
+    Vec<T, D> traction;  // of beds with friction, over V_i
+    T power{};           // that pairs dissipate, over V_i
+    T made_power{};      // that shifting and walls make, over V_i
+    T viscous_rate{};    // at which viscosity damps the roughest motion, times rho_i
+    Vec<T, D> pressure_gradient, concentration_gradient;
+    Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
+    T concentration{};             // of fluid: sum of rest volumes times W
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.force...), f(self.traction...), f(self.power...), f(self.made_power...);
+        f(self.viscous_rate...);
         f(self.pressure_gradient...), f(self.concentration_gradient...);
-        f(self.surface_gradient...), f(self.corrected_gradient...), f(self.velocity_gradient...);
-        f(self.moment...), f(self.concentration...), f(self.wall_share...);
-        f(self.surface...), f(self.at_body...);
+        f(self.corrected_gradient...), f(self.concentration...);
     }
 };
 
@@ -68,22 +85,6 @@ struct WallAccumulators {
         f(self.face_velocity...), f(self.cover...), f(self.film_pressure...),
             f(self.film_density...);
     }
-};
-
-/// Pressure and viscous stress between a fluid particle i and a wall particle w, the wall standing
-/// for fluid of mirrored velocity.
-template <class T, int D>
-struct WallContact {
-    Vec<T, D> pressure_force, viscous_force;  // on i over V_i
-    Vec<T, D> corrected_r;                    // B_i r_iw
-    T excess;                                 // of the pressure at w over p_i
-    T approach;                               // (v_i - v_w).(-n)
-    T r_dot_n, corrected_r_dot_n;
-    T height;        // of i above the surface of the wall
-    T along;         // part of (v_i - v_w).B_i r_iw along the face
-    Vec<T, D> jump;  // v_i - velocity extrapolated to w
-    T power;         // dissipated, over V_i
-    T made;          // by pressure beyond what approach does to the density, over V_i
 };
 
 /// A wall as a fluid particle sees it from one of its particles.
@@ -127,48 +128,82 @@ DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw
     return seen;
 }
 
+/// How a fluid particle i moves against a wall particle w, the wall standing for fluid of mirrored
+/// velocity.
+template <class T, int D>
+struct WallContact {
+    FacedWall<T, D> seen;
+    Vec<T, D> v_iw;
+    Vec<T, D> corrected_r;  // B_i r_iw
+    T pushes;               // 0: at an edge that the fluid goes off past
+    T approach;             // (v_i - v_w).(-n)
+    T r_dot_n, corrected_r_dot_n;
+    T height;           // of i above the surface of the wall
+    T no_slip;          // share of it that holds here
+    Vec<T, D> sliding;  // part of v_i - v_w along the face
+};
+
 template <class T, int D>
 DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw,
-                                         const T& r, const T& F, const FluidPoint<T, D>& i,
+                                         const T& r, const FluidPoint<T, D>& i,
                                          const WallPoint<T, D>& w) {
     WallContact<T, D> contact;
-    const FacedWall<T, D> seen = facing(w, r_iw, r);
-    const Vec<T, D> v_iw = i.v - w.v;
+    const FacedWall<T, D> seen = contact.seen = facing(w, r_iw, r);
+    contact.v_iw = i.v - w.v;
     contact.r_dot_n = dot(r_iw, seen.normal), contact.height = contact.r_dot_n - seen.depth;
-    contact.approach = -dot(v_iw, seen.normal);
+    contact.approach = -dot(contact.v_iw, seen.normal);
     // An edge pushes what comes to it. It does not pull what goes off a face past it.
-    const T pushes = select(contact.approach < T(0), T(1) - seen.beyond_edge, T(1));
-    contact.approach = pushes * contact.approach;
-    const T c = number<T>(constants.c), min_distance = number<T>(0.25 * constants.dp);
+    contact.pushes = select(contact.approach < T(0), T(1) - seen.beyond_edge, T(1));
+    contact.approach = contact.pushes * contact.approach;
+    contact.corrected_r = i.correction * r_iw;
+    contact.corrected_r_dot_n = dot(contact.corrected_r, seen.normal);
+    contact.no_slip =
+        w.no_slip * no_slip_factor(seen.depth, contact.height, number<T>(0.25 * constants.dp));
+    contact.sliding = contact.v_iw + contact.approach * seen.normal;
+    return contact;
+}
+
+/// Pressure and viscous stress between the two.
+template <class T, int D>
+struct WallForces {
+    Vec<T, D> pressure, viscous;  // on i over V_i
+    T excess;                     // of the pressure at w over p_i
+    T power;                      // dissipated, over V_i
+    T made;                       // by pressure beyond what approach does to the density, over V_i
+    T viscous_rate;               // see ForceAccumulators
+};
+
+template <class T, int D>
+DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
+                                       const WallContact<T, D>& contact, const Vec<T, D>& r_iw,
+                                       const T& r, const T& F, const FluidPoint<T, D>& i,
+                                       const WallPoint<T, D>& w) {
+    WallForces<T, D> forces;
+    const FacedWall<T, D>& seen = contact.seen;
+    const T c = number<T>(constants.c);
     const Vec<T, D> at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
     // Air comes in on a free surface and at bodies that move: a wall pulls at what leaves it no
     // harder than pores do.
     const T vented = select(i.surface > number<T>(FreeSurfaceIndicator::surface), T(1), w.bound);
     const T least =
         select(vented > T(0), min(T(0), number<T>(-constants.suction) - i.p), T(-c * c) * i.rho);
-    const T solved = approach_pressure(T(-2) * pushes * dot(v_iw, at_foot), i.rho, c,
-                                       smooth_approach(i.resolved_strain, r));
+    const T solved = approach_pressure(T(-2) * contact.pushes * dot(contact.v_iw, at_foot), i.rho,
+                                       c, smooth_approach(i.resolved_strain, r));
     const T extra = max(solved, least);
     const Vec<T, D> across = contact.r_dot_n * at_foot;
     // The line to what is in front of no face is no normal: across it as well the fluid goes on.
-    contact.excess = wall_excess_pressure(i.p, i.rho, i.pressure_gradient, seen.g_normal,
-                                          seen.in_front * seen.normal, contact.r_dot_n, r_iw);
-    contact.corrected_r = i.correction * r_iw;
-    contact.corrected_r_dot_n = dot(contact.corrected_r, seen.normal);
-    const T p = i.p + number<T>(0.5) * contact.excess;
-    const T no_slip = w.no_slip * no_slip_factor(seen.depth, contact.height, min_distance);
-    const Vec<T, D> sliding = v_iw + contact.approach * seen.normal;
-    contact.along = dot(sliding, contact.corrected_r);
-    const T shear =
-        no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(sliding, sliding)), number<T>(constants.dp));
-    contact.jump = shear * sliding - (T(2) * contact.approach) * seen.normal;
-    const T scale = T(-2) * w.volume * F, mu_wall = i.mu * no_slip;
-    contact.pressure_force = (scale * p) * contact.corrected_r;
-    contact.viscous_force = scale * (extra * across - mu_wall * sliding);
-    contact.power = scale * (mu_wall * dot(sliding, v_iw) - extra * dot(across, v_iw));
-    contact.made = dot(contact.pressure_force, v_iw) +
-                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
-    return contact;
+    forces.excess = wall_excess_pressure(i.p, i.rho, i.pressure_gradient, seen.g_normal,
+                                         seen.in_front * seen.normal, contact.r_dot_n, r_iw);
+    const T p = i.p + number<T>(0.5) * forces.excess;
+    const T scale = T(-2) * w.volume * F, mu_wall = i.mu * contact.no_slip;
+    forces.pressure = (scale * p) * contact.corrected_r;
+    forces.viscous = scale * (extra * across - mu_wall * contact.sliding);
+    forces.power =
+        scale * (mu_wall * dot(contact.sliding, contact.v_iw) - extra * dot(across, contact.v_iw));
+    forces.viscous_rate = scale * mu_wall;
+    forces.made = dot(forces.pressure, contact.v_iw) +
+                  scale * i.p * contact.approach * contact.corrected_r_dot_n;
+    return forces;
 }
 
 /// Force of pressure on a fluid particle i over V_i: -sum_j V_j (p_i B_j + p_j B_i) grad W, with
@@ -176,44 +211,74 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
 /// arXiv:2406.02576). Pairs conserve momentum, and an arrangement of particles under pressure
 /// resists no shear, as it does with B = 1: its stress is that of p times the moment of gradients.
 template <int D>
-DOSEKI_DEVICE_FN Vec<double, D> pressure_force(const FluidAccumulators<double, D>& sums,
+DOSEKI_DEVICE_FN Vec<double, D> pressure_force(const ForceAccumulators<double, D>& sums,
                                                const FluidFields<double, D>& i) {
     const Vec<double, D> of_neighbours = sums.pressure_gradient + i.p * sums.concentration_gradient;
     return -1.0 * (i.correction * of_neighbours + i.p * sums.corrected_gradient);
 }
 
+/// The gradient factor F of Eq. (26) of a pair: grad W = F r_ij.
+template <class Kernel, class T>
+DOSEKI_FN T gradient_factor(const FlowConstants& constants, const T& inverse_support, const T& r) {
+    return number<T>(constants.gradient_scale) * Kernel::gradient_factor(r, inverse_support);
+}
+
 /// What every neighbour, fluid or wall, adds to the gradients.
 template <class T, int D>
-DOSEKI_FN void add_gradients(FluidAccumulators<T, D>& sums, const Vec<T, D>& r_ij, const T& VF,
-                             const T& p_ij, const Vec<T, D>& v_ij) {
+DOSEKI_FN void add_gradients(ContinuityAccumulators<T, D>& sums, const Vec<T, D>& r_ij, const T& VF,
+                             const Vec<T, D>& v_ij) {
     for (int a = 0; a < D; ++a) {
         const T gradient = VF * r_ij[a];
         sums.concentration_gradient[a] += gradient;
-        sums.pressure_gradient[a] -= p_ij * gradient;
         for (int b = 0; b < D; ++b) sums.velocity_gradient(b, a) -= v_ij[b] * gradient;
         for (int b = a; b < D; ++b) sums.moment(a, b) -= gradient * r_ij[b];
     }
 }
 
-/// What a fluid particle j adds to a fluid particle i.
+template <class T, int D>
+DOSEKI_FN void add_gradients(ForceAccumulators<T, D>& sums, const Vec<T, D>& r_ij, const T& VF,
+                             const T& p_ij, const Vec<T, D>& corrected_r) {
+    for (int a = 0; a < D; ++a) {
+        const T gradient = VF * r_ij[a];
+        sums.concentration_gradient[a] += gradient;
+        sums.pressure_gradient[a] -= p_ij * gradient;
+        sums.corrected_gradient[a] += VF * corrected_r[a];
+    }
+}
+
+/// What a fluid particle j adds to the density of a fluid particle i.
 template <class Kernel, class T, int D>
-DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
+DOSEKI_FN void add_fluid(ContinuityAccumulators<T, D>& sums, const FlowConstants& constants,
                          const T& inverse_support, const Pair<T, D>& pair,
                          const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
     const T half = number<T>(0.5), c = number<T>(constants.c);
-    const T F = number<T>(constants.gradient_scale) *
-                Kernel::gradient_factor(pair.r, inverse_support),
-            VF = j.volume * F;
+    const T VF = j.volume * gradient_factor<Kernel>(constants, inverse_support, pair.r);
+    const Vec<T, D> v_ij = i.v - j.v;
+    const T jump = pressure_jump(i.p, j.p, i.pressure_gradient, j.pressure_gradient, pair.r_ij);
+    const T levelled = half * jump * (pair.r / (half * (i.rho + j.rho) * c));
+    sums.density_rate += VF * (dot(v_ij, j.correction * pair.r_ij) + levelled);
+    sums.power -= VF * half * levelled * (i.p - j.p);
+    add_gradients(sums, pair.r_ij, VF, v_ij);
+    const T surface = j.surface - i.surface;
+    for (int a = 0; a < D; ++a) sums.surface_gradient[a] += surface * (VF * pair.r_ij[a]);
+    sums.concentration += j.rest_volume * Kernel::value(pair.r, inverse_support);
+    sums.surface.take(select(VF < T(0), j.surface, T(0)));
+}
+
+/// What it adds to its force.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_fluid(ForceAccumulators<T, D>& sums, const FlowConstants& constants,
+                         const T& inverse_support, const Pair<T, D>& pair,
+                         const FluidPoint<T, D>& i, const FluidPoint<T, D>& j) {
+    const T half = number<T>(0.5), c = number<T>(constants.c);
+    const T VF = j.volume * gradient_factor<Kernel>(constants, inverse_support, pair.r);
     const Vec<T, D> v_ij = i.v - j.v;
     const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
     const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
-    // One division for 1/r and 1/(rho c).
-    const T impedance = rho * c, inverse = T(1) / (pair.r * impedance);
-    const T inverse_r = impedance * inverse;
+    const T inverse_r = T(1) / pair.r;
     const T resolved = min(i.resolved_strain, j.resolved_strain);
     const T extra = approach_pressure((smooth - v_dot_r) * inverse_r, rho, c,
                                       smooth_approach(resolved, pair.r));
-    const Vec<T, D> corrected_r = j.correction * pair.r_ij;
     const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
     const ViscousForm<T> form{number<T>(constants.form.along_jump),
                               number<T>(constants.form.along_pair)};
@@ -221,48 +286,55 @@ DOSEKI_FN void add_fluid(FluidAccumulators<T, D>& sums, const FlowConstants& con
     const T W = Kernel::value(pair.r, inverse_support);
     const T exchange = half * number<T>(constants.exchange) * rho * j.volume * W;
     for (int a = 0; a < D; ++a) {
-        sums.force[a] -= VF * (extra * pair.r_ij[a] - mu * viscous[a]);
         const T exchanged = exchange * (i.carried[a] - j.carried[a]);
-        sums.force[a] += exchanged;
+        sums.force[a] += exchanged - VF * (extra * pair.r_ij[a] - mu * viscous[a]);
         sums.made_power += exchanged * v_ij[a];
-        sums.corrected_gradient[a] += VF * corrected_r[a];
     }
-    const T jump = pressure_jump(i.p, j.p, i.pressure_gradient, j.pressure_gradient, pair.r_ij);
-    const T levelled = half * jump * (pair.r * pair.r * inverse);
-    sums.density_rate += VF * (dot(v_ij, corrected_r) + levelled);
-    sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r + half * levelled * (i.p - j.p));
-    add_gradients(sums, pair.r_ij, VF, i.p - j.p, v_ij);
-    const T surface = j.surface - i.surface;
-    for (int a = 0; a < D; ++a) sums.surface_gradient[a] += surface * (VF * pair.r_ij[a]);
+    sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r);
+    sums.viscous_rate -= number<T>(constants.roughest) * VF * mu;
     sums.concentration += j.rest_volume * W;
-    sums.surface.take(select(F < T(0), j.surface, T(0)));
+    add_gradients(sums, pair.r_ij, VF, i.p - j.p, j.correction * pair.r_ij);
 }
 
-/// What a wall particle w adds to a fluid particle i.
+/// What a wall particle w adds to the density of a fluid particle i.
 template <class Kernel, class T, int D>
-DOSEKI_FN void add_wall(FluidAccumulators<T, D>& sums, const FlowConstants& constants,
+DOSEKI_FN void add_wall(ContinuityAccumulators<T, D>& sums, const FlowConstants& constants,
                         const T& inverse_support, const Pair<T, D>& pair, const FluidPoint<T, D>& i,
                         const WallPoint<T, D>& w) {
-    const T F = number<T>(constants.gradient_scale) *
-                Kernel::gradient_factor(pair.r, inverse_support),
-            VF = w.volume * F;
+    const T VF = w.volume * gradient_factor<Kernel>(constants, inverse_support, pair.r);
+    const auto contact = wall_contact(constants, pair.r_ij, pair.r, i, w);
+    sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
+    sums.sliding_rate += T(2) * VF * dot(contact.sliding, contact.corrected_r);
+    sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(contact.v_iw, contact.v_iw));
+    const T shear =
+        contact.no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(contact.sliding, contact.sliding)),
+                                         number<T>(constants.dp));
+    // v_i less the velocity that the fluid goes on to at w.
+    const Vec<T, D> jump =
+        shear * contact.sliding - (T(2) * contact.approach) * contact.seen.normal;
+    add_gradients(sums, pair.r_ij, VF, jump);
+    sums.wall_share += w.volume * Kernel::value(pair.r, inverse_support);
+    sums.at_body.take(select(VF < T(0), w.bound, T(0)));
+}
+
+/// What it adds to its force.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_wall(ForceAccumulators<T, D>& sums, const FlowConstants& constants,
+                        const T& inverse_support, const Pair<T, D>& pair, const FluidPoint<T, D>& i,
+                        const WallPoint<T, D>& w) {
+    const T F = gradient_factor<Kernel>(constants, inverse_support, pair.r);
     const T W = Kernel::value(pair.r, inverse_support);
-    const auto contact = wall_contact(constants, pair.r_ij, pair.r, F, i, w);
+    const auto contact = wall_contact(constants, pair.r_ij, pair.r, i, w);
+    const auto forces = wall_forces(constants, contact, pair.r_ij, pair.r, F, i, w);
     const T half = number<T>(0.5);
     for (int a = 0; a < D; ++a) {
-        sums.force[a] += half * contact.viscous_force[a];
+        sums.force[a] += half * forces.viscous[a];
         sums.traction[a] += W * w.traction[a];
-        sums.corrected_gradient[a] += VF * contact.corrected_r[a];
     }
-    sums.power += contact.power;
-    sums.made_power += contact.made;
-    sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
-    const Vec<T, D> v_iw = i.v - w.v;
-    sums.sliding_rate += T(2) * VF * contact.along;
-    sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(v_iw, v_iw));
-    add_gradients(sums, pair.r_ij, VF, -contact.excess, contact.jump);
-    sums.wall_share += w.volume * W;
-    sums.at_body.take(select(F < T(0), w.bound, T(0)));
+    sums.power += forces.power;
+    sums.made_power += forces.made;
+    sums.viscous_rate += forces.viscous_rate;
+    add_gradients(sums, pair.r_ij, w.volume * F, -forces.excess, contact.corrected_r);
 }
 
 /// What a fluid particle j adds to a wall particle w. `pair` points from the fluid particle j
@@ -271,21 +343,21 @@ template <class Kernel, class T, int D>
 DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstants& constants,
                                  const T& inverse_support, const Pair<T, D>& pair,
                                  const WallPoint<T, D>& w, const FluidPoint<T, D>& j) {
-    const T F = number<T>(constants.gradient_scale) *
-                Kernel::gradient_factor(pair.r, inverse_support),
+    const T F = gradient_factor<Kernel>(constants, inverse_support, pair.r),
             W = Kernel::value(pair.r, inverse_support);
     const Vec<T, D> r_jw = T(-1) * pair.r_ij;
-    const auto contact = wall_contact(constants, r_jw, pair.r, F, j, w);
+    const auto contact = wall_contact(constants, r_jw, pair.r, j, w);
+    const auto forces = wall_forces(constants, contact, r_jw, pair.r, F, j, w);
     const T share = j.volume * W;
     for (int a = 0; a < D; ++a) {
-        sums.force[a] -= j.volume * (contact.pressure_force[a] + contact.viscous_force[a]);
+        sums.force[a] -= j.volume * (forces.pressure[a] + forces.viscous[a]);
         sums.velocity[a] += share * j.v[a];
         sums.area[a] -= T(2) * j.volume * F * contact.corrected_r[a];
     }
     sums.weight += share;
     sums.density += share * j.rho;
     sums.height += share * contact.height;
-    sums.pressure += share * (j.p + contact.excess);
+    sums.pressure += share * (j.p + forces.excess);
 }
 
 /// What a face v of another body adds to a face w: the pressure of the film between them, and their

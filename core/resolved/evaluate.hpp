@@ -7,6 +7,7 @@
 #include "base/array.hpp"
 #include "base/poison.hpp"
 #include "ranks/common_frame.hpp"
+#include "resolved/continuity_epilogue.hpp"
 #include "resolved/flow_depth.hpp"
 #include "resolved/fluid_epilogue.hpp"
 #include "resolved/force_terms.hpp"
@@ -28,11 +29,11 @@ void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo
     fluid_count_ = lists.moving();
     if (steps_since_depths_ == 0 && model_->options.flow.turbulence == Turbulence::mixing_length)
         set_mixing_lengths(state, lists, halo.ranks);
-    pack(state, halo, half_dt);
+    make_room(state, halo);
     if (model_->options.flow.wide_kernel)
-        sum_all<WendlandC6<D>>(state, lists, halo, 2.0 * half_dt);
+        sum_all<WendlandC6<D>>(state, lists, halo, half_dt);
     else
-        sum_all<WendlandC2<D>>(state, lists, halo, 2.0 * half_dt);
+        sum_all<WendlandC2<D>>(state, lists, halo, half_dt);
     reduce_summaries();
     const std::int64_t left = is_poisoned_run() ? survivor<double>(state.acceleration) : -1;
     if (left >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(left));
@@ -72,10 +73,8 @@ void Resolved<D, real, Backend>::set_mixing_lengths(State& state, const Lists& l
     });
 }
 
-/// Fills the records with what the state will be after `half_dt`.
 template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::pack(State& state, const Halo<D>& halo, double half_dt) {
-    const auto timing = phases_.measure(Phase::pack);
+void Resolved<D, real, Backend>::make_room(const State& state, const Halo<D>& halo) {
     const std::size_t n = state.size(), ghosts = halo.ghosts(), moving = halo.moving_ghosts();
     frame_ = common_frame<real, D>(state.position, halo.ranks);
     motion_.resize(n + ghosts), wall_.resize(n - fluid_count_ + ghosts);
@@ -83,8 +82,16 @@ void Resolved<D, real, Backend>::pack(State& state, const Halo<D>& halo, double 
     summary_.resize(Backend::summaries((n + Backend::width - 1) / Backend::width));
     Backend::for_each_particle(summary_.size(), ClearElement<FlowSummary<D>>{summary_});
     if (is_poisoned_run()) poison<real>(motion_), poison<real>(fluid_), poison<real>(wall_);
-    Backend::for_each_particle(n, FlowPacker<real, D>{*model_, state, motion_, fluid_, wall_,
-                                                      fluid_count_, frame_, half_dt});
+}
+
+/// Fills the records.
+template <int D, class real, class Backend>
+template <template <class, int> class Packer>
+void Resolved<D, real, Backend>::pack(State& state, double half_dt) {
+    const auto timing = phases_.measure(Phase::pack);
+    Backend::for_each_particle(
+        state.size(),
+        Packer<real, D>{{*model_, state, motion_, fluid_, wall_, fluid_count_, frame_, half_dt}});
 }
 
 /// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their
@@ -92,11 +99,20 @@ void Resolved<D, real, Backend>::pack(State& state, const Halo<D>& halo, double 
 template <int D, class real, class Backend>
 template <class Kernel>
 void Resolved<D, real, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo,
-                                         double dt) {
+                                         double half_dt) {
+    const FlowRecords<real, D> records = this->records(state);
+    const double dt = 2.0 * half_dt;
     const std::size_t first_ghost_wall = fluid_count_;
+    pack<ContinuityPacker>(state, half_dt);
     halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
                 halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
-    const FlowRecords<real, D> records = this->records(state);
+    sum_fluid(lists, halo, ContinuityTerm<Kernel, real, D>{records, model_->constants},
+              ContinuityEpilogue<real, D>(*model_, fluid_, fluid_count_, summary_, state, dt));
+
+    pack<ForcePacker>(state, half_dt);
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving)});
+    const ForceTerm<Kernel, real, D> forces{records, model_->constants};
+    const ForceEpilogue<real, D> accelerate(*model_, fluid_, fluid_count_, summary_, state, dt);
     const bool friction = model_->has_bed_friction();
     if (friction || halo.alone()) {
         halo.finish();
@@ -104,9 +120,9 @@ void Resolved<D, real, Backend>::sum_all(State& state, const Lists& lists, Halo<
         if (friction)
             halo.start({halo_column(wall_, &WallRecord<real, D>::traction, HaloColumn::fixed,
                                     first_ghost_wall)});
-        sum_fluid<Kernel>(state, lists, halo, records, dt);
+        sum_fluid(lists, halo, forces, accelerate);
     } else {
-        sum_fluid<Kernel>(state, lists, halo, records, dt);
+        sum_fluid(lists, halo, forces, accelerate);
         sum_walls<Kernel>(state, lists, records, dt);
     }
 }
@@ -138,11 +154,9 @@ void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
 }
 
 template <int D, class real, class Backend>
-template <class Kernel>
-void Resolved<D, real, Backend>::sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
-                                           const FlowRecords<real, D>& records, double dt) {
-    const FluidTerm<Kernel, real, D> term{records, model_->constants};
-    const FluidEpilogue<real, D> epilogue(*model_, fluid_, fluid_count_, summary_, state, dt);
+template <class Term, class Epilogue>
+void Resolved<D, real, Backend>::sum_fluid(const Lists& lists, Halo<D>& halo, const Term& term,
+                                           const Epilogue& epilogue) {
     const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
     while_ghosts_come(halo, lists, lists.clusters().first(clusters), Backend::width,
                       [&](std::span<const typename Lists::List> part, std::size_t first) {

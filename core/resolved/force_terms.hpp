@@ -22,7 +22,7 @@ struct FluidPass {
 
     /// The sums of particle p over these records, with the walls of its list or without.
     template <class Kernel>
-    FluidAccumulators<double, D> sums_of(std::size_t p, const FlowRecords<real, D>& given,
+    ForceAccumulators<double, D> sums_of(std::size_t p, const FlowRecords<real, D>& given,
                                          bool walls) const {
         const std::size_t cluster = p / static_cast<std::size_t>(Backend::width);
         const auto all = lists.clusters()[cluster];
@@ -30,17 +30,17 @@ struct FluidPass {
                                                                           : all.without_fixed()};
         const PairsOf<Backend, D> pairs{list, records.motion, frame, {.first_cluster = cluster}};
         return sums_of_particle<Backend>(lists, pairs,
-                                         FluidTerm<Kernel, real, D>{given, model.constants}, p);
+                                         ForceTerm<Kernel, real, D>{given, model.constants}, p);
     }
 
     /// Terms of Eq. (27) for particle p: pressure, viscosity and what shifting makes neighbours
-    /// exchange among fluids, and what walls do.
+    /// exchange among fluids, and what walls do; and those of Eq. (41).
     template <class Kernel>
-    ForceTerms<D> pair_forces(std::size_t p) const {
+    ForceTerms<D> pair_terms(const ResolvedState<D>& state, std::size_t p) const {
         Array<FluidRecord<real, D>> changed(records.fluid_fields.begin(),
                                             records.fluid_fields.end());
         const auto record = converted<FluidFields<double, D>>(records.fluid_fields[p]);
-        const auto force = [&](const FluidAccumulators<double, D>& sums) {
+        const auto force = [&](const ForceAccumulators<double, D>& sums) {
             return (1.0 / record.rho) * (pressure_force(sums, record) + 2.0 * sums.force);
         };
         const auto fluid_force = [&] {
@@ -61,27 +61,26 @@ struct FluidPass {
             {"shifting", fluid - unshifted},
             {"walls", force(all) + (1.0 / record.rho) * all.traction - fluid},
         };
+        const auto limits = FlowTimestep<D>::of(model, state, all, record, p);
+        terms.timestep = {{"the sound speed", limits.acoustic()},
+                          {"the acceleration", limits.forced()},
+                          {"the viscosity", limits.viscous()}};
         return terms;
     }
 };
 
-/// Eqs. (27) and (41) of particle p.
+/// The same with what acts beside pairs.
 template <int D, class real, class Backend>
 ForceTerms<D> force_terms(const FluidPass<D, real, Backend>& pass, const ResolvedState<D>& state,
                           std::size_t p) {
     const Options<D>& options = pass.model.options;
-    ForceTerms<D> terms = options.flow.wide_kernel ? pass.template pair_forces<WendlandC6<D>>(p)
-                                                   : pass.template pair_forces<WendlandC2<D>>(p);
+    ForceTerms<D> terms = options.flow.wide_kernel
+                              ? pass.template pair_terms<WendlandC6<D>>(state, p)
+                              : pass.template pair_terms<WendlandC2<D>>(state, p);
     const double attraction = options.attraction * options.attraction;
     terms.acceleration.emplace_back("gravity", options.gravity);
     if (attraction > 0.0)
         terms.acceleration.emplace_back("attraction", -attraction * state.position[p]);
-
-    const auto record = converted<FluidFields<double, D>>(pass.records.fluid_fields[p]);
-    const auto limits = FlowTimestep<D>::of(pass.model, state, record, p);
-    terms.timestep = {{"the sound speed", limits.acoustic()},
-                      {"the acceleration", limits.forced()},
-                      {"the viscosity", limits.viscous()}};
     return terms;
 }
 

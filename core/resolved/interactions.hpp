@@ -1,5 +1,5 @@
 #pragma once
-// The two sums of the resolved scheme as terms of the pair loop (pairs/pair_term.hpp).
+// The sums of the resolved scheme as terms of the pair loop (pairs/pair_term.hpp).
 
 #include <span>
 
@@ -41,13 +41,13 @@ struct FlowRecords {
     }
 };
 
-/// Everything that a fluid particle sums, in one pass.
-template <class Kernel, class real, int D>
+/// Over the neighbours of fluid particles: what Sums adds up.
+template <template <class, int> class Sums, class Kernel, class real, int D>
 struct FluidTerm {
     using Real = real;
     static constexpr int dim = D;
     template <class T>
-    using Accumulators = FluidAccumulators<T, D>;
+    using Accumulators = Sums<T, D>;
 
     FlowRecords<real, D> records;
     FlowConstants constants;
@@ -78,6 +78,11 @@ struct FluidTerm {
         add_wall<Kernel>(sums, constants, T(records.inverse_support), pair, i, w);
     }
 };
+
+template <class Kernel, class real, int D>
+using ContinuityTerm = FluidTerm<ContinuityAccumulators, Kernel, real, D>;
+template <class Kernel, class real, int D>
+using ForceTerm = FluidTerm<ForceAccumulators, Kernel, real, D>;
 
 /// What a wall particle sums of the fluid and the other faces around it.
 template <class Kernel, class real, int D>

@@ -8,7 +8,27 @@
 
 namespace doseki {
 
-/// Fills the records of a particle with what its state will be after `half_dt`.
+/// Correction of kernel gradients. None near a free surface, where there is little pressure and the
+/// inverse moment is large. Bounded in a hole.
+template <int D>
+DOSEKI_DEVICE_FN Sym<double, D> kernel_correction(const ResolvedState<D>& state, std::size_t p) {
+    constexpr double min_determinant = 0.3;  // of the moment
+    constexpr double max_excess = 0.5;
+    const Sym<double, D>& inverse = state.inverse_moment[p];
+    const bool corrected =
+        std::max(state.surface_around[p], state.surface[p]) < FreeSurfaceIndicator::surface &&
+        inverse(0, 0) > 0.0 && min_determinant * determinant(full(inverse)) < 1.0;
+    Sym<double, D> excess{};
+    if (corrected) {
+        excess = inverse;
+        for (int a = 0; a < D; ++a) excess(a, a) -= 1.0;
+        bound_size(excess, max_excess);
+    }
+    for (int a = 0; a < D; ++a) excess(a, a) += 1.0;
+    return excess;
+}
+
+/// What the sums for densities and those for forces read.
 template <class real, int D>
 struct FlowPacker {
     const ResolvedModel<D>& model;
@@ -20,50 +40,73 @@ struct FlowPacker {
     CoordinateFrame<real, D> frame;
     double half_dt;
 
-    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+    DOSEKI_DEVICE_FN bool is_wall(std::size_t p) const { return p >= fluid_count; }
+
+    DOSEKI_DEVICE_FN void pack_motion(std::size_t p, const Vec<double, D>& x,
+                                      const Vec<double, D>& v) const {
         MotionRecord<real, D>& record = motion[p];
-        const bool is_wall = p >= fluid_count;
-        for (int a = 0; a < D; ++a) {
-            record.x[a] = frame.coordinate(state.position[p][a], a);
-            record.v[a] = static_cast<real>(state.velocity[p][a] +
-                                            (is_wall ? 0.0 : half_dt * state.acceleration[p][a]));
-        }
+        for (int a = 0; a < D; ++a)
+            record.x[a] = frame.coordinate(x[a], a), record.v[a] = static_cast<real>(v[a]);
         record.mass = static_cast<real>(state.mass[p]);
         record.inverse_support =
             static_cast<real>(1.0 / (model.kernel_support() * state.smoothing_length[p]));
-        if (is_wall)
-            pack_wall(p);
-        else
-            pack_fluid(p);
     }
 
-private:
-    DOSEKI_DEVICE_FN void pack_fluid(std::size_t p) const {
+    /// What both kinds of sums read of fluid.
+    DOSEKI_DEVICE_FN FluidFields<double, D> fluid_fields(std::size_t p) const {
         FluidFields<double, D> record;
         const Material& material = model.material(state.tag[p]);
-        const Mat<double, D>& L = state.velocity_gradient[p];
-        const double rho = state.density[p] + half_dt * state.density_rate[p];
-        record.rho = rho;
+        const double rho = record.rho = state.density[p];
         record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
         record.surface = state.surface[p];
         record.p = model.without_surface_tension(pressure_at(*material.laws, rho), record.surface,
                                                  state.parted[p]);
-        update_mean_pressure(p, record.p, 2.0 * half_dt);
-        record.p += state.damping_pressure[p];
-        const ShearState<double> sheared{strain_rate(L), state.mean_pressure[p], rho};
-        const double mu = viscosity(*material.laws, sheared), h = state.smoothing_length[p];
-        record.mu = mu + rho * model.eddy_viscosity(state, p);
-        // The outermost particles need all of what damps noise.
-        record.resolved_strain = record.surface > FreeSurfaceIndicator::surface
-                                     ? 0.0
-                                     : sheared.rate * resolved_shear(mu, rho, sheared.rate * h, h);
-        for (int a = 0; a < D; ++a)
-            for (int b = a; b < D; ++b) record.strain(a, b) = 0.5 * (L(a, b) + L(b, a));
         record.pressure_gradient = state.pressure_gradient[p];
-        record.correction = state.correction_excess[p];
-        for (int a = 0; a < D; ++a) record.correction(a, a) += 1.0;
-        record.carried = L * state.shift[p];
-        fluid[p] = converted<FluidRecord<real, D>>(record);
+        record.correction = kernel_correction(state, p);
+        return record;
+    }
+    DOSEKI_DEVICE_FN ShearState<double> sheared(std::size_t p) const {
+        return {strain_rate(state.velocity_gradient[p]), state.mean_pressure[p], state.density[p]};
+    }
+    /// Of the liquid, and of the eddies that are not resolved [Pa s].
+    DOSEKI_DEVICE_FN double molecular_viscosity(std::size_t p,
+                                                const ShearState<double>& shear) const {
+        return viscosity(*model.material(state.tag[p]).laws, shear);
+    }
+    DOSEKI_DEVICE_FN double eddy_viscosity(std::size_t p) const {
+        return state.density[p] * model.eddy_viscosity(state, p);
+    }
+};
+
+/// For densities: the middle of the step, at which velocities are. Positions are those of its end.
+template <class real, int D>
+struct ContinuityPacker : FlowPacker<real, D> {
+    using FlowPacker<real, D>::state, FlowPacker<real, D>::model, FlowPacker<real, D>::half_dt;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (this->is_wall(p)) {
+            const Vec<double, D> v = velocity_of_wall(p);
+            this->pack_motion(p, state.position[p] - (moves(p) ? half_dt : 0.0) * v, v);
+            return pack_wall(p);
+        }
+        this->pack_motion(p, state.position[p] - half_dt * state.transport_velocity(p),
+                          state.velocity[p]);
+        FluidFields<double, D> record = this->fluid_fields(p);
+        record.p += state.damping_pressure[p];
+        record.mu = this->molecular_viscosity(p, this->sheared(p)) + this->eddy_viscosity(p);
+        record.strain = {}, record.carried = {}, record.resolved_strain = 0.0;
+        this->fluid[p] = converted<FluidRecord<real, D>>(record);
+    }
+
+private:
+    /// The walls of a belt stay where they are.
+    DOSEKI_DEVICE_FN bool moves(std::size_t p) const {
+        return state.is_bound(p) || model.wall_condition(state.tag[p]).moves;
+    }
+    /// Those of bodies have the one predicted for the end of the step.
+    DOSEKI_DEVICE_FN Vec<double, D> velocity_of_wall(std::size_t p) const {
+        const Vec<double, D>& v = state.velocity[p];
+        return state.is_bound(p) ? v - half_dt * state.acceleration[p] : v;
     }
 
     DOSEKI_DEVICE_FN void pack_wall(std::size_t p) const {
@@ -89,9 +132,38 @@ private:
         record.face = deforms ? Face::none : walls.face[p], record.pressure = walls.pressure[p];
         record.film_density = walls.film_density[p];
         record.film_traction = walls.film_traction[p];
-        wall[p - fluid_count] = converted<WallRecord<real, D>>(record);
+        this->wall[p - this->fluid_count] = converted<WallRecord<real, D>>(record);
+    }
+};
+
+/// For forces: the end of the step, with the velocities of fluid predicted for it. Walls are packed
+/// but for their place.
+template <class real, int D>
+struct ForcePacker : FlowPacker<real, D> {
+    using FlowPacker<real, D>::state, FlowPacker<real, D>::model, FlowPacker<real, D>::half_dt;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        if (this->is_wall(p)) return this->pack_motion(p, state.position[p], state.velocity[p]);
+        this->pack_motion(p, state.position[p],
+                          state.velocity[p] + half_dt * state.acceleration[p]);
+        FluidFields<double, D> record = this->fluid_fields(p);
+        update_mean_pressure(p, record.p, 2.0 * half_dt);
+        record.p += state.damping_pressure[p];
+        const ShearState<double> shear = this->sheared(p);
+        const Mat<double, D>& L = state.velocity_gradient[p];
+        const double mu = this->molecular_viscosity(p, shear), h = state.smoothing_length[p];
+        record.mu = mu + this->eddy_viscosity(p);
+        // The outermost particles need all of what damps noise.
+        record.resolved_strain =
+            record.surface > FreeSurfaceIndicator::surface
+                ? 0.0
+                : shear.rate * resolved_shear(mu, shear.rho, shear.rate * h, h);
+        record.strain = symmetric_part(L);
+        record.carried = L * state.shift[p];
+        this->fluid[p] = converted<FluidRecord<real, D>>(record);
     }
 
+private:
     /// Friction between grains takes the mean over the relaxation time of the density: sound that
     /// runs to and fro is no load on a contact. What never had a pressure takes the first it gets.
     DOSEKI_DEVICE_FN void update_mean_pressure(std::size_t p, double pressure, double dt) const {

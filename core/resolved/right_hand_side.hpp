@@ -23,11 +23,13 @@ struct FlowRecords;
 template <int D>
 struct ResolvedModel;
 
-/// Right-hand side of the resolved scheme: fluid among walls, in one pass over the pairs of fluid
-/// particles and one over those of walls. Gradients and the free-surface indicator are those of the
-/// step before where a pair needs them; a timestep is short against what they describe. How it is
-/// evaluated is in resolved/evaluate.hpp, which a unit of its own compiles: who steps a run need
-/// not see the physics.
+/// Right-hand side of the resolved scheme: fluid among walls. One pass over the pairs of fluid
+/// particles gives their densities at the end of the step, from where they are and how they move in
+/// the middle of it; with these, one over walls and one over fluid give forces. So sound takes
+/// leap-frog steps, of density and velocity in turns. Gradients and the free-surface indicator are
+/// those of the last sums where a pair needs them; a timestep is short against what they describe.
+/// How it is evaluated is in resolved/evaluate.hpp, which a unit of its own compiles: who steps a
+/// run need not see the physics.
 template <int D, class real, class BackendOf = BackendOfBuild<real>>
 class Resolved {
 public:
@@ -38,6 +40,7 @@ public:
     static constexpr int dim = D;
     /// The second one reads the gradients that the first one has left.
     static constexpr int first_evaluations = 2;
+    static constexpr bool looks_back = true;
     /// The sums leave out what is not in reach (KnowsItsReach), so a skin costs its distances
     /// alone.
     static constexpr SkinCosts skin_costs =
@@ -45,9 +48,10 @@ public:
 
     Resolved(Array<Material> materials, const Options<D>& options);
 
-    /// Fills the rates of `state`, whose density and velocity are half a step behind: the values
-    /// predicted with the old rates over `half_dt` are what enters the sums. Sets timestep() and
-    /// dissipated_power(). Nothing depends on whether lists are new.
+    /// Takes the density of `state` over a step of twice `half_dt`, and fills the rates. Positions
+    /// are those of the end of the step, velocities half a step behind: what is predicted with the
+    /// old rates enters the forces. Sets timestep() and dissipated_power(). Nothing depends on
+    /// whether lists are new.
     void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool);
 
     /// See Ueta2022::force_terms.
@@ -56,7 +60,7 @@ public:
 
     void end_step(State&) { steps_since_depths_ = (steps_since_depths_ + 1) % depth_interval; }
 
-    /// Wall particles are in the first pass, fluid particles in the second.
+    /// Wall particles are in the first phase, fluid particles in the second.
     static WordCosts cost_of_lists(const ListWords& words, const PassSeconds& seconds) {
         return {seconds.second / words.moving, seconds.first / words.fixed};
     }
@@ -98,15 +102,16 @@ private:
 
     FlowRecords<real, D> records(const State& state) const;
     void set_mixing_lengths(State& state, const Lists& lists, const Ranks& ranks);
-    void pack(State& state, const Halo<D>& halo, double half_dt);
+    void make_room(const State& state, const Halo<D>& halo);
+    template <template <class, int> class Packer>
+    void pack(State& state, double half_dt);
     template <class Kernel>
-    void sum_all(State& state, const Lists& lists, Halo<D>& halo, double dt);
+    void sum_all(State& state, const Lists& lists, Halo<D>& halo, double half_dt);
     template <class Kernel>
     void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records,
                    double dt);
-    template <class Kernel>
-    void sum_fluid(State& state, const Lists& lists, Halo<D>& halo,
-                   const FlowRecords<real, D>& records, double dt);
+    template <class Term, class Epilogue>
+    void sum_fluid(const Lists& lists, Halo<D>& halo, const Term& term, const Epilogue& epilogue);
     bool has_wet_walls(const FlowRecords<real, D>& records) const;
     void reduce_summaries();
 

@@ -7,7 +7,7 @@
 namespace doseki {
 
 /// What the resolved scheme keeps of particles beside the common fields. Gradients and the
-/// free-surface indicator are those of the last evaluation, which the next one reads.
+/// free-surface indicator are those of the last sums, which the next ones read.
 template <int D>
 struct ResolvedState : Particles<D> {
     ResolvedState(const Array<Material>&, const Options<D>& options)
@@ -17,11 +17,11 @@ struct ResolvedState : Particles<D> {
 
     FluidField<Vec<double, D>> pressure_gradient;  // [Pa/m]
     FluidField<Mat<double, D>> velocity_gradient;  // [1/s]
-    /// Inverse moment of kernel gradients less the identity: zero near a free surface, and before a
-    /// particle has been summed over.
-    FluidField<Sym<double, D>> correction_excess;
+    /// Inverse of the moment of kernel gradients; zero before a particle has been summed over.
+    FluidField<Sym<double, D>> inverse_moment;
     FluidField<Vec<double, D>> shift;     // velocity relative to the fluid [m/s]
     FluidField<double> surface;           // free-surface indicator
+    FluidField<double> surface_around;    // the largest of the neighbours
     FluidField<double> parted;            // 1: a void that has not closed, Eq. (144)
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
@@ -35,8 +35,8 @@ struct ResolvedState : Particles<D> {
     void for_each_field(F&& f) {
         this->for_each_common_field(f);
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
-        f("correction_excess", correction_excess), f("shift", shift), f("surface", surface);
-        f("parted", parted);
+        f("inverse_moment", inverse_moment), f("shift", shift), f("surface", surface);
+        f("surface_around", surface_around), f("parted", parted);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
         f("damping_pressure", damping_pressure);
         if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);
@@ -48,6 +48,7 @@ struct ResolvedState : Particles<D> {
 
     /// It counts as one of the surface, which takes no tension, until it has been summed over.
     void enter(std::size_t p) override { surface[p] = 1.0; }
+    /// Its density goes a whole step at once, see Resolved.
     DOSEKI_DEVICE_FN void kick(std::size_t, double) {}
     /// With which a particle moves.
     DOSEKI_DEVICE_FN Vec<double, D> transport_velocity(std::size_t p) const {

@@ -3,17 +3,21 @@
 #include <cmath>
 
 #include "physics/timestep.hpp"
+#include "resolved/accumulators.hpp"
 #include "resolved/model.hpp"
-#include "resolved/records.hpp"
 
 namespace doseki {
 
-/// Eq. (41) of a fluid particle: dt = min(C_CFL h/(c + u), C_f sqrt(h/|a|), h^2/(8 nu)), u being
-/// the speed at which neighbours may come nearer.
+/// Eq. (41) of a fluid particle: dt = min(C_CFL h/(c + u), C_f sqrt(h/|a|), 0.9/lambda), u being
+/// the speed at which neighbours may come nearer, lambda the greatest rate at which viscosity
+/// damps: what is predicted with the acceleration of the step before is damped up to lambda dt = 1.
 template <int D>
 struct FlowTimestep {
+    static constexpr double stable = 0.9;  // rate of viscosity over 1/dt
+
     const Options<D>& options;
-    double c, h, mu, rho;           // c at rest
+    double c, h;  // c at rest
+    double viscous_rate;
     double approach, acceleration;  // squares of u and of |a|
 
     /// Neighbours come nearer by what the velocity gradient makes of the reach of the kernel,
@@ -21,14 +25,21 @@ struct FlowTimestep {
     /// gradient.
     DOSEKI_DEVICE_FN static FlowTimestep of(const ResolvedModel<D>& model,
                                             const ResolvedState<D>& state,
-                                            const FluidFields<double, D>& record, std::size_t p) {
+                                            const ForceAccumulators<double, D>& sums,
+                                            const FluidFields<double, D>& fields, std::size_t p) {
         const Vec<double, D>&v = state.velocity[p], &a = state.acceleration[p];
         const double h = state.smoothing_length[p], reach = model.kernel_support() * h;
         double gradient = 0.0;
         const Mat<double, D> L = state.velocity_gradient[p];
         for (double element : L.element) gradient += element * element;
-        return {model.options, model.constants.c, h,
-                record.mu,     record.rho,        std::min(dot(v, v), reach * reach * gradient),
+        // The sums count the particle itself among its neighbours.
+        const double own =
+            -model.constants.roughest * fields.volume * model.own_gradient_factor * fields.mu;
+        return {model.options,
+                model.constants.c,
+                h,
+                (sums.viscous_rate - own) / fields.rho,
+                std::min(dot(v, v), reach * reach * gradient),
                 dot(a, a)};
     }
 
@@ -38,7 +49,7 @@ struct FlowTimestep {
     DOSEKI_DEVICE_FN double forced() const {
         return force_timestep(h, std::sqrt(acceleration), options.cfl_force);
     }
-    DOSEKI_DEVICE_FN double viscous() const { return 0.125 * h * h * rho / std::max(mu, 1e-300); }
+    DOSEKI_DEVICE_FN double viscous() const { return stable / std::max(viscous_rate, 1e-300); }
     DOSEKI_DEVICE_FN double smallest() const { return std::min({acoustic(), forced(), viscous()}); }
 
     /// Whether it may be shorter than `dt`, without roots and divisions: few particles limit the
@@ -49,7 +60,7 @@ struct FlowTimestep {
         const double left = options.cflnumber * h - c * dt, square = dt * dt,
                      pushed = options.cfl_force * options.cfl_force * h;
         return left < 0.0 || approach * square > left * left ||
-               acceleration * square * square > pushed * pushed || mu * dt > 0.125 * h * h * rho;
+               acceleration * square * square > pushed * pushed || viscous_rate * dt > stable;
     }
 };
 

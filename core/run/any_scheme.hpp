@@ -63,6 +63,7 @@ public:
     virtual double bare_pair_rate(const Lists& lists, double seconds) const = 0;
 
     virtual int first_evaluations() const = 0;
+    virtual bool looks_back() const = 0;
     virtual void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) = 0;
     virtual void end_step() = 0;
     virtual ForceTerms<D> force_terms(const Lists& lists, Halo<D>& halo, std::int64_t p) = 0;

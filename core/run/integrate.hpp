@@ -7,7 +7,7 @@
 
 namespace doseki {
 
-/// Half a step of everything of a particle that has a rate.
+/// Half a step of the velocity of a particle, and of what else its scheme kicks.
 template <class State>
 struct Kick {
     State& state;
@@ -16,7 +16,6 @@ struct Kick {
     DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
         if (state.is_bound(p)) return;
         state.velocity[p] = state.velocity[p] + half_dt * state.acceleration[p];
-        state.density[p] += half_dt * state.density_rate[p];
         state.kick(p, half_dt);
     }
 };

@@ -67,9 +67,10 @@ public:
     }
 
     /// Sorts particles and builds lists. `supports()` are the support radii of the particles as
-    /// they are stored.
+    /// they are stored. The lists have a skin of `least` [m] or more.
     template <class Supports>
-    void rebuild(State& state, const Supports& supports, std::int64_t steps, PhaseTimer& phases);
+    void rebuild(State& state, const Supports& supports, double least, std::int64_t steps,
+                 PhaseTimer& phases);
 
     /// Of a run that has made `steps`.
     void serialise_wear(Archive& archive, std::int64_t steps) {
@@ -159,14 +160,14 @@ double RunLists<Lists>::cheapest_skin(double min_support, std::int64_t steps) co
 
 template <class Lists>
 template <class Supports>
-void RunLists<Lists>::rebuild(State& state, const Supports& supports, std::int64_t steps,
-                              PhaseTimer& phases) {
+void RunLists<Lists>::rebuild(State& state, const Supports& supports, double least,
+                              std::int64_t steps, PhaseTimer& phases) {
     Array<double> support = supports();
     const Array<std::uint8_t> fixed = wall_flags(state);
     min_support_ = halo_.ranks.smallest(range_of(support).smallest);
     const bool faces_meet = this->faces_meet(state);
     skin_ = cheapest_skin(min_support_, steps);
-    skin_width_ = skin_ * min_support_;
+    skin_width_ = max(skin_ * min_support_, least);
     if (!halo_.alone()) {
         const auto timing = halo_.ranks.clock.measure(Share::halo);
         halo_.find_exports(state.position, support, fixed, skin_width_, faces_meet);

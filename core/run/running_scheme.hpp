@@ -70,6 +70,7 @@ public:
     }
 
     int first_evaluations() const override { return SchemeOf::first_evaluations; }
+    bool looks_back() const override { return SchemeOf::looks_back; }
     void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) override {
         scheme_.evaluate(state_, lists, halo, half_dt, new_lists);
     }

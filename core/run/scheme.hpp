@@ -26,7 +26,7 @@ concept SchemeState =
     requires(State& state, const State& known, std::size_t p, double dt) {
         state.for_each_field(IgnoreNamed{});
         state.enter(p);     // a particle that an inflow has just added
-        state.kick(p, dt);  // the scheme's own fields, over half a step
+        state.kick(p, dt);  // over half a step, what goes with the velocity
         { known.transport_velocity(p) } -> std::same_as<Vec<double, State::dim>>;
         { known.has_density(p) } -> std::same_as<bool>;
         { known.sum_of_fields(p) } -> std::same_as<double>;  // not finite where a field is not
@@ -55,6 +55,8 @@ concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, 
                      { known.shear_energy(state, p) } -> std::same_as<double>;
                      // How often the right-hand side is evaluated before the first step.
                      { S::first_evaluations + 0 } -> std::same_as<int>;
+                     // Whether it sums over pairs as they were half a step before, too.
+                     { S::looks_back } -> std::convertible_to<bool>;
                      { S::skin_costs } -> std::convertible_to<SkinCosts>;
                      { S::cost_of_lists(ListWords{}, PassSeconds{}) } -> std::same_as<WordCosts>;
                  };

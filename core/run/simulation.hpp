@@ -84,7 +84,7 @@ public:
         bodies.set_velocities(particles, 0.0);
         remove_outflow();
         look_at_terrain();
-        rebuild_lists();
+        rebuild_lists(0.0);
         for (int n = 0; n < scheme_->first_evaluations(); ++n) evaluate(0.0);
     }
 
@@ -127,7 +127,7 @@ public:
     void expect_lists() const { lists_.expect_fit_of(particles); }
 
     /// Makes lists anew for a state that keeps its rates: only the order of sums changes.
-    void renew_order() { rebuild_lists(); }
+    void renew_order() { rebuild_lists(0.0); }
 
     double time() const { return time_; }
     double last_timestep() const { return last_dt_; }
@@ -218,7 +218,9 @@ private:
     void update_lists(double before, double moved);
     void evaluate(double half_dt);
 
-    void rebuild_lists();
+    /// After a step in which none has gone farther than `moved`: half a step back, no two were
+    /// nearer by more than that.
+    void rebuild_lists(double moved);
     bool look_at_terrain() {
         return terrain_looks_.look(
             particles, [this] { return supports(); }, open_boundaries.removed);
@@ -316,7 +318,7 @@ void Simulation<Lists>::update_lists(double before, double moved) {
     }
     const bool looks = terrain_looks_.wear(moved, lists_.min_support());
     if (added || looks) changed |= look_at_terrain();
-    if (changed || worn) rebuild_lists();
+    if (changed || worn) rebuild_lists(moved);
 }
 
 template <class Lists>
@@ -333,7 +335,7 @@ void Simulation<Lists>::evaluate(double half_dt) {
 }
 
 template <class Lists>
-void Simulation<Lists>::rebuild_lists() {
+void Simulation<Lists>::rebuild_lists(double moved) {
     const std::int64_t lost = lost_particle(particles, domain_);
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
     wrap_positions(particles, domain_);
@@ -347,7 +349,8 @@ void Simulation<Lists>::rebuild_lists() {
     lists_.send_to_owners(particles);
     const auto supports = [this] { return this->supports(); };
     terrain_looks_.fetch(particles, supports);
-    lists_.rebuild(particles, supports, steps_, phases());
+    const double least_skin = scheme_->looks_back() ? moved : 0.0;
+    lists_.rebuild(particles, supports, least_skin, steps_, phases());
 }
 
 /// True where any rank has particles that left.

@@ -37,6 +37,7 @@ public:
     static constexpr int dim = D;
     /// Nothing that a sum reads was left by the one before.
     static constexpr int first_evaluations = 1;
+    static constexpr bool looks_back = false;
     static constexpr SkinCosts skin_costs =
         D == 2 ? SkinCosts{0.7, 1.6, 0.3} : SkinCosts{1.0, 2.6, 0.3};
 

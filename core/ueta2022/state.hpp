@@ -38,8 +38,9 @@ struct Ueta2022State : Particles<D> {
     void enter(std::size_t p) override {
         if (has_strength) deviatoric_stress[p] = deviatoric_stress_rate[p] = {};
     }
-    /// Half a step of the scheme's own fields.
+    /// Half a step of all but position and velocity.
     DOSEKI_DEVICE_FN void kick(std::size_t p, double half_dt) {
+        this->density[p] += half_dt * this->density_rate[p];
         if (has_strength) add_scaled(deviatoric_stress[p], half_dt, deviatoric_stress_rate[p]);
     }
     /// With which a particle moves.

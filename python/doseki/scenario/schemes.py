@@ -9,7 +9,7 @@ KERNEL_SUPPORT = {"wendland_c2": 2.0, "wendland_c6": 2.5}  # support radius in s
 SUPPORT = KERNEL_SUPPORT["wendland_c6"]  # H of the paper: a particle acts out to H h
 
 # What a scenario that does not say so gets; for the paper's scheme these stand in the schema.
-RESOLVED_KERNEL, RESOLVED_CFLNUMBER = "wendland_c2", 0.44
+RESOLVED_KERNEL, RESOLVED_CFLNUMBER = "wendland_c2", 0.8
 RESOLVED_DEFAULTS: dict[str, object] = {
     "kernel": RESOLVED_KERNEL, "cflnumber": RESOLVED_CFLNUMBER, "cfl_force": 0.25,
     "skin": "auto",

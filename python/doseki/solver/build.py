@@ -92,7 +92,8 @@ def _wall_of(scenario: Scenario, name: str) -> BodyTable | Terrain | None:
 
 def _wall_condition(scenario: Scenario, body: BodyTable | Terrain | None) -> dict[str, Any]:
     wall = (body.given("wall") if body is not None else None) or "no_slip"
-    condition: dict[str, Any] = {"no_slip": wall == "no_slip", "ks": 0.0}
+    moves = getattr(body, "prescribed_motion", None) is not None
+    condition: dict[str, Any] = {"no_slip": wall == "no_slip", "ks": 0.0, "moves": moves}
     if body is not None and wall == "rough":
         condition["ks"] = body.given("ks")
     if body is not None and wall == "voellmy":

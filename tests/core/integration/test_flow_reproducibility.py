@@ -91,7 +91,7 @@ def test_mixed_precision_changes_only_rounding(flows, dim):
     """That of single precision, after some tens of steps."""
     text = FILM.format(dim=dim)
     double, mixed = (
-        advance(flows(text, f"precision={kind}"), STEPS // 3).state() for kind in PRECISIONS
+        advance(flows(text, f"precision={kind}"), STEPS // 6).state() for kind in PRECISIONS
     )
     moved = mixed["position"] - double["position"]
     np.testing.assert_allclose(unperiodic(moved), 0, rtol=0, atol=1e-6 * 0.01)

@@ -13,7 +13,7 @@ WALL_FIELDS = (
     "film_traction", "body_kind", "point",
 )  # fmt: skip
 FLOW_FIELDS = (
-    "pressure_gradient", "velocity_gradient", "correction_excess", "shift", "surface",
+    "pressure_gradient", "velocity_gradient", "inverse_moment", "shift", "surface", "surface_around",
     "mixing_length", "mean_pressure", "damping_pressure", "parted",
 )  # fmt: skip
 COMMON_FIELDS = (

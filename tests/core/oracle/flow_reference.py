@@ -3,9 +3,10 @@
 An oracle for the core on small sets of particles. It shares no code with it. Arrays of pairs have
 the particle i on their first axis, its neighbour on the second; r_ij = x_i - x_j and
 grad_i W = F r_ij.
-"Fluid" are the particles that move, "wall" the fixed ones. Gradients of pressure and velocity, the
-measure of the surface, corrections of gradients and shifting velocities enter with the values of
-the evaluation before.
+"Fluid" are the particles that move, "wall" the fixed ones. An evaluation sums for densities first,
+with the pressure gradients, corrections of gradients, measures of the surface and shifting
+velocities of the evaluation before, and then for forces, with what the first sums have given but
+the pressure gradients of before. Nothing moves, so both see the same places and densities.
 """
 
 from __future__ import annotations
@@ -36,6 +37,9 @@ LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
 SHIFT_FASTEST = 0.05  # over the sound speed
+ROUGHEST = 1.5  # rate of the motion that viscosity damps most, over the sum of its coefficients
+STABLE = 0.9  # that rate over 1/dt
+SHIFT_RATE = 0.0075  # at most, of the strain that drives it, over the time step of sound
 
 
 @dataclass(frozen=True)
@@ -163,7 +167,7 @@ class FlowReference:
         of = [materials[k] for k in particles.material[self.fluid]]
         self.materials = of
         self.harmonic = any(m.get("rheology") == "herschel_bulkley" for m in materials)
-        self.mean_pressure: np.ndarray | None = None
+        self.mean_pressure = np.zeros(len(self.x))
         self.rho0, self.c0, self.nu = (
             np.array([m[key] for m in of]) for key in ("rho0", "speedsound", "nu")
         )
@@ -194,17 +198,17 @@ class FlowReference:
 
     def evaluate(self) -> None:
         """Rates from the state and from what the evaluation before has left."""
-        self.p = self._pressure(self.surface)
-        if self.mean_pressure is None:
-            self.mean_pressure = self.p
-        self.p = self.p + self.damping
+        self._continuity_pass()
+        self._force_pass()
+
+    def _see(self) -> dict[str, np.ndarray]:
+        """Pressures and viscosities as pairs see them; what walls and fluid make of each other."""
+        p = self._pressure(self.surface)
+        self.p = p + self.damping
         molecular = self._molecular_viscosity()
         self.resolved = self._resolved_strain(molecular)
         self.mu = molecular + self.rho * self._eddy_viscosity()
-        contact = self._contact()
-        self._wall_pass(contact)
-        self._fluid_pass(contact)
-        self.damping = self._damping_pressure()
+        return self._contact()
 
     def _pressure(self, surface: np.ndarray) -> np.ndarray:
         """Linear or Tait's law; no tension on a free surface, and of what has parted there."""
@@ -320,6 +324,7 @@ class FlowReference:
             "excess": excess,
             "height": r_n - depth,
             "v_dot_r": -2 * approach * dot(corrected_r, n),
+            "viscous_rate": scale * mu[..., 0],
             "sliding_dot_r": 2 * dot(sliding, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
             "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
@@ -389,56 +394,82 @@ class FlowReference:
 
     # Fluid
 
-    def _fluid_pass(self, contact: Mapping[str, np.ndarray]) -> None:
+    def _continuity_pass(self) -> None:
+        contact = self._see()
         self.share_of_walls = (self.V_w * self.fw.W).sum(axis=1)
         self._take_gradients(contact)
         self._measure_surface()
-        force, rate, power = self._pair_sums()
-        drag = (self.fw.W[..., None] * self.traction).sum(axis=1)
-        force += contact["force"].sum(axis=1) + drag
+        rate, power = self._sums_for_density()
         rate += (self.V_w * self.fw.F * contact["v_dot_r"]).sum(axis=1)
-        power += contact["power"].sum(axis=1) - dot(drag, self.v) + self.damping * rate
+        of_pairs = rate.copy()
         rate += self._edge_rate(contact)
-        self.power = (self.volume * power).sum() - self.power_to_rough_walls
-        self.acceleration = force / self.rho[:, None] + self.gravity
-        self.density_rate = self.rho * rate
-        if self.options.shifting:
-            self._add_shift()
+        self.density_rate = self.rho * rate + dot(self.pressure_gradient, self.shift) / self.c**2
         self._relax_density()
-        self._set_timestep()
+        self._set_shift()
         self._correct_pressure()
         self.surface = self.measure
         self.parted = (self.parted | (self.surface > SURFACE)) & (self.rho < self.rho0)
+        self.damping = self._damping_pressure()
+        self.power = (self.volume * (power + self.damping * of_pairs)).sum()
 
-    def _pair_sums(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Force over volume, density rate over density and power over volume, of fluid pairs."""
+    def _force_pass(self) -> None:
+        never = self.mean_pressure == 0
+        self.mean_pressure = np.where(never, self._pressure(self.surface), self.mean_pressure)
+        contact = self._see()
+        self._wall_pass(contact)
+        force, power = self._sums_for_force()
+        self._take_pressure_gradient(contact)
+        drag = (self.fw.W[..., None] * self.traction).sum(axis=1)
+        force += contact["force"].sum(axis=1) + drag
+        power += contact["power"].sum(axis=1) - dot(drag, self.v)
+        self.power += (self.volume * power).sum() - self.power_to_rough_walls
+        self.acceleration = force / self.rho[:, None] + self.gravity
+        self.viscous_rate = self._viscous_rate() + contact["viscous_rate"].sum(axis=1) / self.rho
+        self._set_timestep()
+
+    def _sums_for_density(self) -> tuple[np.ndarray, np.ndarray]:
+        """Density rate over density, and the power over volume that it takes, of fluid pairs."""
+        pairs, VF = self.ff, self.volume[None] * self.ff.F
+        v, rho = self.v[:, None] - self.v[None], self._mean(self.rho)
+        corrected_r = np.einsum("jab,ijb->ija", self.B, pairs.r_ij)
+        jump = self.p[:, None] - self.p[None]
+        jump = jump - dot(self._mean(self.pressure_gradient), pairs.r_ij)
+        levelled = 0.5 * jump * pairs.r / (rho * self.c)
+        rate = (VF * (dot(v, corrected_r) + levelled)).sum(axis=1)
+        levelling = 0.5 * levelled * (self.p[:, None] - self.p[None])
+        return rate, -(VF * levelling).sum(axis=1)
+
+    def _sums_for_force(self) -> tuple[np.ndarray, np.ndarray]:
+        """Force and power over volume of fluid pairs."""
         pairs, VF = self.ff, self.volume[None] * self.ff.F
         v = self.v[:, None] - self.v[None]
         v_r, rho = dot(v, pairs.r_ij), self._mean(self.rho)
-        D = 0.5 * (self.old_L + self.old_L.transpose(0, 2, 1))
+        D = 0.5 * (self.L + self.L.transpose(0, 2, 1))
         smooth = np.einsum("ijab,ija,ijb->ij", self._mean(D), pairs.r_ij, pairs.r_ij)
         resolved = np.minimum(self.resolved[:, None], self.resolved[None])
         extra = self._dissipation((smooth - v_r) / pairs.safe_r, rho, resolved * pairs.r)
         corrected_r = np.einsum("jab,ijb->ija", self.B, pairs.r_ij)
         reverse = self.p[:, None, None] * corrected_r
         pressure = reverse - reverse.transpose(1, 0, 2)  # r_ji = -r_ij
-        mu = self._mean(self.mu)
-        if self.harmonic:
-            mu = self.mu[:, None] * self.mu[None] / mu
-        viscous = mu[..., None] * self._viscous_direction(v, v_r)
+        viscous = self._pair_viscosity()[..., None] * self._viscous_direction(v, v_r)
         force = -(VF[..., None] * pressure).sum(axis=1)
         force -= 2 * (VF[..., None] * (extra[..., None] * pairs.r_ij - viscous)).sum(axis=1)
         force += self._exchange(rho)
-        jump = self.p[:, None] - self.p[None]
-        jump = jump - dot(self._mean(self.old_gradient), pairs.r_ij)
-        levelled = 0.5 * jump * pairs.r / (rho * self.c)
-        rate = (VF * (dot(v, corrected_r) + levelled)).sum(axis=1)
-        levelling = 0.5 * levelled * (self.p[:, None] - self.p[None])
-        return force, rate, (VF * (extra * v_r - dot(viscous, v) - levelling)).sum(axis=1)
+        return force, (VF * (extra * v_r - dot(viscous, v))).sum(axis=1)
+
+    def _pair_viscosity(self) -> np.ndarray:
+        mean = self._mean(self.mu)
+        return self.mu[:, None] * self.mu[None] / mean if self.harmonic else mean
+
+    def _viscous_rate(self) -> np.ndarray:
+        """At which viscosity among fluid damps neighbours that go against each other."""
+        along = 1 if self.options.viscosity == "morris" else (self.dim + 2) / self.dim
+        VF = self.volume[None] * self.ff.F * (self.ff.r > 0)
+        return -2 * ROUGHEST * along * (VF * self._pair_viscosity()).sum(axis=1) / self.rho
 
     def _exchange(self, rho: np.ndarray) -> np.ndarray:
         """Force over volume by which neighbours make up for each other's shifting."""
-        carried = np.einsum("iab,ib->ia", self.old_L, self.shift)
+        carried = np.einsum("iab,ib->ia", self.L, self.shift)
         full, own = lattice_concentration(self.options, self.R, self.dim)
         weight = rho * self.volume[None] * self.ff.W / (full - own)
         return (weight[..., None] * (carried[:, None] - carried[None])).sum(axis=1)
@@ -453,25 +484,27 @@ class FlowReference:
         return along[..., None] * self.ff.r_ij
 
     def _take_gradients(self, contact: Mapping[str, np.ndarray]) -> None:
-        """Corrected gradients of pressure and velocity, and the plain one of concentration."""
+        """Corrected gradient of velocity, and the plain one of concentration."""
         VF_f, VF_w = self.volume[None] * self.ff.F, self.V_w * self.fw.F
         r_f, r_w = self.ff.r_ij, self.fw.r_ij
         moment = -np.einsum("ij,ija,ijb->iab", VF_f, r_f, r_f)
         moment -= np.einsum("ij,ija,ijb->iab", VF_w, r_w, r_w)
         spans = np.linalg.det(moment) > 0.05
-        inverse = np.zeros_like(moment)
-        inverse[spans] = np.linalg.inv(moment[spans])
-        p_ij, v_ij = self.p[:, None] - self.p[None], self.v[:, None] - self.v[None]
-        plain = -np.einsum("ij,ij,ija->ia", VF_f, p_ij, r_f)
-        plain += np.einsum("ij,ij,ija->ia", VF_w, contact["excess"], r_w)
+        self.inverse = np.zeros_like(moment)
+        self.inverse[spans] = np.linalg.inv(moment[spans])
+        v_ij = self.v[:, None] - self.v[None]
         L = -np.einsum("ij,ija,ijb->iab", VF_f, v_ij, r_f)
         L -= np.einsum("ij,ija,ijb->iab", VF_w, contact["jump"], r_w)
         self.moment, self.spans = moment, np.linalg.det(moment) > LEAST_DETERMINANT
-        self.old_gradient, self.old_L = self.pressure_gradient, self.L
-        self.pressure_gradient = np.einsum("iab,ib->ia", inverse, plain) * self._company()
-        self.L = np.einsum("ibc,iac->iab", inverse, L)
+        self.L = np.einsum("ibc,iac->iab", self.inverse, L)
         self.concentration_gradient = np.einsum("ij,ija->ia", VF_f, r_f)
         self.concentration_gradient += np.einsum("ij,ija->ia", VF_w, r_w)
+
+    def _take_pressure_gradient(self, contact: Mapping[str, np.ndarray]) -> None:
+        VF_f, VF_w = self.volume[None] * self.ff.F, self.V_w * self.fw.F
+        plain = -np.einsum("ij,ij,ija->ia", VF_f, self.p[:, None] - self.p[None], self.ff.r_ij)
+        plain += np.einsum("ij,ij,ija->ia", VF_w, contact["excess"], self.fw.r_ij)
+        self.pressure_gradient = np.einsum("iab,ib->ia", self.inverse, plain) * self._company()
 
     def _company(self) -> np.ndarray:
         """(n, 1): 0 for who sees no other fluid, so that walls tell it nothing but gravity."""
@@ -509,9 +542,13 @@ class FlowReference:
         self.past_edge = share > EDGE_NOISE
         return rate * np.clip((share - EDGE_NOISE) / (EDGE_WHOLE - EDGE_NOISE), 0, 1)
 
-    def _add_shift(self) -> None:
-        """What moving relative to the fluid does to velocity and density."""
-        rate = np.sqrt((self.L**2).sum(axis=(1, 2)))
+    def _set_shift(self) -> None:
+        """The velocity relative to the fluid with which particles move next."""
+        self.shift = np.zeros((len(self.x), self.dim))
+        if not self.options.shifting:
+            return
+        most = SHIFT_RATE * self.c / (self.options.cflnumber * self.h)
+        rate = np.minimum(np.sqrt((self.L**2).sum(axis=(1, 2))), most)
         slope = np.linalg.norm(self.concentration_gradient, axis=1)
         speed = np.minimum(SHIFT_STRENGTH * self.h * slope, SHIFT_MOST) * self.h * rate
         shift = -speed[:, None] * unit_or_zero(self.concentration_gradient)
@@ -526,7 +563,6 @@ class FlowReference:
         speed = np.linalg.norm(shift, axis=1)[:, None]
         shift = shift * np.minimum(1, SHIFT_FASTEST * self.c / np.maximum(speed, 1e-300))
         self.shift = np.where((self.measure < SURFACE)[:, None], shift, 0)
-        self.density_rate += dot(self.pressure_gradient, self.shift) / self.c**2
 
     def _relax_density(self) -> None:
         strain = np.sqrt((self.L**2).sum(axis=(1, 2)))
@@ -553,6 +589,6 @@ class FlowReference:
         limits = [
             self.options.cflnumber * self.h / (self.c + speed),
             self.options.cfl_force * np.sqrt(self.h / force),
-            self.h**2 * self.rho / (8 * np.maximum(self.mu, 1e-300)),
+            STABLE / np.maximum(self.viscous_rate, 1e-300),
         ]
         self.timestep = np.min(limits)

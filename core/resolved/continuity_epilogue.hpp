@@ -1,0 +1,184 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/pack.hpp"
+#include "resolved/fluid_epilogue.hpp"
+
+namespace doseki {
+
+/// Of those for its density: velocity gradient, free-surface indicator, the density at the end of
+/// the step, and the shifting velocity.
+template <class real, int D>
+class ContinuityEpilogue : public FluidEpilogue<real, D, ContinuityAccumulators<double, D>> {
+    using Base = FluidEpilogue<real, D, ContinuityAccumulators<double, D>>;
+    using Summed = typename Base::Summed;
+    using Base::model_, Base::state_, Base::dt_, Base::summary, Base::rho0;
+
+public:
+    using Sums = typename Base::Sums;
+    using Base::Base;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const Sums& sums) const {
+        if (!this->is_fluid(p)) return;
+        const Summed at = this->summed(p, sums);
+        const Mat<double, D> B = inverse_moment(sums.moment);
+        state_.inverse_moment[p] = symmetric_part(B);
+        state_.velocity_gradient[p] = sums.velocity_gradient * transposed(B);
+        const FreeSurfaceIndicator indicator = free_surface(at);
+        state_.surface[p] = indicator.x;
+        state_.surface_around[p] = sums.surface.value;
+        summary(p).fault.note_density(at.fields.rho, rho0(p), p);
+        if (state_.is_free(p)) {
+            set_density(at, indicator);
+            shift(at);
+        } else {
+            state_.density_rate[p] = 0.0, state_.shift[p] = {};
+            push_of_layer(at);
+        }
+        damp_sound(at);
+        summary(p).power +=
+            at.fields.volume * (sums.power + state_.damping_pressure[p] * sums.density_rate);
+    }
+
+private:
+    /// Time [h/c] in which water that comes to a body under tension gives it up.
+    static constexpr double tension_release = 10.0;
+    /// Cap on the shifting velocity over the sound speed, half of the fastest flow; it diverges in
+    /// a closing gap.
+    static constexpr double max_shift = 0.05;
+
+    /// Without what damps sound.
+    DOSEKI_DEVICE_FN double pressure(const Summed& at) const {
+        return at.fields.p - state_.damping_pressure[at.p];
+    }
+    /// As the next evaluation will see it.
+    DOSEKI_DEVICE_FN bool on_surface(std::size_t p) const {
+        return state_.surface[p] > FreeSurfaceIndicator::surface;
+    }
+    /// Frobenius norm of the velocity gradient [1/s].
+    DOSEKI_DEVICE_FN double size_of_gradient(std::size_t p) const {
+        const Mat<double, D>& L = state_.velocity_gradient[p];
+        double square = 0.0;
+        for (double element : L.element) square += element * element;
+        return std::sqrt(square);
+    }
+
+    DOSEKI_DEVICE_FN FreeSurfaceIndicator free_surface(const Summed& at) const {
+        const Vec<double, D>& gradient = at.sums.concentration_gradient;
+        const double slope = std::sqrt(dot(gradient, gradient));
+        return FreeSurfaceIndicator::of(
+            (at.sums.concentration + at.sums.wall_share) / model_.lattice_concentration,
+            model_.kernel_support() * state_.smoothing_length[at.p] * slope,
+            model_.options.flow.wide_kernel);
+    }
+
+    /// Over the step. The particle has gone with the shifting velocity of the step before.
+    DOSEKI_DEVICE_FN void set_density(const Summed& at,
+                                      const FreeSurfaceIndicator& indicator) const {
+        const std::size_t p = at.p;
+        const double rho = at.fields.rho, c = model_.constants.c;
+        const double of_pairs = rho * at.sums.density_rate;
+        double rate = of_pairs + rho * edge_rate(at.sums.sliding_rate, at.sums.sliding_size) +
+                      dot(state_.pressure_gradient[p], state_.shift[p]) / (c * c);
+        if (indicator.is_spray()) rate = std::min(0.0, rate);  // Eq. (147)
+        rate += relaxation(at, indicator.normalised_density);
+        rate = with_least_density(at, rate);
+        summary(p).work.power += part_on_surface(at) + power_of_corrections(at, rate - of_pairs);
+        state_.density_rate[p] = rate;
+        state_.density[p] = rho + dt_ * rate;
+    }
+
+    /// Whether air comes in under tension: beside a body that moves, and where what has a free
+    /// surface slides past an edge of a wall.
+    DOSEKI_DEVICE_FN bool is_vented(const Summed& at) const {
+        const Sums& sums = at.sums;
+        return sums.at_body.value > 0.0 || (sums.surface.value > FreeSurfaceIndicator::surface &&
+                                            edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
+    }
+
+    /// What shifting and the relaxation of density give to energies of compression and height [W].
+    DOSEKI_DEVICE_FN double power_of_corrections(const Summed& at, double density_rate) const {
+        return at.fields.volume * pressure(at) / at.fields.rho * density_rate -
+               state_.mass[at.p] * dot(model_.options.gravity, state_.shift[at.p]);
+    }
+
+    /// A driven particle hands on the rate of density that it is kept up against.
+    DOSEKI_DEVICE_FN void push_of_layer(const Summed& at) const {
+        summary(at.p).work.layer_power -= at.fields.volume * pressure(at) * at.sums.density_rate;
+    }
+
+    /// Moves the particle relative to the fluid, and its density with it. Pairs see to its
+    /// velocity. Disorder is undone in no less than a few steps, or a step would go past the goal:
+    /// Eq. (153).
+    DOSEKI_DEVICE_FN void shift(const Summed& at) const {
+        const Sums& sums = at.sums;
+        Vec<double, D>& velocity = state_.shift[at.p];
+        velocity = {};
+        if (!model_.options.flow.shifting || on_surface(at.p)) return;
+        const double c = model_.constants.c, h = state_.smoothing_length[at.p];
+        const double rate = std::min(size_of_gradient(at.p),
+                                     max_shifting_rate * c / (model_.options.cflnumber * h));
+        velocity = shifting_velocity(sums.concentration_gradient, rate, h);
+        if (sums.surface.value > FreeSurfaceIndicator::surface)
+            velocity = tangential(velocity, sums.surface_gradient);
+        const double fastest = max_shift * c, square = dot(velocity, velocity);
+        if (square > fastest * fastest) velocity = (fastest / std::sqrt(square)) * velocity;
+    }
+
+    /// What continuity sums up over many steps forgets how far apart particles are: the density
+    /// goes towards the one that their arrangement says, and the faster the more the flow disturbs
+    /// it.
+    DOSEKI_DEVICE_FN double relaxation(const Summed& at, double normalised_density) const {
+        constexpr double per_strain = 10.0;
+        const double sound = model_.constants.c / state_.smoothing_length[at.p];
+        const double rate =
+            std::clamp(per_strain * size_of_gradient(at.p), sound / density_relaxation_at_rest,
+                       sound / density_relaxation);
+        return rate * (normalised_density * rho0(at.p) - at.fields.rho);
+    }
+
+    /// Below its least density a fluid does not expand any further, and no step goes past it.
+    DOSEKI_DEVICE_FN double with_least_density(const Summed& at, double rate) const {
+        const bool vented = is_vented(at);
+        const double least = model_.min_density[state_.tag[at.p].material].at(vented);
+        const double missing = least - at.fields.rho;
+        if (missing <= 0.0) return dt_ > 0.0 ? std::max(missing / dt_, rate) : rate;
+        const double time = tension_release * state_.smoothing_length[at.p] / model_.constants.c;
+        return std::max(vented ? missing / time : 0.0, rate);
+    }
+
+    /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
+    /// meets again, until it has closed. Returns the power of the tension that is lost [W].
+    DOSEKI_DEVICE_FN double part_on_surface(const Summed& at) const {
+        const std::size_t p = at.p;
+        const double rho = at.fields.rho;
+        const bool had_tension = pressure(at) < 0.0;
+        if (rho >= rho0(p)) state_.parted[p] = 0.0;
+        if (rho >= rho0(p) || !on_surface(p)) return 0.0;
+        state_.parted[p] = 1.0;
+        if (!had_tension || dt_ <= 0.0) return 0.0;
+        const Material& material = model_.material(state_.tag[p]);
+        return -state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy / dt_;
+    }
+
+    /// Of the forces that come. It brings no tension that the liquid does not bear, none on a free
+    /// surface.
+    DOSEKI_DEVICE_FN void damp_sound(const Summed& at) const {
+        const std::size_t p = at.p;
+        const Material& material = model_.material(state_.tag[p]);
+        const double rho = at.fields.rho, h = state_.smoothing_length[p],
+                     divergence = trace(state_.velocity_gradient[p]);
+        double added = damping_pressure(model_.options.flow.acoustic_damping, rho,
+                                        model_.constants.c, h, divergence);
+        if (added < 0.0) {
+            const double least = model_.min_density[state_.tag[p].material].at(is_vented(at));
+            const double bound = pressure_at(*material.laws, least);
+            added = std::max(added, std::min(0.0, bound - pressure(at)));
+        }
+        state_.damping_pressure[p] = on_surface(p) ? 0.0 : added;
+    }
+};
+
+}  // namespace doseki
