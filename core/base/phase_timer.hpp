@@ -8,12 +8,14 @@
 
 namespace doseki {
 
-/// What a step consists of. The stress of particles is worked out inside pass 1, cluster by
-/// cluster, and subtracted from it.
-enum class Phase { sort, list_build, pack, pass_1, stress, pass_2, integrate, bodies };
+/// What a step consists of. In the resolved scheme `continuity` and pass 2 are sums over fluid, for
+/// densities and for forces, pass 1 those over walls. In ueta2022 the stress of particles is worked
+/// out inside pass 1, cluster by cluster, and subtracted from it.
+enum class Phase { sort, list_build, pack, continuity, pass_1, stress, pass_2, integrate, bodies };
 
-inline constexpr std::array<const char*, 8> phase_names{
-    "sort", "list_build", "pack", "pass_1", "stress", "pass_2", "integrate", "bodies"};
+inline constexpr std::array<const char*, 9> phase_names{"sort",       "list_build", "pack",
+                                                        "continuity", "pass_1",     "stress",
+                                                        "pass_2",     "integrate",  "bodies"};
 
 /// Wall time by phase. Off until asked for; on, it reads the clock twice a phase and at one cluster
 /// in `sampling`.

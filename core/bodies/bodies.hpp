@@ -127,15 +127,14 @@ public:
     }
     /// From t to t + dt, through as many contact steps as it takes. Tells what that gave to bodies.
     BodyStep<D> advance(const MovingWalls<D>& walls, double t, double dt);
-    /// Puts particles where their bodies are, with the velocity that they have when the fluid will
-    /// have acted for `ahead` more; returns the largest distance that one went.
-    double place(Particles<D>& particles, double ahead) {
+    /// Puts particles where their bodies are, with the velocity that has taken them there in `dt`;
+    /// returns the largest distance that one went.
+    double place(Particles<D>& particles, double dt) {
         if (!any_moves()) return 0.0;
         rebind(particles);
         bind_dust(particles);
-        const double bent = deformable.place(particles, contacts_.domain());
-        deformable.set_velocities(particles, ahead);
-        return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), ahead));
+        const double bent = deformable.place(particles, contacts_.domain(), dt);
+        return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), dt));
     }
     /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
     void set_velocities(Particles<D>& particles, double ahead) {

@@ -41,7 +41,7 @@ nb::list work_of_resolved() {
     rows.append(named(work_of_pair<FluidPoint, MotionPoint, FluidFields>(
         "continuity", ContinuityTerm<Kernel, real, D>{})));
     rows.append(named(
-        work_of_pair<FluidPoint, MotionPoint, FluidFields>("force", ForceTerm<Kernel, real, D>{})));
+        work_of_pair<FluidPoint, MotionPoint, FluidFields>("pass_2", ForceTerm<Kernel, real, D>{})));
     return rows;
 }
 

@@ -40,7 +40,8 @@ Array<double> particle_costs(std::span<const List> clusters, std::size_t width, 
     const auto seconds = phases.seconds(threads);
     auto of = [&](Phase phase) { return seconds[static_cast<std::size_t>(phase)]; };
     const WordCosts word_costs =
-        cost_model(words, PassSeconds{of(Phase::pass_1) + of(Phase::stress), of(Phase::pass_2)});
+        cost_model(words, PassSeconds{of(Phase::pass_1) + of(Phase::stress),
+                                      of(Phase::continuity) + of(Phase::pass_2)});
     const double bare = (of(Phase::sort) + of(Phase::list_build) + of(Phase::pack) +
                          of(Phase::integrate) + of(Phase::bodies)) /
                         static_cast<double>(clusters.size() * width);

@@ -24,16 +24,27 @@ Resolved<D, real, Backend>::Resolved(Array<Material> materials, const Options<D>
     : model_(Shared<const ResolvedModel<D>>::make(std::move(materials), options)) {}
 
 template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo,
-                                          double half_dt, bool) {
+void Resolved<D, real, Backend>::advance_density(State& state, const Lists& lists, Halo<D>& halo,
+                                                 double dt) {
     fluid_count_ = lists.moving();
     if (steps_since_depths_ == 0 && model_->options.flow.turbulence == Turbulence::mixing_length)
         set_mixing_lengths(state, lists, halo.ranks);
     make_room(state, halo);
-    if (model_->options.flow.wide_kernel)
-        sum_all<WendlandC6<D>>(state, lists, halo, half_dt);
-    else
-        sum_all<WendlandC2<D>>(state, lists, halo, half_dt);
+    pack<ContinuityPacker>(state, 0.5 * dt);
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
+                halo_column(wall_, HaloColumn::fixed, fluid_count_)});
+    with_kernel([&]<class Kernel>() {
+        sum_fluid(Phase::continuity, lists, halo,
+                  ContinuityTerm<Kernel, real, D>{records(state), model_->constants},
+                  ContinuityEpilogue<real, D>(*model_, fluid_, fluid_count_, summary_, state, dt));
+    });
+}
+
+template <int D, class real, class Backend>
+void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo,
+                                          double half_dt, bool) {
+    pack<ForcePacker>(state, half_dt);
+    with_kernel([&]<class Kernel>() { sum_forces<Kernel>(state, lists, halo, 2.0 * half_dt); });
     reduce_summaries();
     const std::int64_t left = is_poisoned_run() ? survivor<double>(state.acceleration) : -1;
     if (left >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(left));
@@ -90,27 +101,28 @@ template <template <class, int> class Packer>
 void Resolved<D, real, Backend>::pack(State& state, double half_dt) {
     const auto timing = phases_.measure(Phase::pack);
     Backend::for_each_particle(
-        state.size(),
-        Packer<real, D>{{*model_, state, motion_, fluid_, wall_, fluid_count_, frame_, half_dt}});
+        state.size(), Packer<real, D>{{*model_, state, motion_, fluid_, wall_, fluid_count_, frame_,
+                                       records(state).inverse_support, half_dt}});
+}
+
+/// Calls work<Kernel>() with the kernel of the run.
+template <int D, class real, class Backend>
+template <class Work>
+void Resolved<D, real, Backend>::with_kernel(const Work& work) const {
+    if (model_->options.flow.wide_kernel)
+        work.template operator()<WendlandC6<D>>();
+    else
+        work.template operator()<WendlandC2<D>>();
 }
 
 /// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their
 /// beds, come.
 template <int D, class real, class Backend>
 template <class Kernel>
-void Resolved<D, real, Backend>::sum_all(State& state, const Lists& lists, Halo<D>& halo,
-                                         double half_dt) {
-    const FlowRecords<real, D> records = this->records(state);
-    const double dt = 2.0 * half_dt;
-    const std::size_t first_ghost_wall = fluid_count_;
-    pack<ContinuityPacker>(state, half_dt);
-    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
-                halo_column(wall_, HaloColumn::fixed, first_ghost_wall)});
-    sum_fluid(lists, halo, ContinuityTerm<Kernel, real, D>{records, model_->constants},
-              ContinuityEpilogue<real, D>(*model_, fluid_, fluid_count_, summary_, state, dt));
-
-    pack<ForcePacker>(state, half_dt);
+void Resolved<D, real, Backend>::sum_forces(State& state, const Lists& lists, Halo<D>& halo,
+                                            double dt) {
     halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving)});
+    const FlowRecords<real, D> records = this->records(state);
     const ForceTerm<Kernel, real, D> forces{records, model_->constants};
     const ForceEpilogue<real, D> accelerate(*model_, fluid_, fluid_count_, summary_, state, dt);
     const bool friction = model_->has_bed_friction();
@@ -119,10 +131,10 @@ void Resolved<D, real, Backend>::sum_all(State& state, const Lists& lists, Halo<
         sum_walls<Kernel>(state, lists, records, dt);
         if (friction)
             halo.start({halo_column(wall_, &WallRecord<real, D>::traction, HaloColumn::fixed,
-                                    first_ghost_wall)});
-        sum_fluid(lists, halo, forces, accelerate);
+                                    fluid_count_)});
+        sum_fluid(Phase::pass_2, lists, halo, forces, accelerate);
     } else {
-        sum_fluid(lists, halo, forces, accelerate);
+        sum_fluid(Phase::pass_2, lists, halo, forces, accelerate);
         sum_walls<Kernel>(state, lists, records, dt);
     }
 }
@@ -155,12 +167,12 @@ void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
 
 template <int D, class real, class Backend>
 template <class Term, class Epilogue>
-void Resolved<D, real, Backend>::sum_fluid(const Lists& lists, Halo<D>& halo, const Term& term,
-                                           const Epilogue& epilogue) {
+void Resolved<D, real, Backend>::sum_fluid(Phase phase, const Lists& lists, Halo<D>& halo,
+                                           const Term& term, const Epilogue& epilogue) {
     const std::size_t clusters = (fluid_count_ + Backend::width - 1) / Backend::width;
     while_ghosts_come(halo, lists, lists.clusters().first(clusters), Backend::width,
                       [&](std::span<const typename Lists::List> part, std::size_t first) {
-                          const auto timing = phases_.measure(Phase::pass_2);
+                          const auto timing = phases_.measure(phase);
                           Backend::sum_pairs(lists,
                                              {part, motion_, frame_, {.first_cluster = first}},
                                              term, epilogue);

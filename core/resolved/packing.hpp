@@ -38,6 +38,7 @@ struct FlowPacker {
     std::span<WallRecord<real, D>> wall;  // the first is that of particle fluid_count
     std::size_t fluid_count;
     CoordinateFrame<real, D> frame;
+    real inverse_support;
     double half_dt;
 
     DOSEKI_DEVICE_FN bool is_wall(std::size_t p) const { return p >= fluid_count; }
@@ -48,8 +49,7 @@ struct FlowPacker {
         for (int a = 0; a < D; ++a)
             record.x[a] = frame.coordinate(x[a], a), record.v[a] = static_cast<real>(v[a]);
         record.mass = static_cast<real>(state.mass[p]);
-        record.inverse_support =
-            static_cast<real>(1.0 / (model.kernel_support() * state.smoothing_length[p]));
+        record.inverse_support = inverse_support;
     }
 
     /// What both kinds of sums read of fluid.
@@ -85,7 +85,7 @@ struct ContinuityPacker : FlowPacker<real, D> {
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
         if (this->is_wall(p)) {
-            const Vec<double, D> v = velocity_of_wall(p);
+            const Vec<double, D>& v = state.velocity[p];
             this->pack_motion(p, state.position[p] - (moves(p) ? half_dt : 0.0) * v, v);
             return pack_wall(p);
         }
@@ -103,12 +103,6 @@ private:
     DOSEKI_DEVICE_FN bool moves(std::size_t p) const {
         return state.is_bound(p) || model.wall_condition(state.tag[p]).moves;
     }
-    /// Those of bodies have the one predicted for the end of the step.
-    DOSEKI_DEVICE_FN Vec<double, D> velocity_of_wall(std::size_t p) const {
-        const Vec<double, D>& v = state.velocity[p];
-        return state.is_bound(p) ? v - half_dt * state.acceleration[p] : v;
-    }
-
     DOSEKI_DEVICE_FN void pack_wall(std::size_t p) const {
         WallFields<double, D> record;
         const WallState<D>& walls = state.wall;

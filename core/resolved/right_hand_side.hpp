@@ -48,10 +48,13 @@ public:
 
     Resolved(Array<Material> materials, const Options<D>& options);
 
-    /// Takes the density of `state` over a step of twice `half_dt`, and fills the rates. Positions
-    /// are those of the end of the step, velocities half a step behind: what is predicted with the
-    /// old rates enters the forces. Sets timestep() and dissipated_power(). Nothing depends on
-    /// whether lists are new.
+    /// Takes the density of `state` over a step. Positions are those of the end of the step,
+    /// velocities those of its middle.
+    void advance_density(State& state, const Lists& lists, Halo<D>& halo, double dt);
+
+    /// Fills the accelerations of `state`, after advance_density(). Velocities of fluid are half a
+    /// step behind: those predicted with the old accelerations over `half_dt` enter the forces. Sets
+    /// timestep() and dissipated_power(). Nothing depends on whether lists are new.
     void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool);
 
     /// See Ueta2022::force_terms.
@@ -105,13 +108,16 @@ private:
     void make_room(const State& state, const Halo<D>& halo);
     template <template <class, int> class Packer>
     void pack(State& state, double half_dt);
+    template <class Work>
+    void with_kernel(const Work& work) const;
     template <class Kernel>
-    void sum_all(State& state, const Lists& lists, Halo<D>& halo, double half_dt);
+    void sum_forces(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
     void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records,
                    double dt);
     template <class Term, class Epilogue>
-    void sum_fluid(const Lists& lists, Halo<D>& halo, const Term& term, const Epilogue& epilogue);
+    void sum_fluid(Phase phase, const Lists& lists, Halo<D>& halo, const Term& term,
+                   const Epilogue& epilogue);
     bool has_wet_walls(const FlowRecords<real, D>& records) const;
     void reduce_summaries();
 

@@ -64,6 +64,8 @@ public:
 
     virtual int first_evaluations() const = 0;
     virtual bool looks_back() const = 0;
+    /// Where it looks back: over a step.
+    virtual void advance_density(const Lists& lists, Halo<D>& halo, double dt) = 0;
     virtual void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) = 0;
     virtual void end_step() = 0;
     virtual ForceTerms<D> force_terms(const Lists& lists, Halo<D>& halo, std::int64_t p) = 0;

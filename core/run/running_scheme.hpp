@@ -71,6 +71,9 @@ public:
 
     int first_evaluations() const override { return SchemeOf::first_evaluations; }
     bool looks_back() const override { return SchemeOf::looks_back; }
+    void advance_density(const Lists& lists, Halo<D>& halo, double dt) override {
+        if constexpr (SchemeOf::looks_back) scheme_.advance_density(state_, lists, halo, dt);
+    }
     void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) override {
         scheme_.evaluate(state_, lists, halo, half_dt, new_lists);
     }

@@ -55,7 +55,7 @@ concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, 
                      { known.shear_energy(state, p) } -> std::same_as<double>;
                      // How often the right-hand side is evaluated before the first step.
                      { S::first_evaluations + 0 } -> std::same_as<int>;
-                     // Whether it sums over pairs as they were half a step before, too.
+                     // Whether densities come first, from pairs as they were half a step before.
                      { S::looks_back } -> std::convertible_to<bool>;
                      { S::skin_costs } -> std::convertible_to<SkinCosts>;
                      { S::cost_of_lists(ListWords{}, PassSeconds{}) } -> std::same_as<WordCosts>;

@@ -289,13 +289,13 @@ double Simulation<Lists>::drift(double dt) {
     return max(max(scheme_->drift(dt), moving_walls.move(particles, time_, dt)), of_bodies);
 }
 
-/// The same of the particles of bodies, which also get the velocities that evaluate() sees.
+/// The same of the particles of bodies, which also get the velocities of the way they went.
 template <class Lists>
 double Simulation<Lists>::drift_bodies(double dt) {
     const auto timing = phases().measure(Phase::bodies);
     const BodyStep<D> step = bodies.advance(moving_walls, time_, dt);  // the same on every rank
     if (ranks().rank() == 0) account_.add(step);
-    return bodies.place(particles, 0.5 * dt);
+    return bodies.place(particles, dt);
 }
 
 /// The next time that a step must meet exactly.
@@ -324,6 +324,8 @@ void Simulation<Lists>::update_lists(double before, double moved) {
 template <class Lists>
 void Simulation<Lists>::evaluate(double half_dt) {
     evaluated_at_ = time_;
+    scheme_->advance_density(lists_.lists(), lists_.halo(), 2.0 * half_dt);
+    timed(Phase::bodies, [&] { bodies.set_velocities(particles, half_dt); });
     scheme_->evaluate(lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
     timed(Phase::bodies, [&] { bodies.gather(particles, ranks()); });
     if (const Fault& fault = scheme_->fault(); fault.rank != Fault::none)

@@ -188,7 +188,7 @@ public:
     /// Shows the contacts where the points are, and takes their forces.
     void show(ContactBodies<D>& contact) const { surfaces_.show(contact, solids_); }
     void collect(ContactBodies<D>& contact) { surfaces_.collect(contact, solids_); }
-    double place(Particles<D>& particles, const Domain<D>& domain);
+    double place(Particles<D>& particles, const Domain<D>& domain, double dt);
     void set_velocities(Particles<D>& particles, double ahead);
 
     double drift(double dt) { return solids_.drift(dt); }

@@ -14,6 +14,7 @@ struct PlaceShown {
     Particles<D>& particles;
     std::span<const ShownPoint<D>> points;
     Domain<D> domain;
+    double dt;
 
     DOSEKI_DEVICE_FN double operator()(std::size_t p) const {
         if (!particles.is_point_of(p, BodyKind::deformable)) return 0.0;
@@ -24,6 +25,7 @@ struct PlaceShown {
             turned_bend(particles.wall.bend[p], particles.wall.normal[p], point.normal);
         particles.wall.normal[p] = point.normal, particles.wall.depth[p] = point.depth;
         particles.acceleration[p] = point.acceleration;
+        if (dt > 0.0) particles.velocity[p] = (1.0 / dt) * step;
         return dot(step, step);
     }
 };
@@ -50,7 +52,7 @@ void DeformableBodies<D>::gather(const Particles<D>& particles, const Ranks& ran
 }
 
 template <int D>
-double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain) {
+double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& domain, double dt) {
     if (empty()) return 0.0;
     shown_.resize(size());
     solids_.stepped().for_each([&](std::size_t k) {
@@ -58,7 +60,7 @@ double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& doma
         point.place = solids_.x[k], point.normal = normal(k), point.depth = depth_[k];
         point.acceleration = acceleration_[k];
     });
-    const PlaceShown<D> place{particles, shown_, domain};
+    const PlaceShown<D> place{particles, shown_, domain, dt};
     return std::sqrt(bulk::reduce(particles.size(), 0.0, maximum, place));
 }
 
@@ -75,10 +77,10 @@ void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) 
 }
 
 template void DeformableBodies<2>::gather(const Particles<2>&, const Ranks&);
-template double DeformableBodies<2>::place(Particles<2>&, const Domain<2>&);
+template double DeformableBodies<2>::place(Particles<2>&, const Domain<2>&, double);
 template void DeformableBodies<2>::set_velocities(Particles<2>&, double);
 template void DeformableBodies<3>::gather(const Particles<3>&, const Ranks&);
-template double DeformableBodies<3>::place(Particles<3>&, const Domain<3>&);
+template double DeformableBodies<3>::place(Particles<3>&, const Domain<3>&, double);
 template void DeformableBodies<3>::set_velocities(Particles<3>&, double);
 
 }  // namespace doseki

@@ -65,6 +65,7 @@ template <int D>
 struct PlaceBound {
     BoundParticles<D> bound;
     Domain<D> domain;
+    double dt;
 
     DOSEKI_DEVICE_FN double operator()(std::size_t p) const {
         if (!bound.has(p)) return 0.0;
@@ -84,7 +85,7 @@ struct PlaceBound {
         particles.wall.edge_normals[p] = each_row(point.edge_normals, RotatedBy{R});
         particles.acceleration[p] = body.acceleration + turning_velocity(body.spin_rate, lever) +
                                     turning_velocity(body.spin, turning_velocity(body.spin, lever));
-        particles.velocity[p] = body.velocity + turning_velocity(body.spin_ahead, lever);
+        if (dt > 0.0) particles.velocity[p] = (1.0 / dt) * step;
         return dot(step, step);
     }
 
@@ -193,9 +194,9 @@ void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bo
 
 template <int D>
 double RigidParticles<D>::place(Particles<D>& particles, const RigidBodies<D>& bodies,
-                                const Domain<D>& domain, double ahead) const {
-    const Array<Bearing<D>> bearing = bearings(bodies, ahead);
-    const PlaceBound<D> place{{particles, points_, bearing}, domain};
+                                const Domain<D>& domain, double dt) const {
+    const Array<Bearing<D>> bearing = bearings(bodies, 0.0);
+    const PlaceBound<D> place{{particles, points_, bearing}, domain, dt};
     return std::sqrt(bulk::reduce(particles.size(), 0.0, maximum, place));
 }
 

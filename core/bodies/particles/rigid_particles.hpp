@@ -44,11 +44,11 @@ public:
     /// Hands the force of the fluid on to the bodies. All ranks have all bodies: each point is a
     /// particle of one of them, so that the sums are those of one rank, to the bit.
     void gather(const Particles<D>& particles, RigidBodies<D>& bodies, const Ranks& ranks);
-    /// Puts particles where their bodies are (eq. 53), with the velocity that they have when the
-    /// fluid will have acted for `ahead` more; returns the largest distance that one went.
+    /// Puts particles where their bodies are (eq. 53), with the velocity that has taken them there
+    /// in `dt`; returns the largest distance that one went.
     double place(Particles<D>& particles, const RigidBodies<D>& bodies, const Domain<D>& domain,
-                 double ahead) const;
-    /// Velocities alone.
+                 double dt) const;
+    /// Gives them the velocity that they have when the fluid will have acted for `ahead` more.
     void set_velocities(Particles<D>& particles, const RigidBodies<D>& bodies, double ahead) const;
 
     void serialise(Archive& archive) { archive("body_points", points_); }

@@ -20,7 +20,7 @@ from ..util.files import clear_errors, write_whole
 from ..util.foreign import read_bytes
 from ..util.hdf5 import open_hdf5
 
-VERSION = 4
+VERSION = 5
 KEPT = 2  # files; the older one serves where the newer one is damaged
 DIGEST_BYTES = 64
 AROUND_STATE = "doseki"  # JSON, as bytes
@@ -122,7 +122,9 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
     with open_hdf5(path, content) as file:
         said = json.loads(file.numbers(AROUND_STATE).tobytes())
         if said.get("version") != VERSION:
-            raise DamagedCheckpointError(f"it has format {said.get('version')}, expected {VERSION}")
+            raise DamagedCheckpointError(
+                f"it is of another version of doseki: format {said.get('version')}, here {VERSION}"
+            )
         try:
             around = AROUND.validate_python(said)
         except ValidationError as error:
