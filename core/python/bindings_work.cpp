@@ -40,8 +40,8 @@ nb::list work_of_resolved() {
     nb::list rows;
     rows.append(named(work_of_pair<FluidPoint, MotionPoint, FluidFields>(
         "continuity", ContinuityTerm<Kernel, real, D>{})));
-    rows.append(named(
-        work_of_pair<FluidPoint, MotionPoint, FluidFields>("pass_2", ForceTerm<Kernel, real, D>{})));
+    rows.append(named(work_of_pair<FluidPoint, MotionPoint, FluidFields>(
+        "pass_2", ForceTerm<Kernel, real, D>{})));
     return rows;
 }
 

@@ -53,8 +53,8 @@ public:
     void advance_density(State& state, const Lists& lists, Halo<D>& halo, double dt);
 
     /// Fills the accelerations of `state`, after advance_density(). Velocities of fluid are half a
-    /// step behind: those predicted with the old accelerations over `half_dt` enter the forces. Sets
-    /// timestep() and dissipated_power(). Nothing depends on whether lists are new.
+    /// step behind: those predicted with the old accelerations over `half_dt` enter the forces.
+    /// Sets timestep() and dissipated_power(). Nothing depends on whether lists are new.
     void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool);
 
     /// See Ueta2022::force_terms.

@@ -157,7 +157,7 @@ def test_a_particle_far_outside_the_domain(fail, block):
 def test_a_liquid_that_thickens_is_stopped_by_its_viscosity(fail):
     """Its viscosity rises with a high power of the rate of shear, which is none until it lands."""
     # How far the viscosity has come when it stops depends on the step.
-    failed = fail(THICKENING, "speed_max=1", "time_max=0.1", "cflnumber=0.5")
+    failed = fail(THICKENING, "speed_max=1", "time_max=0.1", "cflnumber=0.3")
     assert failed.report["kind"] == "timestep"
     assert failed.report["limited_by"] == "the viscosity"
     limits = failed.report["timestep"]

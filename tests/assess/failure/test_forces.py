@@ -91,7 +91,7 @@ max = [0.33, 0]
 def test_pressure_carries_water_inside_and_not_at_the_side(tmp_path):
     (tmp_path / "column.toml").write_text(COLUMN)
     scenario = load_scenario(str(tmp_path / "column.toml"))
-    simulation = started(scenario, 2)
+    simulation = started(scenario, 1)
     state = simulation.state()
 
     def terms(x, y):

@@ -13,8 +13,8 @@ WALL_FIELDS = (
     "film_traction", "body_kind", "point",
 )  # fmt: skip
 FLOW_FIELDS = (
-    "pressure_gradient", "velocity_gradient", "inverse_moment", "shift", "surface", "surface_around",
-    "mixing_length", "mean_pressure", "damping_pressure", "parted",
+    "pressure_gradient", "velocity_gradient", "inverse_moment", "shift", "surface",
+    "surface_around", "mixing_length", "mean_pressure", "damping_pressure", "parted",
 )  # fmt: skip
 COMMON_FIELDS = (
     "position", "velocity", "acceleration", "density", "density_rate", "mass", "smoothing_length",

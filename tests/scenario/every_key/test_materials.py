@@ -66,7 +66,7 @@ LAWS = {
     "casson": "rheology=casson; yield_stress=1; casson_viscosity=1; regularisation=0.1;"
     " viscosity_max=50",
     "mud": "preset=obrien_julien; soil=aspen_pit_1; cv=0.3",
-    "mu": "rheology=mu_i; mu_s=0.3; mu_2=0.6; inertial_number=0.3; grain_diameter=0.01;"
+    "mu": "rheology=mu_i; mu_s=0.03; mu_2=0.06; inertial_number=0.3; grain_diameter=0.01;"
     " grain_density=2500; viscosity_max=50",
 }
 # Two rocks that touch each other and the floor, askew.
