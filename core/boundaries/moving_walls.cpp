@@ -9,7 +9,7 @@
 namespace doseki {
 namespace {
 
-/// From t to t + dt; the square of how far a particle went.
+/// From t to t + dt, with the velocity of the way; the square of how far a particle went.
 template <int D>
 struct MoveWall {
     Particles<D>& particles;
@@ -22,6 +22,7 @@ struct MoveWall {
         const Vec<double, D> step =
             motion->moved(particles.position[p], t, dt) - particles.position[p];
         for (int a = 0; a < D; ++a) particles.position[p][a] += step[a];
+        particles.velocity[p] = (1.0 / dt) * step;
         if (particles.wall.in_use) turn_normals(p, *motion);
         return dot(step, step);
     }

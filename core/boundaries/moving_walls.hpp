@@ -105,7 +105,8 @@ public:
         return next;
     }
 
-    /// Takes walls from t to t + dt; returns the largest distance that a particle of theirs went.
+    /// Takes walls from t to t + dt, with the velocity of the way that they go; returns the largest
+    /// distance that a particle of theirs went.
     double move(Particles<D>& particles, double t, double dt) const;
 
     /// Gives particles of moving walls their velocity at time t, zero outside the time they move.

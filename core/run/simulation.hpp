@@ -259,7 +259,6 @@ void Simulation<Lists>::step(double limit) {
     time_ = dt < end - before ? before + dt : end;
     if (moved > max_mach * sound_speed_ * dt)
         fail(FailureKind::speed, own_moved < moved ? -1 : fastest_particle(particles));
-    moving_walls.set_velocities(particles, time_);
     open_boundaries.impose_velocity(particles, time_);
     update_lists(before, moved);
     evaluate(0.5 * dt);
@@ -325,6 +324,7 @@ template <class Lists>
 void Simulation<Lists>::evaluate(double half_dt) {
     evaluated_at_ = time_;
     scheme_->advance_density(lists_.lists(), lists_.halo(), 2.0 * half_dt);
+    moving_walls.set_velocities(particles, time_);
     timed(Phase::bodies, [&] { bodies.set_velocities(particles, half_dt); });
     scheme_->evaluate(lists_.lists(), lists_.halo(), half_dt, lists_.take_news());
     timed(Phase::bodies, [&] { bodies.gather(particles, ranks()); });

@@ -121,10 +121,11 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
         raise DamagedCheckpointError("its checksum is wrong")
     with open_hdf5(path, content) as file:
         said = json.loads(file.numbers(AROUND_STATE).tobytes())
-        if said.get("version") != VERSION:
-            raise DamagedCheckpointError(
-                f"it is of another version of doseki: format {said.get('version')}, here {VERSION}"
-            )
+    if said.get("version") != VERSION:
+        raise DamagedCheckpointError(
+            f"it is of another version of doseki: format {said.get('version')}, here {VERSION}"
+        )
+    with open_hdf5(path, content) as file:
         try:
             around = AROUND.validate_python(said)
         except ValidationError as error:
