@@ -31,20 +31,20 @@ void Resolved<D, real, Backend>::advance_density(State& state, const Lists& list
         set_mixing_lengths(state, lists, halo.ranks);
     make_room(state, halo);
     pack<ContinuityPacker>(state, 0.5 * dt);
-    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
-                halo_column(wall_, HaloColumn::fixed, fluid_count_)});
-    with_kernel([&]<class Kernel>() {
-        sum_fluid(Phase::continuity, lists, halo,
-                  ContinuityTerm<Kernel, real, D>{records(state), model_->constants},
-                  ContinuityEpilogue<real, D>(*model_, fluid_, fluid_count_, summary_, state, dt));
-    });
+    if (model_->options.flow.wide_kernel)
+        sum_densities<WendlandC6<D>>(state, lists, halo, dt);
+    else
+        sum_densities<WendlandC2<D>>(state, lists, halo, dt);
 }
 
 template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo<D>& halo,
                                           double half_dt, bool) {
     pack<ForcePacker>(state, half_dt);
-    with_kernel([&]<class Kernel>() { sum_forces<Kernel>(state, lists, halo, 2.0 * half_dt); });
+    if (model_->options.flow.wide_kernel)
+        sum_forces<WendlandC6<D>>(state, lists, halo, 2.0 * half_dt);
+    else
+        sum_forces<WendlandC2<D>>(state, lists, halo, 2.0 * half_dt);
     reduce_summaries();
     const std::int64_t left = is_poisoned_run() ? survivor<double>(state.acceleration) : -1;
     if (left >= 0) fault_.note(Fault::right_hand_side, static_cast<std::size_t>(left));
@@ -105,14 +105,15 @@ void Resolved<D, real, Backend>::pack(State& state, double half_dt) {
                                        records(state).inverse_support, half_dt}});
 }
 
-/// Calls work<Kernel>() with the kernel of the run.
 template <int D, class real, class Backend>
-template <class Work>
-void Resolved<D, real, Backend>::with_kernel(const Work& work) const {
-    if (model_->options.flow.wide_kernel)
-        work.template operator()<WendlandC6<D>>();
-    else
-        work.template operator()<WendlandC2<D>>();
+template <class Kernel>
+void Resolved<D, real, Backend>::sum_densities(State& state, const Lists& lists, Halo<D>& halo,
+                                               double dt) {
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
+                halo_column(wall_, HaloColumn::fixed, fluid_count_)});
+    const ContinuityTerm<Kernel, real, D> term{records(state), model_->constants};
+    const ContinuityEpilogue<real, D> advance(*model_, fluid_, fluid_count_, summary_, state, dt);
+    sum_fluid(Phase::continuity, lists, halo, term, advance);
 }
 
 /// On many ranks the fluid's pairs are summed while records of ghosts, or the friction of their

@@ -108,8 +108,8 @@ private:
     void make_room(const State& state, const Halo<D>& halo);
     template <template <class, int> class Packer>
     void pack(State& state, double half_dt);
-    template <class Work>
-    void with_kernel(const Work& work) const;
+    template <class Kernel>
+    void sum_densities(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
     void sum_forces(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
