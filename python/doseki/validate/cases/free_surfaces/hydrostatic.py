@@ -104,7 +104,7 @@ def case(name: str, title: str, control: Control) -> Case:
     )
 
 
-TOO_LOW = "body.step.max=['= width', '= rise - 0.5*dp']"
+TOO_HEAVY = "material.water.rho0=1100"
 LESS_TILTED = f"gravity=[{-9.81 * math.sin(math.radians(10))}, -9.66]"
 
 CASES = (
@@ -114,25 +114,25 @@ CASES = (
         Control(
             "water a tenth too heavy",
             "dp/dz / rho g",
-            lambda n: at_rest("hydrostatic")(n, "material.water.rho0=1100"),
+            lambda n: at_rest("hydrostatic")(n, TOO_HEAVY),
         ),
     ),
     case(
         "hydrostatic-disc",
         "Water at rest in a tank around a disc",
         Control(
-            "no rest before the run",
+            "water a tenth too heavy",
             "dp/dz / rho g",
-            lambda n: at_rest("hydrostatic-disc")(n, "relax=1e-9"),
+            lambda n: at_rest("hydrostatic-disc")(n, TOO_HEAVY),
         ),
     ),
     case(
         "hydrostatic-step",
         "Water at rest in a tank with a step",
         Control(
-            "a step half a spacing too low",
-            "L2(p) / rho g H",
-            lambda n: at_rest("hydrostatic-step")(n, TOO_LOW),
+            "water a tenth too heavy",
+            "dp/dz / rho g",
+            lambda n: at_rest("hydrostatic-step")(n, TOO_HEAVY),
         ),
     ),
     case(
