@@ -82,7 +82,7 @@ public:
         open_boundaries.inject(particles, time_);
         bodies.start(particles);
         bodies.set_velocities(particles, 0.0);
-        remove_outflow();
+        remove_outflow(0.0);
         look_at_terrain();
         rebuild_lists(0.0);
         for (int n = 0; n < scheme_->first_evaluations(); ++n) evaluate(0.0);
@@ -225,7 +225,8 @@ private:
         return terrain_looks_.look(
             particles, [this] { return supports(); }, open_boundaries.removed);
     }
-    bool remove_outflow();
+    /// Bodies leave with the velocity that they have when the fluid has acted for `ahead` more.
+    bool remove_outflow(double ahead);
     void drop_removed();
     [[noreturn]] void fail(FailureKind kind, std::int64_t p);
 
@@ -313,7 +314,7 @@ void Simulation<Lists>::update_lists(double before, double moved) {
     moved_since_outflow_ += moved;
     if (moved_since_outflow_ >= outflow_distance * lists_.min_support()) {
         moved_since_outflow_ = 0.0;
-        changed |= remove_outflow();
+        changed |= remove_outflow(0.5 * (time_ - before));
     }
     const bool looks = terrain_looks_.wear(moved, lists_.min_support());
     if (added || looks) changed |= look_at_terrain();
@@ -357,8 +358,10 @@ void Simulation<Lists>::rebuild_lists(double moved) {
 
 /// True where any rank has particles that left.
 template <class Lists>
-bool Simulation<Lists>::remove_outflow() {
+bool Simulation<Lists>::remove_outflow(double ahead) {
     if (open_boundaries.outflows.empty() && !terrain.is_there()) return false;
+    const Array<Vec<double, D>> way(particles.velocity.begin(), particles.velocity.end());
+    bodies.set_velocities(particles, ahead);
     double elastic = 0.0;  // all ranks have all bodies
     open_boundaries.removed.resize(particles.size(), 0);
     if (terrain.is_there()) {
@@ -371,6 +374,7 @@ bool Simulation<Lists>::remove_outflow() {
     auto drain = [&](const auto& at, auto& left) { elastic += bodies.drain(particles, at, left); };
     const double any = open_boundaries.remove_outflow(particles, leaves, drain) ? 1.0 : 0.0;
     if (ranks().rank() == 0) open_boundaries.ledger.outflow.energy += elastic;
+    std::copy(way.begin(), way.end(), particles.velocity.begin());
     return ranks().largest(any) > 0.0;
 }
 
