@@ -352,8 +352,7 @@ void Simulation<Lists>::rebuild_lists(double moved) {
     lists_.send_to_owners(particles);
     const auto supports = [this] { return this->supports(); };
     terrain_looks_.fetch(particles, supports);
-    const double least_skin = scheme_->looks_back() ? moved : 0.0;
-    lists_.rebuild(particles, supports, least_skin, steps_, phases());
+    lists_.rebuild(particles, supports, scheme_->looks_back() ? moved : 0.0, steps_, phases());
 }
 
 /// True where any rank has particles that left.
