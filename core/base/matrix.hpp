@@ -99,6 +99,14 @@ DOSEKI_FN Sym<T, D> symmetric_part(const Mat<T, D>& m) {
     return result;
 }
 
+/// The square of the Frobenius norm.
+template <int D>
+DOSEKI_DEVICE_FN double sum_of_squares(const Mat<double, D>& m) {
+    double sum = 0.0;
+    for (double element : m.element) sum += element * element;
+    return sum;
+}
+
 /// Bound on the sizes of the eigenvalues, whatever the axes are: the largest of them in 2-D, and in
 /// 3-D where two are the same.
 template <int D>
@@ -116,10 +124,7 @@ DOSEKI_DEVICE_FN double largest_size(const Sym<double, D>& s) {
 /// the sum of squares, so that few need a root.
 template <int D>
 DOSEKI_DEVICE_FN void bound_size(Sym<double, D>& s, double most) {
-    double squares = 0.0;
-    for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) squares += s(min(a, b), max(a, b)) * s(min(a, b), max(a, b));
-    if (squares <= most * most) return;
+    if (sum_of_squares(full(s)) <= most * most) return;
     const double share = most / max(largest_size(s), most);
     for (double& element : s.element) element *= share;
 }

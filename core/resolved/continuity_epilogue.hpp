@@ -31,8 +31,9 @@ public:
         state_.surface_around[p] = sums.surface.value;
         summary(p).fault.note_density(at.fields.rho, rho0(p), p);
         if (state_.is_free(p)) {
-            set_density(at, indicator);
-            shift(at);
+            const double strain = std::sqrt(sum_of_squares(state_.velocity_gradient[p]));
+            set_density(at, indicator, strain);
+            shift(at, strain);
         } else {
             state_.density_rate[p] = 0.0, state_.shift[p] = {};
             push_of_layer(at);
@@ -57,13 +58,6 @@ private:
     DOSEKI_DEVICE_FN bool on_surface(std::size_t p) const {
         return state_.surface[p] > FreeSurfaceIndicator::surface;
     }
-    /// Frobenius norm of the velocity gradient [1/s].
-    DOSEKI_DEVICE_FN double size_of_gradient(std::size_t p) const {
-        const Mat<double, D>& L = state_.velocity_gradient[p];
-        double square = 0.0;
-        for (double element : L.element) square += element * element;
-        return std::sqrt(square);
-    }
 
     DOSEKI_DEVICE_FN FreeSurfaceIndicator free_surface(const Summed& at) const {
         const Vec<double, D>& gradient = at.sums.concentration_gradient;
@@ -75,15 +69,15 @@ private:
     }
 
     /// Over the step. The particle has gone with the shifting velocity of the step before.
-    DOSEKI_DEVICE_FN void set_density(const Summed& at,
-                                      const FreeSurfaceIndicator& indicator) const {
+    DOSEKI_DEVICE_FN void set_density(const Summed& at, const FreeSurfaceIndicator& indicator,
+                                      double strain) const {
         const std::size_t p = at.p;
         const double rho = at.fields.rho, c = model_.constants.c;
         const double of_pairs = rho * at.sums.density_rate;
         double rate = of_pairs + rho * edge_rate(at.sums.sliding_rate, at.sums.sliding_size) +
                       dot(state_.pressure_gradient[p], state_.shift[p]) / (c * c);
         if (indicator.is_spray()) rate = std::min(0.0, rate);  // Eq. (147)
-        rate += relaxation(at, indicator.normalised_density);
+        rate += relaxation(at, indicator.normalised_density, strain);
         rate = with_least_density(at, rate);
         summary(p).work.power += part_on_surface(at) + power_of_corrections(at, rate - of_pairs);
         state_.density_rate[p] = rate;
@@ -109,17 +103,16 @@ private:
         summary(at.p).work.layer_power -= at.fields.volume * pressure(at) * at.sums.density_rate;
     }
 
-    /// Moves the particle relative to the fluid, and its density with it. Pairs see to its
-    /// velocity. Disorder is undone in no less than a few steps, or a step would go past the goal:
-    /// Eq. (153).
-    DOSEKI_DEVICE_FN void shift(const Summed& at) const {
+    /// How the particle moves next relative to the fluid. Pairs see to its velocity. Disorder is
+    /// undone in no less than a few steps, or a step would go past the goal: Eq. (153).
+    DOSEKI_DEVICE_FN void shift(const Summed& at, double strain) const {
         const Sums& sums = at.sums;
         Vec<double, D>& velocity = state_.shift[at.p];
         velocity = {};
         if (!model_.options.flow.shifting || on_surface(at.p)) return;
         const double c = model_.constants.c, h = state_.smoothing_length[at.p];
-        const double rate = std::min(size_of_gradient(at.p),
-                                     max_shifting_rate * c / (model_.options.cflnumber * h));
+        const double rate =
+            std::min(strain, max_shifting_rate * c / (model_.options.cflnumber * h));
         velocity = shifting_velocity(sums.concentration_gradient, rate, h);
         if (sums.surface.value > FreeSurfaceIndicator::surface)
             velocity = tangential(velocity, sums.surface_gradient);
@@ -130,12 +123,12 @@ private:
     /// What continuity sums up over many steps forgets how far apart particles are: the density
     /// goes towards the one that their arrangement says, and the faster the more the flow disturbs
     /// it.
-    DOSEKI_DEVICE_FN double relaxation(const Summed& at, double normalised_density) const {
+    DOSEKI_DEVICE_FN double relaxation(const Summed& at, double normalised_density,
+                                       double strain) const {
         constexpr double per_strain = 10.0;
         const double sound = model_.constants.c / state_.smoothing_length[at.p];
-        const double rate =
-            std::clamp(per_strain * size_of_gradient(at.p), sound / density_relaxation_at_rest,
-                       sound / density_relaxation);
+        const double rate = std::clamp(per_strain * strain, sound / density_relaxation_at_rest,
+                                       sound / density_relaxation);
         return rate * (normalised_density * rho0(at.p) - at.fields.rho);
     }
 

@@ -29,9 +29,7 @@ struct FlowTimestep {
                                             const FluidFields<double, D>& fields, std::size_t p) {
         const Vec<double, D>&v = state.velocity[p], &a = state.acceleration[p];
         const double h = state.smoothing_length[p], reach = model.kernel_support() * h;
-        double gradient = 0.0;
-        const Mat<double, D> L = state.velocity_gradient[p];
-        for (double element : L.element) gradient += element * element;
+        const double gradient = sum_of_squares(state.velocity_gradient[p]);
         // The sums count the particle itself among its neighbours.
         const double own =
             -model.constants.roughest * fields.volume * model.own_gradient_factor * fields.mu;
