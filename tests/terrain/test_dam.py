@@ -149,8 +149,8 @@ def test_with_the_ground_inside_the_dam_it_misses_a_part(tmp_path):
 BASIN = """
 dim = 3
 dp = "= 0.4/particles"
-time_max = 0.4
-time_out = 0.4
+time_max = 0.25
+time_out = 0.25
 scheme = "resolved"
 gravity = [0, 0, -9.81]
 speed_max = 2.0
@@ -205,7 +205,15 @@ pivot = [1, 1.2, 0]
 """
 
 
-def in_a_basin(folder, angle, slope, particles=16):
+def still_thrust(level, c=20.0):
+    """Force of still water with the sound speed `c` (10 speed_max) on a wall, N/m.
+
+    From dp/dz = -rho g and p = c^2 (rho - rho0): water that gives way presses 0.3 % harder here.
+    """
+    return 1000 * c**2 * (c**2 / G * math.expm1(G * level / c**2) - level)
+
+
+def in_a_basin(folder, angle, slope, particles):
     """Force across and along the dam, over the thrust at the level that the water has."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
 
@@ -222,16 +230,20 @@ def in_a_basin(folder, angle, slope, particles=16):
     run_scenario(load_scenario(path), folder / "run", RunOptions(threads=1))
     gauges = load(folder / "run").gauges
     level = 0.1 + float(gauges["level"]["height"][1:].mean())
-    exact = 0.5 * 1000 * G * level**2 * 0.4
+    exact = still_thrust(level) * 0.4
     x, y = (gauges["dam"][f"force_{axis}"][1:].mean() for axis in "xy")
     return (x * c + y * s) / exact, (y * c - x * s) / exact
 
 
 @pytest.mark.validate
-@pytest.mark.parametrize(("angle", "slope"), [(0, 0.0), (30, 0.0), (30, 0.2)])
-def test_a_dam_oblique_to_the_map_bears_the_same(tmp_path, angle, slope):
-    """Within 1 %, turned by any angle to the axes of the map, also on a bed that falls to it."""
-    across, along = in_a_basin(tmp_path, angle, slope)
+@pytest.mark.parametrize(("angle", "slope", "particles"), [(0, 0, 16), (30, 0, 16), (30, 0.2, 28)])
+def test_a_dam_oblique_to_the_map_bears_the_same(tmp_path, angle, slope, particles):
+    """Within 1 %, turned by any angle to the axes of the map, also on a bed that falls to it.
+
+    There the row in the corner at the foot bears less: 1.3 % short with 16 particles over the
+    depth, 1.0 % with 24.
+    """
+    across, along = in_a_basin(tmp_path, angle, slope, particles)
     assert across == pytest.approx(1.0, rel=0.01)
     assert abs(along) < 0.01
 
