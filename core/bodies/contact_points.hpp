@@ -29,6 +29,8 @@ struct RowsOfContactPoints {
     Row<std::uint8_t> fixed, removed, deformable, dust;
     Row<std::int32_t> surface;   // of which it is a sample, in ContactBodies; -1: of none
     Row<Vec<double, D>> offset;  // of rigid bodies, in the frame of the body
+    // Normal of the surface that a sample is of, in that frame and in space; zero: unknown.
+    Row<Vec<double, D>> own_outward, outward;
     // What the contacts do to them; torque about their own centre.
     Row<Vec<double, D>> force;
     Row<Vec3> torque;
@@ -38,8 +40,8 @@ struct RowsOfContactPoints {
         f(self.position...), f(self.velocity...), f(self.spin...), f(self.radius...);
         f(self.mass...), f(self.diameter...), f(self.share...), f(self.body...);
         f(self.material...), f(self.fixed...), f(self.removed...), f(self.deformable...);
-        f(self.dust...), f(self.surface...), f(self.offset...), f(self.force...);
-        f(self.torque...);
+        f(self.dust...), f(self.surface...), f(self.offset...), f(self.own_outward...);
+        f(self.outward...), f(self.force...), f(self.torque...);
     }
 };
 
@@ -55,10 +57,12 @@ struct ContactPoints : RowsOfContactPoints<D, Array> {
         return this->surface[k] >= 0 ? 0.5 * this->diameter[k] : this->radius[k];
     }
     /// Adds a point of a body, as a side of a contact has it.
-    void add(std::int32_t of_body, const ContactSide& side, const Vec<double, D>& at = {}) {
+    void add(std::int32_t of_body, const ContactSide& side, const Vec<double, D>& at = {},
+             const Vec<double, D>& outward_there = {}) {
         this->members([](auto& row) { row.emplace_back(); }, *this);
         this->radius.back() = side.radius, this->mass.back() = side.mass;
         this->diameter.back() = side.diameter, this->offset.back() = at;
+        this->own_outward.back() = outward_there;
         this->body.back() = of_body, this->material.back() = side.material;
         this->fixed.back() = side.fixed, this->deformable.back() = side.deformable;
         this->share.back() = side.share, this->dust.back() = side.dust;

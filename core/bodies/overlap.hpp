@@ -58,8 +58,9 @@ DOSEKI_DEVICE_FN Overlaps<D> overlaps_of(const ContactPointSpans<D>& points, std
     const double radius = points.radius[a], around = solid.surface->radius() + radius;
     Overlaps<D> overlaps;
     if (dot(r, r) >= around * around) return overlaps;
+    const Vec<double, D> outward = rotated_back(solid.rotation, points.outward[a]);
     for (const SurfacePoint<D>& place :
-         solid.surface->touched_by(rotated_back(solid.rotation, r), radius)) {
+         solid.surface->touched_by(rotated_back(solid.rotation, r), radius, outward)) {
         Overlap<D> overlap{
             radius - place.distance, -1.0 * rotated(solid.rotation, place.normal), {}, {}};
         overlap.lever_a = (radius - 0.5 * overlap.depth) * overlap.normal;

@@ -217,8 +217,8 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         side.radius = 0.0;
         const bool balls = shape(k).kind == ShapeKind::balls;
         if (balls) side.radius = 0.5 * shape(k).thickness;
-        for (const Vec<double, D>& sample : shape(k).samples)
-            contact.points.add(number, side, sample);
+        for (std::size_t n = 0; n < shape(k).samples.size(); ++n)
+            contact.points.add(number, side, shape(k).samples[n], shape(k).outward[n]);
         if (balls) continue;
         ContactSolid<D> solid;
         solid.body = number, solid.material = body.material, solid.fixed = body.fixed;

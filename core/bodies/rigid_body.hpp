@@ -113,9 +113,9 @@ struct RigidBodyColumns {
                 result[k].facets.emplace_back();
                 std::copy_n(corner, D, result[k].facets.back().begin());
             }
-            result[k].enclose(ground);
             result[k].samples.assign(sample, sample + sample_count[k]);
             sample += sample_count[k];
+            result[k].enclose(ground);
         }
         return result;
     }

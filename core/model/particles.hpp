@@ -48,6 +48,7 @@ struct WallState {
     WallField<Vec<double, D>> area;  // of a body that moves, outwards [m^2], 2-D: [m]
     WallField<double> wetted;        // share of it that fluid sees where nothing else does, else 0
     WallField<double> film_change;   // of its pressure in the last step [Pa]
+    WallField<double> film_cover;    // share of it that other faces cover
     WallField<double> film_density;  // of the fluid that presses on it [kg/m^3]; 0: dry
     WallField<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
     WallField<BodyKind> body_kind;            // of bound particles
@@ -61,7 +62,7 @@ struct WallState {
         f("edge_normals", edge_normals), f("edge_depths", edge_depths);
         f("wall_force", force), f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_wetted", wetted);
-        f("film_change", film_change), f("film_density", film_density),
+        f("film_change", film_change), f("film_density", film_density), f("film_cover", film_cover),
             f("film_traction", film_traction);
         f("body_kind", body_kind), f("point", point);
     }

@@ -140,6 +140,37 @@ double weight_of_row(double dp, double support, double distance) {
     return weight;
 }
 
+/// The gap between two walls in which there is no room for a fluid particle, told by what walls
+/// take up of its kernel: `filled`, the sum of V W over them, and `slope`, that of V grad W, which
+/// is nothing in the middle of a gap and large in front of one wall or in a corner. Eq. (156).
+struct NarrowGap {
+    double open = 1.0,
+           closed = 1.0;     // what is filled in the middle of gaps of 0.95 and 0.7 spacings
+    double per_slope = 0.0;  // so that a particle at one side of a gap counts like one there [m]
+
+    /// From 0 in a gap that is wide enough to 1 in one that is too narrow.
+    DOSEKI_DEVICE_FN double share(double filled, double slope) const {
+        const double x =
+            std::clamp((filled - per_slope * slope - open) / (closed - open), 0.0, 1.0);
+        return x * x * (3.0 - 2.0 * x);
+    }
+
+    template <class Kernel, int D>
+    static NarrowGap of(double dp, double support) {
+        constexpr double weight_of_slope = 0.25;
+        const int rows = static_cast<int>(support / dp) + 1;
+        const auto wall = [&](double distance) {
+            double weight = 0.0;
+            for (int k = 0; k < rows; ++k)
+                weight += weight_of_row<Kernel, D>(dp, support, distance + (k + 0.5) * dp);
+            return weight;
+        };
+        // The slope in front of a wall is what its share loses on the way.
+        const double slope = (wall(0.0) - wall(0.25 * dp)) / (0.25 * dp);
+        return {2.0 * wall(0.475 * dp), 2.0 * wall(0.35 * dp), weight_of_slope / slope};
+    }
+};
+
 /// What the first row of a face sees of another one when nothing fits between them any more: a gap
 /// of one spacing.
 template <class Kernel, int D>

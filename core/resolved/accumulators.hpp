@@ -32,17 +32,20 @@ struct ContinuityAccumulators {
     Mat<T, D> velocity_gradient;
     Sym<T, D> moment;
     Vec<T, D> concentration_gradient, surface_gradient;
-    T concentration{};   // sum of rest volumes times W
-    T wall_share{};      // of walls in it
-    Largest<T> surface;  // of the neighbours' free-surface indicators
-    Largest<T> at_body;  // 1: one that moves is in reach
+    T concentration{};  // sum of rest volumes times W
+    T wall_share{};     // of walls in it
+    Vec<T, D> wall_gradient;
+    T film_share{}, film_pressure{};  // of what other faces cover of them, see WallState
+    Largest<T> surface;               // of the neighbours' free-surface indicators
+    Largest<T> at_body;               // 1: one that moves is in reach
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.density_rate...), f(self.sliding_rate...), f(self.sliding_size...);
         f(self.power...), f(self.velocity_gradient...), f(self.moment...);
         f(self.concentration_gradient...), f(self.surface_gradient...);
-        f(self.concentration...), f(self.wall_share...), f(self.surface...), f(self.at_body...);
+        f(self.concentration...), f(self.wall_share...), f(self.wall_gradient...);
+        f(self.film_share...), f(self.film_pressure...), f(self.surface...), f(self.at_body...);
     }
 };
 
@@ -313,7 +316,10 @@ DOSEKI_FN void add_wall(ContinuityAccumulators<T, D>& sums, const FlowConstants&
     const Vec<T, D> jump =
         shear * contact.sliding - (T(2) * contact.approach) * contact.seen.normal;
     add_gradients(sums, pair.r_ij, VF, jump);
-    sums.wall_share += w.volume * Kernel::value(pair.r, inverse_support);
+    const T share = w.volume * Kernel::value(pair.r, inverse_support), film = share * w.film_cover;
+    sums.wall_share += share;
+    sums.film_share += film, sums.film_pressure += film * w.pressure;
+    for (int a = 0; a < D; ++a) sums.wall_gradient[a] += VF * pair.r_ij[a];
     sums.at_body.take(select(VF < T(0), w.bound, T(0)));
 }
 
@@ -348,7 +354,7 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     const Vec<T, D> r_jw = T(-1) * pair.r_ij;
     const auto contact = wall_contact(constants, r_jw, pair.r, j, w);
     const auto forces = wall_forces(constants, contact, r_jw, pair.r, F, j, w);
-    const T share = j.volume * W;
+    const T share = (T(1) - j.in_film) * j.volume * W;
     for (int a = 0; a < D; ++a) {
         sums.force[a] -= j.volume * (forces.pressure[a] + forces.viscous[a]);
         sums.velocity[a] += share * j.v[a];

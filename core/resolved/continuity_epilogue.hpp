@@ -78,10 +78,28 @@ private:
                       dot(state_.pressure_gradient[p], state_.shift[p]) / (c * c);
         if (indicator.is_spray()) rate = std::min(0.0, rate);  // Eq. (147)
         rate += relaxation(at, indicator.normalised_density, strain);
+        const double in_film = state_.in_film[p] = share_in_film(at);
+        if (in_film > 0.0) rate += in_film * (rate_towards_film(at) - rate);
         rate = with_least_density(at, rate);
         summary(p).work.power += part_on_surface(at) + power_of_corrections(at, rate - of_pairs);
         state_.density_rate[p] = rate;
         state_.density[p] = rho + dt_ * rate;
+    }
+
+    /// Eq. (156): of water between faces that leave no room for it.
+    DOSEKI_DEVICE_FN double share_in_film(const Summed& at) const {
+        const Sums& sums = at.sums;
+        if (!(sums.film_share > 0.0)) return 0.0;
+        const Vec<double, D>& gradient = sums.wall_gradient;
+        return std::min(1.0, 2.0 * sums.film_share / sums.wall_share) *
+               model_.narrow_gap.share(sums.wall_share, std::sqrt(dot(gradient, gradient)));
+    }
+
+    /// With which the density goes to that of the film around, in h/c or a step.
+    DOSEKI_DEVICE_FN double rate_towards_film(const Summed& at) const {
+        const double c = model_.constants.c, h = state_.smoothing_length[at.p],
+                     film = at.sums.film_pressure / at.sums.film_share;
+        return (film - pressure(at)) / (c * std::max(h, c * dt_));
     }
 
     /// Whether air comes in under tension: beside a body that moves, and where what has a free

@@ -55,7 +55,8 @@ struct ResolvedModel {
     double lattice_concentration = 1.0, own_concentration = 0.0;  // of that, a particle's own
     double own_gradient_factor = 0.0;                             // of a particle with itself
     double full_cover = 1.0, full_cover_below = 1.0;              // see physics/wall.hpp
-    std::array<double, D + 1> spacing_power{1.0};                 // dp^k
+    NarrowGap narrow_gap;
+    std::array<double, D + 1> spacing_power{1.0};  // dp^k
 
     ResolvedModel(Array<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
@@ -81,6 +82,8 @@ struct ResolvedModel {
         full_cover_below = flow.wide_kernel
                                ? doseki::full_cover_below<WendlandC6<D>, D>(flow.dp, support)
                                : doseki::full_cover_below<WendlandC2<D>, D>(flow.dp, support);
+        narrow_gap = flow.wide_kernel ? NarrowGap::of<WendlandC6<D>, D>(flow.dp, support)
+                                      : NarrowGap::of<WendlandC2<D>, D>(flow.dp, support);
         constants.gradient_scale = 1.0 / lattice.moment;
         own_gradient_factor = flow.wide_kernel ? own_factor<WendlandC6<D>>(constants, support)
                                                : own_factor<WendlandC2<D>>(constants, support);

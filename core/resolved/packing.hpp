@@ -63,6 +63,7 @@ struct FlowPacker {
                                                  state.parted[p]);
         record.pressure_gradient = state.pressure_gradient[p];
         record.correction = kernel_correction(state, p);
+        record.in_film = state.in_film[p];
         return record;
     }
     DOSEKI_DEVICE_FN ShearState<double> sheared(std::size_t p) const {
@@ -125,6 +126,7 @@ private:
         const bool deforms = state.is_point_of(p, BodyKind::deformable);
         record.face = deforms ? Face::none : walls.face[p], record.pressure = walls.pressure[p];
         record.film_density = walls.film_density[p];
+        record.film_cover = walls.film_cover[p];
         record.film_traction = walls.film_traction[p];
         this->wall[p - this->fluid_count] = converted<WallRecord<real, D>>(record);
     }

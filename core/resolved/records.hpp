@@ -9,19 +9,20 @@ template <class T, int D>
 struct FluidFields {
     Vec<T, D> pressure_gradient;
     Sym<T, D> strain;       // symmetric part of the velocity gradient
-    Sym<T, D> correction;   // of kernel gradients, see ResolvedState::correction_excess
+    Sym<T, D> correction;   // of kernel gradients, see kernel_correction
     Vec<T, D> carried;      // L dv, what shifting makes of the velocity
     T volume, rest_volume;  // m/rho, m/rho0
     T rho, p;               // p: with what damps sound
     T mu;                   // molecular and eddy viscosity [Pa s]
     T surface;              // free-surface indicator of the last step
     T resolved_strain;      // rate, as far as viscosity resolves it, Eq. (145) [1/s]
+    T in_film;              // share of it that is part of a film between faces, Eq. (156)
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.pressure_gradient...), f(self.strain...), f(self.correction...);
         f(self.carried...), f(self.volume...), f(self.rest_volume...), f(self.rho...), f(self.p...),
-            f(self.mu...), f(self.surface...), f(self.resolved_strain...);
+            f(self.mu...), f(self.surface...), f(self.resolved_strain...), f(self.in_film...);
     }
 };
 
@@ -37,7 +38,7 @@ struct WallFields {
     T no_slip;  // 1: no slip; 0: the wall pass has the friction
     T bound;    // 1: of a body that moves
     // Of the film between faces, see WallState:
-    T face, pressure, film_density;
+    T face, pressure, film_density, film_cover;
     Vec<T, D> film_traction;
 
     template <class F, class... Self>
@@ -45,7 +46,8 @@ struct WallFields {
         f(self.faces...), f(self.depths...), f(self.g_normal...), f(self.bend...);
         f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.bound...),
             f(self.face...);
-        f(self.pressure...), f(self.film_density...), f(self.film_traction...);
+        f(self.pressure...), f(self.film_density...), f(self.film_cover...),
+            f(self.film_traction...);
     }
 };
 

@@ -23,6 +23,7 @@ struct ResolvedState : Particles<D> {
     FluidField<double> surface;           // free-surface indicator
     FluidField<double> surface_around;    // the largest of the neighbours
     FluidField<double> parted;            // 1: a void that has not closed, Eq. (144)
+    FluidField<double> in_film;           // share that is part of a film, Eq. (156)
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
     FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
@@ -36,7 +37,7 @@ struct ResolvedState : Particles<D> {
         this->for_each_common_field(f);
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
         f("inverse_moment", inverse_moment), f("shift", shift), f("surface", surface);
-        f("surface_around", surface_around), f("parted", parted);
+        f("surface_around", surface_around), f("parted", parted), f("in_film", in_film);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
         f("damping_pressure", damping_pressure);
         if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);

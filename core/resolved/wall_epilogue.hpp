@@ -73,6 +73,7 @@ private:
         WallState<D>& wall = state_.wall;
         wall.film_density[p] = sums.weight > 0.0 ? sums.density / sums.weight : 0.0;
         wall.film_traction[p] = {};
+        wall.film_cover[p] = std::min(1.0, sums.cover / full_cover(p));
         if (sums.cover == 0.0) {
             wall.film_change[p] = 0.0;
             return {};

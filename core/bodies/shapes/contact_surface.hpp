@@ -35,10 +35,12 @@ public:
 
     /// The places that a ball of this radius about x touches: those where the distance of x is
     /// below it. In a hollow each of its sides is one, and no two of them lie on one convex part. A
-    /// point (radius 0) touches where it is inside, one place at most.
-    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const {
-        return with_value(surface_,
-                          [&](const auto& surface) { return surface.touched_by(x, radius); });
+    /// point (radius 0) touches where it is inside, one place at most. `outward`: normal of the
+    /// surface that such a point is a sample of; zero: unknown.
+    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius,
+                                                 const Vec<double, D>& outward = {}) const {
+        return with_value(
+            surface_, [&](const auto& surface) { return surface.touched_by(x, radius, outward); });
     }
 
     /// Whether there is any such place.

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/array.hpp"
+#include "base/box.hpp"
 #include "bodies/rotation.hpp"
 
 namespace doseki {
@@ -47,6 +49,16 @@ DOSEKI_DEVICE_FN Vec<double, D> nearest_on_facet(const Facet<D>& facet, const Ve
         }
         return nearest;
     }
+}
+
+template <int D>
+Array<Box<D>> boxes_of(const Array<Facet<D>>& facets) {
+    Array<Box<D>> boxes;
+    for (const Facet<D>& facet : facets) {
+        boxes.push_back(Box<D>::nowhere());
+        for (const Vec<double, D>& corner : facet) boxes.back().add(corner);
+    }
+    return boxes;
 }
 
 }  // namespace doseki

@@ -20,7 +20,8 @@ public:
 
     DOSEKI_DEVICE_FN double radius() const { return std::numeric_limits<double>::infinity(); }
 
-    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const {
+    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius,
+                                                 const Vec<double, D>& = {}) const {
         SurfacePoints<D> points;
         const auto found = field_->nearest(x);
         if (found.distance < radius) points.add({found.distance, found.normal});

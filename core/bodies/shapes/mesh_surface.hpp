@@ -5,6 +5,7 @@
 
 #include "base/array.hpp"
 #include "bodies/shapes/box_tree.hpp"
+#include "bodies/shapes/facet.hpp"
 #include "bodies/shapes/mesh_corners.hpp"
 #include "bodies/shapes/surface_points.hpp"
 
@@ -19,7 +20,7 @@ public:
 
     /// Corners that facets share must be the same numbers.
     MeshSurface(const Array<Facet<D>>& facets, double thickness)
-        : mesh_(facets), tree_(boxes(facets)), half_(0.5 * thickness) {
+        : mesh_(facets), tree_(boxes_of<D>(facets)), half_(0.5 * thickness) {
         for (const Facet<D>& facet : facets)
             for (const Vec<double, D>& corner : facet)
                 radius_ = std::max(radius_, norm(corner) + half_);
@@ -27,7 +28,8 @@ public:
 
     DOSEKI_DEVICE_FN double radius() const { return radius_; }
 
-    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius) const {
+    DOSEKI_DEVICE_FN SurfacePoints<D> touched_by(const Vec<double, D>& x, double radius,
+                                                 const Vec<double, D>& = {}) const {
         SurfacePoints<D> touched;
         const Foot nearest = nearest_foot(x, radius);
         if (nearest.facet == none) return touched;
@@ -87,15 +89,6 @@ private:
             return square < other.square || (square == other.square && facet < other.facet);
         }
     };
-
-    static Array<Box<D>> boxes(const Array<Facet<D>>& facets) {
-        Array<Box<D>> result;
-        for (const Facet<D>& facet : facets) {
-            result.push_back(Box<D>::nowhere());
-            for (const Vec<double, D>& corner : facet) result.back().add(corner);
-        }
-        return result;
-    }
 
     /// Of a sheet only if it is within reach; what a mesh encloses may lie as deep as it will.
     DOSEKI_DEVICE_FN Foot nearest_foot(const Vec<double, D>& x, double radius) const {

@@ -1,7 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "base/array.hpp"
+#include "bodies/shapes/box_tree.hpp"
 #include "bodies/shapes/contact_surface.hpp"
 
 namespace doseki {
@@ -23,7 +25,8 @@ struct Shape {
     Array<Facet<D>> facets;
     // Points of the surface that may touch another shape; the middles of many balls.
     Array<Vec<double, D>> samples;
-    SharedSurface<D> surface;  // that others touch; none of a ball
+    Array<Vec<double, D>> outward;  // unit normals of the surface there, zero where it has none
+    SharedSurface<D> surface;       // that others touch; none of a ball
 
     DOSEKI_DEVICE_FN bool is_ball() const { return kind == ShapeKind::ball; }
 
@@ -35,6 +38,31 @@ struct Shape {
             surface = SharedSurface<D>::make(ConvexSurface<D>(facets));
         else if (kind == ShapeKind::mesh)
             surface = SharedSurface<D>::make(MeshSurface<D>(facets, thickness));
+        set_outward();
+    }
+
+private:
+    /// At edges and corners the mean of the faces that meet there. A sheet has no outside.
+    void set_outward() {
+        outward.assign(samples.size(), {});
+        if (thickness > 0.0) return;
+        const BoxTree<D> tree(boxes_of<D>(facets));
+        const double near = 1e-6 * radius;
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            Array<Vec<double, D>> normals;
+            double square = near * near;
+            tree.visit_near(samples[k], square, [&](std::uint32_t f) {
+                const Vec<double, D> apart =
+                                         samples[k] - nearest_on_facet<D>(facets[f], samples[k]),
+                                     n = normal_of<D>(facets[f]);
+                const bool counted = std::any_of(normals.begin(), normals.end(),
+                                                 [&](const auto& m) { return dot(m, n) > 0.999; });
+                if (dot(apart, apart) < square && !counted) normals.push_back(n);
+            });
+            Vec<double, D> sum{};
+            for (const Vec<double, D>& n : normals) sum = sum + n;
+            if (const double length = norm(sum); length > 0.1) outward[k] = (1.0 / length) * sum;
+        }
     }
 };
 

@@ -65,6 +65,8 @@ struct ShowPoint {
         const Vec<double, D> lever =
             rigid.shape(k).is_ball() ? Vec<double, D>{} : rotated(poses[k].rotation, all.offset[c]);
         all.position[c] = state.centre + lever;
+        all.outward[c] = rigid.shape(k).is_ball() ? Vec<double, D>{}
+                                                  : rotated(poses[k].rotation, all.own_outward[c]);
         all.velocity[c] = state.velocity + turning_velocity(w, lever);
         all.spin[c] = w, all.removed[c] = state.is_removed();
         all.force[c] = {}, all.torque[c] = {};

@@ -100,6 +100,40 @@ def test_a_block_that_lies_on_a_bed_under_water_is_at_rest():
     assert np.abs(moving_body(run, "velocity")).max() < 1e-5
 
 
+def uplift_after_a_fall(*overrides: str, across: int = 10, dim: int = 2) -> float:
+    """As `uplift`, of a block that has fallen on its bed from 0.3 of its side."""
+    given = f"dim={dim}", f"fall={0.3 * SIDE}", "time_max=1.0"
+    times, force = standing(across, 2.0, *given, *overrides)
+    return float(force[times > 0.5].mean())
+
+
+@pytest.mark.parametrize(("across", "place"), [(6, 0.15), (10, 0.13), (10, 0.15), (10, 0.17)])
+def test_a_block_that_falls_on_a_bed_under_water_lies_on_it(across, place):
+    """The particles that it catches are part of the film then, and do not bear it."""
+    assert uplift_after_a_fall(f"place={place}", across=across) == pytest.approx(1, abs=0.06)
+
+
+@pytest.mark.minutes
+def test_a_cube_that_falls_on_a_bed_under_water_lies_on_it():
+    assert uplift_after_a_fall(across=6, dim=3) == pytest.approx(1, abs=0.03)
+
+
+def test_without_films_what_it_catches_bears_it():
+    assert uplift_after_a_fall(NO_FILM) == pytest.approx(2, abs=0.1)
+
+
+@pytest.mark.parametrize("across", [8, 10, 16])
+def test_a_block_that_has_fallen_on_a_tilted_bed_has_its_friction(across):
+    slides = "width=0.8", "place=0.15", "fall=0.02", "time_max=0.6"
+    assert sliding(across, *slides) == pytest.approx(1, abs=0.06)
+
+
+@pytest.mark.parametrize("across", [6, 8, 10])
+def test_a_block_slides_wherever_it_lies_on_its_bed(across):
+    """With the points of the bed at its edges, it was held there."""
+    assert sliding(across) == pytest.approx(1, abs=0.06)
+
+
 BREAKABLE = """
 fracture = "cohesive"
 tensile_strength = 3e5

@@ -8,7 +8,7 @@ from ...case import Case, Control, Criterion, Curve, Outcome, Value, within
 from ...running import Running
 
 UPLIFT, FLOATS, FRICTION = "uplift", "depth at which it floats", "friction on a tilted bed"
-ON_TERRAIN = "uplift on a terrain"
+ON_TERRAIN, FALLEN = "uplift on a terrain", "uplift after a fall"
 TANK, TERRAIN, BALL = "block-under-water", "block-on-terrain", "ball-under-water"  # scenarios
 UPLIFT_IN = {TANK: UPLIFT, TERRAIN: ON_TERRAIN}
 WATER, STONE = 1000.0, 2000.0  # kg/m3
@@ -16,7 +16,8 @@ SIDE = 0.1  # m, of the block
 SUBMERGED, SHALLOW = 1.5, 0.75  # depth of the water over the side of the block: whole rows at 16
 NO_FILM = "uplift=false"
 SHIFTS = 0.0, 0.25, 0.5  # of a ball against the lattice of the water, spacings
-DEEP = 2.0  # depth of the water over the diameter of a ball
+DEEP = 2.0  # depth of the water over the diameter of a ball, or the side of a block that falls
+FALL = 0.3  # height over the side of a block
 SLOPE, COEFFICIENT = 25.0, 0.3  # degrees; the block slides
 SETTLED, SAMPLES = 0.5, 60  # share of a run after which the film has its pressure
 
@@ -30,6 +31,7 @@ def block(across: float, *overrides: str) -> Outcome:
         FLOATS: Value(SHALLOW, SHALLOW * shallow.values[UPLIFT].number),
         FRICTION: Value(sliding(across, *overrides), 1.0),
         **lifted(across, SUBMERGED, *overrides, name=TERRAIN).values,
+        **fallen(across, *overrides).values,
     }
     times = deep.curves[0].x
     archimedes = Curve("Archimedes", times, np.ones(len(times)))
@@ -41,6 +43,12 @@ def lifted(across: float, depth: float, *overrides: str, name: str = TANK) -> Ou
     times, upward = standing(across, depth, *overrides, name=name)
     curve = Curve(f"{depth:g} deep", times, upward)
     return Outcome({UPLIFT_IN[name]: Value(late(times, upward), 1.0)}, [curve])
+
+
+def fallen(across: float, *overrides: str) -> Outcome:
+    """The late uplift of a block that has caught particles between itself and the bed."""
+    given = f"fall={FALL * SIDE:g}", "time_max=1.0"
+    return Outcome({FALLEN: lifted(across, DEEP, *given, *overrides).values[UPLIFT]})
 
 
 def ball(across: float, *overrides: str) -> Outcome:
@@ -129,12 +137,18 @@ UNDER_WATER = Case(
             (within(0.03),),
             "that of its submerged weight; as it slides, water lifts it by some per cent",
         ),
+        Criterion(
+            FALLEN,
+            (within(0.05),),
+            "Archimedes: the particles that it has caught do not bear it; the water still swings",
+        ),
         Criterion(ON_TERRAIN, (within(0.03),), "Archimedes again: its walls are made for the flow"),
     ),
     axes=("time (s)", "upward force / weight of water displaced"),
     controls=(
         Control("no water between faces", UPLIFT, lambda n: lifted(n, SUBMERGED, NO_FILM)),
         Control("no water between faces", FRICTION, lambda n: rubbed(n, NO_FILM)),
+        Control("no water between faces", FALLEN, lambda n: fallen(n, NO_FILM)),
         Control("no water between faces", ON_TERRAIN, on_terrain_without_film),
     ),
 )

@@ -1,0 +1,83 @@
+"""Blocks that slide: points of the bed at their edges, and a seam of it, do not hold them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.validate.running import Running
+
+G, ANGLE, FRICTION, SIDE = 9.81, np.radians(25), 0.3, 0.1
+TIME = 0.15  # s, of the slide: it goes for a sixth of its side
+
+SLOPE = """
+dim = {dim}
+scheme = "resolved"
+speed_max = 1
+dp = {dp}
+time_max = 0.3
+time_out = 0.3
+gravity = {gravity}
+
+[material.stone]
+based_on = "basalt"
+restitution = 0.2
+friction = 0.3
+"""
+BOX = """
+[body.{name}]
+shape = "box"
+material = "stone"
+fixed = {fixed}
+min = {low}
+max = {high}
+"""
+
+
+def box(name: str, low: list[float], high: list[float], fixed: bool = False) -> str:
+    return BOX.format(name=name, low=low, high=high, fixed=str(fixed).lower())
+
+
+def speed(folder, across, place, *, dim=2, direction=1, seam=False):
+    """Of a block on a dry slope after TIME, over that of the closed form.
+
+    `place`: of its middle against the points of the bed, spacings. `seam`: of two beds, under it.
+    """
+    dp, sides = SIDE / across, [0.3] * (dim - 2)
+    gravity = [direction * G * np.sin(ANGLE), *[0.0] * (dim - 2), -G * np.cos(ANGLE)]
+    end = 0.02 * direction if seam else 0.5
+    ways = [("bed", *sorted((-0.5 * np.sign(end), end)))]
+    if seam:
+        ways.append(("more", *sorted((end, 0.5 * direction))))
+    text = SLOPE.format(dim=dim, dp=dp, gravity=list(map(float, gravity)))
+    for name, first, last in ways:
+        low, high = [float(first), *[-x for x in sides], -3 * dp], [float(last), *sides, 0.0]
+        text += box(name, low, high, fixed=True)
+    half = [SIDE / 2] * (dim - 2)
+    low = [place * dp - SIDE / 2, *[-x for x in half], 0.0]
+    text += box("block", low, [place * dp + SIDE / 2, *half, SIDE])
+    path = folder / "slope.toml"
+    path.write_text(text)
+    run = Running(str(path))
+    run.advance(TIME)
+    grains = run.grains()
+    slid = grains["velocity"][~grains["fixed"]][0]
+    exact = G * (np.sin(ANGLE) - FRICTION * np.cos(ANGLE)) * TIME
+    assert abs(slid[-1]) < 1e-3 * exact
+    return float(direction * slid[0] / exact)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize(("across", "place"), [(6, 0.0), (6, 0.25), (10, 0.5), (10, 0.0)])
+@pytest.mark.parametrize("seam", [False, True])
+def test_a_block_slides_wherever_it_lies_on_the_points_of_its_bed(
+    tmp_path, across, place, direction, seam
+):
+    """The normals of its sides would take up to 6 % of its speed."""
+    found = speed(tmp_path, across, place, direction=direction, seam=seam)
+    assert found == pytest.approx(1, abs=0.003)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.5])
+def test_a_block_slides_off_a_seam_in_space(tmp_path, place):
+    assert speed(tmp_path, 10, place, dim=3, seam=True) == pytest.approx(1, abs=0.003)
