@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "bodies/contact/touched_places.hpp"
 #include "bodies/contact_points.hpp"
 #include "model/domain.hpp"
 
@@ -52,15 +53,14 @@ DOSEKI_DEVICE_FN std::optional<Overlap<D>> overlap_of(const ContactPointSpans<D>
 
 /// At each place of the solid that the point touches, the nearest first.
 template <int D>
-DOSEKI_DEVICE_FN Overlaps<D> overlaps_of(const ContactPointSpans<D>& points, std::size_t a,
+DOSEKI_DEVICE_FN Overlaps<D> overlaps_of(const ContactBodySpans<D>& bodies, std::size_t a,
                                          const ContactSolid<D>& solid, const Domain<D>& domain) {
+    const ContactPointSpans<D>& points = bodies.points;
     const Vec<double, D> r = nearest_image(domain, points.position[a] - solid.centre);
     const double radius = points.radius[a], around = solid.surface->radius() + radius;
     Overlaps<D> overlaps;
     if (dot(r, r) >= around * around) return overlaps;
-    const Vec<double, D> outward = rotated_back(solid.rotation, points.outward[a]);
-    for (const SurfacePoint<D>& place :
-         solid.surface->touched_by(rotated_back(solid.rotation, r), radius, outward)) {
+    for (const SurfacePoint<D>& place : touched_places(bodies, a, solid, r, domain)) {
         Overlap<D> overlap{
             radius - place.distance, -1.0 * rotated(solid.rotation, place.normal), {}, {}};
         overlap.lever_a = (radius - 0.5 * overlap.depth) * overlap.normal;

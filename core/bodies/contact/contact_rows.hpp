@@ -89,7 +89,7 @@ DOSEKI_DEVICE_FN Overlaps<D> ContactRows<D>::overlaps(std::size_t k) const {
         if (const Surface<D>* surface = bodies.surface(pair))
             return overlap_of(bodies.points, pair.first(), *surface, contacts[k].vertex, domain);
     if (!pair.with_shape()) return overlap_of(bodies.points, pair.first(), pair.second(), domain);
-    return overlaps_of(bodies.points, pair.first(), bodies.solids[pair.shape()], domain);
+    return overlaps_of(bodies, pair.first(), bodies.solids[pair.shape()], domain);
 }
 
 template <int D>
