@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "bodies/contact/touched_places.hpp"
 #include "bodies/contact_points.hpp"
+#include "bodies/touched_places.hpp"
 #include "model/domain.hpp"
 
 namespace doseki {
