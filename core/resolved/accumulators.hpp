@@ -17,7 +17,9 @@ struct FlowConstants {
     double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
     double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
     ViscousForm<double> form;
-    double roughest = 0.0;  // rate at which a fluid pair damps over that of Morris' form, Eq. (154)
+    // Rates at which fluid pairs, and the strongest of a particle, damp over that of Morris' form,
+    // Eq. (154).
+    double roughest = 0.0, nearest = 0.0;
     double suction = 0.0;   // that water at bodies bears, Eq. (85) [Pa]
     bool harmonic = false;  // see pair_viscosity
 };
@@ -52,11 +54,12 @@ struct ContinuityAccumulators {
 /// And for its forces.
 template <class T, int D>
 struct ForceAccumulators {
-    Vec<T, D> force;     // of viscosity, dissipation and shifting, over V_i/2
-    Vec<T, D> traction;  // of beds with friction, over V_i
-    T power{};           // that pairs dissipate, over V_i
-    T made_power{};      // that shifting and walls make, over V_i
-    T viscous_rate{};    // at which viscosity damps the roughest motion, times rho_i
+    Vec<T, D> force;          // of viscosity, dissipation and shifting, over V_i/2
+    Vec<T, D> traction;       // of beds with friction, over V_i
+    T power{};                // that pairs dissipate, over V_i
+    T made_power{};           // that shifting and walls make, over V_i
+    T viscous_rate{};         // at which viscosity damps the roughest motion, times rho_i
+    Largest<T> viscous_pair;  // coefficient of one pair in it
     Vec<T, D> pressure_gradient, concentration_gradient;
     Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
     T concentration{};             // of fluid: sum of rest volumes times W
@@ -64,7 +67,7 @@ struct ForceAccumulators {
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.traction...), f(self.power...), f(self.made_power...);
-        f(self.viscous_rate...);
+        f(self.viscous_rate...), f(self.viscous_pair...);
         f(self.pressure_gradient...), f(self.concentration_gradient...);
         f(self.corrected_gradient...), f(self.concentration...);
     }
@@ -294,7 +297,9 @@ DOSEKI_FN void add_fluid(ForceAccumulators<T, D>& sums, const FlowConstants& con
         sums.made_power += exchanged * v_ij[a];
     }
     sums.power -= VF * (mu * dot(viscous, v_ij) - extra * v_dot_r);
-    sums.viscous_rate -= number<T>(constants.roughest) * VF * mu;
+    const T damping = T(-1) * VF * mu, itself = number<T>(1e-6 * constants.dp);
+    sums.viscous_rate += number<T>(constants.roughest) * damping;
+    sums.viscous_pair.take(select(pair.r > itself, damping, T(0)));
     sums.concentration += j.rest_volume * W;
     add_gradients(sums, pair.r_ij, VF, i.p - j.p, j.correction * pair.r_ij);
 }

@@ -21,8 +21,10 @@ namespace doseki {
 inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest = 1000.0;
 
 /// The rate at which viscosity damps the motion in which neighbours go against each other, over the
-/// sum of its coefficients at one particle: 1.38 on a square lattice, 1.18 on a cubic one.
-inline constexpr double roughest_over_own = 1.5;
+/// sum of its coefficients at one particle, and what the largest of these adds to it: 1.38 of the
+/// sum on a square lattice, 1.18 on a cubic one. Of two particles that nearly meet it is twice
+/// their own coefficient and once the others.
+inline constexpr double roughest_over_own = 1.4, nearest_over_own = 0.6;
 
 /// The time over which Voellmy's friction takes the mean of the normal stress on a bed, over the
 /// time that sound takes through the depth of which that stress is the weight.
@@ -90,8 +92,9 @@ struct ResolvedModel {
         constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);
         constants.form = flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}
                                               : ViscousForm<double>{1.0, 0.0};
-        constants.roughest =
-            2.0 * roughest_over_own * (constants.form.along_jump + constants.form.along_pair / D);
+        const double directions = constants.form.along_jump + constants.form.along_pair / D;
+        constants.roughest = 2.0 * roughest_over_own * directions;
+        constants.nearest = 2.0 * nearest_over_own * directions;
     }
 
     template <class Kernel>

@@ -36,7 +36,8 @@ struct FlowTimestep {
         return {model.options,
                 model.constants.c,
                 h,
-                (sums.viscous_rate - own) / fields.rho,
+                (sums.viscous_rate - own + model.constants.nearest * sums.viscous_pair.value) /
+                    fields.rho,
                 std::min(dot(v, v), reach * reach * gradient),
                 dot(a, a)};
     }

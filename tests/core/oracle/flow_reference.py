@@ -37,7 +37,8 @@ LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
 SHIFT_FASTEST = 0.05  # over the sound speed
-ROUGHEST = 1.5  # rate of the motion that viscosity damps most, over the sum of its coefficients
+# Rate of the motion that viscosity damps most: shares of the sum of coefficients, of the largest.
+ROUGHEST, NEAREST = 1.4, 0.6
 STABLE = 0.9  # that rate over 1/dt
 SHIFT_RATE = 0.0075  # at most, of the strain that drives it, over the time step of sound
 
@@ -465,7 +466,9 @@ class FlowReference:
         """At which viscosity among fluid damps neighbours that go against each other."""
         along = 1 if self.options.viscosity == "morris" else (self.dim + 2) / self.dim
         VF = self.volume[None] * self.ff.F * (self.ff.r > 0)
-        return -2 * ROUGHEST * along * (VF * self._pair_viscosity()).sum(axis=1) / self.rho
+        pairs = -VF * self._pair_viscosity()
+        rate = ROUGHEST * pairs.sum(axis=1) + NEAREST * pairs.max(axis=1)
+        return 2 * along * rate / self.rho
 
     def _exchange(self, rho: np.ndarray) -> np.ndarray:
         """Force over volume by which neighbours make up for each other's shifting."""
