@@ -6,16 +6,16 @@
 
 namespace doseki {
 
-/// Whether x lies in a fixed solid other than these two bodies.
+/// Whether x lies in a fixed convex solid other than these two bodies.
 template <int D>
 DOSEKI_DEVICE_FN bool is_covered(const ContactBodySpans<D>& bodies, const Vec<double, D>& x,
-                                 std::int32_t one, std::int32_t other, const Domain<D>& domain) {
+                                      std::int32_t one, std::int32_t other,
+                                      const Domain<D>& domain) {
     for (const ContactSolid<D>& solid : bodies.solids) {
         if (!solid.fixed || solid.removed || solid.body == one || solid.body == other) continue;
         const Vec<double, D> r = nearest_image(domain, x - solid.centre);
         const double radius = solid.surface->radius();
-        if (dot(r, r) < radius * radius &&
-            solid.surface->is_touched_by(rotated_back(solid.rotation, r), 0.0))
+        if (dot(r, r) < radius * radius && solid.surface->holds(rotated_back(solid.rotation, r)))
             return true;
     }
     return false;
@@ -32,23 +32,21 @@ DOSEKI_DEVICE_FN SurfacePoints<D> touched_places(const ContactBodySpans<D>& bodi
     const ContactPointSpans<D>& points = bodies.points;
     const Vec<double, D> x = rotated_back(solid.rotation, r);
     Vec<double, D> outward = points.outward[a];
-    auto touched = [&] {
-        return solid.surface->touched_by(x, points.radius[a],
-                                         rotated_back(solid.rotation, outward));
-    };
-    const SurfacePoints<D> places = touched();
-    const bool fixed = solid.fixed || points.fixed[a];
-    if (!fixed || places.empty() || dot(outward, outward) == 0.0) return places;
-    const Vec<double, D> n = rotated(solid.rotation, places[0].normal);
-    if (-dot(n, outward) > against) return places;
-    const double step = beyond * solid.surface->radius();
-    const Vec<double, D> out =
-        solid.fixed ? (step - places[0].distance) * n : -step * (n + outward);
-    if (!is_covered(bodies, points.position[a] + out, solid.body, points.body[a], domain))
-        return places;
-    outward = outward - dot(n, outward) * n;
-    if (const double size = norm(outward); size > 0.0) outward = (1.0 / size) * outward;
-    return touched();
+    for (bool again = false;; again = true) {
+        const SurfacePoints<D> places =
+            solid.surface->touched_by(x, points.radius[a], rotated_back(solid.rotation, outward));
+        const bool fixed = solid.fixed || points.fixed[a];
+        if (again || !fixed || places.empty() || dot(outward, outward) == 0.0) return places;
+        const Vec<double, D> n = rotated(solid.rotation, places[0].normal);
+        if (-dot(n, outward) > against) return places;
+        const double step = beyond * solid.surface->radius();
+        const Vec<double, D> out =
+            solid.fixed ? (step - places[0].distance) * n : -step * (n + outward);
+        if (!is_covered(bodies, points.position[a] + out, solid.body, points.body[a], domain))
+            return places;
+        outward = outward - dot(n, outward) * n;
+        if (const double size = norm(outward); size > 0.0) outward = (1.0 / size) * outward;
+    }
 }
 
 }  // namespace doseki

@@ -17,8 +17,7 @@ struct FlowConstants {
     double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
     double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
     ViscousForm<double> form;
-    // Rates at which fluid pairs, and the strongest of a particle, damp over that of Morris' form,
-    // Eq. (154).
+    // Rates of fluid pairs and of the strongest over that of Morris' form, Eq. (154).
     double roughest = 0.0, nearest = 0.0;
     double suction = 0.0;   // that water at bodies bears, Eq. (85) [Pa]
     bool harmonic = false;  // see pair_viscosity
@@ -188,9 +187,9 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     const FacedWall<T, D>& seen = contact.seen;
     const T c = number<T>(constants.c);
     const Vec<T, D> at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
-    // Air comes in on a free surface and at bodies that move: a wall pulls at what leaves it no
-    // harder than pores do.
-    const T vented = select(i.surface > number<T>(FreeSurfaceIndicator::surface), T(1), w.bound);
+    // Air comes in on free surfaces and at bodies that move: walls pull no harder than pores do.
+    const T vented =
+        select(i.surface > number<T>(FreeSurfaceIndicator::surface), T(1), w.inverse_density);
     const T least =
         select(vented > T(0), min(T(0), number<T>(-constants.suction) - i.p), T(-c * c) * i.rho);
     const T solved = approach_pressure(T(-2) * contact.pushes * dot(contact.v_iw, at_foot), i.rho,
@@ -206,7 +205,8 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     forces.viscous = scale * (extra * across - mu_wall * contact.sliding);
     forces.power =
         scale * (mu_wall * dot(contact.sliding, contact.v_iw) - extra * dot(across, contact.v_iw));
-    forces.viscous_rate = scale * mu_wall;
+    // The fluid and a light body take the same impulse, and the body goes faster by it.
+    forces.viscous_rate = scale * mu_wall * max(T(1), number<T>(1.5) * i.rho * w.inverse_density);
     forces.made = dot(forces.pressure, contact.v_iw) +
                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return forces;
@@ -325,7 +325,7 @@ DOSEKI_FN void add_wall(ContinuityAccumulators<T, D>& sums, const FlowConstants&
     sums.wall_share += share;
     sums.film_share += film, sums.film_pressure += film * w.pressure;
     for (int a = 0; a < D; ++a) sums.wall_gradient[a] += VF * pair.r_ij[a];
-    sums.at_body.take(select(VF < T(0), w.bound, T(0)));
+    sums.at_body.take(select(VF < T(0), w.inverse_density, T(0)));
 }
 
 /// What it adds to its force.

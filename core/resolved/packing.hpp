@@ -121,7 +121,7 @@ private:
         record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
                                           : (1.0 - walls.cut[p]) * model.spacing_power[D];
         record.no_slip = model.wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
-        record.bound = state.is_bound(p) ? 1.0 : 0.0;
+        record.inverse_density = state.is_bound(p) ? 1.0 / state.density[p] : 0.0;
         // Areas of faces are those of a body that keeps its shape.
         const bool deforms = state.is_point_of(p, BodyKind::deformable);
         record.face = deforms ? Face::none : walls.face[p], record.pressure = walls.pressure[p];

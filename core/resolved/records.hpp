@@ -35,8 +35,8 @@ struct WallFields {
     Sym<T, D> bend;      // of the surface, see WallState
     Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
     T volume;
-    T no_slip;  // 1: no slip; 0: the wall pass has the friction
-    T bound;    // 1: of a body that moves
+    T no_slip;          // 1: no slip; 0: the wall pass has the friction
+    T inverse_density;  // of a body that moves, else 0
     // Of the film between faces, see WallState:
     T face, pressure, film_density, film_cover;
     Vec<T, D> film_traction;
@@ -44,7 +44,7 @@ struct WallFields {
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.faces...), f(self.depths...), f(self.g_normal...), f(self.bend...);
-        f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.bound...),
+        f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.inverse_density...),
             f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_cover...),
             f(self.film_traction...);

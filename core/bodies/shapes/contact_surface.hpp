@@ -49,6 +49,12 @@ public:
                           [&](const auto& surface) { return surface.is_touched_by(x, radius); });
     }
 
+    /// Whether x is inside of what is convex.
+    DOSEKI_DEVICE_FN bool holds(const Vec<double, D>& x) const {
+        const auto* convex = std::get_if<ConvexSurface<D>>(&surface_);
+        return convex && convex->holds(x);
+    }
+
 private:
     std::variant<ConvexSurface<D>, MeshSurface<D>, GroundSurface<D>> surface_;
 };

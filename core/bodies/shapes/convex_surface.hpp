@@ -33,6 +33,12 @@ public:
         return !touched_by(x, radius).empty();
     }
 
+    DOSEKI_DEVICE_FN bool holds(const Vec<double, D>& x) const {
+        for (const Facet<D>& facet : facets_)
+            if (!(dot(x - facet[0], normal_of<D>(facet)) < 0.0)) return false;
+        return true;
+    }
+
     /// Exact outside and inside. A sample inside has come in through the facet by which the way
     /// back into its own body leaves first. That is not the nearest facet wherever a sample is
     /// nearer to an edge than it is deep: those of a plane bed would hold back a block that slides
