@@ -9,8 +9,7 @@ namespace doseki {
 /// Whether x lies in a fixed convex solid other than these two bodies.
 template <int D>
 DOSEKI_DEVICE_FN bool is_covered(const ContactBodySpans<D>& bodies, const Vec<double, D>& x,
-                                      std::int32_t one, std::int32_t other,
-                                      const Domain<D>& domain) {
+                                 std::int32_t one, std::int32_t other, const Domain<D>& domain) {
     for (const ContactSolid<D>& solid : bodies.solids) {
         if (!solid.fixed || solid.removed || solid.body == one || solid.body == other) continue;
         const Vec<double, D> r = nearest_image(domain, x - solid.centre);
