@@ -85,7 +85,7 @@ material = "chalk"
 kinematics = "breakable"
 centre = [0, 0.06]
 radius = 0.05
-velocity = [0, -5]
+velocity = [0, -6]
 """
 
 
