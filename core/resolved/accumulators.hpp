@@ -38,7 +38,7 @@ struct ContinuityAccumulators {
     Vec<T, D> wall_gradient;
     T film_share{}, film_pressure{};  // of what other faces cover of them, see WallState
     Largest<T> surface;               // of the neighbours' free-surface indicators
-    Largest<T> at_body;               // 1: one that moves is in reach
+    Largest<T> at_body;               // above 0: one that moves is in reach
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {

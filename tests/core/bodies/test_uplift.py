@@ -8,11 +8,13 @@ import pytest
 from doseki.scenario.start import start_text
 from doseki.validate.cases.grains.under_water import (
     BALL,
+    FALLEN,
     NO_FILM,
     SIDE,
     SUBMERGED,
     UPLIFT,
     ball,
+    fallen,
     flow_force,
     moving_body,
     sliding,
@@ -101,10 +103,8 @@ def test_a_block_that_lies_on_a_bed_under_water_is_at_rest():
 
 
 def uplift_after_a_fall(*overrides: str, across: int = 10, dim: int = 2) -> float:
-    """As `uplift`, of a block that has fallen on its bed from 0.3 of its side."""
-    given = f"dim={dim}", f"fall={0.3 * SIDE}", "time_max=1.0"
-    times, force = standing(across, 2.0, *given, *overrides)
-    return float(force[times > 0.5].mean())
+    """As `uplift`, of a block that has fallen on its bed."""
+    return fallen(across, f"dim={dim}", *overrides).values[FALLEN].number
 
 
 @pytest.mark.parametrize(("across", "place"), [(6, 0.15), (10, 0.13), (10, 0.15), (10, 0.17)])

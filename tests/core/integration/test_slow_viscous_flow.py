@@ -64,6 +64,18 @@ velocity = {velocity}
 """
 
 
+def energies(folder, text, steps):
+    """Kinetic energy of a scenario after each of its first steps."""
+    path = folder / "case.toml"
+    path.write_text(text)
+    simulation, _ = build_simulation(load_scenario(path))
+    found = []
+    for _ in range(steps):
+        simulation.advance(limit=np.inf, pause=np.inf, max_steps=1)
+        found.append(simulation.totals()["kinetic_energy"])
+    return found
+
+
 @pytest.mark.parametrize("angle", [0.0, 0.5])
 @pytest.mark.parametrize("apart", [0.05, 0.3, 1.0])
 @pytest.mark.parametrize("dim", [2, 3])
@@ -82,13 +94,7 @@ def test_two_particles_of_a_viscous_liquid_come_to_rest(core, tmp_path, dim, apa
         text += PARTICLE.format(
             name=name, low=corners[0], high=corners[1], velocity=velocity.tolist()
         )
-    path = tmp_path / "two.toml"
-    path.write_text(text)
-    simulation, _ = build_simulation(load_scenario(path))
-    energy = []
-    for _ in range(20):
-        simulation.advance(limit=np.inf, pause=np.inf, max_steps=1)
-        energy.append(simulation.totals()["kinetic_energy"])
+    energy = energies(tmp_path, text, steps=20)
     assert energy[-1] < 1e-3 * energy[0]
 
 
@@ -133,12 +139,6 @@ def test_a_light_ball_in_a_thick_liquid_comes_to_rest(core, tmp_path, dim, acros
     axes = ", ".join(f'"{axis}"' for axis in "xyz"[:dim])
     periodic = f"periodic = [{axes}]\ndomain_min = {[0.0] * dim}\ndomain_max = {[side] * dim}\n"
     text = TWO.replace("[material", periodic + "[material") + BALL
-    path = tmp_path / "ball.toml"
-    path.write_text(text.format(dim=dim, **values))
-    simulation, _ = build_simulation(load_scenario(path))
-    energy = []
-    for _ in range(120):
-        simulation.advance(limit=np.inf, pause=np.inf, max_steps=1)
-        energy.append(simulation.totals()["kinetic_energy"])
+    energy = energies(tmp_path, text.format(dim=dim, **values), steps=120)
     assert max(energy[1:]) < 1.001 * energy[0]
     assert energy[-1] < 0.2 * energy[0]
