@@ -95,9 +95,11 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
         const PairContact& contact = contacts_[k];
         // Points of deformable bodies move each on its own, but on a light ball press many.
-        const double together = contact.law.rigid                         ? at(contact)
-                                : is_light_ball(bodies.points, pairs_[k]) ? 4.0
-                                                                          : 1.0;
+        const double points = contact.law.rigid                         ? at(contact)
+                              : is_light_ball(bodies.points, pairs_[k]) ? 4.0
+                                                                        : 1.0;
+        const Together together =
+            contact.joint ? JointContacts::together(points) : Together{points, points};
         double& step = of(kind_of(k)).timestep;
         step = std::min(step, contact.law.timestep(laws_.speed(), together));
     }
@@ -121,6 +123,7 @@ void Contacts<D>::select(const ContactBodies<D>& bodies, PairKind kind) {
         if (bodies.solid(pairs_[k])) on_solids.push_back(k);
         if (bodies.surface(pairs_[k])) selection.on_surfaces.push_back(k);
     }
+    selection.joint = JointContacts(selection.rows, contacts_);
     selection.on_solids = PushesOnSolids(std::move(on_solids), pairs_);
     selection.points = ShownPoints(points_of(pairs), bodies.points);
     list_pushes(selection);
@@ -178,7 +181,10 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     }
     if (pair.with_shape()) {
         const ContactSolid<D>& solid = bodies.solids[pair.shape()];
-        return {first, solid.body, laws_.between(a, solid.side()), 0.0};
+        PairContact contact{first, solid.body, laws_.between(a, solid.side()), 0.0};
+        // A ball pushes a fixed solid at one place, in line with its centre.
+        contact.joint = contact.law.rigid && (a.radius == 0.0 || !solid.fixed);
+        return contact;
     }
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};
 }

@@ -40,6 +40,11 @@ struct RelativeMotion {
     Vec3 velocity, spin;
 };
 
+/// Springs and dashpots over those of one contact of the whole masses of two bodies.
+struct Together {
+    double springs = 1.0, dashpots = 1.0;
+};
+
 /// The law of one pair, eqs. (42) to (50).
 struct ContactLaw {
     bool hertz;        // otherwise a linear spring
@@ -56,20 +61,19 @@ struct ContactLaw {
 
     DOSEKI_DEVICE_FN double curvature() const { return radius > 0.0 ? radius : 0.5 * diameter; }
 
-    /// That resolves a collision at this speed, and is stable where two bodies touch at `points`
-    /// points at once, whose springs and dashpots add up.
-    double timestep(double speed, double points) const;
+    /// That resolves a collision at this speed, and is stable where several springs and dashpots
+    /// push together.
+    double timestep(double speed, const Together& together) const;
 
     /// Energy of the springs, without that of rolling, where the overlap beyond that of rest is
     /// `pressed`.
     DOSEKI_DEVICE_FN double stored(const ContactSprings& springs, double pressed) const;
 
-    /// n points away from the first body. Overlaps below that of rest do not press, and take it
-    /// with them, Eq. (115).
+    /// n points away from the first body, and the dashpot brakes a mass of `braked`. Overlaps below
+    /// that of rest do not press, and take it with them, Eq. (115).
     DOSEKI_DEVICE_FN ContactAction act(ContactSprings& springs, double overlap, const Vec3& n,
-                                       const RelativeMotion& motion, double dt) const;
-
-private:
+                                       const RelativeMotion& motion, double braked,
+                                       double dt) const;
     DOSEKI_DEVICE_FN NormalSpring normal_spring(double overlap) const;
 };
 
@@ -112,11 +116,12 @@ DOSEKI_DEVICE_FN inline Vec3 turned_with(const Vec3& n, const ContactSprings& sp
     return after > 0.0 ? (before / after) * stretch : stretch;
 }
 
-inline double ContactLaw::timestep(double speed, double points) const {
+inline double ContactLaw::timestep(double speed, const Together& together) const {
     const CollisionEstimate collision = hertz ? hertz_collision(stiffness, curvature(), mass, speed)
                                               : linear_collision(stiffness, mass, speed);
     constexpr double frequency = 4.0;  // of one spring, over the time of a collision, at most
-    const double fastest = frequency * std::max(2.0 * zeta * points, std::sqrt(points));
+    const double fastest =
+        frequency * std::max(2.0 * zeta * together.dashpots, std::sqrt(together.springs));
     return collision.time / std::max(steps, fastest);
 }
 
@@ -136,11 +141,11 @@ DOSEKI_DEVICE_FN inline double ContactLaw::stored(const ContactSprings& springs,
 
 DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap,
                                                       const Vec3& n, const RelativeMotion& motion,
-                                                      double dt) const {
+                                                      double braked, double dt) const {
     const double approach = dot(motion.velocity, n);
     springs[rest_overlap] = min(springs[rest_overlap], overlap);
     const NormalSpring spring = normal_spring(overlap - springs[rest_overlap]);
-    const double damping = contact_damping(hertz, zeta, spring.stiffness, mass);
+    const double damping = contact_damping(hertz, zeta, spring.stiffness, braked);
     const double normal = normal_force(spring, damping, approach);
     const double along = tangential * spring.stiffness, dashpot = tangential * damping;
     Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);

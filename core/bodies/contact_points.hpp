@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/array.hpp"
+#include "base/matrix.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/shapes/contact_surface.hpp"
 #include "bodies/surface.hpp"
@@ -29,7 +30,8 @@ struct RowsOfContactPoints {
     Row<std::uint8_t> fixed, removed, deformable, dust;
     Row<std::int32_t> surface;   // of which it is a sample, in ContactBodies; -1: of none
     Row<Vec<double, D>> offset;  // of rigid bodies, in the frame of the body
-    // Normal of the surface that a sample is of, in that frame and in space; zero: unknown.
+    Row<std::int32_t> solid;     // the body, in ContactBodies; -1: none
+    // See Shape::outward, in that frame and in space; zero: unknown.
     Row<Vec<double, D>> own_outward, outward;
     // What the contacts do to them; torque about their own centre.
     Row<Vec<double, D>> force;
@@ -40,8 +42,8 @@ struct RowsOfContactPoints {
         f(self.position...), f(self.velocity...), f(self.spin...), f(self.radius...);
         f(self.mass...), f(self.diameter...), f(self.share...), f(self.body...);
         f(self.material...), f(self.fixed...), f(self.removed...), f(self.deformable...);
-        f(self.dust...), f(self.surface...), f(self.offset...), f(self.own_outward...);
-        f(self.outward...), f(self.force...), f(self.torque...);
+        f(self.dust...), f(self.surface...), f(self.offset...), f(self.solid...);
+        f(self.own_outward...), f(self.outward...), f(self.force...), f(self.torque...);
     }
 };
 
@@ -66,7 +68,7 @@ struct ContactPoints : RowsOfContactPoints<D, Array> {
         this->body.back() = of_body, this->material.back() = side.material;
         this->fixed.back() = side.fixed, this->deformable.back() = side.deformable;
         this->share.back() = side.share, this->dust.back() = side.dust;
-        this->surface.back() = -1;
+        this->surface.back() = this->solid.back() = -1;
     }
 
     ContactSide side(std::size_t k) const {
@@ -87,6 +89,7 @@ struct ContactSolid {
     const ContactSurface<D>* surface = nullptr;
     std::int32_t body = 0, material = 0;
     double mass = 0.0, diameter = 0.0;
+    Mat<double, 3> inverse_inertia{};  // in its own frame; zero of what is fixed
     bool fixed = false, removed = false;
     Vec<double, D> centre{}, velocity{};
     Mat<double, 3> rotation{};
@@ -95,6 +98,13 @@ struct ContactSolid {
     Vec3 torque{};           // about its centre
 
     ContactSide side() const { return {material, 0.0, mass, diameter, fixed, false, true}; }
+    /// What a push along n makes of its speed there, over the push: the inverse of the mass that
+    /// a contact moves [1/kg]. `arm` is from its centre.
+    DOSEKI_DEVICE_FN double mobility(const Vec<double, D>& arm, const Vec<double, D>& n) const {
+        if (fixed) return 0.0;
+        const Vec3 moment = rotated_back(rotation, cross(in_space(arm), in_space(n)));
+        return 1.0 / mass + dot(moment, inverse_inertia * moment);
+    }
 };
 
 /// Two contact points, or a contact point and shape number -1 - b: the solids, then the surfaces.

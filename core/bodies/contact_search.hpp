@@ -127,6 +127,19 @@ private:
     double largest_ = 0.0;
 };
 
+/// Whether a sample is that of a face and touches only what is not convex: of two polygons that
+/// overlap one has a corner in the other.
+template <int D>
+bool is_between_corners(const ContactBodies<D>& bodies, std::size_t point,
+                        const ContactSolid<D>& solid) {
+    constexpr double on_face = 0.999;  // square of the length of a mean of normals, see Shape
+    const std::int32_t own = bodies.points.solid[point];
+    if (D == 3 || own < 0 || !solid.surface->is_convex()) return false;
+    const Vec<double, D>& outward = bodies.points.own_outward[point];
+    return dot(outward, outward) > on_face &&
+           bodies.solids[static_cast<std::size_t>(own)].surface->is_convex();
+}
+
 /// Adds pairs of a contact point and a solid that are nearer than `margin`.
 template <int D>
 void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, double margin,
@@ -139,7 +152,7 @@ void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, d
         if (solid.removed) continue;
         for (const std::uint32_t c : space.near(solid.centre, solid.surface->radius() + margin)) {
             if (points.removed[c] || points.body[c] == solid.body ||
-                (points.fixed[c] && solid.fixed))
+                (points.fixed[c] && solid.fixed) || is_between_corners(bodies, c, solid))
                 continue;
             const Vec<double, D> r = nearest_image(domain, points.position[c] - solid.centre);
             const double reach = points.radius[c] + margin,

@@ -7,6 +7,7 @@
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/contact/contact_rows.hpp"
+#include "bodies/contact/joint_contacts.hpp"
 #include "bodies/contact/pushes_on_solids.hpp"
 #include "bodies/contact/shown_points.hpp"
 #include "bodies/contact_search.hpp"
@@ -108,6 +109,7 @@ private:
         ShownPoints points;
         Array<std::size_t> first_push;  // of each of `points` in pushes_on, and their end
         Array<std::size_t> pushes_on;   // row of the pair, doubled, plus one for its second side
+        JointContacts joint;
         PushesOnSolids on_solids;
         Array<std::size_t> on_surfaces;  // rows of pairs with surfaces of deformable bodies
         double timestep = std::numeric_limits<double>::infinity();

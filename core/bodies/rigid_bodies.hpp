@@ -139,6 +139,7 @@ private:
     BodiesBefore<D> before() { return {velocity_before_, impulse_before_, spin_before_}; }
     /// Whether a body turns about all axes alike, as balls do.
     static bool turns_alike(const Mat<double, 3>& inertia);
+    Mat<double, 3> inverse_of_inertia(std::size_t k) const;
     void restore(const RigidBodyColumns<D>& columns);
 
     Array<RigidBody<D>> bodies_;
@@ -203,6 +204,12 @@ bool RigidBodies<D>::turns_alike(const Mat<double, 3>& I) {
 }
 
 template <int D>
+Mat<double, 3> RigidBodies<D>::inverse_of_inertia(std::size_t k) const {
+    if (!turns_alike_[k]) return inverse_inertia_[k];
+    return (1.0 / bodies_[k].inertia(2, 2)) * identity<double, 3>();
+}
+
+template <int D>
 void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
     for (std::size_t k = 0; k < size(); ++k) {
         const RigidBody<D>& body = bodies_[k];
@@ -217,13 +224,17 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         side.radius = 0.0;
         const bool balls = shape(k).kind == ShapeKind::balls;
         if (balls) side.radius = 0.5 * shape(k).thickness;
-        for (std::size_t n = 0; n < shape(k).samples.size(); ++n)
+        for (std::size_t n = 0; n < shape(k).samples.size(); ++n) {
             contact.points.add(number, side, shape(k).samples[n], shape(k).outward[n]);
+            if (!balls)
+                contact.points.solid.back() = static_cast<std::int32_t>(contact.solids.size());
+        }
         if (balls) continue;
         ContactSolid<D> solid;
         solid.body = number, solid.material = body.material, solid.fixed = body.fixed;
         solid.mass = body.mass, solid.diameter = diameter;
         solid.surface = shape(k).surface.get();
+        if (!body.fixed) solid.inverse_inertia = inverse_of_inertia(k);
         contact.solids.push_back(solid);
     }
 }

@@ -23,6 +23,7 @@ struct PairContact {
     double overlap;
     std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
     double gap = 0.0;          // at least, when pairs were found [m]
+    bool joint = false;        // pushes with others of its two bodies, Eq. (157)
 
     /// How far its sides may come together while points go some way. Vertices of deformable
     /// bodies lie half a spacing beyond them.
@@ -38,6 +39,7 @@ struct PairPush {
     Vec3 torque_a, torque_b;  // on each body about its own centre or point
     double approach = 0.0;    // speed, where the contact begins
     double share = 1.0;       // of the springs
+    double braked = 0.0;      // mass that the dashpot brakes
 };
 
 /// The rows of Contacts, one for each place at which a pair may touch, with the bodies: what a
@@ -63,8 +65,11 @@ struct ContactRows {
     DOSEKI_DEVICE_FN Overlaps<D> overlaps(std::size_t k) const;
     /// 0 where it is not known.
     DOSEKI_DEVICE_FN double gap(std::size_t k, double margin) const;
-    /// Finds what a pair does whose run of rows begins with k, its springs stretching for dt.
+    /// Finds what a pair does whose run of rows begins with k, its springs stretching for dt; of a
+    /// joint one, where it touches.
     DOSEKI_WHOLE_DEVICE_FN void push(std::size_t k, double dt) const;
+    /// The same of one place whose overlap, share and braked mass are known.
+    DOSEKI_DEVICE_FN void push_there(std::size_t k, double dt) const;
     /// The pair of row k does not touch there.
     DOSEKI_DEVICE_FN void part(std::size_t k) const {
         pushes[k].touches = false, contacts[k].overlap = 0.0;
@@ -76,10 +81,13 @@ private:
     DOSEKI_DEVICE_FN void push_balls(std::size_t k, double dt) const {
         const auto overlap = overlap_of(bodies.points, pairs[k].first(), pairs[k].second(), domain);
         if (!overlap) return part(k);
-        pushes[k] = push_at(k, *overlap, dt, 1.0);
+        touch(k, *overlap, 1.0), push_there(k, dt);
     }
-    DOSEKI_DEVICE_FN PairPush<D> push_at(std::size_t k, const Overlap<D>& overlap, double dt,
-                                         double share) const;
+    DOSEKI_DEVICE_FN void touch(std::size_t k, const Overlap<D>& overlap, double share) const {
+        pushes[k] = {};
+        pushes[k].touches = true, pushes[k].overlap = overlap;
+        pushes[k].share = share, pushes[k].braked = contacts[k].law.mass;
+    }
 };
 
 template <int D>
@@ -123,16 +131,18 @@ DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const
     for (std::size_t n = k; n < k + rows; ++n) pushes[n] = {}, contacts[n].overlap = 0.0;
     for (std::size_t place = 0; place < std::min(found.size(), rows); ++place) {
         const std::size_t n = k + row[place];
-        pushes[n] = push_at(n, found[place], dt, share[place]);
+        touch(n, found[place], share[place]);
+        if (!contacts[n].joint) push_there(n, dt);
     }
     for (std::size_t n = k; n < k + rows; ++n)
         if (!pushes[n].touches) part(n);
 }
 
 template <int D>
-DOSEKI_DEVICE_FN PairPush<D> ContactRows<D>::push_at(std::size_t k, const Overlap<D>& overlap,
-                                                     double dt, double share) const {
+DOSEKI_DEVICE_FN void ContactRows<D>::push_there(std::size_t k, double dt) const {
     PairContact& contact = contacts[k];
+    PairPush<D>& push = pushes[k];
+    const Overlap<D>& overlap = push.overlap;
     const bool begins = dot(normals[k], normals[k]) == 0.0;
     normals[k] = overlap.normal;
     const ContactPointSpans<D>& points = bodies.points;
@@ -141,21 +151,17 @@ DOSEKI_DEVICE_FN PairPush<D> ContactRows<D>::push_at(std::size_t k, const Overla
     const Vec<double, D> v_a =
                              points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
                          v_b = b.velocity + turning_velocity(b.spin, overlap.lever_b);
-    ContactAction on_a = contact.law.act(springs[k], overlap.depth, in_space(overlap.normal),
-                                         {in_space(v_a - v_b), points.spin[a] - b.spin}, dt);
+    ContactAction on_a =
+        contact.law.act(springs[k], overlap.depth, in_space(overlap.normal),
+                        {in_space(v_a - v_b), points.spin[a] - b.spin}, push.braked, dt);
     contact.overlap = overlap.depth - springs[k][rest_overlap];
-    on_a.force = share * on_a.force, on_a.moment = share * on_a.moment;
+    on_a.force = push.share * on_a.force, on_a.moment = push.share * on_a.moment;
     auto torque = [&](const Vec<double, D>& lever) {
         return cross(in_space(lever), on_a.force) + on_a.moment;
     };
-    const double approach = begins ? dot(v_a - v_b, overlap.normal) : 0.0;
-    return {true,
-            overlap,
-            in_run<D>(on_a.force),
-            torque(overlap.lever_a),
-            -1.0 * torque(overlap.lever_b),
-            std::max(0.0, approach),
-            share};
+    push.force = in_run<D>(on_a.force);
+    push.torque_a = torque(overlap.lever_a), push.torque_b = -1.0 * torque(overlap.lever_b);
+    push.approach = begins ? std::max(0.0, dot(v_a - v_b, overlap.normal)) : 0.0;
 }
 
 }  // namespace doseki

@@ -49,6 +49,8 @@ public:
                           [&](const auto& surface) { return surface.is_touched_by(x, radius); });
     }
 
+    bool is_convex() const { return std::holds_alternative<ConvexSurface<D>>(surface_); }
+
     /// Whether x is inside of what is convex.
     DOSEKI_DEVICE_FN bool holds(const Vec<double, D>& x) const {
         const auto* convex = std::get_if<ConvexSurface<D>>(&surface_);

@@ -19,6 +19,7 @@ SHIFTS = 0.0, 0.25, 0.5  # of a ball against the lattice of the water, spacings
 DEEP = 2.0  # depth of the water over the diameter of a ball, or the side of a block that falls
 FALL = 0.3  # height over the side of a block
 SLOPE, COEFFICIENT = 25.0, 0.3  # degrees; the block slides
+PLACES = 1.3 * SIDE, 1.5 * SIDE, 1.7 * SIDE  # of its middle at the start, m
 SETTLED, SAMPLES = 0.5, 60  # share of a run after which the film has its pressure
 
 
@@ -97,8 +98,13 @@ def on_terrain_without_film(across: float) -> Outcome:
 def sliding(across: float, *overrides: str) -> float:
     """Friction of a block that slides under water, over that of its submerged weight.
 
-    From its motion: what its momentum, its weight and the water leave for the contact.
+    The mean over places on the lattice, which scatter by some per cent: sound goes to and fro.
     """
+    return float(np.mean([rubbing(across, f"place={place:g}", *overrides) for place in PLACES]))
+
+
+def rubbing(across: float, *overrides: str) -> float:
+    """The friction from the motion: what momentum, weight and water leave for the contact."""
     tilted = f"tilt={SLOPE:g}", f"friction={COEFFICIENT:g}", f"density={STONE:g}"
     run = Running(TANK, f"across={across:g}", f"side={SIDE:g}", *tilted, *overrides)
     size, gravity = volume(TANK, run.scenario.dim), np.asarray(run.scenario.gravity)
