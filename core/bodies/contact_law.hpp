@@ -144,9 +144,13 @@ DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, d
                                                       double braked, double dt) const {
     const double approach = dot(motion.velocity, n);
     springs[rest_overlap] = min(springs[rest_overlap], overlap);
-    const NormalSpring spring = normal_spring(overlap - springs[rest_overlap]);
+    const double pressed = overlap - springs[rest_overlap];
+    const NormalSpring spring = normal_spring(pressed);
     const double damping = contact_damping(hertz, zeta, spring.stiffness, braked);
-    const double normal = normal_force(spring, damping, approach);
+    // Forces act from half a step before to half a step after. A contact that has begun within the
+    // last step, when what is pressed was not yet there, has lasted for less, or for more.
+    const double lasted = pressed < approach * dt ? 0.5 + pressed / (approach * dt) : 1.0;
+    const double normal = normal_force(spring, damping, lasted * approach);
     const double along = tangential * spring.stiffness, dashpot = tangential * damping;
     Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
     ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,

@@ -5,40 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.validate.running import Running
+from .blocks import box, head, moving, started
 
 G, ANGLE, FRICTION, SIDE = 9.81, np.radians(25), 0.3, 0.1
-BEGIN, TIME = (
-    0.03,
-    0.15,
-)  # s, of the slide, when friction has stretched its spring; to the end it goes for a sixth of its side
-
-SLOPE = """
-dim = {dim}
-scheme = "resolved"
-speed_max = 1
-dp = {dp}
-time_max = 0.3
-time_out = 0.3
-gravity = {gravity}
-
-[material.stone]
-based_on = "basalt"
-restitution = 0.2
-friction = 0.3
-"""
-BOX = """
-[body.{name}]
-shape = "box"
-material = "stone"
-fixed = {fixed}
-min = {low}
-max = {high}
-"""
-
-
-def box(name: str, low: list[float], high: list[float], fixed: bool = False) -> str:
-    return BOX.format(name=name, low=low, high=high, fixed=str(fixed).lower())
+# s: friction has stretched its spring at first; until the end it goes for a sixth of its side
+BEGIN, TIME = 0.03, 0.15
 
 
 def speed(folder, across, place, *, dim=2, direction=1, seam=None):
@@ -53,16 +24,14 @@ def speed(folder, across, place, *, dim=2, direction=1, seam=None):
     ways = [("bed", *sorted((-0.5 * np.sign(end), end)))]
     if seam:
         ways.append(("more", *sorted((end, 0.5 * direction))))
-    text = SLOPE.format(dim=dim, dp=dp, gravity=list(map(float, gravity)))
+    text = head(gravity, dp, friction=FRICTION)
     for name, first, last in ways:
         low, high = [float(first), *[-x for x in sides], -3 * dp], [float(last), *sides, 0.0]
         text += box(name, low, high, fixed=True)
     half = [SIDE / 2] * (dim - 2)
     low = [place * dp - SIDE / 2, *[-x for x in half], 0.0]
     text += box("block", low, [place * dp + SIDE / 2, *half, SIDE])
-    path = folder / "slope.toml"
-    path.write_text(text)
-    run = Running(str(path))
+    run = started(folder, text)
     before, after = velocity(run, BEGIN), velocity(run, TIME)
     exact = G * (np.sin(ANGLE) - FRICTION * np.cos(ANGLE)) * (TIME - BEGIN)
     assert abs(after[-1]) < 1e-3 * exact
@@ -71,8 +40,7 @@ def speed(folder, across, place, *, dim=2, direction=1, seam=None):
 
 def velocity(run, time):
     run.advance(time)
-    grains = run.grains()
-    return np.array(grains["velocity"][~grains["fixed"]][0])
+    return moving(run, "velocity")[0]
 
 
 @pytest.mark.parametrize("direction", [1, -1])
