@@ -42,28 +42,22 @@ public:
     /// Exact outside and inside. A sample inside has come in through the facet by which the way
     /// back into its own body leaves first. That is not the nearest facet wherever a sample is
     /// nearer to an edge than it is deep: those of a plane bed would hold back a block that slides
-    /// over them. Its distance is that of the nearest facet, or a force would begin and end all at
-    /// once.
+    /// over them. What lies over an edge but for rounding is inside as well: blocks that stand on
+    /// one another have their corners there.
     DOSEKI_DEVICE_FN SurfacePoint<D> from(const Vec<double, D>& x,
                                           const Vec<double, D>& outward = {}) const {
         constexpr double infinite = std::numeric_limits<double>::infinity(), along = 1e-6,
                          rounding = 1e-9;
-        SurfacePoint<D> inside{-infinite, {}};
-        Vec<double, D> entered;
+        SurfacePoint<D> inside{-infinite, {}}, entered{infinite, {}};
         double way = infinite;
         for (const Facet<D>& facet : facets_) {
             const Vec<double, D> n = normal_of<D>(facet);
             const double d = dot(x - facet[0], n), against = -dot(n, outward);
             if (d > inside.distance) inside = {d, n};
-            if (against > along && -d < way * against) entered = n, way = -d / against;
+            if (against > along && -d < way * against) entered = {d, n}, way = -d / against;
         }
-        if (inside.distance <= 0.0) {
-            if (!(way < infinite)) return inside;
-            const bool over_edge = dot(entered, inside.normal) < 1.0 - along;
-            // What lies over an edge but for rounding is outside, on whichever side of a body.
-            const bool outside = over_edge && inside.distance > -rounding * radius_;
-            return {outside ? 0.0 : inside.distance, entered};
-        }
+        if (inside.distance <= rounding * radius_ && entered.distance <= 0.0) return entered;
+        if (inside.distance <= 0.0) return inside;
         double nearest_square = infinite;
         Vec<double, D> nearest;
         for (const Facet<D>& facet : facets_) {
