@@ -27,7 +27,8 @@ template <int D>
 DOSEKI_DEVICE_FN SurfacePoints<D> touched_places(const ContactBodySpans<D>& bodies, std::size_t a,
                                                  const ContactSolid<D>& solid,
                                                  const Vec<double, D>& r, const Domain<D>& domain) {
-    constexpr double against = 0.999, beyond = 1e-6;  // of the radius of the solid
+    // Of the radius of the solid; what lies deeper has not come in by its next side either.
+    constexpr double against = 0.999, beyond = 1e-6, deepest = 0.05;
     const ContactPointSpans<D>& points = bodies.points;
     const Vec<double, D> x = rotated_back(solid.rotation, r);
     Vec<double, D> outward = points.outward[a];
@@ -35,6 +36,9 @@ DOSEKI_DEVICE_FN SurfacePoints<D> touched_places(const ContactBodySpans<D>& bodi
         const SurfacePoints<D> places =
             solid.surface->touched_by(x, points.radius[a], rotated_back(solid.rotation, outward));
         const bool fixed = solid.fixed || points.fixed[a];
+        if (again && !places.empty() &&
+            places[0].distance < -deepest * solid.surface->radius())
+            return {};
         if (again || !fixed || places.empty() || dot(outward, outward) == 0.0) return places;
         const Vec<double, D> n = rotated(solid.rotation, places[0].normal);
         if (-dot(n, outward) > against) return places;
