@@ -36,8 +36,7 @@ DOSEKI_DEVICE_FN SurfacePoints<D> touched_places(const ContactBodySpans<D>& bodi
         const SurfacePoints<D> places =
             solid.surface->touched_by(x, points.radius[a], rotated_back(solid.rotation, outward));
         const bool fixed = solid.fixed || points.fixed[a];
-        if (again && !places.empty() &&
-            places[0].distance < -deepest * solid.surface->radius())
+        if (again && !places.empty() && places[0].distance < -deepest * solid.surface->radius())
             return {};
         if (again || !fixed || places.empty() || dot(outward, outward) == 0.0) return places;
         const Vec<double, D> n = rotated(solid.rotation, places[0].normal);

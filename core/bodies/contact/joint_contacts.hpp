@@ -116,8 +116,8 @@ private:
             if (rows.pushes[k].touches) add(k, rows.contacts[which[0]].body_a, middle);
         if (!(middle.force > 0.0)) return;
         middle.divide();
-        const double braked = middle.stiffness / (middle.roots * middle.roots *
-                                                  mobility(which[0], middle));
+        const double braked =
+            middle.stiffness / (middle.roots * middle.roots * mobility(which[0], middle));
         for (const std::size_t k : which) rows.pushes[k].braked = braked;
     }
 

@@ -28,7 +28,7 @@ struct Shape {
     // Mean of the unit normals of the faces there: of length one on a face, shorter at edges and
     // corners, zero where there is no surface.
     Array<Vec<double, D>> outward;
-    SharedSurface<D> surface;       // that others touch; none of a ball
+    SharedSurface<D> surface;  // that others touch; none of a ball
 
     DOSEKI_DEVICE_FN bool is_ball() const { return kind == ShapeKind::ball; }
 
@@ -63,8 +63,7 @@ private:
             });
             Vec<double, D> sum{};
             for (const Vec<double, D>& n : normals) sum = sum + n;
-            if (norm(sum) > 0.1)
-                outward[k] = (1.0 / static_cast<double>(normals.size())) * sum;
+            if (norm(sum) > 0.1) outward[k] = (1.0 / static_cast<double>(normals.size())) * sum;
         }
     }
 };
