@@ -289,6 +289,7 @@ private:
         rigid.show(contact_, points);
         deformable.show(contact_);
     }
+    bool look_ahead(double step);
     void find_contacts() {
         moved_ = 0.0;
         contacts_.find(contact_, margin_);
@@ -296,11 +297,11 @@ private:
     }
     /// Also short against the smallest bodies, at the speed of now and in a fall from rest.
     double contact_step() const { return std::min(longest_step(PairKind::all), deformable_step_); }
+    double fastest() const { return std::max(deformable.max_speed(), rigid.max_speed()); }
     /// The same of contacts of a kind alone.
     double longest_step(PairKind kind) const {
-        const double fastest = std::max(deformable.max_speed(), rigid.max_speed()),
-                     pull = norm(gravity_);
-        return std::min({contacts_.timestep(kind), longest_way_ / std::max(fastest, 1e-300),
+        const double pull = norm(gravity_);
+        return std::min({contacts_.timestep(kind), longest_way_ / std::max(fastest(), 1e-300),
                          std::sqrt(longest_way_ / std::max(pull, 1e-300))});
     }
     /// That of what is deformable and of dust, and of what that may strike.

@@ -24,11 +24,24 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
     return course.given + rigid.sums().since(course.before, gravity_);
 }
 
+/// Looks for contacts where bodies might meet within a step that were not known when its length was
+/// chosen: a step without contacts is much too long for one, whose first overlap would be deep.
+/// Returns whether it did.
+template <int D>
+bool Bodies<D>::look_ahead(double step) {
+    const double way = step * (fastest() + 0.5 * step * norm(gravity_));
+    if (moved_ == 0.0 || 2.0 * (moved_ + way) < margin_) return false;
+    show_bodies(all_points_), find_contacts();
+    return true;
+}
+
 /// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
 template <int D>
 void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
-        const double steps = steps_of(left, contact_step()), step = left / steps;
+        double steps = steps_of(left, contact_step());
+        if (look_ahead(left / steps)) steps = steps_of(left, contact_step());
+        const double step = left / steps;
         drift(0.5 * step);
         follow_walls(walls, t + dt - left, step);
         if (2.0 * moved_ >= margin_)
@@ -88,8 +101,9 @@ double Bodies<D>::step_apart(double shorter) const {
 template <int D>
 void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
-        const double shorter = shorter_step(), longest = step_apart(shorter),
-                     steps = steps_of(left, longest), step = left / steps, now = t + dt - left;
+        double steps = steps_of(left, step_apart(shorter_step()));
+        if (look_ahead(left / steps)) steps = steps_of(left, step_apart(shorter_step()));
+        const double shorter = shorter_step(), step = left / steps, now = t + dt - left;
         if (step <= std::min(shorter, deformable.unstrained_timestep()))
             step_at_once(walls, now, step, course);
         else {
