@@ -31,7 +31,8 @@ struct RowsOfContactPoints {
     Row<std::int32_t> surface;   // of which it is a sample, in ContactBodies; -1: of none
     Row<Vec<double, D>> offset;  // of rigid bodies, in the frame of the body
     Row<std::int32_t> solid;     // the body, in ContactBodies; -1: none
-    // See Shape::outward, in that frame and in space; zero: unknown.
+    Row<std::uint8_t> corner;    // whether it is one of a convex body
+    // Normal of the surface that a sample is of, in that frame and in space; zero: unknown.
     Row<Vec<double, D>> own_outward, outward;
     // What the contacts do to them; torque about their own centre.
     Row<Vec<double, D>> force;
@@ -43,7 +44,8 @@ struct RowsOfContactPoints {
         f(self.mass...), f(self.diameter...), f(self.share...), f(self.body...);
         f(self.material...), f(self.fixed...), f(self.removed...), f(self.deformable...);
         f(self.dust...), f(self.surface...), f(self.offset...), f(self.solid...);
-        f(self.own_outward...), f(self.outward...), f(self.force...), f(self.torque...);
+        f(self.corner...), f(self.own_outward...), f(self.outward...), f(self.force...),
+            f(self.torque...);
     }
 };
 

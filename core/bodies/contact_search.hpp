@@ -127,16 +127,14 @@ private:
     double largest_ = 0.0;
 };
 
-/// Whether a sample is that of a face and touches only what is not convex: of two polygons that
-/// overlap one has a corner in the other.
+/// Whether a sample between corners touches only what is not convex: of two polygons that overlap
+/// one has a corner in the other.
 template <int D>
-bool is_between_corners(const ContactBodies<D>& bodies, std::size_t point,
-                        const ContactSolid<D>& solid) {
-    constexpr double on_face = 0.999;  // square of the length of a mean of normals, see Shape
+bool is_not_needed(const ContactBodies<D>& bodies, std::size_t point,
+                   const ContactSolid<D>& solid) {
     const std::int32_t own = bodies.points.solid[point];
-    if (D == 3 || own < 0 || !solid.surface->is_convex()) return false;
-    const Vec<double, D>& outward = bodies.points.own_outward[point];
-    return dot(outward, outward) > on_face &&
+    if (D == 3 || own < 0 || bodies.points.corner[point]) return false;
+    return solid.surface->is_convex() &&
            bodies.solids[static_cast<std::size_t>(own)].surface->is_convex();
 }
 
@@ -152,7 +150,7 @@ void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, d
         if (solid.removed) continue;
         for (const std::uint32_t c : space.near(solid.centre, solid.surface->radius() + margin)) {
             if (points.removed[c] || points.body[c] == solid.body ||
-                (points.fixed[c] && solid.fixed) || is_between_corners(bodies, c, solid))
+                (points.fixed[c] && solid.fixed) || is_not_needed(bodies, c, solid))
                 continue;
             const Vec<double, D> r = nearest_image(domain, points.position[c] - solid.centre);
             const double reach = points.radius[c] + margin,

@@ -226,8 +226,9 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         if (balls) side.radius = 0.5 * shape(k).thickness;
         for (std::size_t n = 0; n < shape(k).samples.size(); ++n) {
             contact.points.add(number, side, shape(k).samples[n], shape(k).outward[n]);
-            if (!balls)
-                contact.points.solid.back() = static_cast<std::int32_t>(contact.solids.size());
+            if (balls) continue;
+            contact.points.solid.back() = static_cast<std::int32_t>(contact.solids.size());
+            contact.points.corner.back() = shape(k).is_corner[n];
         }
         if (balls) continue;
         ContactSolid<D> solid;

@@ -68,6 +68,8 @@ struct ContactRows {
     /// Finds what a pair does whose run of rows begins with k, its springs stretching for dt; of a
     /// joint one, where it touches.
     DOSEKI_WHOLE_DEVICE_FN void push(std::size_t k, double dt) const;
+    /// Of the two sides of a pair whose overlap is known.
+    DOSEKI_DEVICE_FN RelativeMotion relative_motion(std::size_t k) const;
     /// The same of one place whose overlap, share and braked mass are known.
     DOSEKI_DEVICE_FN void push_there(std::size_t k, double dt) const;
     /// The pair of row k does not touch there.
@@ -128,7 +130,10 @@ DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const
     const Overlaps<D> found = overlaps(k);
     const auto share = shares_of(found);
     const auto row = rows_of(found, std::span<const Vec<double, D>>(normals.data() + k, rows));
-    for (std::size_t n = k; n < k + rows; ++n) pushes[n] = {}, contacts[n].overlap = 0.0;
+    for (std::size_t n = k; n < k + rows; ++n) {
+        pushes[n] = {};
+        if (!contacts[n].joint) contacts[n].overlap = 0.0;
+    }
     for (std::size_t place = 0; place < std::min(found.size(), rows); ++place) {
         const std::size_t n = k + row[place];
         touch(n, found[place], share[place]);
@@ -139,21 +144,27 @@ DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const
 }
 
 template <int D>
-DOSEKI_DEVICE_FN void ContactRows<D>::push_there(std::size_t k, double dt) const {
-    PairContact& contact = contacts[k];
-    PairPush<D>& push = pushes[k];
-    const Overlap<D>& overlap = push.overlap;
-    const bool begins = dot(normals[k], normals[k]) == 0.0;
-    normals[k] = overlap.normal;
+DOSEKI_DEVICE_FN RelativeMotion ContactRows<D>::relative_motion(std::size_t k) const {
+    const Overlap<D>& overlap = pushes[k].overlap;
     const ContactPointSpans<D>& points = bodies.points;
     const MotionAt<D> b = motion_of_second(bodies, pairs[k], overlap);
     const std::size_t a = pairs[k].first();
     const Vec<double, D> v_a =
                              points.velocity[a] + turning_velocity(points.spin[a], overlap.lever_a),
                          v_b = b.velocity + turning_velocity(b.spin, overlap.lever_b);
-    ContactAction on_a =
-        contact.law.act(springs[k], overlap.depth, in_space(overlap.normal),
-                        {in_space(v_a - v_b), points.spin[a] - b.spin}, push.braked, dt);
+    return {in_space(v_a - v_b), points.spin[a] - b.spin};
+}
+
+template <int D>
+DOSEKI_DEVICE_FN void ContactRows<D>::push_there(std::size_t k, double dt) const {
+    PairContact& contact = contacts[k];
+    PairPush<D>& push = pushes[k];
+    const Overlap<D>& overlap = push.overlap;
+    const bool begins = dot(normals[k], normals[k]) == 0.0;
+    normals[k] = overlap.normal;
+    const RelativeMotion motion = relative_motion(k);
+    ContactAction on_a = contact.law.act(springs[k], overlap.depth, in_space(overlap.normal),
+                                         motion, push.braked, dt);
     contact.overlap = overlap.depth - springs[k][rest_overlap];
     on_a.force = push.share * on_a.force, on_a.moment = push.share * on_a.moment;
     auto torque = [&](const Vec<double, D>& lever) {
@@ -161,7 +172,7 @@ DOSEKI_DEVICE_FN void ContactRows<D>::push_there(std::size_t k, double dt) const
     };
     push.force = in_run<D>(on_a.force);
     push.torque_a = torque(overlap.lever_a), push.torque_b = -1.0 * torque(overlap.lever_b);
-    push.approach = begins ? std::max(0.0, dot(v_a - v_b, overlap.normal)) : 0.0;
+    push.approach = begins ? std::max(0.0, dot(in_run<D>(motion.velocity), overlap.normal)) : 0.0;
 }
 
 }  // namespace doseki

@@ -76,6 +76,9 @@ struct PushTogether {
 
     DOSEKI_DEVICE_FN void operator()(std::size_t n) const {
         const Which which = of_bodies.subspan(first[n], first[n + 1] - first[n]);
+        double deepest = 0.0;
+        for (const std::size_t k : which) deepest = std::max(deepest, rows.contacts[k].overlap);
+        for (const std::size_t k : which) begin(k, deepest);
         share_springs(which);
         share_dashpots(which);
         for (const std::size_t k : which)
@@ -84,6 +87,26 @@ struct PushTogether {
 
 private:
     using Which = std::span<const std::size_t>;
+
+    /// A point that comes into a body from beside, over an edge of that, is deep at once, and so is
+    /// one that another facet bears than before. Neither makes energy: the one presses as before,
+    /// a corner that begins no more than others do, and a point of an edge not at all.
+    DOSEKI_DEVICE_FN void begin(std::size_t k, double deepest) const {
+        constexpr double turned = 0.9;  // cosine of more than a normal turns in a step
+        const PairPush<D>& push = rows.pushes[k];
+        const Vec<double, D>& before = rows.normals[k];
+        const std::size_t point = rows.pairs[k].first();
+        const bool begins = dot(before, before) == 0.0,
+                   ball = rows.bodies.points.radius[point] > 0.0;
+        if (!push.touches || ball || (!begins && dot(before, push.overlap.normal) > turned)) return;
+        double pressed = rows.contacts[k].overlap;
+        if (begins) {
+            const Vec<double, D> speed = in_run<D>(rows.relative_motion(k).velocity);
+            pressed = dt * std::max(0.0, dot(speed, push.overlap.normal));
+            if (rows.bodies.points.corner[point]) pressed = std::max(pressed, deepest);
+        }
+        rows.springs[k][rest_overlap] = std::max(0.0, push.overlap.depth - pressed);
+    }
 
     /// The overlap of a row that presses.
     DOSEKI_DEVICE_FN double pressed(std::size_t k) const {

@@ -25,10 +25,9 @@ struct Shape {
     Array<Facet<D>> facets;
     // Points of the surface that may touch another shape; the middles of many balls.
     Array<Vec<double, D>> samples;
-    // Mean of the unit normals of the faces there: of length one on a face, shorter at edges and
-    // corners, zero where there is no surface.
-    Array<Vec<double, D>> outward;
-    SharedSurface<D> surface;  // that others touch; none of a ball
+    Array<Vec<double, D>> outward;  // unit normals of the surface there, zero where it has none
+    Array<std::uint8_t> is_corner;  // of samples
+    SharedSurface<D> surface;       // that others touch; none of a ball
 
     DOSEKI_DEVICE_FN bool is_ball() const { return kind == ShapeKind::ball; }
 
@@ -44,9 +43,9 @@ struct Shape {
     }
 
 private:
-    /// A sheet has no outside.
+    /// At edges and corners the mean of the faces that meet there. A sheet has no outside.
     void set_outward() {
-        outward.assign(samples.size(), {});
+        outward.assign(samples.size(), {}), is_corner.assign(samples.size(), 0);
         if (thickness > 0.0) return;
         const BoxTree<D> tree(boxes_of<D>(facets));
         const double near = 1e-6 * radius;
@@ -63,7 +62,8 @@ private:
             });
             Vec<double, D> sum{};
             for (const Vec<double, D>& n : normals) sum = sum + n;
-            if (norm(sum) > 0.1) outward[k] = (1.0 / static_cast<double>(normals.size())) * sum;
+            is_corner[k] = normals.size() >= D;
+            if (const double length = norm(sum); length > 0.1) outward[k] = (1.0 / length) * sum;
         }
     }
 };
