@@ -131,3 +131,16 @@ def test_blocks_that_meet_anyhow_keep_energy_and_momenta(tmp_path, seed, dim, la
     assert np.abs(moving(run, "spin")).max() > 1  # they have met
     assert (0.98 if dim == 2 else 0.8) < after / before < 1.01
     assert kept == pytest.approx(momenta, abs=1e-12)
+
+
+@pytest.mark.parametrize(("dim", "law"), LAWS)
+def test_balls_that_meet_anywhere_in_a_long_step_keep_their_energy(tmp_path, dim, law):
+    """They are too far apart at the start to be known as a pair."""
+    for apart in np.linspace(0.09, 0.14, 12):
+        text = head([0.0] * dim, 0.01, speed=4, law=law, restitution=1.0, friction=0)
+        for name, at, speed in (("left", -apart / 2, 2.0), ("right", apart / 2, -1.0)):
+            aside = [0.0] * (dim - 1)
+            text += ball(name, [at, *aside], RADIUS, velocity=[speed, *aside])
+        run = started(tmp_path, text)
+        run.advance(0.06)
+        assert moving(run, "velocity")[:, 0] == pytest.approx([-1, 2], abs=0.003)
