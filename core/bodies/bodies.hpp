@@ -234,13 +234,7 @@ private:
         contacts_.tell_kinds_apart(static_cast<std::size_t>(rigid_at_start_));
     }
     /// In how many steps, none longer than `longest`, a time passes.
-    static double steps_of(double time, double longest) {
-        const double steps = std::max(1.0, std::ceil(time / longest));
-        if (!(steps <= most_contact_steps))
-            throw PhysicsFailure("bodies are too fast for their contacts to be followed",
-                                 FailureKind::speed);
-        return steps;
-    }
+    static double steps_of(double time, double longest);
     void part_if_cracked(double time, double dt, Course& course) {
         if (!deformable.has_cracked()) return;
         const Parted parted = part(time, dt);
@@ -297,7 +291,9 @@ private:
     }
     /// Also short against the smallest bodies, at the speed of now and in a fall from rest.
     double contact_step() const { return std::min(longest_step(PairKind::all), deformable_step_); }
-    double fastest() const { return std::max(deformable.max_speed(), rigid.max_speed()); }
+    double fastest() const {
+        return std::max({deformable.max_speed(), rigid.max_speed(), wall_speed_});
+    }
     /// The same of contacts of a kind alone.
     double longest_step(PairKind kind) const {
         const double pull = norm(gravity_);
@@ -345,6 +341,7 @@ private:
     std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     ShownPoints all_points_;
+    double wall_speed_ = 0.0;   // of fixed bodies that move
     double moved_ = 0.0;        // bound on the distance gone since contacts were looked for
     double margin_ = 0.0;       // twice the distance after which they are looked for again
     double longest_way_ = 0.0;  // in a step, after which no overlap is deep at once

@@ -99,6 +99,8 @@ public:
         bool any_removed = false;
     };
     WallStep follow_walls(const MovingWalls<D>& walls, double t, double dt);
+    /// Largest speed of a point of a fixed body that moves at t.
+    double speed_of_walls(const MovingWalls<D>& walls, double t) const;
 
     /// Removes the free bodies whose centre is in the region, and tells which.
     template <class Region>
@@ -249,6 +251,17 @@ void RigidBodies<D>::put_back(std::size_t k, const Vec<double, D>& centre,
     state.orientation = orientation, state.angular_momentum = angular_momentum;
     state.acceleration = {}, state.spin_rate = {}, state.flow_force = {}, state.flow_torque = {};
     ball_turn_[k] = {};
+}
+
+template <int D>
+double RigidBodies<D>::speed_of_walls(const MovingWalls<D>& walls, double t) const {
+    double fastest = 0.0;
+    for (const std::uint32_t k : fixed_)
+        if (const WallMotion<D>* motion = walls.motions().of(bodies_[k].group);
+            motion && motion->moves(t))
+            fastest = std::max(fastest, norm(motion->velocity_at(states_[k].centre, t)) +
+                                            shape(k).radius * norm(motion->spin_at(t)));
+    return fastest;
 }
 
 template <int D>

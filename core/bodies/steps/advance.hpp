@@ -14,6 +14,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
     Course course{rigid.sums(), {}, 0.5 * dt};
     rigid.begin_step(dt), deformable.begin_step();
     deformable_step_ = deformable.timestep();
+    wall_speed_ = rigid.speed_of_walls(walls, t);
     if (breakable_.any())
         advance_apart(walls, t, dt, course);
     else
@@ -22,6 +23,15 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
     rigid.end_step(dt, memory_);
     if (breakable_.any()) make_rigid_again(dt, course);
     return course.given + rigid.sums().since(course.before, gravity_);
+}
+
+template <int D>
+double Bodies<D>::steps_of(double time, double longest) {
+    const double steps = std::max(1.0, std::ceil(time / longest));
+    if (!(steps <= most_contact_steps))
+        throw PhysicsFailure("bodies are too fast for their contacts to be followed",
+                             FailureKind::speed);
+    return steps;
 }
 
 /// Looks for contacts where bodies might meet within a step that were not known when its length was

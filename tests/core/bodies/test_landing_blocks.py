@@ -144,3 +144,22 @@ def test_balls_that_meet_anywhere_in_a_long_step_keep_their_energy(tmp_path, dim
         run = started(tmp_path, text)
         run.advance(0.06)
         assert moving(run, "velocity")[:, 0] == pytest.approx([-1, 2], abs=0.003)
+
+
+@pytest.mark.parametrize("shape", ["box", "ball"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_plate_that_moves_drives_what_is_at_rest(tmp_path, dim, shape):
+    """It would have gone through within one step of the run: nothing else moves."""
+    aside = [0.0] * (dim - 1)
+    text = head([0.0] * dim, 0.01, speed=4, restitution=1.0, friction=0)
+    motion = f"{{ velocity = {[1.0, *aside]}, start = 0.02, stop = 0.2 }}"
+    low, high = [-0.2, *[-0.05] * (dim - 1)], [-0.1, *[0.05] * (dim - 1)]
+    text += box("plate", low, high, fixed=True, motion=motion)
+    middle = np.array([0.013, *aside])
+    if shape == "box":
+        text += box("struck", middle - RADIUS, middle + RADIUS)
+    else:
+        text += ball("struck", middle, RADIUS)
+    run = started(tmp_path, text)
+    run.advance(0.3)
+    assert moving(run, "velocity")[0] == pytest.approx([2, *aside], abs=0.01)
