@@ -150,7 +150,9 @@ DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, d
     // Forces act from half a step before to half a step after. A contact that has begun within the
     // last step, when what is pressed was not yet there, has lasted for less, or for more.
     const double lasted = pressed < approach * dt ? 0.5 + pressed / (approach * dt) : 1.0;
-    const double normal = normal_force(spring, damping, lasted * approach);
+    // The speed is that in the middle of the step, after half of this push.
+    const double slowed = damping > 0.0 ? 1.0 + 0.5 * dt * damping / braked : 1.0;
+    const double normal = normal_force(spring, damping, lasted * approach) / slowed;
     const double along = tangential * spring.stiffness, dashpot = tangential * damping;
     Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
     ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,
