@@ -291,13 +291,13 @@ private:
     }
     /// Also short against the smallest bodies, at the speed of now and in a fall from rest.
     double contact_step() const { return std::min(longest_step(PairKind::all), deformable_step_); }
-    double fastest() const {
-        return std::max({deformable.max_speed(), rigid.max_speed(), wall_speed_});
+    void measure_speed() {
+        speed_ = std::max({deformable.max_speed(), rigid.max_speed(), wall_speed_});
     }
     /// The same of contacts of a kind alone.
     double longest_step(PairKind kind) const {
         const double pull = norm(gravity_);
-        return std::min({contacts_.timestep(kind), longest_way_ / std::max(fastest(), 1e-300),
+        return std::min({contacts_.timestep(kind), longest_way_ / std::max(speed_, 1e-300),
                          std::sqrt(longest_way_ / std::max(pull, 1e-300))});
     }
     /// That of what is deformable and of dust, and of what that may strike.
@@ -341,7 +341,7 @@ private:
     std::map<std::size_t, std::size_t> dust_points_;  // of deformable bodies: points of rigid ones
     ContactBodies<D> contact_;  // the bodies as contacts see them: rigid ones, then deformable ones
     ShownPoints all_points_;
-    double wall_speed_ = 0.0;   // of fixed bodies that move
+    double wall_speed_ = 0.0, speed_ = 0.0;  // of fixed bodies that move, and of all
     double moved_ = 0.0;        // bound on the distance gone since contacts were looked for
     double margin_ = 0.0;       // twice the distance after which they are looked for again
     double longest_way_ = 0.0;  // in a step, after which no overlap is deep at once

@@ -39,7 +39,7 @@ double Bodies<D>::steps_of(double time, double longest) {
 /// Returns whether it did.
 template <int D>
 bool Bodies<D>::look_ahead(double step) {
-    const double way = step * (fastest() + 0.5 * step * norm(gravity_));
+    const double way = step * (speed_ + 0.5 * step * norm(gravity_));
     if (moved_ == 0.0 || 2.0 * (moved_ + way) < margin_) return false;
     show_bodies(all_points_), find_contacts();
     return true;
@@ -49,6 +49,7 @@ bool Bodies<D>::look_ahead(double step) {
 template <int D>
 void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
+        measure_speed();
         double steps = steps_of(left, contact_step());
         if (look_ahead(left / steps)) steps = steps_of(left, contact_step());
         const double step = left / steps;
@@ -111,6 +112,7 @@ double Bodies<D>::step_apart(double shorter) const {
 template <int D>
 void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     for (double left = dt; left > 0.0;) {
+        measure_speed();
         double steps = steps_of(left, step_apart(shorter_step()));
         if (look_ahead(left / steps)) steps = steps_of(left, step_apart(shorter_step()));
         const double shorter = shorter_step(), step = left / steps, now = t + dt - left;
@@ -150,6 +152,7 @@ void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Co
         moved_ += std::max(0.0, way - ahead), ahead = std::max(0.0, ahead - way);
     };
     for (double left = dt; left > 0.0;) {
+        measure_speed();
         const double steps = steps_of(left, shorter_step()), step = left / steps,
                      now = t + dt - left;
         drift_together(0.5 * step);
