@@ -59,10 +59,11 @@ private:
                 const bool counted = std::any_of(normals.begin(), normals.end(),
                                                  [&](const auto& m) { return dot(m, n) > 0.999; });
                 if (dot(apart, apart) < square && !counted) normals.push_back(n);
+                for (const Vec<double, D>& corner : facets[f])
+                    if (norm(samples[k] - corner) < near) is_corner[k] = 1;
             });
             Vec<double, D> sum{};
             for (const Vec<double, D>& n : normals) sum = sum + n;
-            is_corner[k] = normals.size() >= D;
             if (const double length = norm(sum); length > 0.1) outward[k] = (1.0 / length) * sum;
         }
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from .blocks import ball, box, head, moving, started
+from .blocks import ball, body, box, head, moving, started
 
 SPEED, RADIUS = 2.0, 0.03
 LAWS = [(2, "linear"), (3, "linear"), (3, "hertz")]
@@ -163,3 +163,16 @@ def test_a_plate_that_moves_drives_what_is_at_rest(tmp_path, dim, shape):
     run = started(tmp_path, text)
     run.advance(0.3)
     assert moving(run, "velocity")[0] == pytest.approx([2, *aside], abs=0.01)
+
+
+def test_a_polygon_of_many_sides_has_corners(tmp_path):
+    """However little its sides turn: one without corners would fall through the bed."""
+    turns = 2 * np.pi * np.arange(200) / 200 + 0.1
+    around = RADIUS * np.column_stack([np.cos(turns), np.sin(turns)])
+    text = head([0, 0], 0.005, speed=3, restitution=0.5, friction=0)
+    text += box("bed", [-0.5, -0.02], [0.5, 0], fixed=True)
+    vertices = (around + [0, 0.002 - around[:, 1].min()]).tolist()
+    text += body("wheel", "polygon", vertices=vertices, velocity=[0.0, -SPEED])
+    run = started(tmp_path, text)
+    run.advance(0.01)
+    assert moving(run, "velocity")[0] == pytest.approx([0, 0.5 * SPEED], abs=0.01 * SPEED)
