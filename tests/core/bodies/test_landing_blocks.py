@@ -171,7 +171,7 @@ def test_a_polygon_of_many_sides_has_corners(tmp_path):
     around = RADIUS * np.column_stack([np.cos(turns), np.sin(turns)])
     text = head([0, 0], 0.005, speed=3, restitution=0.5, friction=0)
     text += box("bed", [-0.5, -0.02], [0.5, 0], fixed=True)
-    vertices = (around + [0, 0.002 - around[:, 1].min()]).tolist()
+    vertices = np.add(around, [0, 0.002 - around[:, 1].min()]).tolist()
     text += body("wheel", "polygon", vertices=vertices, velocity=[0.0, -SPEED])
     run = started(tmp_path, text)
     run.advance(0.01)
