@@ -283,6 +283,7 @@ private:
         rigid.show(contact_, points);
         deformable.show(contact_);
     }
+    /// Looks for contacts that a step would meet; returns whether it had to.
     bool look_ahead(double step);
     void find_contacts() {
         moved_ = 0.0;

@@ -74,6 +74,7 @@ struct ContactLaw {
     DOSEKI_DEVICE_FN ContactAction act(ContactSprings& springs, double overlap, const Vec3& n,
                                        const RelativeMotion& motion, double braked,
                                        double dt) const;
+    /// At an overlap beyond that of rest.
     DOSEKI_DEVICE_FN NormalSpring normal_spring(double overlap) const;
 };
 
