@@ -44,7 +44,7 @@ struct ContactOptions {
     bool softened = true;   // as stiff as `overlap` at `speed` asks, if that is softer
     double overlap = 0.01;  // of the smaller diameter
     double speed = 1.0;     // largest speed at which bodies meet [m/s]
-    double steps = 20.0;    // of a contact's time
+    double steps = 12.0;    // of a contact's time
 
     template <class F>
     void members(F&& f) {
