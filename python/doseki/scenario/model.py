@@ -164,6 +164,12 @@ class Scenario(ScenarioTable):
         return min_sound_speed(self, self.materials, self.material_names)
 
     @property
+    def steps_of_contact(self) -> int:
+        """Time steps in a contact: more where its force decides whether a body breaks."""
+        breaks = any(body.kinematics == "breakable" for body in self.body.values())
+        return self.contact.steps or (20 if breaks else 12)
+
+    @property
     def pore_pressure_ratios(self) -> dict[float, str]:
         """Every pore pressure ratio that fluids in use have, with the first fluid that has it."""
         found: dict[float, str] = {}

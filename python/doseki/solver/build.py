@@ -79,7 +79,7 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
 
 def _contact_options(scenario: Scenario) -> dict[str, Any]:
     """How bodies touch; the speed to expect is a tenth of the sound speed of the run."""
-    options = scenario.contact.model_dump()
+    options = scenario.contact.model_dump() | {"steps": scenario.steps_of_contact}
     if options["speed"] is None:
         options["speed"] = 0.1 * scenario.xi * scenario.min_sound_speed
     return options

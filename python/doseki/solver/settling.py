@@ -180,7 +180,7 @@ def _advance(simulation: CoreSimulation, until: float, name: str, end: float, te
 
 def _check_effort(scenario: Scenario, body: Body[Any], diameter: float, end: float) -> None:
     """Refuse to settle what would go on for days without coming to rest."""
-    share = min(1.0, CALM_STEPS / scenario.contact.steps)
+    share = min(1.0, CALM_STEPS / scenario.steps_of_contact)
     steps = share * contact_steps(scenario, diameter, end)
     if not steps <= MOST_STEPS:
         raise body.error(

@@ -97,7 +97,7 @@ def test_coarse_blocks_and_deep_water(across, depth):
 
 def test_a_block_that_lies_on_a_bed_under_water_is_at_rest():
     """The force of the water does not throw it up in every step, to come to rest within it."""
-    run = Running(BLOCK, "across=6", "contact.speed=3")
+    run = Running(BLOCK, "across=6", "contact.speed=4")
     run.advance(0.2)
     assert np.abs(moving_body(run, "velocity")).max() < 1e-5
 
@@ -167,7 +167,7 @@ def test_a_breakable_block_has_its_uplift_while_it_is_rigid(tmp_path):
 def test_a_block_in_a_corner_has_its_uplift(place):
     """No air comes out of the bed below the wall: the film has no end there."""
     run, forces = Running(BLOCK, "across=10", "depth=0.2", f"place={place}"), []
-    for time in np.linspace(0.5, 0.9, 81):
+    for time in np.linspace(0.7, 1.1, 81):  # the water swings for long
         run.advance(time)
         forces.append(flow_force(run, time))
     along, up = np.mean(forces, axis=0) / (9810 * SIDE**2)

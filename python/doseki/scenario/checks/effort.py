@@ -40,7 +40,7 @@ def contact_steps(scenario: Scenario, diameter: float, time: float) -> float:
         length = math.pi * contact.overlap * diameter
     else:
         speed, length = scenario.min_sound_speed, diameter
-    return time * contact.steps * speed / length if length > 0 else math.inf
+    return time * scenario.steps_of_contact * speed / length if length > 0 else math.inf
 
 
 def _check_contacts(scenario: Scenario) -> None:

@@ -23,4 +23,9 @@ class Contact(Table):
     stiffness: Literal["softened", "material"] = Field(
         "softened", description="softened: so that `overlap` holds; material: of Young's modulus"
     )
-    steps: int = Field(12, ge=5, le=1000, description="time steps in a contact")
+    steps: int | None = Field(
+        None,
+        ge=5,
+        le=1000,
+        description="time steps in a contact; default: 12, where bodies can break 20",
+    )
