@@ -166,7 +166,7 @@ class Scenario(ScenarioTable):
     @property
     def steps_of_contact(self) -> int:
         """Time steps in a contact: more where its force decides whether a body breaks."""
-        breaks = any(body.kinematics == "breakable" for body in self.body.values())
+        breaks = any(body.given("kinematics") == "breakable" for body in self.body.values())
         return self.contact.steps or (20 if breaks else 12)
 
     @property
