@@ -24,10 +24,11 @@ struct ContactSide {
     bool dust = false;   // a few points that came off one
 };
 
-/// Springs of one contact: stretch of friction, then of rolling, and the overlap up to which it
-/// does not press, Eq. (115); zero while apart.
-using ContactSprings = Vec<double, 7>;
-inline constexpr int rest_overlap = 6;
+/// Springs of one contact: stretch of friction, then of rolling, the overlap up to which it does
+/// not press, Eq. (115), and the speed of approach and the normal force in the step before; zero
+/// while apart.
+using ContactSprings = Vec<double, 9>;
+inline constexpr int rest_overlap = 6, approach_before = 7, force_before = 8;
 
 /// Force and moment on the first of two bodies that touch.
 struct ContactAction {
@@ -140,6 +141,21 @@ DOSEKI_DEVICE_FN inline double ContactLaw::stored(const ContactSprings& springs,
            0.5 * tangential * spring.stiffness * square;
 }
 
+/// Eq. (159): the normal force with the speed of approach in the middle of a step. What has begun
+/// within the last step has been there for a part of the step around now.
+DOSEKI_DEVICE_FN inline double force_in_middle(const NormalSpring& spring, double damping,
+                                               double approach, double pressed, double braked,
+                                               const ContactSprings& springs, double dt) {
+    if (damping == 0.0) return spring.force;
+    const double slowing = 0.5 * dt * damping / braked;
+    double others = 0.0, speed = approach;
+    if (pressed < approach * dt)
+        speed = 0.5 * approach + pressed / dt;
+    else if (springs[force_before] > 0.0)
+        others = springs[force_before] - braked / dt * (springs[approach_before] - approach);
+    return normal_force({spring.force + slowing * others, 0.0}, damping, speed) / (1.0 + slowing);
+}
+
 DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, double overlap,
                                                       const Vec3& n, const RelativeMotion& motion,
                                                       double braked, double dt) const {
@@ -148,12 +164,8 @@ DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, d
     const double pressed = overlap - springs[rest_overlap];
     const NormalSpring spring = normal_spring(pressed);
     const double damping = contact_damping(hertz, zeta, spring.stiffness, braked);
-    // Forces act from half a step before to half a step after. A contact that has begun within the
-    // last step, when what is pressed was not yet there, has lasted for less, or for more.
-    const double lasted = pressed < approach * dt ? 0.5 + pressed / (approach * dt) : 1.0;
-    // The speed is that in the middle of the step, after half of this push.
-    const double slowed = damping > 0.0 ? 1.0 + 0.5 * dt * damping / braked : 1.0;
-    const double normal = normal_force(spring, damping, lasted * approach) / slowed;
+    const double normal = force_in_middle(spring, damping, approach, pressed, braked, springs, dt);
+    springs[approach_before] = approach, springs[force_before] = normal;
     const double along = tangential * spring.stiffness, dashpot = tangential * damping;
     Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
     ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,

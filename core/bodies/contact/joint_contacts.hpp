@@ -39,9 +39,9 @@ struct JointContacts {
     /// Of two bodies that may touch at so many points. Against turning they are stiffer than where
     /// they are pressed together.
     static Together together(double points) {
-        constexpr double turned = 2.0;  // bodies that turn are braked at their ends
+        constexpr double turned = 3.0;  // square of half a length over the radius of inertia
         const double flat = std::pow(points, 2.0 / exponent);
-        return {(exponent - 1.0) * flat, turned * std::sqrt(flat)};
+        return {turned * (exponent - 1.0) * flat, turned * std::sqrt(flat)};
     }
 };
 

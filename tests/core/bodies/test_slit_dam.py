@@ -96,7 +96,7 @@ def grains(simulation: Any) -> list[tuple[float, bool]]:
 
 
 def test_large_boulders_are_held_and_small_ones_go_through(tmp_path):
-    simulation = run(tmp_path, 1.2, boulders=True)
+    simulation = run(tmp_path, 1.8, boulders=True)
     (x, left), (_, small_left) = grains(simulation)
     assert not left
     # It lies against both pillars, where the slit of 0.16 m is as wide as its chord.
