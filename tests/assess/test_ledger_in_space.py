@@ -42,7 +42,7 @@ min = {low}
 max = {high}
 """
 TURN = "rotate = 25\nrotate_axis = [1, 2, 0.5]"
-SPEED = 6.0  # m/s
+SPEED = 6.5  # m/s
 
 
 def drop(folder, axis, turn=""):
@@ -74,8 +74,7 @@ def test_it_closes(dropped):
 
 @pytest.mark.parametrize("name", [*BODY_ENERGIES, "contact_work", "kinetic_energy"])
 def test_every_part_of_it_matters(dropped, name):
-    """Several times as far open as it may be: how much parting takes depends on how it breaks."""
-    assert gap(without(dropped, name)) > 0.005
+    assert gap(without(dropped, name)) > 0.01
 
 
 def test_contacts_and_cracks_make_no_energy(dropped):
