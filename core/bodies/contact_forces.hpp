@@ -29,7 +29,7 @@ void Contacts<D>::find(ContactBodies<D>& bodies, double margin) {
     turn_to_surfaces(bodies, pairs_);
     add_rows(bodies);
     springs_.assign(pairs_.size(), {}), normals_.assign(pairs_.size(), {});
-    prepare(bodies);
+    restore(bodies);
     find_gaps(bodies, margin);
     pushes_.assign(pairs_.size(), {});
     for (std::size_t k = 0; k < pairs_.size(); ++k)
@@ -76,7 +76,7 @@ bool is_light_ball(const ContactPoints<D>& points, const ContactPair& pair) {
 }
 
 template <int D>
-void Contacts<D>::prepare(const ContactBodies<D>& bodies) {
+void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
     contacts_.clear(), pushes_.clear();
     std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch

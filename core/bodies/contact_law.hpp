@@ -25,10 +25,10 @@ struct ContactSide {
 };
 
 /// Springs of one contact: stretch of friction, then of rolling, the overlap up to which it does
-/// not press, Eq. (115), and the speed of approach and the normal force in the step before; zero
-/// while apart.
-using ContactSprings = Vec<double, 9>;
-inline constexpr int rest_overlap = 6, approach_before = 7, force_before = 8;
+/// not press, Eq. (115), and the speed of approach, the normal force and the overlap that pressed
+/// in the step before; zero while apart.
+using ContactSprings = Vec<double, 10>;
+inline constexpr int rest_overlap = 6, approach_before = 7, force_before = 8, pressed_before = 9;
 
 /// Force and moment on the first of two bodies that touch.
 struct ContactAction {
@@ -166,6 +166,7 @@ DOSEKI_DEVICE_FN inline ContactAction ContactLaw::act(ContactSprings& springs, d
     const double damping = contact_damping(hertz, zeta, spring.stiffness, braked);
     const double normal = force_in_middle(spring, damping, approach, pressed, braked, springs, dt);
     springs[approach_before] = approach, springs[force_before] = normal;
+    springs[pressed_before] = pressed;
     const double along = tangential * spring.stiffness, dashpot = tangential * damping;
     Vec3 slid = turned_with(n, springs, 0), rolled = turned_with(n, springs, 3);
     ContactAction result{sliding_spring(slid, motion.velocity - approach * n, dt, along, dashpot,

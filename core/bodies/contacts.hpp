@@ -92,22 +92,15 @@ public:
     void serialise(Archive& archive) {
         Array<std::int32_t> a, b;
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);
-        pressed_.clear();
-        for (const PairContact& contact : contacts_) pressed_.push_back(contact.overlap);
         archive("contact_a", a), archive("contact_b", b), archive("contact_springs", springs_);
-        archive("contact_overlap", pressed_);
         archive("contact_normals", normals_), archive("worst_overlap", max_overlap_);
         expect_fit(b.size() == a.size() && springs_.size() == a.size(), "contact_springs");
         expect_fit(normals_.size() == a.size(), "contact_normals");
-        expect_fit(pressed_.size() == a.size(), "contact_overlap");
         pairs_.resize(a.size());
         for (std::size_t k = 0; k < a.size(); ++k) pairs_[k] = {a[k], b[k]};
     }
     /// Completes what serialise() loaded.
-    void restore(const ContactBodies<D>& bodies) {
-        prepare(bodies);
-        for (std::size_t k = 0; k < contacts_.size(); ++k) contacts_[k].overlap = pressed_[k];
-    }
+    void restore(const ContactBodies<D>& bodies);
 
 private:
     /// Pairs that are applied together.
@@ -127,8 +120,6 @@ private:
     const Selection& of(PairKind kind) const { return selections_[static_cast<std::size_t>(kind)]; }
     Selection& of(PairKind kind) { return selections_[static_cast<std::size_t>(kind)]; }
     PairKind kind_of(std::size_t k) const;
-    /// Finds the laws of the pairs and lists them.
-    void prepare(const ContactBodies<D>& bodies);
     void select(const ContactBodies<D>& bodies, PairKind kind);
     void keep(Selection& selection) const;
 
@@ -159,7 +150,6 @@ private:
     bool apart_ = false;                   // whether these are of kinds, or of all pairs
     std::size_t slow_bodies_ = 0;
     Array<PairContact> contacts_;
-    Array<double> pressed_;  // overlaps of an archive
     Array<PairPush<D>> pushes_;
     double max_overlap_ = 0.0;
 };

@@ -130,10 +130,7 @@ DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const
     const Overlaps<D> found = overlaps(k);
     const auto share = shares_of(found);
     const auto row = rows_of(found, std::span<const Vec<double, D>>(normals.data() + k, rows));
-    for (std::size_t n = k; n < k + rows; ++n) {
-        pushes[n] = {};
-        if (!contacts[n].joint) contacts[n].overlap = 0.0;
-    }
+    for (std::size_t n = k; n < k + rows; ++n) pushes[n] = {}, contacts[n].overlap = 0.0;
     for (std::size_t place = 0; place < std::min(found.size(), rows); ++place) {
         const std::size_t n = k + row[place];
         touch(n, found[place], share[place]);

@@ -77,7 +77,8 @@ struct PushTogether {
     DOSEKI_DEVICE_FN void operator()(std::size_t n) const {
         const Which which = of_bodies.subspan(first[n], first[n + 1] - first[n]);
         double deepest = 0.0;
-        for (const std::size_t k : which) deepest = std::max(deepest, rows.contacts[k].overlap);
+        for (const std::size_t k : which)
+            deepest = std::max(deepest, rows.springs[k][pressed_before]);
         for (const std::size_t k : which) begin(k, deepest);
         share_springs(which);
         share_dashpots(which);
@@ -99,7 +100,7 @@ private:
         const bool begins = dot(before, before) == 0.0,
                    ball = rows.bodies.points.radius[point] > 0.0;
         if (!push.touches || ball || (!begins && dot(before, push.overlap.normal) > turned)) return;
-        double pressed = rows.contacts[k].overlap;
+        double pressed = rows.springs[k][pressed_before];
         if (begins) {
             const Vec<double, D> speed = in_run<D>(rows.relative_motion(k).velocity);
             pressed = dt * std::max(0.0, dot(speed, push.overlap.normal));

@@ -20,7 +20,7 @@ ALIKE = (
     ),
     ("shape_radius", "shape_facets", "shape_sample_count", "shape_kind", "shape_thickness"),
     ("lists_moving", "lists_fixed"),
-    ("contact_a", "contact_b", "contact_springs", "contact_overlap", "contact_normals"),
+    ("contact_a", "contact_b", "contact_springs", "contact_normals"),
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",

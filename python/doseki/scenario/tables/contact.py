@@ -27,5 +27,5 @@ class Contact(Table):
         None,
         ge=5,
         le=1000,
-        description="time steps in a contact; default: 12, where bodies can break 20",
+        description="time steps in a contact; default: 12, with breakable bodies 20",
     )
