@@ -21,6 +21,8 @@ DOSEKI_DEVICE_FN double viscosity(const MaterialLaws& laws, const ShearState<dou
     return viscosity(laws.rheology, state);
 }
 
-bool has_yield_stress(const MaterialLaws& laws) { return has_yield_stress(laws.rheology); }
+PairViscosity viscosity_of_pairs(const MaterialLaws& laws) {
+    return viscosity_of_pairs(laws.rheology);
+}
 
 }  // namespace doseki

@@ -3,7 +3,7 @@
 // few, so that one that is changed compiles no pair loop anew.
 
 #include "physics/equation_of_state/thermodynamic_state.hpp"
-#include "physics/rheology/shear_state.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
 
 namespace doseki {
 
@@ -22,8 +22,7 @@ DOSEKI_DEVICE_FN double pressure_at(const MaterialLaws& laws, double rho);
 double density_of(const MaterialLaws& laws, double pressure, double low, double high);
 /// Of the fluid itself, without turbulence [Pa s].
 DOSEKI_DEVICE_FN double viscosity(const MaterialLaws& laws, const ShearState<double>& state);
-/// Whether the viscosity varies by orders of magnitude beside a plug, so that pairs take harmonic
-/// means.
-bool has_yield_stress(const MaterialLaws& laws);
+/// What pairs take of two viscosities.
+PairViscosity viscosity_of_pairs(const MaterialLaws& laws);
 
 }  // namespace doseki

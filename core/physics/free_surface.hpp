@@ -21,8 +21,8 @@ struct FreeSurfaceIndicator {
     /// Whether particles are so few that they are apart, each as dense as the liquid.
     DOSEKI_DEVICE_FN bool is_spray() const { return x >= alone; }
 
-    /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.6 dp. The constants give 1 for
-    /// the first two rows of a lattice under a flat surface, in 2-D and (to 0.6 %) in 3-D.
+    /// `wide`: Wendland C6 with support 3 dp, otherwise C2 with 2.78 dp. The constants give 1
+    /// for the first two rows of a lattice under a flat surface, to 0.4 % in 2-D and 1.4 % in 3-D.
     DOSEKI_DEVICE_FN static FreeSurfaceIndicator of(double concentration, double scaled_gradient,
                                                     bool wide) {
         if (concentration < min_concentration) return {alone, 1.0};

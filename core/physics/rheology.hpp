@@ -9,12 +9,11 @@
 
 namespace doseki {
 
-/// Contract of a law of viscosity. `has_yield_stress`: viscosity varies by orders of magnitude
-/// beside a plug, so that pairs take harmonic means.
+/// Contract of a law of viscosity. `of_pairs`: what pairs take of two viscosities.
 template <class Law, class T>
 concept ViscosityLaw = Named<Law> && requires(const Law& law, const ShearState<T>& state) {
     { law.viscosity(state) } -> std::same_as<T>;
-    { Law::has_yield_stress } -> std::convertible_to<bool>;
+    { Law::of_pairs } -> std::convertible_to<PairViscosity>;
 };
 
 template <class T, ViscosityLaw<T>... Laws>
@@ -31,8 +30,8 @@ DOSEKI_FN T viscosity(const Rheology<T>& rheology, const ShearState<T>& state) {
 }
 
 template <class T>
-bool has_yield_stress(const Rheology<T>& rheology) {
-    return with_value(rheology, [](const auto& law) { return law.has_yield_stress; });
+PairViscosity viscosity_of_pairs(const Rheology<T>& rheology) {
+    return with_value(rheology, [](const auto& law) { return law.of_pairs; });
 }
 
 }  // namespace doseki

@@ -21,19 +21,19 @@ DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D
     return form.along_jump * v_ij + along * r_ij;
 }
 
-/// Mean viscosity of a pair. Beside a plug that varies by orders of magnitude, and the harmonic
-/// mean is the one whose stress is continuous (Cleary & Monaghan, J. Comput. Phys. 148, 1999).
-template <class T>
-DOSEKI_FN T pair_viscosity(const T& mu_i, const T& mu_j, bool harmonic) {
-    const T sum = mu_i + mu_j;
-    return harmonic ? T(2) * mu_i * mu_j / max(sum, number<T>(1e-30)) : number<T>(0.5) * sum;
-}
-
 /// Eq. (136): pressure [Pa] of a bulk viscosity alpha rho c h, which damps sound (Sun, Pilloton,
 /// Antuono & Colagrossi, J. Comput. Phys. 483, 2023). `divergence` of the velocity [1/s].
 DOSEKI_DEVICE_FN inline double damping_pressure(double alpha, double rho, double c, double h,
                                                 double divergence) {
     return -alpha * rho * c * h * divergence;
+}
+
+/// Eq. (160): alpha of (136) beside walls, which have this share of the kernel. They go on with the
+/// pressure gradient of the step before, and that feeds sound that runs along them.
+DOSEKI_DEVICE_FN inline double damping_beside_walls(double alpha, double wall_share) {
+    constexpr double first_row = 0.2, most = 0.2;  // share that walls have there; alpha
+    return std::max(alpha,
+                    std::min(alpha * (1.0 + 3.0 * std::min(wall_share / first_row, 1.0)), most));
 }
 
 /// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress

@@ -4,7 +4,7 @@
 #include "physics/kernel/wendland_c2.hpp"
 #include "physics/kernel/wendland_c6.hpp"
 #include "physics/momentum.hpp"
-#include "physics/rheology/shear_state.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
 #include "physics/riemann.hpp"
 #include "physics/stress.hpp"
 #include "physics/timestep.hpp"
@@ -47,6 +47,13 @@ void bind_flow(nb::module_& m) {
     });
     define(m, "strain_rate", 1,
            [](const auto& in, auto& out) { out[0] = strain_rate(matrix<D>(in, 0)); });
+    define(m, "pair_viscosity", 3, [](const auto& in, auto& out) {  // mu_i, mu_j, L_i, L_j
+        const auto D_i = symmetric_part(matrix<D>(in, 2)),
+                   D_j = symmetric_part(matrix<D>(in, 2 + D * D));
+        out[0] = pair_viscosity(in[0], in[1], D_i, D_j, PairViscosity::mean);
+        out[1] = pair_viscosity(in[0], in[1], D_i, D_j, PairViscosity::by_rate);
+        out[2] = pair_viscosity(in[0], in[1], D_i, D_j, PairViscosity::harmonic);
+    });
     define_numbers(m, "lattice_sums_c2", 2,
                    [](const auto& in, auto& out) {  // dp, R -> sum W, moment
                        const auto sums = lattice_sums<WendlandC2<D>, D>(in[0], in[1]);
@@ -147,11 +154,6 @@ void bind_physics(nb::module_& module) {
     bind_dimension<3>(three);
     bind_flow_numbers(m);
     bind_laws(m, two, three);
-    define(m, "pair_viscosity", 2,
-           [](const auto& in, auto& out) {  // mu_i, mu_j -> mean, harmonic mean
-               out[0] = pair_viscosity(in[0], in[1], false),
-               out[1] = pair_viscosity(in[0], in[1], true);
-           });
     define(m, "approach_speed", 1,
            [](const auto& in, auto& out) { out[0] = approach_speed(in[0], in[1]); });
     define(m, "signal_velocity", 1,

@@ -4,6 +4,7 @@
 
 #include "model/particles.hpp"
 #include "physics/free_surface.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
 #include "physics/riemann.hpp"
 #include "physics/viscosity.hpp"
 #include "physics/wall.hpp"
@@ -12,15 +13,14 @@
 namespace doseki {
 
 struct FlowConstants {
-    double c;  // sound speed of the fluid [m/s]
-    double dp;
+    double c, dp;           // sound speed of the fluid [m/s], spacing [m]
     double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
     double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
     ViscousForm<double> form;
     // Rates of fluid pairs and of the strongest over that of Morris' form, Eq. (154).
     double roughest = 0.0, nearest = 0.0;
-    double suction = 0.0;   // that water at bodies bears, Eq. (85) [Pa]
-    bool harmonic = false;  // see pair_viscosity
+    double suction = 0.0;  // that water at bodies bears, Eq. (85) [Pa]
+    PairViscosity viscosity{};
 };
 
 /// What a fluid particle i sums over its neighbours for its density, half a step before its forces;
@@ -285,7 +285,7 @@ DOSEKI_FN void add_fluid(ForceAccumulators<T, D>& sums, const FlowConstants& con
     const T resolved = min(i.resolved_strain, j.resolved_strain);
     const T extra = approach_pressure((smooth - v_dot_r) * inverse_r, rho, c,
                                       smooth_approach(resolved, pair.r));
-    const T mu = pair_viscosity(i.mu, j.mu, constants.harmonic);
+    const T mu = pair_viscosity(i.mu, j.mu, i.strain, j.strain, constants.viscosity);
     const ViscousForm<T> form{number<T>(constants.form.along_jump),
                               number<T>(constants.form.along_pair)};
     const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, inverse_r, pair.r_ij);

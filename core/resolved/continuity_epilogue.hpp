@@ -174,6 +174,15 @@ private:
         return -state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy / dt_;
     }
 
+    /// Of sound, over c h. Beside bodies that move it is that of the fluid: what they squeeze out
+    /// is a flow.
+    DOSEKI_DEVICE_FN double damping(const Summed& at) const {
+        const double alpha = model_.options.flow.acoustic_damping;
+        const double walls = at.sums.wall_share, all = at.sums.concentration + walls;
+        if (!(walls > 0.0) || at.sums.at_body.value > 0.0) return alpha;
+        return damping_beside_walls(alpha, walls / all);
+    }
+
     /// Of the forces that come. It brings no tension that the liquid does not bear, none on a free
     /// surface.
     DOSEKI_DEVICE_FN void damp_sound(const Summed& at) const {
@@ -181,8 +190,7 @@ private:
         const Material& material = model_.material(state_.tag[p]);
         const double rho = at.fields.rho, h = state_.smoothing_length[p],
                      divergence = trace(state_.velocity_gradient[p]);
-        double added = damping_pressure(model_.options.flow.acoustic_damping, rho,
-                                        model_.constants.c, h, divergence);
+        double added = damping_pressure(damping(at), rho, model_.constants.c, h, divergence);
         if (added < 0.0) {
             const double least = model_.min_density[state_.tag[p].material].at(is_vented(at));
             const double bound = pressure_at(*material.laws, least);

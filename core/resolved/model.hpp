@@ -21,8 +21,8 @@ namespace doseki {
 inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest = 1000.0;
 
 /// The rate at which viscosity damps the motion in which neighbours go against each other, over the
-/// sum of its coefficients at one particle, and what the largest of these adds to it: 1.38 of the
-/// sum on a square lattice, 1.18 on a cubic one. Of two particles that nearly meet it is twice
+/// sum of its coefficients at one particle, and what the largest of these adds to it: 1.33 of the
+/// sum on a square lattice, 1.15 on a cubic one. Of two particles that nearly meet it is twice
 /// their own coefficient and once the others.
 inline constexpr double roughest_over_own = 1.4, nearest_over_own = 0.6;
 
@@ -69,7 +69,7 @@ struct ResolvedModel {
                 constants.c = std::max(constants.c, material.c0);
                 constants.suction = std::max(constants.suction, material.air_entry_suction);
             }
-            constants.harmonic |= has_yield_stress(*material.laws);
+            constants.viscosity = std::max(constants.viscosity, viscosity_of_pairs(*material.laws));
         }
         const FlowOptions& flow = options.flow;
         constants.dp = flow.dp;

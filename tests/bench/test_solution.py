@@ -42,7 +42,7 @@ def test_the_case_is_the_shipped_dam_break(solution):
     width, height, length, _ = case.box()
     assert (width, height, length) == pytest.approx((0.3, 0.6, 1.5))
     assert (~fixed).sum() == round(width * height / case.dp**2)
-    assert case.radius == pytest.approx(2.6 * case.dp)
+    assert case.radius == pytest.approx(2.78 * case.dp)
     assert case.sound_speed == pytest.approx(10 * np.sqrt(2 * case.gravity * height), rel=1e-3)
 
 

@@ -1,4 +1,4 @@
-"""What `--help` shows of each command."""
+"""What `--help` shows of each command, and what its options refuse."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from doseki.cli.app import app
+from doseki.errors import UserError
 
 COMMANDS = get_command(app).commands
 
@@ -16,6 +17,13 @@ def shown(*arguments: str) -> str:
     done = CliRunner().invoke(app, [*arguments, "--help"], env={"COLUMNS": "400", "TERM": "dumb"})
     assert done.exit_code == 0, done.output
     return " ".join(done.output.split())
+
+
+def test_a_key_is_set_once():
+    with pytest.raises(UserError, match=r"--set dp = 2: set already, by --set dp=1; give it once"):
+        CliRunner().invoke(
+            app, ["check", "film", "--set", "dp=1", "--set", "dp = 2"], catch_exceptions=False
+        )
 
 
 @pytest.mark.parametrize("name", COMMANDS)

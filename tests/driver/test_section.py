@@ -165,7 +165,10 @@ kind = "section"
         ("left = [0, 0]", "gauge.s.right is missing"),
         ("left = [0, 0]\nright = [0, 0.1]", "from the left bank; at least 2 dp"),
         ("left = [0, 0, 0]\nright = [0, 1]", "2 entries are needed"),
-        ("left = [0, 0]\nright = [0, 1]\nlength = 0.05", "shorter than a particle"),
+        (
+            "left = [0, 0]\nright = [0, 1]\nlength = 0.05",
+            "length = 0.05 m is smaller than a particle, dp =",
+        ),
         ("left = [0, 0]\nright = [0, 1]\nposition = [0, 0, 0]", "position"),
         ("left = [0, 0]\nright = [0, 'x m']", "right"),
     ],

@@ -7,7 +7,7 @@ import numpy as np
 from doseki.export.surface.contour import contour
 from doseki.export.surface.fraction import Cloud, Grid, blocks
 
-KERNEL, REACH = "wendland_c2", 2.6  # spacings
+KERNEL, REACH = "wendland_c2", 2.78  # spacings
 
 
 def lattice(low, high, dp):

@@ -47,7 +47,8 @@ def test_a_grid_is_read(grid):
         ),
         lambda text: text.replace("cellsize 5", "dx 5\ndy 5.000000001"),
         lambda text: text.replace("\n", "\r\n"),
-        lambda text: text.replace("3\n4 ", "3 4\n"),  # rows may be wrapped anywhere
+        lambda text: text.replace("3\n4 ", "3 4 "),  # rows may be wrapped anywhere
+        lambda text: text.replace("2 3\n4 ", "2\n3 4\n"),
         lambda text: "\ufeff" + text,
         lambda text: text.replace("-9999", "nan"),
         lambda text: text.replace("1 2 3", "  1.0 2e0\t+3 "),
@@ -64,6 +65,13 @@ def test_without_a_number_for_no_data(grid):
     raster = read_raster(grid(HEADER + "1 2 3\n4 -9999 nan"))
     assert raster.nodata is None
     np.testing.assert_array_equal(raster.values, [[1, 2, 3], [4, -9999, np.nan]])
+
+
+def test_a_number_for_no_data_is_known_by_fewer_digits(grid, tmp_path):
+    """As of a raster of single precision, whose lowest number stands with twelve digits."""
+    lowest, short = "-3.4028234663852886e+38", "-3.40282346639e+38"
+    raster = read_raster(grid(HEADER + f"NODATA_value {lowest}\n1 2 3\n4 {short} 6\n"))
+    np.testing.assert_array_equal(raster.values, [[1, 2, 3], [4, np.nan, 6]])
 
 
 REFUSED = {
@@ -84,6 +92,9 @@ REFUSED = {
     "both corners": (GRID.replace("cellsize", "xllcenter 3\ncellsize"), "exclude"),
     "twice": ("ncols 3\n" + GRID, "given twice"),
     "misspelt": (GRID.replace("cellsize", "cellsise"), "did you mean cellsize"),
+    "a row moved": (GRID.replace("3\n4 ", "3 4\n\n"), "row 1 has 4 values where ncols = 3"),
+    "cells of no map": (GRID.replace("cellsize 5", "cellsize 1e300"), "cells of 1e+300 m"),
+    "corner of no map": (GRID.replace("xllcorner 100", "xllcorner 1e12"), "below 1e+09 m"),
     "corner at infinity": (GRID.replace("xllcorner 100", "xllcorner inf"), "finite"),
 }
 
@@ -149,7 +160,7 @@ def test_a_projection_of_an_earlier_file_does_not_stay(tmp_path, hills):
 
 def test_a_value_that_means_no_data_is_not_written(tmp_path, hills, refusal):
     values = hills.values.copy()
-    values[0, 0] = -9999.0
+    values[0, 0] = -9999.0 + 1e-6
     assert "no data" in refusal(write_raster, tmp_path / "a.asc", hills.with_values(values))
     assert not (tmp_path / "a.asc").exists()
 

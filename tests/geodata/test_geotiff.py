@@ -80,6 +80,13 @@ def test_a_number_for_no_data_that_is_no_float32(tmp_path, tiff, gdal):
     np.testing.assert_array_equal(read_raster(tmp_path / "again.tif").values, raster.values)
 
 
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_a_number_for_no_data_of_fewer_digits(tiff, dtype):
+    values = np.array([[1.0, np.finfo(np.float32).min], [3.0, 4.0]])
+    raster = read_raster(tiff(values, dtype, nodata=-3.40282346639e38))
+    np.testing.assert_array_equal(raster.values, [[1, np.nan], [3, 4]])
+
+
 def test_a_mask_in_the_file(tiff):
     mask = np.array([[255, 255, 0], [255, 255, 255]], dtype=np.uint8)
     with rasterio.Env(GDAL_TIFF_INTERNAL_MASK=True):
@@ -106,6 +113,7 @@ REFUSED = {
     "mirrored": ({"place": (-5.0, 0.0, 0.0, 0.0, -5.0, 0.0)}, "north up"),
     "oblong cells": ({"place": (5.0, 0.0, 0.0, 0.0, -4.0, 0.0)}, "gdalwarp -tr 5 5"),
     "degrees": ({"crs": "EPSG:4326"}, "gdalwarp -t_srs"),
+    "geocentric": ({"crs": "EPSG:4978"}, "geocentric"),
     "a map in feet": ({"crs": "EPSG:2227"}, "foot"),
     "heights in feet": ({"after": feet}, '"ft"'),
     "nowhere": ({"place": (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)}, "where on the map"),

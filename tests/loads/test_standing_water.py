@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.driver.gauges import build_gauges
-from doseki.scenario.gauges.loads.standing_water import surface_of
+from doseki.scenario.gauges.loads.standing_water import standing_water, surface_of
 from doseki.solver.build import build_simulation
 
 from .scenes import scenario_of
@@ -117,6 +117,42 @@ def test_without_water_or_gravity_there_is_none(tmp_path):
     (tmp_path / "weightless").mkdir()
     force, _ = static_of(tmp_path / "weightless", 2, stone, 0.7, gravity="[0, 0]")
     assert not force.any()
+
+
+class Moved:
+    """A run whose particles all lie elsewhere."""
+
+    def __init__(self, run, by):
+        self.run, self.by = run, by
+
+    def sample(self, low, high):
+        state = self.run.sample(list(low - self.by), list(high - self.by))
+        return {**state, "position": state["position"] + self.by}
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_it_does_not_matter_where_the_scene_lies(tmp_path, dim):
+    stones = {
+        2: 'shape = "box"\nmin = [0.3, 0.2]\nmax = [0.5, 0.5]\nrotate = 30\npivot = [0.4, 0.3]',
+        3: 'shape = "box"\nmin = [0.2, 0.2, 0.14]\nmax = [0.4, 0.4, 0.34]',
+    }
+    text = POOL.format(dim=dim, stone=stones[dim], level=0.3, gravity="[0.5, -9.81]")
+    scenario = scenario_of(tmp_path, text)
+    simulation, names = build_simulation(scenario)
+    setting, far = scenario.setting(names), np.full(dim, np.inf)
+
+    def found(by):
+        about = np.full(dim, 0.2) + by
+        moved = Moved(simulation, by)
+        return np.concatenate(standing_water(moved, setting, ["stone"], about, (-far, far)))
+
+    expected = found(np.zeros(dim))
+    assert np.abs(expected[:dim]).max() > 10
+    random = np.random.default_rng(3)
+    shifts = [*(0.01 * np.eye(dim)), *random.uniform(-1500, 1500, (6, dim))]
+    for shift in shifts:
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(found(shift), expected, rtol=0, atol=1e-6 * scale)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

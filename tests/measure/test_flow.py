@@ -159,3 +159,20 @@ def test_tilt_puts_gravity_upright(flow_folder):
 def test_an_unknown_window_is_met_with_the_nearest_known_one(flow_folder):
     with pytest.raises(UserError, match="did you mean end"):
         views.named_window(load(flow_folder), "ende")
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("law = 'gas'", "material.water.law = 'gas' is not allowed"),
+        ("rheology = 1e300", "material.water.rheology = 1e+300 is not allowed"),
+        ("fracture = 'cohesive'", "material.water: fracture"),
+    ],
+)
+def test_a_material_that_cannot_be_is_refused(flow_folder, value, said):
+    file = flow_folder / "scenario.toml"
+    file.write_text(f"{file.read_text()}\n[material.water]\n{value}\n")
+    with pytest.raises(UserError) as caught:
+        measure_flow(load(flow_folder))
+    assert str(file) in str(caught.value)
+    assert said in str(caught.value)

@@ -37,7 +37,7 @@ def test_a_slide_on_two_ranks(command, tmp_path):
     assert command(2, "resume", tmp_path / "both", *more).returncode == 0
     one, *others = (doseki.load(tmp_path / name)[-1] for name in ("one", "two", "both"))
     walls = one["body"] == "terrain"
-    felt = cKDTree(one["position"][~walls]).query(one["position"][walls])[0] < 2.6 * 0.05
+    felt = cKDTree(one["position"][~walls]).query(one["position"][walls])[0] < 2.78 * 0.05
     for other in others:
         flow = other["body"] != "terrain"
         assert np.array_equal(other["id"][flow], one["id"][~walls])

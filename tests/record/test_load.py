@@ -121,6 +121,29 @@ def test_a_damaged_snapshot_is_named(run_folder):
         load(run_folder)[0]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("dim = 2\n", "", "dim is missing"),
+        ("dim = 2\n", "dim = 4\n", "dim: Input should be 2 or 3"),
+        ("dp = 0.1\n", "dp = 'fine'\n", "dp: "),
+        ("time_max = 2.0\n", "time_max = nan\n", "time_max: "),
+        ("gravity = [-1.0, ", "gravity = [0.0, 0.0, ", "gravity: a 2-D run needs 2 entries"),
+        ("dim = 2\n", "dim = 2\nbody = 3\n", "body: "),
+        ("dim = 2\n", "dim = 2\nperiodic = ['x']\n", "periodic needs domain_min"),
+    ],
+)
+def test_a_damaged_scenario_is_named(run_folder, old, new, said):
+    file = run_folder / "scenario.toml"
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+    with pytest.raises(UserError) as caught:
+        _ = load(run_folder).scenario
+    assert str(caught.value).startswith(f"{file}: no run has written this: ")
+    assert said in str(caught.value)
+
+
 def test_a_damaged_history_is_named(run_folder):
     with (run_folder / "history.csv").open("a") as file:
         file.write("1.0,oops\n")

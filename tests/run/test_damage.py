@@ -112,8 +112,9 @@ def test_without_a_whole_checkpoint_nothing_is_touched(run):
     for file in CheckpointFolder(run / "checkpoints").files():
         file.write_bytes(truncate(file.read_bytes()))
     before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
-    with pytest.raises(UserError, match="no whole checkpoint"):
+    with pytest.raises(UserError, match="no whole checkpoint") as caught:
         resume_run(run)
+    assert "using the one before it" not in str(caught.value)
     assert {file: file.read_bytes() for file in run.rglob("*") if file.is_file()} == before
 
 
@@ -124,11 +125,20 @@ def test_a_record_with_missing_rows_is_refused(run):
         resume_run(run)
 
 
-def test_a_checkpoint_of_another_run_is_refused(run, tmp_path):
-    run_channel("film", tmp_path / "film", "time_max=0.01")
-    for file in CheckpointFolder(run / "checkpoints").files():
-        file.unlink()
-    for file in CheckpointFolder(tmp_path / "film/checkpoints").files():
-        shutil.copy(file, run / "checkpoints")
-    with pytest.raises(UserError, match="materials are not those"):
+@pytest.mark.parametrize("name", ["film", "channel"])
+def test_a_checkpoint_of_another_run_is_refused(run, channel_file, tmp_path, name):
+    """Also of one with the same bodies of the same materials, at other places."""
+    other = ("film",) if name == "film" else (channel_file, "body.rocks.max=[0.09, 0.03]")
+    file, *settings = other
+    run_channel(file, tmp_path / "other", "time_max=0.01", *settings)
+    for own in CheckpointFolder(run / "checkpoints").files():
+        own.unlink()
+    for foreign in CheckpointFolder(tmp_path / "other/checkpoints").files():
+        shutil.copy(foreign, run / "checkpoints")
+    with pytest.raises(UserError, match="is a checkpoint of another run"):
         resume_run(run)
+    unsealed = (run / "scenario.toml").read_text().splitlines()[:-1]
+    (run / "scenario.toml").write_text("\n".join(unsealed) + "\n")
+    if name == "film":
+        with pytest.raises(UserError, match="materials are not those"):
+            resume_run(run)

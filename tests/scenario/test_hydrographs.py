@@ -107,6 +107,7 @@ def test_wrong_hydrographs(write, error_of, old, new, parts):
         ("time,Q\n0,1\n1,1\n", "no column t"),
         ("t,Q [gal/s]\n0,1\n1,1\n", 'unit of "Q [gal/s]" is not known; allowed: m3/s'),
         ("t,Q\n0,1\n1,x\n", "row 2: Q = 'x' is not a number"),
+        ("t,Q\n0,1\n1,1_0\n", "row 2: Q = '1_0' is not a number"),
         ("t,Q\n0,1\n1,nan\n", "row 2: Q = nan"),
         ("t,Q\n0,1\n-1,1\n", "row 2: t = -1"),
     ],

@@ -72,6 +72,11 @@ def test_the_effective_scenario_keeps_the_motion(write, tmp_path):
         ),
         ("removed_at = 0.03", "removed_at = 0", "removed_at = 0 is out of range"),
         (
+            "removed_at = 0.03",
+            "removed_at = 0.01",
+            "must be later than start = 0.01 s: a body that",
+        ),
+        (
             "velocity = [0, 2], start = 0.01, stop = 0.02, removed_at = 0.03",
             "start = 1",
             "give velocity, angular_velocity or removed_at",

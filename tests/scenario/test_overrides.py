@@ -62,6 +62,7 @@ def test_a_key_replaces_its_rival(write):
         ("alpha", "--set alpha: expected key=value"),
         ("=1", "expected key=value"),
         ("lenght=3", "--set lenght: not a key of this scenario; did you mean length?"),
+        ("DP=0.2", "--set DP: not a key of this scenario; did you mean dp?"),
         ("length=long", "--set length: length = 'long' must be a number"),
         ("length=0", "--set length: parameters.length: 0 is out of range; must be 1 m or more"),
         ("lid=1", "lid = 1 must be true or false"),

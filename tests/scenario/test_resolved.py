@@ -62,7 +62,7 @@ def test_speed_max_sets_the_sound_speed_of_the_fluid_alone(write):
 
 def test_defaults_are_those_of_the_scheme(write):
     scenario = load_scenario(write(top=FAST))
-    assert (scenario.kernel, scenario.eta) == ("wendland_c2", 1.3)
+    assert (scenario.kernel, scenario.eta) == ("wendland_c2", 1.39)
     assert (scenario.cflnumber, scenario.cfl_force) == (0.8, 0.25)
     assert scenario.support == pytest.approx(0.26)
     wide = load_scenario(write(top=FAST + '\nkernel = "wendland_c6"'))

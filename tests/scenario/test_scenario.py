@@ -2,6 +2,7 @@
 
 import copy
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from doseki.scenario.load import load_scenario
-from doseki.scenario.values.toml_source import TomlSource
+from doseki.scenario.values.toml_source import TomlSource, read_toml
 from doseki.scene.build import build_bodies
 from doseki.util.toml_writer import to_toml
 
@@ -52,6 +53,13 @@ def test_new_material_is_based_on_another(write):
 def test_disabled_parts_are_not_there(write):
     off = BLOCK.replace("block", "lid") + 'enabled = "= dim == 3"\nfoo = 1\n'
     assert list(load_scenario(write(tables=BLOCK + off)).body) == ["block"]
+
+
+def test_a_byte_order_mark_is_passed_over(write, tmp_path):
+    marked = tmp_path / "marked.toml"
+    marked.write_text("\ufeff" + Path(write()).read_text(), encoding="utf-8")
+    assert load_scenario(marked).dp == 0.1
+    assert read_toml(marked).line_of(("dim",)) == 1
 
 
 def test_extension_overrides_table_by_table(write, tmp_path):

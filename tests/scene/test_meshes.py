@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -187,9 +188,12 @@ def stl_of(triangles: np.ndarray, count: int | None = None) -> bytes:
     return b"\0" * 80 + struct.pack("<I", declared) + rows.tobytes()
 
 
+CORNERS = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 HOSTILE = {
     "header.stl": (stl_of(np.zeros((0, 3, 3)), 10**8), "100000000 triangles are said to follow"),
-    "empty.stl": (b"", "holds 0|cannot be read"),
+    "more.stl": (stl_of(box().triangles, 3), "3 triangles are said to follow, it holds 12;"),
+    "less.stl": (stl_of(box().triangles)[:-25], "12 triangles are said to follow, it holds 11.5;"),
+    "empty.stl": (b"", "no triangle"),
     "none.stl": (stl_of(np.zeros((0, 3, 3))), "no triangle|cannot be read"),
     "nan.stl": (stl_of(np.where(np.arange(9) == 4, np.nan, box().triangles.reshape(-1, 9))
                        .reshape(-1, 3, 3)), "not finite"),
@@ -198,7 +202,8 @@ HOSTILE = {
     "far.stl": (stl_of(1e30 * box().triangles), "beyond"),
     "many.ply": (b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999999\n"
                  b"property float x\nend_header\n", "more than it has"),
-    "index.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "cannot be read|not there"),
+    "index.obj": (CORNERS + b"f 1 2 9\n", "obj: a face names a vertex that is not there"),
+    "zero.obj": (CORNERS + b"f 1 2 3\nf 1//1 0//1 3//1\n", "line 5: a face names vertex 0"),
     "text.obj": (b"hello", "no triangle|cannot be read"),
 }  # fmt: skip
 
@@ -211,6 +216,21 @@ def test_a_bad_file_is_refused_in_one_sentence(tmp_path, capfd, name):
         made_mesh(tmp_path / name, 1.0, 0.0)
     assert str(caught.value).count("\n") == 0
     assert capfd.readouterr() == ("", "")
+
+
+def test_names_and_comments_come_in_any_encoding(tmp_path, monkeypatch):
+    """Also without charset_normalizer, which trimesh would guess the encoding with."""
+    monkeypatch.setitem(sys.modules, "charset_normalizer", None)
+    for kind in ("obj", "ply", "stl_ascii"):
+        text = box().export(file_type=kind, **({"encoding": "ascii"} if kind == "ply" else {}))
+        text = text.encode() if isinstance(text, str) else text
+        name = "H\xfcgel".encode("latin-1")
+        text = text.replace(b"solid", b"solid " + name).replace(
+            b"1.0\n", b"1.0\ncomment %s\n" % name
+        )
+        file = tmp_path / f"wall.{kind[:3]}"
+        file.write_bytes(b"# " + name + b"\n" + text if kind == "obj" else text)
+        assert len(made_mesh(file, 1.0, 0.0).shape.mesh.faces) == 12
 
 
 def test_triangles_without_area_are_left_out(tmp_path):

@@ -65,6 +65,17 @@ def test_numbers_that_are_no_heights_are_refused(path, tmp_path):
         load_scenario(path)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("number", ["1e30", "-3.40282346639e+38", "123456"])
+def test_numbers_that_no_ground_reaches_are_refused(path, tmp_path, number):
+    lines = (tmp_path / "terrain.asc").read_text().splitlines()
+    words = lines[-3].split()
+    lines[-3] = " ".join([*words[:7], number, *words[8:]])
+    (tmp_path / "terrain.asc").write_text("\n".join(lines) + "\n")
+    with pytest.raises(UserError, match=r"terrain.asc: row 38, column 8 holds .* within 100000 m"):
+        load_scenario(path)
+
+
 def test_cells_without_data_are_filled_and_said(path, tmp_path):
     x, y = np.meshgrid(np.arange(60), np.arange(40))
     values = np.where((x > 45) & (y > 25), np.nan, 10 - 0.05 * x)

@@ -12,7 +12,7 @@ from doseki.solver.build import empty_simulation
 
 from .scenes import fluid, grid, profile, simulation_of, step, text
 
-LAYERS, SUPPORT = 3, 2.6  # in spacings, of the resolved scheme
+LAYERS, SUPPORT = 3, 2.78  # in spacings, of the resolved scheme
 FARTHEST = SUPPORT * 1.2 + 0.5 + 1.5  # what moves until the next look, slack, and one group
 RELEASE = """
 [body.slide]

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import numpy as np
 import pytest
 
-from doseki.errors import UserError
+from doseki.errors import ResourceError, UserError
 from doseki.geodata.raster import Raster, write_raster
 from doseki.scenario.load import load_scenario
+from doseki.scenario.releases import NotCompared
 from doseki.scene.build import build_scene
 from doseki.scene.ground import Ground
 from doseki.scene.kinds.registry import body_of
+from doseki.scene.kinds.release import ReleaseBody
 
 from .scenes import grid, profile, text
 
@@ -23,6 +26,12 @@ material = "water"
 {keys}
 """
 SQUARE = "polygon = [[1, 1], [4, 1], [4, 3], [1, 3]]\nthickness = 0.5"
+SMALL = "[[2, 1.5], [2.5, 1.5], [2.5, 2], [2, 2]]"
+
+
+def hole(*rings):
+    """Keys of the square with holes."""
+    return f"polygons = [[[[1, 1], [4, 1], [4, 3], [1, 3]], {', '.join(rings)}]]\nthickness = 0.5"
 
 
 def hill(x, y):
@@ -50,6 +59,11 @@ def volume_of(scenario):
     scene = build_scene(scenario)
     own = scene.particles.body == scene.names.index("slide")
     return float((scene.particles.mass[own] / scene.particles.density[own]).sum())
+
+
+def doubts_of(path):
+    """What is said of a scenario that is built."""
+    return build_scene(load_scenario(path)).warnings
 
 
 def area_of(inside, low, high, n=800):
@@ -158,6 +172,8 @@ max = [6, 0.8]
         ({"depth": 0.5}, "no attribute thickness, .*; known: depth"),
         ({}, "no attribute thickness, .* give body.slide.thickness$"),
         ({"thickness": "0.5"}, "thickness = '0.5', not a length"),
+        ({"thickness": True}, "thickness = True, not a length"),
+        ({"thickness": 1e20}, r"thickness = 1e\+20, not a length in m above 0 and up to 10000"),
     ],
 )
 def test_polygons_without_a_thickness_are_refused(case, tmp_path, about, said):
@@ -181,6 +197,42 @@ def test_one_that_is_far_away_is_refused_before_it_is_filled(case, monkeypatch, 
     keys = "polygon = [[3e6, 1], [3.1e6, 1], [3e6, 3e5]]" if dim == 3 else "between = [3e6, 4e6]"
     with pytest.raises(UserError, match=r"reaches beyond the terrain, .* as at \[3000000.0"):
         build_scene(load_scenario(case(keys + "\nthickness = 0.5", dim=dim)))
+
+
+def test_a_thickness_without_end_is_refused_before_it_is_filled(case, tmp_path, monkeypatch):
+    """As layers it would take for ever, and memory that no machine has."""
+    monkeypatch.setattr("doseki.record.particles.MAX_PARTICLES", 1e6)
+    monkeypatch.setattr(ReleaseBody, "_stacked", None)
+    for dim, keys in ((2, "between = [1, 3]"), (3, SQUARE.partition("\n")[0])):
+        with pytest.raises(ResourceError, match=r"particles \(.* of them in body.slide\)"):
+            build_scene(load_scenario(case(keys + "\nthickness = 9999", dp=0.03, dim=dim)))
+    depth = np.zeros((40, 60))
+    depth[12, 30] = 1e20
+    write_raster(tmp_path / "depth.asc", Raster(depth, 0.0, 0.0, 0.1))
+    with pytest.raises(UserError, match=r"row 13, column 31 holds 1e\+20, .* up to 10000 m"):
+        build_scene(load_scenario(case('file = "depth.asc"')))
+
+
+@pytest.mark.parametrize("name", ["area.geojson", "depth.asc"])
+def test_without_rasterio_systems_without_numbers_are_warned_about(
+    case, tmp_path, monkeypatch, name
+):
+    monkeypatch.setitem(sys.modules, "rasterio", None)
+    path = case(f'file = "{name}"' + ("" if name == "depth.asc" else "\nthickness = 0.5"))
+    ring = [[1, 1], [4, 1], [4, 3], [1, 3], [1, 1]]
+    area = {"type": "Polygon", "coordinates": [ring]}
+    crs = {"type": "name", "properties": {"name": "EPSG:32633"}}
+    (tmp_path / "area.geojson").write_text(json.dumps(area | {"crs": crs}))
+    write_raster(tmp_path / "depth.asc", Raster(np.full((20, 30), 0.5), 1.0, 1.0, 0.1))
+    (tmp_path / "depth.prj").write_text('PROJCS["zone 33",UNIT["Meter",1.0]]')
+    (tmp_path / "terrain.prj").write_text('PROJCS["zone",UNIT["metre",1]]')
+    (said,) = (str(each) for each in doubts_of(path) if isinstance(each, NotCompared))
+    assert said.startswith("body.slide.file: ")
+    assert said.endswith("pip install 'doseki[terrain]'")
+    (tmp_path / "terrain.prj").write_text('PROJCS["zone",UNIT["metre",1],AUTHORITY["EPSG","2056"]]')
+    (tmp_path / "depth.prj").write_text('PROJCS["n",UNIT["m",1],AUTHORITY["EPSG","32633"]]')
+    with pytest.raises(UserError, match="different coordinate reference systems"):
+        doubts_of(path)
 
 
 def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):
@@ -216,6 +268,16 @@ def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):
             r"area 1 crosses itself at \[2.5, 2.0\] m",
         ),
         (
+            hole("[[3, 1.5], [5, 1.5], [5, 2.5]]"),
+            "75 % of hole 1 of area 1 lie outside its outline",
+        ),
+        (hole("[[5, 1], [5.5, 1], [5.5, 3]]"), "100 % of hole 1 of area 1 lie outside"),
+        (hole(SMALL, SMALL), "holes 1 and 2 of area 1 share 0.25 m2, .* left out twice"),
+        (hole(SMALL, "[[2.2, 1.6], [3, 1.6], [3, 1.9]]"), "holes 1 and 2 of area 1 share"),
+        (hole("[[2, 1.5], [3, 2.5], [3, 1.5], [2, 2.5]]"), "hole 1 of area 1 crosses itself"),
+        (SQUARE.replace("0.5", "true"), "body.slide.thickness .* number"),
+        (SQUARE.replace("0.5", "1e5"), "body.slide.thickness .* 10000"),
+        (
             "polygons = [[[[1, 1], [4, 1], [4, 3], [1, 3]]], [[[3.8, 1], [5, 1], [5, 3]]]]\n"
             "thickness = 0.5",
             r"areas 1 and 2 share 0.03\d+ m2",
@@ -226,6 +288,17 @@ def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):
 def test_what_is_no_release_is_refused(case, keys, said):
     with pytest.raises(UserError, match=said):
         build_scene(load_scenario(case(keys)))
+
+
+def test_a_hole_may_touch_its_outline(case):
+    """And another hole, as where each is drawn along the other."""
+    keys = hole("[[1, 1], [2, 1], [2, 2], [1, 2]]", "[[2, 1.5], [3, 1.5], [3, 2], [2, 2]]")
+
+    def left(x, y):
+        return ~((x < 2) & (y < 2)) & ~((x > 2) & (x < 3) & (y > 1.5) & (y < 2))
+
+    exact = 0.5 * area_of(left, (1, 1), (4, 3))
+    assert volume_of(load_scenario(case(keys))) == pytest.approx(exact, rel=0.015)
 
 
 def test_areas_that_share_an_edge_are_no_overlap(case):

@@ -13,7 +13,7 @@ CANARIES = (
     "artificial-viscosity", "bingham", "dam-front", "elastic-oblique", "elastic-plate",
     "elliptical-drop-disturbed", "grains-drag", "grains-incline", "grains-stream",
     "grains-under-water", "hydrostatic", "nusselt-film", "poiseuille", "shear-decay", "sound-wave",
-    "taylor-green-100-lattice", "voellmy-slab",
+    "still-water", "taylor-green-100-lattice", "voellmy-slab",
 )  # fmt: skip
 # One case each of the families that take minutes at their coarsest: the tier validate has them.
 SLOW = ("channel-plane", "hydrostatic-plate", "sphere-in-oil")

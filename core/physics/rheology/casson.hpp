@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "physics/rheology/shear_state.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
 
 namespace doseki {
 
@@ -11,7 +11,7 @@ namespace doseki {
 template <class T>
 struct Casson {
     static constexpr const char* name = "casson";
-    static constexpr bool has_yield_stress = true;
+    static constexpr PairViscosity of_pairs = PairViscosity::harmonic;
 
     T yield_stress{};      // [Pa]
     T casson_viscosity{};  // [Pa s]

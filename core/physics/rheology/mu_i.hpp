@@ -1,5 +1,5 @@
 #pragma once
-#include "physics/rheology/shear_state.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
 
 namespace doseki {
 
@@ -9,7 +9,7 @@ namespace doseki {
 template <class T>
 struct MuI {
     static constexpr const char* name = "mu_i";
-    static constexpr bool has_yield_stress = false;
+    static constexpr PairViscosity of_pairs = PairViscosity::by_rate;
 
     T mu_s{}, mu_2{}, I_0{};
     T grain_diameter{};       // [m]

@@ -1,5 +1,5 @@
 #pragma once
-#include "physics/rheology/shear_state.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
 
 namespace doseki {
 
@@ -7,7 +7,7 @@ namespace doseki {
 template <class T>
 struct Newtonian {
     static constexpr const char* name = "newtonian";
-    static constexpr bool has_yield_stress = false;
+    static constexpr PairViscosity of_pairs = PairViscosity::mean;
 
     T nu{};  // [m^2/s]
 

@@ -8,15 +8,33 @@ from typing import Annotated
 
 import typer
 
+from ..errors import UserError
 from ..util.files import free_directory as free_directory
 from .numbers import number
+
+
+def _once_each(settings: list[str] | None) -> list[str] | None:
+    """Refuse a key that is set twice: of two values one would be dropped without a word."""
+    seen: dict[str, str] = {}
+    for setting in settings or []:
+        key = setting.partition("=")[0].strip().removeprefix("parameters.")
+        if key in seen:
+            raise UserError(f"--set {setting}: set already, by --set {seen[key]}; give it once")
+        seen[key] = setting
+    return settings
+
 
 ScenarioName = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="A shipped scenario or a TOML file.")
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scenario; repeatable."),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        callback=_once_each,
+        help="Change a value of the scenario; repeatable.",
+    ),
 ]
 Threads = Annotated[
     int | None, typer.Option(min=1, max=4096, help="Threads.", show_default="all cores")

@@ -17,6 +17,7 @@ from ..util.finding import Finding
 from .checkpoint import Checkpoint, CheckpointFolder, Position
 from .counts import Counts, build_counts
 from .gauges import GaugeReader, build_gauges
+from .identity import identity_of
 from .live import LiveView, Watch
 from .maps import RunningMaps
 from .means import Means, build_means
@@ -81,6 +82,7 @@ class ActiveRun:
         self.ranks = ranks
         self.folder = RunFolder(recorder.directory)
         self.checkpoints = CheckpointFolder(self.folder.checkpoints)
+        self.identity = ranks.on_root(lambda: identity_of(self.folder.scenario))
         self.position = Position()
         self.goes_on = False  # the simulation has its first rates already
         self.threads: ThreadChoice | None = None  # None: their number does not change
@@ -151,7 +153,7 @@ class ActiveRun:
         position = Position(**vars(self.position) | now)
         names = self.scenario.material_names, self.body_names
         maps = self.maps.state if self.maps else {}
-        return Checkpoint(self.simulation.checkpoint(), position, *names, maps)
+        return Checkpoint(self.simulation.checkpoint(), position, *names, maps, self.identity)
 
     def write_checkpoint(self, clock: CheckpointClock | None = None) -> None:
         """Put the state safely on the disk, and `clock` forward if it was that which said so."""

@@ -54,6 +54,7 @@ class Checkpoint:
     material_names: list[str]
     body_names: list[str]
     maps: dict[str, np.ndarray] = field(default_factory=dict)  # state of measure.maps.peaks
+    scenario: str | None = None  # identity of its run; None: it does not say
 
     @property
     def time(self) -> float:
@@ -83,6 +84,7 @@ class Around:
     position: Position
     material_names: list[str]
     body_names: list[str]
+    scenario: str | None = None
 
 
 AROUND: TypeAdapter[Around] = TypeAdapter(Around)
@@ -97,6 +99,7 @@ def to_bytes(checkpoint: Checkpoint) -> memoryview:
             "position": asdict(checkpoint.position),
             "material_names": checkpoint.material_names,
             "body_names": checkpoint.body_names,
+            "scenario": checkpoint.scenario,
         }
         # No attribute, which holds 64 kB at most.
         file[AROUND_STATE] = np.frombuffer(json.dumps(said).encode(), np.uint8)
@@ -139,7 +142,7 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
             raise UserError(f'{path}: "{name}" is missing, or not one number')
     names = around.material_names, around.body_names
     maps = {name.removeprefix(MAP): values for name, values in maps.items()}
-    return Checkpoint(state, around.position, *names, maps)
+    return Checkpoint(state, around.position, *names, maps, around.scenario)
 
 
 class CheckpointFolder:
@@ -174,16 +177,16 @@ class CheckpointFolder:
 
         Raises UserError when there is none.
         """
-        notes: list[str] = []
+        damaged: list[str] = []
         for file in reversed(self.files()):
             try:
                 checkpoint = from_bytes(read_bytes(file), file)
                 if checkpoint.time <= until:
-                    return checkpoint, notes
+                    return checkpoint, [f"{each}; using the one before it" for each in damaged]
             except (DamagedCheckpointError, UserError) as error:
                 said = str(error).removeprefix(f"{file}: ")
-                notes.append(f"{file} is damaged ({said}); using the one before it")
-        found = f": {notes[0]}" if notes else ""
+                damaged.append(f"{file} is damaged ({said})")
+        found = f": {damaged[0]}" if damaged else ""
         raise UserError(f"{self.path}: no whole checkpoint to go on from{found}; run it again")
 
     def drop_later(self, step: int) -> None:

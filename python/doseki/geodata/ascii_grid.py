@@ -18,7 +18,7 @@ from ..util.foreign import read_text
 from ..util.spelling import suggestion
 from .crs import check_map_coordinates
 from .errors import GeodataError
-from .grid import Raster
+from .grid import Raster, means_no_data
 
 KEYS = (
     "ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter",
@@ -54,9 +54,10 @@ def read_ascii_grid(path: Path) -> Raster:
             f"{path}: {len(values)} values where nrows = {rows} and ncols = {cols} make "
             f"{rows * cols}; is it cut off?"
         )
+    _check_lines(path, text[start:], rows, cols)
     nodata = _number(path, header, "nodata_value") if "nodata_value" in header else None
     if nodata is not None:
-        values[values == nodata] = np.nan
+        values[means_no_data(values, nodata)] = np.nan
     if np.isinf(values).any():
         raise GeodataError(f"{path}: holds infinite values")
     return Raster(
@@ -157,6 +158,19 @@ def _values(path: Path, text: str, start: int) -> np.ndarray:
             return np.fromstring(body, sep=" ")
         except (DeprecationWarning, ValueError):
             raise GeodataError(_first_word(path, text, start)) from None
+
+
+def _check_lines(path: Path, body: str, rows: int, cols: int) -> None:
+    """Where each row has a line, refuse one that is too long, by which the next would move.
+
+    With other numbers of lines they may be wrapped anywhere.
+    """
+    counts = [count for line in body.splitlines() if (count := len(line.split()))]
+    if len(counts) != rows:
+        return
+    for row, count in enumerate(counts, 1):
+        if count != cols:
+            raise GeodataError(f"{path}: row {row} has {count} values where ncols = {cols}")
 
 
 def _first_word(path: Path, text: str, start: int) -> str:

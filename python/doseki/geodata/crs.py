@@ -5,20 +5,39 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 from .errors import GeodataError
 
-GEOGRAPHIC = ("GEOGCS", "GEOGCRS", "GEODCRS", "GEODETICCRS", "GEOGRAPHICCRS", "GEOCCS")
+GEOGRAPHIC = ("GEOGCS", "GEOGCRS", "GEODCRS", "GEODETICCRS", "GEOGRAPHICCRS")
+GEOCENTRIC = re.compile(
+    r"GEOCCS\[|GEOD(?:ETIC)?CRS\[.*\bCS\[\s*Cartesian", re.IGNORECASE | re.DOTALL
+)
 PROJECTED = (
     "PROJCS", "PROJCRS", "PROJECTEDCRS", "COMPD_CS", "COMPOUNDCRS", "BOUNDCRS",
     "LOCAL_CS", "ENGCRS", "ENGINEERINGCRS",
 )  # fmt: skip
 FEET = re.compile(r'UNIT\[\s*"([^"]*(?:foot|feet|ft|yard|link|chain)[^"]*)"', re.IGNORECASE)
+LENGTH_UNIT = re.compile(
+    r'\b(?:LENGTH)?UNIT\[\s*"((?!deg|grad)[^"]*)"\s*,\s*(\d+\.?\d*(?:e[-+]?\d+)?)', re.IGNORECASE
+)
 LAST_CODE = re.compile(r'(?:^EPSG:|(?:AUTHORITY|ID)\[\s*"EPSG",\s*"?)(\d+)"?(?:\s*\]){0,2}\s*$')
+NAMED_CODE = re.compile(r"(?:^|[:/])EPSG(?:[:/][^:/]*)?[:/](\d+)", re.IGNORECASE)
+# Numbers with EPSG that are degrees, geocentric or feet: what can be known without its tables.
+NOT_METRES = (
+    (2222, 2289), (2867, 2930), (3417, 3438), (3441, 3446), (3451, 3459), (3819, 3824),
+    (4000, 4025), (4027, 4036), (4039, 4047), (4120, 4389), (4490, 4490), (4555, 4558),
+    (4600, 4646), (4657, 4765), (4801, 4811), (4813, 4821), (4882, 5013), (6317, 6325),
+    (6666, 6668), (7842, 7844),
+)  # fmt: skip
 COMPOUND = ("COMPD_CS", "COMPOUNDCRS")
-MAP_PART = re.compile(r"PROJC(?:S|RS)\[")
+MAP_PART = re.compile(r"(?:PROJC(?:S|RS)|GEO[A-Z]*C(?:S|RS)|LOCAL_CS|ENGCRS)\[")
 MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG
-IN_DEGREES = re.compile(r"(?:^|:)(?:CRS84h?|EPSG:[^:]*:?(?:4326|4258|4979))$", re.IGNORECASE)
+IN_DEGREES = re.compile(r"(?:^|[:/])CRS(?:84h?|83|27)$", re.IGNORECASE)
+CONVERT = (
+    "convert it with gdalwarp -t_srs EPSG:CODE IN OUT (vectors: ogr2ogr -t_srs EPSG:CODE OUT IN), "
+    "such as 32633 for UTM zone 33 N"
+)
 
 BESIDE = 100.0  # m on a map, over which its scale is taken
 EQUATOR, FLATTENED = 6_378_137.0, 0.00669438  # radius, m, and squared eccentricity of the Earth
@@ -31,41 +50,60 @@ def check_map_coordinates(path: object, crs: str) -> None:
     """
     if not crs:
         return
-    keyword = re.match(r"[A-Za-z_]+", crs)
-    word = keyword[0].upper() if keyword and "[" in crs else ""
+    of_map = _horizontal(crs)
+    keyword = re.match(r"[A-Za-z_]+", of_map)
+    word = keyword[0].upper() if keyword and "[" in of_map else ""
+    if GEOCENTRIC.match(of_map):
+        raise GeodataError(f"{path}: coordinates are geocentric, not those of a map; {CONVERT}")
     if word in GEOGRAPHIC or IN_DEGREES.search(crs):
-        raise GeodataError(in_degrees(path))
+        raise GeodataError(f"{path}: coordinates are degrees, and metres are needed; {CONVERT}")
     if word in PROJECTED:
-        if unit := FEET.search(crs):
-            raise GeodataError(not_metres(path, unit[1]))
-        return
-    if ":" not in crs:
+        _check_units(path, crs)
+    elif "[" in crs or ":" not in crs:
         raise GeodataError(
-            f'{path}: "{crs[:40]}" is no coordinate reference system in WKT; write one with '
-            f"gdalsrsinfo -o wkt_esri EPSG:CODE"
+            f'{path}: "{crs[:40]}" is no coordinate reference system of a map in WKT; write one '
+            "with gdalsrsinfo -o wkt_esri EPSG:CODE"
         )
-    _check_named(path, crs)
+    else:
+        _check_named(path, crs)
+
+
+def _check_units(path: object, wkt: str) -> None:
+    if unit := FEET.search(wkt):
+        raise GeodataError(not_metres(path, unit[1]))
+    units = LENGTH_UNIT.findall(_horizontal(wkt))
+    if units and float(units[-1][1]) != 1.0:
+        raise GeodataError(not_metres(path, units[-1][0]))
 
 
 def _check_named(path: object, name: str) -> None:
-    """The same for a system of which only the name is known, where rasterio can look it up."""
+    """The same for a system of which only the name is known."""
     try:
         from rasterio import Env
         from rasterio.crs import CRS
         from rasterio.errors import CRSError
     except ImportError:
+        code = _code_in(name)
+        if code is not None and any(low <= code <= high for low, high in NOT_METRES):
+            raise GeodataError(
+                f"{path}: coordinates of EPSG:{code} are degrees, feet or geocentric, and metres "
+                f"on a map are needed; {CONVERT}"
+            ) from None
         return
     try:
         with Env():  # else what PROJ has to say goes to the terminal
-            found = CRS.from_user_input(name)
+            wkt = CRS.from_user_input(name).to_wkt()
     except CRSError:
         raise GeodataError(
             f'{path}: no coordinate reference system is called "{name[:40]}"'
         ) from None
-    if found.is_geographic:
-        raise GeodataError(in_degrees(path))
-    if found.is_projected and found.linear_units_factor[1] != 1.0:
-        raise GeodataError(not_metres(path, found.linear_units))
+    check_map_coordinates(path, wkt)
+
+
+def _code_in(crs: str) -> int | None:
+    """The number with EPSG that stands in a WKT or a name, of the map alone."""
+    found = LAST_CODE.search(_horizontal(crs)) if "[" in crs else NAMED_CODE.search(crs)
+    return None if found is None else int(found[1])
 
 
 def epsg_code(crs: str | None) -> int | None:
@@ -146,15 +184,6 @@ def _length(start: tuple[float, float], end: tuple[float, float]) -> float:
     return math.hypot(across * east, EQUATOR * (1 - FLATTENED) / flat**1.5 * north)
 
 
-def in_degrees(path: object) -> str:
-    """What is said of coordinates that are longitudes and latitudes."""
-    return (
-        f"{path}: coordinates are degrees, and metres are needed; convert it with "
-        f"gdalwarp -t_srs EPSG:CODE IN OUT (vectors: ogr2ogr -t_srs EPSG:CODE OUT IN), such as "
-        f"32633 for UTM zone 33 N"
-    )
-
-
 def not_metres(path: object, unit: str) -> str:
     """What is said of a map in feet."""
     return f'{path}: the unit is "{unit}", and metres are needed; convert it with gdalwarp -t_srs'
@@ -163,18 +192,20 @@ def not_metres(path: object, unit: str) -> str:
 def same_crs(one: str | None, other: str | None) -> bool | None:
     """Whether two systems (WKT, or names such as "EPSG:32633") are the same on the map.
 
-    None where that cannot be told: one is not known, or rasterio is not installed.
+    None where that cannot be told: one is not known, or has no number with EPSG in it and rasterio
+    is not installed.
     """
     if one is None or other is None:
         return None
-    if one == other:
+    if _horizontal(one) == _horizontal(other):
         return True
     try:
         from rasterio import Env
         from rasterio.crs import CRS
         from rasterio.errors import CRSError
     except ImportError:
-        return None
+        codes = _code_in(one), _code_in(other)
+        return None if None in codes else codes[0] == codes[1]
     try:
         with Env():
             found = (CRS.from_user_input(each).to_wkt() for each in (one, other))
@@ -183,6 +214,16 @@ def same_crs(one: str | None, other: str | None) -> bool | None:
     except CRSError:
         return None
     return bool(first == second) or (codes[0] is not None and codes[0] == codes[1])
+
+
+def needs_rasterio(one: str | None, other: str | None) -> bool:
+    """Whether only rasterio, which is not installed, could say if `one` is the system of `other`.
+
+    Where the other one is not known: if `one`, which is but a name, is in metres.
+    """
+    if one is None or (other is None and "[" in one):
+        return False
+    return same_crs(one, other) is None and find_spec("rasterio") is None
 
 
 def _horizontal(wkt: str) -> str:

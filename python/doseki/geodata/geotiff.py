@@ -13,9 +13,9 @@ from ..util.files import write_whole
 from ..util.foreign import readable
 from ..util.memory import available_bytes
 from .ascii_grid import SQUARE, not_square
-from .crs import in_degrees, not_metres
+from .crs import check_map_coordinates, not_metres
 from .errors import GeodataError, needed
-from .grid import Raster
+from .grid import Raster, means_no_data
 
 MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 WHAT = "a GeoTIFF"
@@ -62,10 +62,8 @@ def _check(path: Path, dataset: Any) -> None:
         raise GeodataError(f"{path}: is rotated; turn it north up with gdalwarp IN OUT")
     if abs(abs(at.e) - at.a) > SQUARE * at.a or at.a == 0:
         raise GeodataError(not_square(path, at.a, abs(at.e)))
-    if dataset.crs and dataset.crs.is_geographic:
-        raise GeodataError(in_degrees(path))
-    if dataset.crs and dataset.crs.is_projected and dataset.crs.linear_units_factor[1] != 1.0:
-        raise GeodataError(not_metres(path, dataset.crs.linear_units))
+    if dataset.crs:
+        check_map_coordinates(path, dataset.crs.to_wkt())
     unit = dataset.units[0] or ""
     if unit.lower() not in METRES:
         raise GeodataError(not_metres(path, unit))
@@ -98,14 +96,13 @@ def _raster(path: Path, dataset: Any) -> Raster:
 
 
 def _unknown(raw: np.ndarray, dataset: Any) -> np.ndarray:
-    """Where there is no data: by the mask of the file, or its number, rounded as its values are."""
+    """Where there is no data: by the mask of the file, or by its number."""
     unknown = dataset.read_masks(1) == 0
     if raw.dtype.kind == "f":
         unknown |= np.isnan(raw)
     nodata = dataset.nodata
     if nodata is not None and math.isfinite(nodata) and raw.dtype.kind == "f":
-        with np.errstate(over="ignore"):
-            unknown |= raw == raw.dtype.type(nodata)
+        unknown |= means_no_data(raw, nodata)
     return np.asarray(unknown)
 
 

@@ -17,6 +17,18 @@ MAX_CELLS = 400_000_000  # of a grid that is made; 3.2 GB
 SUFFIX = {"GTiff": ".tif", "AAIGrid": ".asc"}
 
 
+def means_no_data(values: np.ndarray, nodata: float) -> np.ndarray:
+    """Where values are the number for no data.
+
+    Also where both are the same in single precision: of such rasters files often hold one of the
+    two with fewer digits.
+    """
+    with np.errstate(over="ignore"):
+        single = np.float32(nodata)
+        alike = values.astype(np.float32) == single
+    return np.asarray((values == nodata) | (alike if np.isfinite(single) else False))
+
+
 @dataclass(frozen=True, eq=False)
 class Raster:
     """Numbers on square cells, north up.
@@ -94,6 +106,14 @@ class Raster:
         if np.shape(values) != self.shape:
             raise GeodataError(f"{np.shape(values)} values for a raster of {self.shape}")
         return replace(self, values=values)
+
+    def beyond(self, most: float) -> str | None:
+        """The first number farther than `most` from 0, and where; None where none is."""
+        found = np.argwhere(np.abs(self.values) > most)
+        if not len(found):
+            return None
+        row, column = (int(k) for k in found[0])
+        return f"row {row + 1}, column {column + 1} holds {self.values[row, column]:g}"
 
     def same_grid(self, other: Raster) -> bool:
         """Whether cells lie on those of another raster, to a millionth of a cell."""

@@ -57,10 +57,22 @@ class Polygon:
         size = np.minimum(self.extent[2:], other.extent[2:]) - low
         if (size <= 0).any():
             return 0.0
-        steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
-        x, y = low[0] + size[0] * steps, low[1] + size[1] * steps[:, None]
-        both = self.contains(x, y) & other.contains(x, y)
+        places = _samples(low, size)
+        both = self.contains(*places) & other.contains(*places)
         return float(size[0] * size[1] * both.mean())
+
+    def share_within(self, other: Polygon) -> float:
+        """The share of it that also belongs to another one, from 200 x 200 points."""
+        low = np.array(self.extent[:2])
+        places = _samples(low, self.extent[2:] - low)
+        mine = self.contains(*places)
+        return float(other.contains(*places)[mine].mean()) if mine.any() else 1.0
+
+
+def _samples(low: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates x (n,) and y (n, 1) over a box, m."""
+    steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    return low[0] + size[0] * steps, low[1] + size[1] * steps[:, None]
 
 
 @dataclass(frozen=True, eq=False)

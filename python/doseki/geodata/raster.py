@@ -11,7 +11,8 @@ from ..util.foreign import open_regular
 from .ascii_grid import is_ascii_grid, read_ascii_grid, write_ascii_grid
 from .errors import GeodataError
 from .geotiff import is_tiff, read_geotiff, write_geotiff
-from .grid import Raster
+from .grid import Raster, means_no_data
+from .shapes import LARGEST
 
 __all__ = ["Raster", "read_raster", "write_raster"]
 
@@ -36,13 +37,21 @@ def read_raster(path: Path | str) -> Raster:
     with open_regular(path) as (file, _):
         start = file.read(START)
     if is_tiff(start):
-        return read_geotiff(path)
-    if is_ascii_grid(start):
-        return read_ascii_grid(path)
-    raise GeodataError(
-        f"{path}: neither a GeoTIFF nor an ESRI ASCII grid; convert it with "
-        f"gdal_translate -of GTiff IN OUT"
-    )
+        raster = read_geotiff(path)
+    elif is_ascii_grid(start):
+        raster = read_ascii_grid(path)
+    else:
+        raise GeodataError(
+            f"{path}: neither a GeoTIFF nor an ESRI ASCII grid; convert it with "
+            f"gdal_translate -of GTiff IN OUT"
+        )
+    far = max(map(abs, raster.extent))
+    if not far < LARGEST:
+        raise GeodataError(
+            f"{path}: reaches to {far:g} m (cells of {raster.cell:g} m); coordinates must be below "
+            f"{LARGEST:g} m"
+        )
+    return raster
 
 
 def write_raster(path: Path | str, raster: Raster, tags: Mapping[str, str] | None = None) -> None:
@@ -74,5 +83,5 @@ def _check_nodata(path: Path, raster: Raster, suffix: str) -> None:
         if suffix in TIFF_SUFFIXES:
             return
         nodata = -9999.0
-    if np.any(raster.values == nodata):
+    if np.any(means_no_data(raster.values, nodata)):
         raise GeodataError(f"{path}: a cell holds {nodata:g}, which is to mean no data")

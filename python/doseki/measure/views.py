@@ -11,17 +11,19 @@ from pydantic import TypeAdapter, ValidationError
 
 from ..errors import UserError
 from ..record.reader import Run, Snapshot
-from ..scenario.materials import complete_materials
+from ..scenario.materials import Material, MaterialError, complete_materials
 from ..scenario.reading.messages import to_user_error
-from ..scenario.table import Kinds, Part
+from ..scenario.table import Kinds, Part, Table
 from ..scenario.tables.inflow import Inflow
+from ..scenario.tables.material import MaterialTable
 from ..scenario.tables.region import Window
 from ..scenario.tables.sections import SECTIONS
 from ..scenario.values.toml_source import Where, read_toml
 from ..util.spelling import suggestion
 from . import numbers as measure
 
-T = TypeVar("T", bound=Part)
+T = TypeVar("T", bound=Table)
+P = TypeVar("P", bound=Part)
 
 LEVEL = 1e-9  # slope, or balance of inflows, that rounding makes
 FLOW_SHARE = 0.5  # of the most fluid that a window ever holds
@@ -50,22 +52,29 @@ def whole_space(dim: int, rotate: float = 0.0) -> View:
     return View(np.full(dim, -math.inf), np.full(dim, math.inf), rotate)
 
 
-def tables(run: Run, section: str, kind: type[T]) -> dict[str, T]:
+def tables(run: Run, section: str, kind: type[P]) -> dict[str, P]:
     """The enabled tables [section.NAME] of a run's scenario by name, defaults filled in.
 
     They are all of `kind`.  Raises UserError for a scenario.toml that was changed by hand to
     something impossible.
     """
+    read = _all_tables(run, section, kind)
+    return {name: table for name, table in read.items() if table.enabled}
+
+
+def _all_tables(run: Run, section: str, kind: type[T]) -> dict[str, T]:
     found = SECTIONS[section]
     entry: Any = found.union if isinstance(found, Kinds) else found
     adapter: TypeAdapter[dict[str, T]] = TypeAdapter(dict[str, entry])
     given = run.scenario.get(section, {})
     try:
-        read = adapter.validate_python(given, context={"dim": run.scenario["dim"]})
+        return adapter.validate_python(given, context={"dim": run.scenario["dim"]})
     except ValidationError as error:
-        where = Where([read_toml(run.folder.scenario)])
-        raise to_user_error(error, given, where, (section,)) from None
-    return {name: table for name, table in read.items() if table.enabled}
+        raise to_user_error(error, given, _where(run), (section,)) from None
+
+
+def _where(run: Run) -> Where:
+    return Where([read_toml(run.folder.scenario)])
 
 
 def windows(run: Run) -> dict[str, View]:
@@ -86,10 +95,20 @@ def named_window(run: Run, name: str | None) -> View:
     return known[name]
 
 
+def materials_of(run: Run) -> dict[str, Material]:
+    """The materials of a run by name; raises as `tables` does."""
+    read = _all_tables(run, "material", MaterialTable)
+    given = {name: table.model_dump(exclude_none=True) for name, table in read.items()}
+    try:
+        return complete_materials(given)
+    except MaterialError as error:
+        keys = ("material", error.material)
+        raise _where(run).error(keys, f"material.{error.material}: {error}") from None
+
+
 def fluid_names(run: Run) -> set[str]:
     """The materials that flow."""
-    materials = complete_materials(run.scenario.get("material", {}))
-    return {name for name, material in materials.items() if material.law == "fluid"}
+    return {name for name, material in materials_of(run).items() if material.law == "fluid"}
 
 
 def tilt(run: Run) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -23,6 +22,7 @@ from .fields import FIELD_BY_KEY, GRAIN_FIELDS
 from .folder import RunFolder, read_history
 from .history import history_units
 from .particles import FIXED
+from .scenario_file import recorded_scenario
 
 H = TypeVar("H", bound="History")
 G = TypeVar("G", bound="GaugeRecord")
@@ -266,9 +266,8 @@ class Run(Sequence[Snapshot]):
 
     @cached_property
     def scenario(self) -> dict[str, Any]:
-        """The effective scenario."""
-        with readable(self.folder.scenario):
-            return tomllib.loads(read_text(self.folder.scenario))
+        """The effective scenario; raises UserError where the file is damaged."""
+        return recorded_scenario(self.folder.scenario)
 
     @cached_property
     def summary(self) -> dict[str, Any]:

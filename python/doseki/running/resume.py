@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 from ..compiled import load_core
 from ..driver.active_run import ActiveRun
 from ..driver.checkpoint import Checkpoint, CheckpointFolder
+from ..driver.identity import CHANGEABLE, identity_of
 from ..driver.ranks import OneRank
 from ..errors import UserError
 from ..record.folder import RunFolder
@@ -25,11 +26,6 @@ from ..util.sealed import check_seal, sealed
 from ..util.toml_writer import to_toml
 from .runner import RunOptions, carry_out, run_scenario
 
-# What may differ from the run so far: nothing that the particles or the record were made with.
-CHANGEABLE = {
-    "time_max", "cflnumber", "cfl_force", "fixed_limits_dt", "alpha", "balsara", "skin", "gravity",
-    "title",
-}  # fmt: skip
 Overrides: TypeAlias = Sequence[str | Change]
 NOTHING_YET = "no checkpoint was written yet; the run began anew"
 
@@ -50,12 +46,14 @@ def resume_run(
     options = options or RunOptions()
     folder = load(directory).folder
     with options.ranks.holding(directory):
-        options.ranks.on_root(lambda: check_seal(folder.scenario))
+        is_sealed = options.ranks.on_root(lambda: check_seal(folder.scenario))
         checkpoints = CheckpointFolder(folder.checkpoints)
         has_begun = bool(checkpoints.files()) or folder.summary.is_file()
         if not options.ranks.agree(has_begun):
             return _begun_anew(folder, overrides, options), [f"{directory}: {NOTHING_YET}"]
         checkpoint, notes = checkpoints.read_last(until)
+        if is_sealed:
+            options.ranks.on_root(lambda: _check_identity(folder, checkpoint))
         scenario = _scenario(folder.scenario, overrides)
         if checkpoint.time >= scenario.time_max and folder.summary.is_file():
             raise UserError(
@@ -68,7 +66,17 @@ def resume_run(
             run.position.outputs = run.outputs.passed(checkpoint.time) + 1
             text = sealed(scenario.effective_toml(stored=True))
             options.ranks.on_root(lambda: write_whole_text(folder.scenario, text))
+            run.identity = options.ranks.on_root(lambda: identity_of(folder.scenario))
         return carry_out(run, options, fresh=False), notes
+
+
+def _check_identity(folder: RunFolder, checkpoint: Checkpoint) -> None:
+    """Raise UserError for a checkpoint of another run; one that does not say is taken as it is."""
+    if checkpoint.scenario not in (None, identity_of(folder.scenario)):
+        raise UserError(
+            f"{folder.checkpoints / f'{checkpoint.step:012d}.h5'}: is a checkpoint of another run: "
+            f"its scenario is not {folder.scenario}; bring back what belongs together"
+        )
 
 
 def _begun_anew(folder: RunFolder, overrides: Overrides, options: RunOptions) -> dict[str, Any]:

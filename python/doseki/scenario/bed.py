@@ -22,6 +22,7 @@ from .values.units import LENGTH
 PROFILE_EXAMPLE = "x [m],z [m]"
 TILE_COLUMNS = {2: 16, 3: 8}  # spacings along a side of a tile (core/boundaries/terrain.hpp)
 NO_HEIGHTS = (-9999.0, -32768.0, -32767.0, -99999.0, float(np.finfo(np.float32).min))
+HIGHEST = 1e5  # m from 0, of a height
 MAX_NODES = 50_000_000  # of a profile or a section; 0.4 GB
 
 
@@ -121,7 +122,7 @@ def _read(path: Path, where: Where) -> Raster:
 
 
 def _with_heights(path: Path, raster: Raster) -> Raster:
-    """The raster, unless it has numbers that mean no data and does not say so."""
+    """The raster, unless it has numbers that are no heights, as those that mean no data."""
     for number in NO_HEIGHTS:
         cells = int((raster.values == number).sum())
         if cells:
@@ -129,6 +130,11 @@ def _with_heights(path: Path, raster: Raster) -> Raster:
                 f"{path}: {cells} cells hold {number:g}, which is no height: let the file say that "
                 f"it means no data (gdal_edit -a_nodata {number:g} IN; .asc: a line NODATA_value)"
             )
+    if cell := raster.beyond(HIGHEST):
+        raise GeodataError(
+            f"{path}: {cell}, and heights are within {HIGHEST:g} m of 0: mend it, or let the file "
+            "say that it means no data (gdal_edit -a_nodata; .asc: a line NODATA_value)"
+        )
     return raster
 
 
@@ -189,6 +195,13 @@ def _bed_of_profile(path: Path, terrain: Terrain, dp: float, where: Where) -> Be
         raise _error(where, f"{path}: x must go up from row to row, in two rows or more")
     if not (np.isfinite(x).all() and np.isfinite(z).all()):
         raise _error(where, f"{path}: holds numbers that are not finite")
+    if (beyond := np.abs(z) > HIGHEST).any():
+        row = int(np.argmax(beyond))
+        raise _error(
+            where,
+            f"{path}: row {row + 1} has z = {z[row]:g} m, and heights are within {HIGHEST:g} m of "
+            "0",
+        )
     cell = terrain.resample or dp
     nodes = _nodes(float(x[0]), float(x[-1]), cell, where)
     heights = np.interp(nodes, x, z)

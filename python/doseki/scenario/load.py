@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from ..util.finding import Finding
 from ..util.input_file import digest_of
 from .bed import Bed, read_bed
 from .checks.references import check_names, check_references
@@ -88,10 +89,11 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
         "inflow": completed_inflows(tables.inflow, gravity, where),
         "xi": tables.xi or _reduction_factor(tables, gravity, materials, read),
     }
+    doubts: list[Finding] = []
     if any(isinstance(body, Release) for body in tables.body.values()):
-        completed["body"] = _with_releases(tables, bed, where)
+        completed["body"], doubts = _with_releases(tables, bed, where)
     earlier = None if tables.start is None else earlier_run(tables.start, where)
-    found = Found(constants, read, earlier, bed)
+    found = Found(constants, read, earlier, bed, doubts)
     scenario = Scenario.made_of(tables, completed, where, materials, found)
     check_scenario(scenario)
     return scenario
@@ -105,20 +107,23 @@ def _bed(tables: ScenarioTable, where: Where) -> Bed | None:
     return read_bed(terrain_file(where, terrain), terrain, tables.dim, tables.dp, where)
 
 
-def _with_releases(tables: ScenarioTable, bed: Bed | None, where: Where) -> dict[str, BodyTable]:
-    """The bodies, releases with what their files say."""
+def _with_releases(
+    tables: ScenarioTable, bed: Bed | None, where: Where
+) -> tuple[dict[str, BodyTable], list[Finding]]:
+    """The bodies, releases with what their files say, and what is doubtful about these."""
     if bed is None:
         name = next(name for name, body in tables.body.items() if isinstance(body, Release))
         raise where.error(
             ("body", name), f'body.{name}: shape = "release" needs a [terrain] to lie on'
         )
-    bodies = dict(tables.body)
+    bodies, doubts = dict(tables.body), list[Finding]()
     for name, body in tables.body.items():
         if isinstance(body, Release):
             path = None if body.file is None else file_of(where, name, body.file)
             crs = None if bed.raster is None else bed.raster.crs
-            bodies[name] = completed_release(name, body, path, crs, where)
-    return bodies
+            bodies[name], own = completed_release(name, body, path, crs, where)
+            doubts += own
+    return bodies, doubts
 
 
 def _check_digests(tables: ScenarioTable, where: Where) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import ConfigDict, PrivateAttr
 
 from ..record.folder import INPUTS
+from ..util.finding import Finding
 from ..util.frozen import frozen
 from ..util.input_file import InputFile, digest_of
 from ..util.toml_writer import to_toml
@@ -39,6 +40,7 @@ class Found:
     particle_tables: Mapping[str, ParticleTable]
     earlier: Earlier | None = None
     bed: Bed | None = None
+    findings: Sequence[Finding] = ()
 
 
 class Scenario(ScenarioTable):
@@ -62,6 +64,7 @@ class Scenario(ScenarioTable):
     _particle_tables: Mapping[str, ParticleTable] = PrivateAttr()
     _earlier: Earlier | None = PrivateAttr(None)
     _bed: Bed | None = PrivateAttr(None)
+    _findings: Sequence[Finding] = PrivateAttr(())
 
     @classmethod
     def made_of(
@@ -83,6 +86,7 @@ class Scenario(ScenarioTable):
         made._constants = frozen(found.constants)
         made._particle_tables = frozen(found.particle_tables)
         made._earlier, made._bed = found.earlier, found.bed
+        made._findings = tuple(found.findings)
         return made
 
     def forget_heights(self) -> None:
@@ -123,6 +127,11 @@ class Scenario(ScenarioTable):
     def earlier(self) -> Earlier | None:
         """The run that it starts from, if it does."""
         return self._earlier
+
+    @property
+    def findings(self) -> Sequence[Finding]:
+        """What is doubtful about the files that it was read from."""
+        return self._findings
 
     @property
     def walls(self) -> dict[tuple[str, ...], Table]:

@@ -14,7 +14,7 @@ RESOLVED_DEFAULTS: dict[str, object] = {
     "kernel": RESOLVED_KERNEL, "cflnumber": RESOLVED_CFLNUMBER, "cfl_force": 0.25,
     "skin": "auto",
 }  # fmt: skip
-RESOLVED_ETA = {"wendland_c2": 1.3, "wendland_c6": 1.2}
+RESOLVED_ETA = {"wendland_c2": 1.39, "wendland_c6": 1.2}
 
 
 def with_scheme_defaults(table: dict[str, Any]) -> dict[str, Any]:

@@ -22,11 +22,14 @@ from .carried import (
 )
 from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps
+from .checks.outflows import outflow_findings
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
 from .checks.placing import placing_findings
 from .checks.resolution import resolution_warnings
+from .checks.room import room_findings
 from .checks.terrain import terrain_findings
+from .checks.times import late_findings
 from .contacts import contact_groups
 from .ground import ground_of
 from .groups import Group, inside_bodies, particles_of
@@ -78,6 +81,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     """
     bodies, warnings = present(scenario, bodies_of(scenario)), list[Finding]()
     check_size({f"body.{name}": body.count() for name, body in bodies.items()})
+    warnings += scenario.findings
     warnings += [finding for body in bodies.values() for finding in body.findings()]
     names = body_names(scenario)
     carried = carried_over(scenario, names)
@@ -100,13 +104,17 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     solids = groups if moves else [*groups, *walls]
     whole = {group.name for group in made}
     whole |= {n for n, body in bodies.items() if body.contact_shape() is not None}
-    parts = {n: _outside(scenario, n, part, solids, whole) for n, part in parts.items()}
+    takers = {name: _takers(scenario, name, solids, whole) for name in parts}
+    wished = parts
+    parts = {name: _outside(scenario, part, takers[name]) for name, part in parts.items()}
     if scenario.bed is not None:
         parts = {n: _above_ground(scenario, n, part) for n, part in parts.items()}
+    warnings += room_findings(scenario, wished, parts, takers)
     particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
     check_particles(scenario, particles, names)
     warnings += list(terrain_findings(scenario, bodies))
     warnings += list(placing_findings(scenario, particles, names))
+    warnings += [*outflow_findings(scenario, particles, names, groups), *late_findings(scenario)]
     warnings += find_overlaps(particles, names, scenario.carried)
     if carried is None:
         return Scene(particles, names, rigid, warnings)
@@ -248,18 +256,20 @@ def _velocities(
     return np.concatenate(velocity), np.concatenate(spin)
 
 
-def _outside(
-    scenario: Scenario, name: str, particles: ParticleSet, groups: list[Group], whole: set[str]
-) -> ParticleSet:
-    """The particles of a body without the free ones that lie inside another, which is `whole`.
+def _takers(scenario: Scenario, name: str, groups: list[Group], whole: set[str]) -> list[Group]:
+    """Those that the particles of a body make room for, where they are `whole`.
 
     Those that are there already make room for all that is added, and for nothing else.
     """
     there = name in scenario.carried or (scenario.earlier is not None and name in scenario.inflow)
+    return [g for g in groups if (g.name not in scenario.carried if there else g.name in whole)]
+
+
+def _outside(scenario: Scenario, particles: ParticleSet, takers: list[Group]) -> ParticleSet:
+    """The particles of a body without the free ones that lie inside others."""
     inside = np.zeros(len(particles), bool)
-    for group in groups:
-        if group.name not in scenario.carried if there else group.name in whole:
-            inside |= inside_bodies(scenario, group, particles.position)
+    for group in takers:
+        inside |= inside_bodies(scenario, group, particles.position)
     keep = ~inside | (particles.motion != FREE)
     if keep.all():
         return particles

@@ -18,10 +18,10 @@ def sealed(text: str) -> str:
     return f"{whole}{SEAL}{_digest(whole)}\n"
 
 
-def check_seal(path: Path) -> None:
-    """Raise UserError where a file has been changed since it was sealed.
+def check_seal(path: Path) -> bool:
+    """Whether a file has a seal; one without is taken as it is.
 
-    One without a seal is taken as it is.
+    Raises UserError where it has been changed since it was sealed.
     """
     text = read_text(path)
     found = re.search(rf"^{SEAL}([0-9a-f]*)\s*\Z", text, re.MULTILINE)
@@ -30,6 +30,7 @@ def check_seal(path: Path) -> None:
             f"{path}: has been changed by hand since the run wrote it; bring it back (what may "
             "change is changed by --set), or remove its last line to go on with it as it is"
         )
+    return found is not None
 
 
 def _digest(text: str) -> str:

@@ -11,10 +11,14 @@ MAX_LISTED = 12
 def suggestion(name: str, known: Iterable[str]) -> str:
     """`; did you mean X?`, or what is known (the nearest of it) when nothing is near."""
     known = sorted(set(known))
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-    if near:
+    if near := _nearest(name, known, 1, 0.6):
         return f"; did you mean {near[0]}?"
     if len(known) <= MAX_LISTED:
         return f"; known: {', '.join(known)}" if known else ""
-    near = difflib.get_close_matches(name, known, n=MAX_LISTED, cutoff=0.0)
-    return f"; nearest: {', '.join(near)}"
+    return f"; nearest: {', '.join(sorted(_nearest(name, known, MAX_LISTED, 0.0)))}"
+
+
+def _nearest(name: str, known: list[str], most: int, cutoff: float) -> list[str]:
+    """Those most like it, the likest first, whether in capitals or not."""
+    spelt = {word.lower(): word for word in known}
+    return [spelt[word] for word in difflib.get_close_matches(name.lower(), spelt, most, cutoff)]

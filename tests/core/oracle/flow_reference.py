@@ -167,7 +167,7 @@ class FlowReference:
         self.rho, self.mass = particles.density[self.fluid], particles.mass[self.fluid]
         of = [materials[k] for k in particles.material[self.fluid]]
         self.materials = of
-        self.harmonic = any(m.get("rheology") == "herschel_bulkley" for m in materials)
+        self.rheologies = {m.get("rheology") for m in materials}
         self.mean_pressure = np.zeros(len(self.x))
         self.rho0, self.c0, self.nu = (
             np.array([m[key] for m in of]) for key in ("rho0", "speedsound", "nu")
@@ -224,7 +224,11 @@ class FlowReference:
     def _damping_pressure(self) -> np.ndarray:
         """Of the acoustic damper: none on a surface, no tension that the liquid cannot bear."""
         divergence = np.trace(self.L, axis1=1, axis2=2)
-        added = -self.options.acoustic_damping * self.rho * self.c * self.h * divergence
+        fluid = (self.rest_volume[None] * self.ff.W).sum(axis=1)
+        first_row = np.minimum(self.share_of_walls / (fluid + self.share_of_walls) / 0.2, 1)
+        alpha = self.options.acoustic_damping
+        alpha = np.maximum(alpha, np.minimum(alpha * (1 + 3 * first_row), 0.2))
+        added = -alpha * self.rho * self.c * self.h * divergence
         least = self._of_density(np.where(self._vented(), 1.0, LEAST_DENSITY))
         added = np.maximum(added, np.minimum(0, least - (self.p - self.damping)))
         return np.where(self.surface > SURFACE, 0.0, added)
@@ -460,7 +464,12 @@ class FlowReference:
 
     def _pair_viscosity(self) -> np.ndarray:
         mean = self._mean(self.mu)
-        return self.mu[:, None] * self.mu[None] / mean if self.harmonic else mean
+        if "herschel_bulkley" in self.rheologies:
+            return self.mu[:, None] * self.mu[None] / mean
+        if "mu_i" in self.rheologies:
+            rate = self._strain_rate() + 1e-12
+            return self._mean(self.mu * rate) / self._mean(rate)
+        return mean
 
     def _viscous_rate(self) -> np.ndarray:
         """At which viscosity among fluid damps neighbours that go against each other."""

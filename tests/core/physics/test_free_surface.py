@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 KERNELS = {  # name, name of its lattice sums, support in spacings
-    False: ("wendland_c2", "lattice_sums_c2", 2.6),
+    False: ("wendland_c2", "lattice_sums_c2", 2.78),
     True: ("kernel", "lattice_sums_c6", 3.0),
 }
 WIDE = pytest.mark.parametrize("wide", [False, True], ids=["c2", "c6"])

@@ -130,9 +130,39 @@ def test_friction_at_rest_is_limited(point):
     assert beads(point, 0.0, 200.0, 40.0)[0] == 40
 
 
-def test_mean_viscosities_of_a_pair(point):
-    mean, harmonic = point(
-        "pair_viscosity", np.array([1.0, 3.0, 0.0, 1e6]), np.array([3.0, 1, 0, 1])
-    )
+def sheared(rate, dim, angle=0.0):
+    """Velocity gradients of simple shear, the components as `point` takes them."""
+    turn = np.eye(dim)
+    turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    shear = np.zeros((dim, dim))
+    shear[0, 1] = 1
+    gradient = np.asarray(rate)[:, None, None] * (turn @ shear @ turn.T)
+    return list(gradient.reshape(len(gradient), -1).T)
+
+
+def test_mean_viscosities_of_a_pair(point, dim):
+    some = sheared(np.ones(4), dim)
+    mu_i, mu_j = np.array([1.0, 3.0, 0.0, 1e6]), np.array([3.0, 1, 0, 1])
+    mean, by_rate, harmonic = point("pair_viscosity", mu_i, mu_j, *some, *some, dim=dim)
     np.testing.assert_allclose(mean, [2, 2, 0, 500000.5])
+    np.testing.assert_allclose(by_rate, mean, rtol=1e-14)
     np.testing.assert_allclose(harmonic, [1.5, 1.5, 0, 2e6 / 1000001], atol=1e-20)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_the_viscosity_by_rate_bears_the_mean_stress_at_the_mean_rate(point, dim, angle):
+    """Along rates and stresses that are linear between two particles: the stress midway."""
+    rate_i, rate_j = np.array([1.0, 0.0, 5.0]), np.array([3.0, 2.0, 5.0])
+    stress_i, stress_j = 10 + 2 * rate_i, 10 + 2 * rate_j
+    mu_i, mu_j = stress_i / np.maximum(rate_i, 1e-9), stress_j / rate_j
+    gradients = *sheared(rate_i, dim, angle), *sheared(rate_j, dim, angle)
+    _, by_rate, harmonic = point("pair_viscosity", mu_i, mu_j, *gradients, dim=dim)
+    exact = (stress_i + stress_j) / (rate_i + rate_j)
+    moving = rate_i > 0
+    np.testing.assert_allclose(by_rate[moving], exact[moving], rtol=1e-10)
+    assert abs(harmonic[0] / exact[0] - 1) > 0.05, "the control"
+    at_rest = np.zeros(3)
+    _, neither, _ = point(
+        "pair_viscosity", mu_i, mu_j, *sheared(at_rest, dim), *sheared(at_rest, dim), dim=dim
+    )
+    np.testing.assert_allclose(neither, 0.5 * (mu_i + mu_j), rtol=1e-12)

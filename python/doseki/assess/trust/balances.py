@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from ...measure.views import materials_of
 from ...record.particles import BOUND, DRIVEN, FREE
 from ...record.reader import Run
-from ...scenario.materials import Material, complete_materials
+from ...scenario.materials import Material
 from ..sound_speed import sound_speed_from
 from .ledger import ledger_of
 from .snapshots import Seen, gravity_of, is_resolved
@@ -55,7 +56,7 @@ def _left_in_residual(run: Run) -> str:
             ", viscosity and walls in av_dissipation; what shifting and the smoothing of density"
             " and pressure took is not recorded and stands in the residual"
         )
-    used = _used(run, complete_materials(_materials(run)))
+    used = _used(run, materials_of(run))
     taken = ["viscosity nu"] * any(m.law == "fluid" and m.nu > 0 for m in used)
     taken += ["yielding"] * any(m.yield_strength or m.cohesion or m.friction_angle for m in used)
     if taken:
@@ -114,10 +115,6 @@ def is_clamped(run: Run) -> bool:
     """Whether points of a body are held in place."""
     bodies = run.scenario.get("body", {}).values()
     return any("clamped" in body and body.get("enabled", True) for body in bodies)
-
-
-def _materials(run: Run) -> dict[str, Any]:
-    return run.scenario.get("material", {})
 
 
 def _used(run: Run, materials: Mapping[str, Material]) -> list[Material]:

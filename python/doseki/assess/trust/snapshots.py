@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from ...measure.numbers import speed
+from ...measure.views import materials_of
 from ...record.particles import BOUND, FIXED, FREE
 from ...record.reader import Run, Snapshot
-from ...scenario.materials import Material, complete_materials
+from ...scenario.materials import Material
 from ...scenario.schemes import RESOLVED, UETA2022
 from ..warnings import MIN_ACROSS_GRAIN
 from .tension import Hanging, hanging
@@ -48,7 +49,7 @@ class Seen:
 def look(run: Run) -> Seen:
     """Measure every snapshot, one at a time."""
     seen = Seen()
-    materials = complete_materials(run.scenario.get("material", {}))
+    materials = materials_of(run)
     single = _single_grain_bodies(run.scenario)
     for snapshot in run:
         snapshot.prefetch(FIELDS)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -19,6 +19,8 @@ SLAB = 4.0  # spacings; length of the slab around the section
 
 class Discharge(FlowGauge):
     """What flows through a section."""
+
+    extents: ClassVar[tuple[str, ...]] = ("depth", "width", "length")
 
     kind: Literal["discharge"]
     direction: Direction = Field(description="normal of the section, along which flow counts")

@@ -86,6 +86,7 @@ class Gauge(Part):
     """An instrument that is read at times of its own."""
 
     is_profile: ClassVar[bool] = False  # a sample has one row for each `height`
+    extents: ClassVar[tuple[str, ...]] = ()  # keys of lengths within which it looks at particles
 
     kind: str
     interval: Duration | None = Field(None, description="s between samples; default: time_out")
@@ -129,7 +130,10 @@ class Gauge(Part):
 
     def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
         """Why it can show nothing in this setting: the key to blame, and what to say after it."""
-        yield from ()
+        for key in self.extents:
+            length = getattr(self, key)
+            if length is not None and length < setting.dp * (1 - 1e-9):
+                yield key, f" = {length:g} m is smaller than a particle, dp = {setting.dp:g} m"
 
     def read(self, run: Sampled, setting: Setting) -> Rows:
         """A sample: values of the columns, one row or, of a profile, several."""
@@ -152,6 +156,7 @@ class FlowGauge(Gauge):
 
     def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
         """It must stand inside the domain."""
+        yield from super().objections(setting)
         if setting.domain is None:
             return
         low, high = setting.domain

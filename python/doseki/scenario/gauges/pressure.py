@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -18,6 +18,8 @@ from .near import REACH, Neighbourhood, particles_in
 
 class PressureGauge(FlowGauge):
     """Mean pressure of what is near a point of a wall, or on a piece of it."""
+
+    extents: ClassVar[tuple[str, ...]] = ("radius",)
 
     kind: Literal["pressure"]
     radius: Length | None = Field(None, description="of the mean, m; default: 3 dp")

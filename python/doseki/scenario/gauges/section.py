@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -24,6 +24,8 @@ COLUMNS = {
 
 class Section(Gauge):
     """Discharge, depth and speed where a flow crosses a line on the map."""
+
+    extents: ClassVar[tuple[str, ...]] = ("length",)
 
     kind: Literal["section"]
     left: Annotated[MapPoint | None, Only(dim=3)] = Field(
@@ -49,6 +51,7 @@ class Section(Gauge):
 
     def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
         """It is a line on the map of a 3-D run, and its slab holds particles."""
+        yield from super().objections(setting)
         if setting.dim != 3:
             yield "kind", ' = "section" is a line on the map of a 3-D run; use "discharge"'
             return
@@ -62,8 +65,6 @@ class Section(Gauge):
                     "right",
                     f" is {wide:g} m from the left bank; at least {BIN:g} dp are needed",
                 )
-        if self.length is not None and self.length < setting.dp:
-            yield "length", f" = {self.length:g} m is shorter than a particle ({setting.dp:g} m)"
 
     def read(self, run: Sampled, setting: Setting) -> Rows:
         """The time; volume and mass that cross per second; area, width, mean depth and speed.

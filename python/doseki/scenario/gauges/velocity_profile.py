@@ -17,6 +17,7 @@ class VelocityProfile(FlowGauge):
     """Velocity at points along a line from the bed."""
 
     is_profile: ClassVar[bool] = True
+    extents: ClassVar[tuple[str, ...]] = ("length",)
 
     kind: Literal["velocity_profile"]
     direction: Direction | None = Field(None, description="of the line; default: against gravity")

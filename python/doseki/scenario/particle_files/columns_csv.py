@@ -57,9 +57,11 @@ def numbers_in(
 
 def _number(text: str, name: str, row: int) -> float:
     try:
-        return float(text)
+        if "_" not in text:  # which Python reads within a number
+            return float(text)
     except ValueError:
-        raise ValueError(f"row {row}: {name} = {text!r} is not a number") from None
+        pass
+    raise ValueError(f"row {row}: {name} = {text!r} is not a number")
 
 
 class _Lines:

@@ -36,6 +36,11 @@ class Motion(Table):
         turns_or_goes = self.velocity is not None or self.angular_velocity is not None
         if {"start", "stop"} & self.model_fields_set and not turns_or_goes:
             raise ValueError("start and stop go with velocity or angular_velocity")
+        if self.removed_at is not None and self.removed_at <= self.start and turns_or_goes:
+            raise ValueError(
+                f"removed_at = {self.removed_at:g} s must be later than start = {self.start:g} s: "
+                "a body that has vanished does not move"
+            )
         return self
 
     def spin(self, dim: int) -> np.ndarray:

@@ -88,7 +88,7 @@ def _split(path: str) -> list[str]:
 
 def read_toml(path: Path) -> TomlSource:
     """Read one TOML file; raises UserError for anything that is not readable TOML."""
-    text = read_text(path, MAX_BYTES)
+    text = read_text(path, MAX_BYTES).removeprefix("\ufeff")  # which some editors put first
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

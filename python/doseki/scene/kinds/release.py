@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from ...errors import UserError
-from ...geodata.crs import same_crs
+from ...geodata.crs import needs_rasterio, same_crs
 from ...geodata.errors import GeodataError
 from ...geodata.features import Polygon
-from ...geodata.raster import read_raster
-from ...record.particles import FREE, ParticleSet
+from ...geodata.raster import Raster, read_raster
+from ...record.particles import FREE, ParticleSet, check_size
 from ...scenario.model import Scenario, file_of
-from ...scenario.releases import is_raster
-from ...scenario.tables.terrain.release import Release
+from ...scenario.releases import NotCompared, is_raster
+from ...scenario.tables.terrain.release import THICKEST, Release
+from ...util.finding import Finding
 from ..ground import Ground, beyond_text, ground_of
 from .shaped import Shaped
 
@@ -92,6 +94,10 @@ class ReleaseBody(Shaped[Release]):
             if (corner < least - dp).any() or (corner > most + dp).any():
                 raise self._beyond(corner)
 
+    def _check_size(self, asked: float) -> None:
+        """Refuse more particles than can be held, before layers are made."""
+        check_size({f"body.{self.name}": asked / self.scenario.dp**self.dim})
+
     @cached_property
     def _parts(self) -> list[tuple[Parcels, float]]:
         """The parcels of each of its areas, and the volume asked for."""
@@ -160,6 +166,7 @@ class ReleaseBody(Shaped[Release]):
 
         _, area = layer(0.0)
         asked = float(area.sum()) * t
+        self._check_size(asked)
         return self._stacked(layer, _everywhere(t), self._spacing(t), asked), asked
 
     def _area(self, rings: list[list[list[float]]], thickness: float) -> tuple[Parcels, float]:
@@ -182,35 +189,57 @@ class ReleaseBody(Shaped[Release]):
         steepness = self.ground.field.at(np.ascontiguousarray(place[inside]))["area"]
         in_plan = area[inside] / steepness
         asked = float(polygon.area * area[inside].sum() / in_plan.sum()) * thickness
-
+        self._check_size(asked)
         parcels = self._stacked(layer, _everywhere(thickness), self._spacing(thickness))
         within = polygon.contains(parcels.place[:, 0], parcels.place[:, 1])
         outside = _distance(parcels.place, [outer, *holes]) * np.where(within, -1.0, 1.0)
         near = outside < dp
         return _lowest(parcels.chosen(near), outside[near], asked), asked
 
-    def _raster(self) -> tuple[Parcels, float]:
-        """Where a raster of thickness has half a particle or more."""
-        path = file_of(self.scenario.where, self.name, self.table.file or "")
+    @cached_property
+    def _file(self) -> Path:
+        return file_of(self.scenario.where, self.name, self.table.file or "")
+
+    @cached_property
+    def _map(self) -> Raster:
+        """Its raster of thickness, in the coordinate reference system of the terrain."""
         try:
-            raster = read_raster(path)
+            raster = read_raster(self._file)
         except GeodataError as error:
             raise self.error(f".file: {error}", "file") from None
-        bed = self.scenario.bed
-        assert bed is not None
-        assert bed.raster is not None
-        if same_crs(raster.crs, bed.raster.crs) is False:
+        if same_crs(raster.crs, self._terrain_crs) is False:
             raise self.error(
-                f".file: {path} and the terrain have different coordinate reference systems; "
+                f".file: {self._file} and the terrain have different coordinate reference systems; "
                 "convert it with gdalwarp -t_srs",
                 "file",
             )
+        return raster
+
+    @property
+    def _terrain_crs(self) -> str | None:
+        assert self.scenario.bed is not None
+        assert self.scenario.bed.raster is not None
+        return self.scenario.bed.raster.crs
+
+    def findings(self) -> list[Finding]:
+        """See Body."""
+        if is_raster(self.table.file) and needs_rasterio(self._map.crs, self._terrain_crs):
+            return [NotCompared(f"body.{self.name}.file", self._file)]
+        return []
+
+    def _raster(self) -> tuple[Parcels, float]:
+        """Where a raster of thickness has half a particle or more."""
+        raster, path = self._map, self._file
         west, _, _, north = raster.extent
         filled = np.argwhere(np.nan_to_num(raster.values) > 0)
         if not len(filled):
             raise self.error(f".file: {path} is nowhere above 0", "file")
         if np.nanmin(raster.values) < 0:
             raise self.error(f".file: {path} has a thickness below 0", "file")
+        if cell := raster.beyond(THICKEST):
+            raise self.error(
+                f".file: {path}: {cell}, and a thickness is up to {THICKEST:g} m", "file"
+            )
         (top, left), (bottom, right) = filled.min(axis=0), filled.max(axis=0) + 1
         low = np.array([west + left * raster.cell, north - bottom * raster.cell])
         high = np.array([west + right * raster.cell, north - top * raster.cell])
@@ -224,6 +253,7 @@ class ReleaseBody(Shaped[Release]):
         steepness = self.ground.field.at(np.ascontiguousarray(centres))["area"]
         depth = raster.values[filled[:, 0], filled[:, 1]]
         asked = float(np.sum(depth * steepness)) * raster.cell**2
+        self._check_size(asked)
 
         def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
             return self.ground.layer(low, high, dp, height)

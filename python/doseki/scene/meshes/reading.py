@@ -14,9 +14,12 @@ from ...scenario.values.types import LARGEST
 from ...util.foreign import read_bytes, readable
 from ..shapes import ShapeError, Triangles
 from ..shapes.making import quiet
+from ..shapes.stl import in_utf8, readable_stl
 
 LARGEST_FILE = 200_000_000  # bytes
 HEADER_PLY = 4096  # bytes in which a header must end
+NO_VERTEX = re.compile(rb"^f[^\n#]*[ \t]0+(?=[/\s]|$)", re.MULTILINE)  # in a face of an OBJ
+LOST = "a face names a vertex that is not there"
 
 
 def read_triangles(file: Path, scale: float) -> Triangles:
@@ -44,11 +47,17 @@ def _check_counts(file: Path, kind: str, content: bytes) -> None:
         for name, count in re.findall(rb"element\s+(\S+)\s+(\d+)", header):
             if int(count[:20]) > len(content):
                 raise UserError(f"{file}: {name.decode('ascii', 'replace')[:30]}: more than it has")
-    if kind == "stl" and content[:5].lower() != b"solid":
-        count = int.from_bytes(content[80:84], "little")
-        if len(content) < 84 + 50 * count:
-            held = max(len(content) - 84, 0) // 50
-            raise UserError(f"{file}: {count} triangles are said to follow, it holds {held}")
+
+
+def _readable(file: Path, kind: str, content: bytes) -> bytes:
+    """The content with names and comments, which come in any encoding, in UTF-8."""
+    if kind == "stl":
+        return readable_stl(file, content)
+    if kind == "obj" and (zero := NO_VERTEX.search(content)):
+        line = content[: zero.start()].count(b"\n") + 1
+        raise UserError(f"{file}, line {line}: a face names vertex 0; they are counted from 1")
+    text, end, rest = content.partition(b"end_header") if kind == "ply" else (content, b"", b"")
+    return in_utf8(text) + end + rest
 
 
 def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarray]:
@@ -57,7 +66,11 @@ def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarr
     options: dict[str, Any] = {"process": False, "skip_materials": True}
     if kind == "stl":
         options.pop("skip_materials")
-    mesh = trimesh.load_mesh(io.BytesIO(content), file_type=kind, **options)
+    image = io.BytesIO(_readable(file, kind, content))
+    try:
+        mesh = trimesh.load_mesh(image, file_type=kind, **options)
+    except IndexError:
+        raise UserError(f"{file}: {LOST}") from None
     faces = np.asarray(getattr(mesh, "faces", np.zeros((0, 3))), np.int64)
     vertices = np.asarray(mesh.vertices, float)
     if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
@@ -65,7 +78,7 @@ def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarr
     if not len(faces):
         raise UserError(f"{file}: no triangle")
     if faces.min() < 0 or faces.max() >= len(vertices):
-        raise UserError(f"{file}: a triangle names a vertex that is not there")
+        raise UserError(f"{file}: {LOST}")
     return vertices, faces
 
 

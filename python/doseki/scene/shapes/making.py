@@ -17,6 +17,7 @@ from ...scenario.values.types import LARGEST
 from ...util.foreign import read_bytes, readable
 from .convex import Convex
 from .outline import BULGE, FLAT
+from .stl import readable_stl
 
 LARGEST_STL = 50_000_000  # bytes
 
@@ -102,7 +103,7 @@ def quiet() -> Iterator[None]:
 def _closed_mesh(file: Path, content: bytes, scale: float) -> Any:
     import trimesh
 
-    mesh = trimesh.load_mesh(io.BytesIO(content), file_type="stl")
+    mesh = trimesh.load_mesh(io.BytesIO(readable_stl(file, content)), file_type="stl")
     with np.errstate(over="ignore"):
         farthest = float(np.abs(mesh.vertices * scale).max(initial=0.0))
     if not farthest <= LARGEST:

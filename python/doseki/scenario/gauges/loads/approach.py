@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -20,6 +20,8 @@ MOST = 25  # columns across a section
 
 class Approach(FlowGauge):
     """Depth, mean speed and density of the flow through a section."""
+
+    extents: ClassVar[tuple[str, ...]] = ("width", "length")
 
     kind: Literal["approach"]
     direction: Direction = Field(description="normal of the section, along which speed counts")

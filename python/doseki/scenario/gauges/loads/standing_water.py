@@ -15,6 +15,7 @@ from .outside_walls import clear_of_walls, left_by_walls
 OFF = 1.5  # spacings in front of the surface: where the water is looked at
 STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
+ASIDE = 0.27  # cells; keeps their edges off lattices, which rounding would put on either side
 CAPPED = 0.75  # share of walls around a point from which on a column ends there
 EDGE_REACH, LIKE, UNLIKE, EVEN = 1.5, 0.9, 0.5, 0.3  # neighbours and their normals at an edge
 
@@ -128,8 +129,12 @@ class _Lines:
 
     @classmethod
     def through(cls, probe: np.ndarray, up: np.ndarray, cell: float) -> _Lines:
+        """One for the probes of each cell in plan; cells count from the probes themselves, so that
+        it does not matter where the scene lies.
+        """
         flat = probe - np.outer(probe @ up, up)
-        _, of = np.unique(np.round(flat / cell), axis=0, return_inverse=True)
+        cells = np.round((flat - flat.min(axis=0)) / cell + ASIDE)
+        _, of = np.unique(cells, axis=0, return_inverse=True)
         of = of.reshape(-1)
         count = np.bincount(of)
         plan = np.stack([np.bincount(of, x) / count for x in flat.T], axis=1)

@@ -7,14 +7,15 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...table import Only
-from ...values.types import Coordinate, Digest, Length
+from ...values.types import Coordinate, Digest
 from ...values.units import LENGTH, Measured
 from ..body import ShapedBody
 
 Place = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[Place], Field(min_length=3)]
 Polygons = Annotated[list[Annotated[list[Ring], Field(min_length=1)]], Field(min_length=1)]
-Thickness = Annotated[float, Field(gt=0, le=1e12)]
+THICKEST = 1e4  # m; no flow is, and layers of particles would never end
+Thickness = Annotated[float, Field(gt=0, le=THICKEST)]
 
 
 class Release(ShapedBody):
@@ -42,7 +43,7 @@ class Release(ShapedBody):
     between: Annotated[Place | None, Only(dim=2), Measured(LENGTH)] = Field(
         None, description="2-D: where along x it begins and ends, m"
     )
-    thickness: Annotated[Length | list[Thickness] | None, Measured(LENGTH)] = Field(
+    thickness: Annotated[Thickness | list[Thickness] | None, Measured(LENGTH)] = Field(
         None,
         description="normal to the slope, m; a list has one for each polygon; default: the "
         "attribute `thickness` of the polygons of the file, or what a raster says",

@@ -1,0 +1,51 @@
+"""What would begin after a run has ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ...scenario.model import Scenario
+from ...scenario.tables.inflow import Inflow
+from ...util.finding import Finding
+
+
+@dataclass(frozen=True)
+class TooLate(Finding):
+    """A time that the run does not get to."""
+
+    time: float  # s
+    time_max: float  # s
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: not before {self.time:g} s, and the run ends at time_max = "
+            f"{self.time_max:g} s"
+        )
+
+
+def late_findings(scenario: Scenario) -> Iterator[Finding]:
+    """One for each motion and inflow that this run sees nothing of; it may be continued."""
+    for place, time in _beginnings(scenario):
+        if time >= scenario.time_max:
+            yield TooLate(place, time, scenario.time_max)
+
+
+def _beginnings(scenario: Scenario) -> Iterator[tuple[str, float]]:
+    for name, body in scenario.body.items():
+        motion = body.prescribed_motion
+        if motion is None:
+            continue
+        if motion.velocity is not None or motion.angular_velocity is not None:
+            yield f"body.{name}.motion.start", motion.start
+        if motion.removed_at is not None:
+            yield f"body.{name}.motion.removed_at", motion.removed_at
+    for name, inflow in scenario.inflow.items():
+        yield f"inflow.{name}", _begins(inflow)
+
+
+def _begins(inflow: Inflow) -> float:
+    """When the first of it enters, s."""
+    times, rates = inflow.rows.T
+    first = int((rates > 0).argmax())
+    return float(times[first if inflow.surge is not None else max(first - 1, 0)])
