@@ -186,7 +186,7 @@ def test_what_the_record_cannot_tell_is_not_available(record):
     for given in ({"change": left}, {"more": "[inflow.source]\nrate = 1"}):
         found = verdicts(record(**given))
         assert found["energy balance"] == found["momentum"] == "not available"
-    periodic = record(more='periodic = ["y"]')
+    periodic = record(more='periodic = ["y"]\ndomain_min = [0, 0]\ndomain_max = [9, 9]')
     assert verdicts(periodic)["energy balance"] == "not available"
 
 

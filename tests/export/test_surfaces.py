@@ -160,7 +160,7 @@ def test_fields_on_it_are_those_of_particles_nearby():
 
 @pytest.mark.parametrize("cell", [0.1, 3.0])
 def test_cells_that_show_nothing_are_refused(cell):
-    with pytest.raises(UserError, match=r"cells are to be from 0\.0217 to 0\.26 m"):
+    with pytest.raises(UserError, match=r"cells are to be from 0\.0232 to 0\.278 m"):
         surface(ball(0.1), 0.1, cell=cell)
 
 

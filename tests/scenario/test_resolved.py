@@ -64,7 +64,7 @@ def test_defaults_are_those_of_the_scheme(write):
     scenario = load_scenario(write(top=FAST))
     assert (scenario.kernel, scenario.eta) == ("wendland_c2", 1.39)
     assert (scenario.cflnumber, scenario.cfl_force) == (0.8, 0.25)
-    assert scenario.support == pytest.approx(0.26)
+    assert scenario.support == pytest.approx(0.278)
     wide = load_scenario(write(top=FAST + '\nkernel = "wendland_c6"'))
     assert (wide.eta, wide.support) == (1.2, pytest.approx(0.3))
     assert load_scenario(write(top=FAST + "\neta = 1.5")).eta == 1.5

@@ -8,18 +8,17 @@ from typing import Annotated
 
 import typer
 
-from ..errors import UserError
 from ..util.files import free_directory as free_directory
 from .numbers import number
 
 
-def _once_each(settings: list[str] | None) -> list[str] | None:
-    """Refuse a key that is set twice: of two values one would be dropped without a word."""
+def _last_counts(settings: list[str] | None) -> list[str] | None:
+    """Say which value counts where a key is set twice."""
     seen: dict[str, str] = {}
     for setting in settings or []:
         key = setting.partition("=")[0].strip().removeprefix("parameters.")
         if key in seen:
-            raise UserError(f"--set {setting}: set already, by --set {seen[key]}; give it once")
+            typer.echo(f"warning: --set {seen[key]}: the later --set {setting} counts", err=True)
         seen[key] = setting
     return settings
 
@@ -32,7 +31,7 @@ Settings = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        callback=_once_each,
+        callback=_last_counts,
         help="Change a value of the scenario; repeatable.",
     ),
 ]
