@@ -80,9 +80,9 @@ CRITERIA = (
     ),
     Criterion(
         "KE / rho g H2",
-        (at_most(1e-5),),
+        (at_most(2e-6),),
         "per area of water, over the second half of the run: it "
-        "rests; 1e-5 is a speed of 0.4 % of sqrt(g H)",
+        "rests; 2e-6 is a speed of 0.2 % of sqrt(g H)",
         short=BREATHES,
     ),
     Criterion("surface rise", (small(0.3),), "volume is kept: a third of a row at most", unit="dp"),
