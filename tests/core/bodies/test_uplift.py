@@ -224,20 +224,28 @@ radius = "= side/2"
     return Running(str(path), "dim=3", "across=4", "depth=0.3", "width=0.35", "friction=0.9")
 
 
-@pytest.mark.xfail(
-    reason="water in the pores between spheres 4 across drifts: 0.09 sideways", strict=False
-)
-def test_a_pile_of_spheres_has_the_uplift_of_its_spheres(tmp_path):
-    """Films press between them as well, and water goes into their pores."""
-    run, forces = pile_of_spheres(tmp_path), []
+@pytest.fixture(scope="module")
+def uplift_of_spheres(tmp_path_factory):
+    """Forces of water on the spheres of a pile over the weight of what each displaces."""
+    run, forces = pile_of_spheres(tmp_path_factory.mktemp("pile")), []
     for time in np.linspace(0.25, 0.45, 30):
         run.advance(time)
         grains = run.grains()
         forces.append(grains["flow_force"][~grains["fixed"]])
-    uplift = np.mean(forces, axis=0) / (9810 * np.pi / 6 * SIDE**3)
-    assert uplift[:, 2].mean() == pytest.approx(1, abs=0.05)
-    assert uplift[:, 2] == pytest.approx(np.ones(4), abs=0.1)
-    assert np.abs(uplift[:, :2]).max() < 0.05
+    return np.mean(forces, axis=0) / (9810 * np.pi / 6 * SIDE**3)
+
+
+def test_a_pile_of_spheres_has_the_uplift_of_its_spheres(uplift_of_spheres):
+    """Films press between them as well, and water goes into their pores."""
+    assert uplift_of_spheres[:, 2].mean() == pytest.approx(1, abs=0.05)
+
+
+@pytest.mark.xfail(
+    reason="water in the pores between spheres 4 across drifts: 0.09 sideways", strict=False
+)
+def test_each_sphere_of_a_pile_has_its_uplift(uplift_of_spheres):
+    assert uplift_of_spheres[:, 2] == pytest.approx(np.ones(4), abs=0.1)
+    assert np.abs(uplift_of_spheres[:, :2]).max() < 0.05
 
 
 def test_discs_on_both_sides_of_the_middle_are_lifted_alike():

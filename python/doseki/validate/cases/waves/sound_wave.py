@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....scenario.schemes import KERNEL_SUPPORT, RESOLVED_ETA, RESOLVED_KERNEL
 from ...case import Case, Control, Criterion, Curve, Outcome, Value, at_most, within
 from ...estimators import crossings, wave_amplitude
 from ...running import Running
@@ -11,7 +12,7 @@ from ...running import Running
 SAMPLES = 200
 SPEED, LOSS = "speed / c", "loss of amplitude a period"
 SUMS = "speed / that of the sums of (27) and (31)"
-SUPPORT = 2 * 1.39  # of the kernel, in spacings
+SUPPORT = KERNEL_SUPPORT[RESOLVED_KERNEL] * RESOLVED_ETA[RESOLVED_KERNEL]  # in spacings
 
 
 def swing(particles: float, assumed: float = 1.0) -> Outcome:
