@@ -99,6 +99,21 @@ DOSEKI_FN Sym<T, D> symmetric_part(const Mat<T, D>& m) {
     return result;
 }
 
+/// How fast and about what a velocity gradient turns: half of its vorticity.
+template <class T, int D>
+DOSEKI_FN Turn<T, D> turning_part(const Mat<T, D>& L) {
+    Turn<T, D> turn;
+    if constexpr (D == 2) {
+        turn[0] = number<T>(0.5) * (L(1, 0) - L(0, 1));
+    } else {
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            turn[a] = number<T>(0.5) * (L(c, b) - L(b, c));
+        }
+    }
+    return turn;
+}
+
 /// The square of the Frobenius norm.
 template <int D>
 DOSEKI_DEVICE_FN double sum_of_squares(const Mat<double, D>& m) {

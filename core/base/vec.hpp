@@ -47,6 +47,37 @@ DOSEKI_FN T dot(const Vec<T, D>& u, const Vec<T, D>& v) {
     return sum;
 }
 
+/// A rotation or a moment: about one axis in the plane, about three in space.
+template <class T, int D>
+using Turn = Vec<T, D == 2 ? 1 : 3>;
+
+/// spin x r
+template <class T, int D>
+DOSEKI_FN Vec<T, D> turned_by(const Turn<T, D>& spin, const Vec<T, D>& r) {
+    Vec<T, D> v;
+    if constexpr (D == 2) {
+        v[0] = -(spin[0] * r[1]), v[1] = spin[0] * r[0];
+    } else {
+        for (int a = 0; a < 3; ++a) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            v[a] = spin[b] * r[c] - spin[c] * r[b];
+        }
+    }
+    return v;
+}
+
+/// lever x force
+template <class T, int D>
+DOSEKI_FN Turn<T, D> moment_of(const Vec<T, D>& lever, const Vec<T, D>& force) {
+    if constexpr (D == 2) {
+        Turn<T, D> moment;
+        moment[0] = lever[0] * force[1] - lever[1] * force[0];
+        return moment;
+    } else {
+        return turned_by<T, D>(lever, force);
+    }
+}
+
 /// General D x D matrix, row by row.
 template <class T, int D>
 struct Mat {

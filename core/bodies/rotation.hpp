@@ -21,6 +21,22 @@ DOSEKI_FN Vec<double, D> in_run(const Vec3& u) {
     return v;
 }
 
+/// A turn of the run as one of space, and back.
+template <int D>
+DOSEKI_FN Vec3 about_axes(const Turn<double, D>& turn) {
+    if constexpr (D == 3) return turn;
+    Vec3 axis;
+    axis[2] = turn[0];
+    return axis;
+}
+template <int D>
+DOSEKI_FN Turn<double, D> turn_of(const Vec3& axis) {
+    if constexpr (D == 3) return axis;
+    Turn<double, D> turn;
+    turn[0] = axis[2];
+    return turn;
+}
+
 DOSEKI_FN Vec3 cross(const Vec3& u, const Vec3& v) {
     Vec3 w;
     w[0] = u[1] * v[2] - u[2] * v[1], w[1] = u[2] * v[0] - u[0] * v[2],

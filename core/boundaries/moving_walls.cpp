@@ -41,6 +41,7 @@ private:
         const Vec<double, D> now = turned(normal);
         particles.wall.bend[p] = turned_bend(particles.wall.bend[p], normal, now);
         normal = now;
+        particles.wall.spin[p] = motion.turn_at(t);
         particles.wall.edge_normals[p] = each_row(particles.wall.edge_normals[p], turned);
     }
 };
@@ -52,8 +53,10 @@ struct VelocityOfWall {
     double t;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
-        if (const WallMotion<D>* motion = motions.of(particles.tag[p]))
-            particles.velocity[p] = motion->velocity_at(particles.position[p], t);
+        const WallMotion<D>* motion = motions.of(particles.tag[p]);
+        if (!motion) return;
+        particles.velocity[p] = motion->velocity_at(particles.position[p], t);
+        if (particles.wall.in_use) particles.wall.spin[p] = motion->turn_at(t);
     }
 };
 

@@ -29,6 +29,14 @@ struct WallMotion {
         return w;
     }
 
+    /// The same about the axes of the run.
+    DOSEKI_DEVICE_FN Turn<double, D> turn_at(double t) const {
+        Turn<double, D> turn;
+        constexpr std::size_t axes = std::size_t{D == 2 ? 1 : 3};
+        for (std::size_t a = 0; a < axes; ++a) turn[a] = moves(t) ? spin[3 - axes + a] : 0.0;
+        return turn;
+    }
+
     DOSEKI_DEVICE_FN Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
         if (!moves(t)) return {};
         return velocity + cross_spin(x - pivot_at(t));

@@ -5,6 +5,7 @@
 #include "base/array.hpp"
 #include "base/named.hpp"
 #include "base/vec.hpp"
+#include "physics/viscosity.hpp"
 
 namespace doseki {
 
@@ -58,7 +59,7 @@ struct ContactOptions {
 struct FlowOptions {
     double dp = 0.0;
     bool wide_kernel = false;  // Wendland C6 instead of C2
-    bool monaghan_cleary = false;
+    ViscousPairs viscosity = ViscousPairs::stress;
     bool shifting = true;
     double acoustic_damping = 0.05;
     Turbulence turbulence = Turbulence::none;
@@ -75,7 +76,9 @@ struct FlowOptions {
         f("dp", dp);
         f("kernel", choice<bool>(wide_kernel, {{"wendland_c2", false}, {"wendland_c6", true}}));
         f("viscosity",
-          choice<bool>(monaghan_cleary, {{"morris", false}, {"monaghan_cleary", true}}));
+          choice<ViscousPairs>(viscosity, {{"stress", ViscousPairs::stress},
+                                           {"morris", ViscousPairs::morris},
+                                           {"monaghan_cleary", ViscousPairs::monaghan_cleary}}));
         f("shifting", shifting), f("acoustic_damping", acoustic_damping);
         f("turbulence",
           choice<Turbulence>(turbulence, {{"none", Turbulence::none},

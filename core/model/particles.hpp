@@ -40,9 +40,11 @@ struct WallState {
     // is the mean where they are as near, and the depths below them [m].
     WallField<Mat<double, D>> edge_normals;
     WallField<Vec<double, D>> edge_depths;
-    WallField<double> cut;            // share of its volume, of a terrain's, that a body takes up
-    WallField<Vec<double, D>> force;  // of the fluid on it [N], 2-D: [N/m]
-    WallField<double> pressure;       // of the fluid at its place [Pa]
+    WallField<double> cut;              // share of its volume, of a terrain's, that a body takes up
+    WallField<Vec<double, D>> force;    // of the fluid on it [N], 2-D: [N/m]
+    WallField<Turn<double, D>> moment;  // of that about the particle [N m], 2-D: [N]
+    WallField<Turn<double, D>> spin;    // of its body, which the fluid meets [rad/s]
+    WallField<double> pressure;         // of the fluid at its place [Pa]
     // Of faces between which fluid stands though no particle fits (physics/wall.hpp):
     WallField<std::int32_t> face;    // see Face
     WallField<Vec<double, D>> area;  // of a body that moves, outwards [m^2], 2-D: [m]
@@ -60,7 +62,8 @@ struct WallState {
         if (!in_use) return;
         f("normal", normal), f("wall_bend", bend), f("wall_depth", depth), f("wall_cut", cut);
         f("edge_normals", edge_normals), f("edge_depths", edge_depths);
-        f("wall_force", force), f("wall_pressure", pressure);
+        f("wall_force", force), f("wall_moment", moment), f("wall_spin", spin);
+        f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_wetted", wetted);
         f("film_change", film_change), f("film_density", film_density), f("film_cover", film_cover),
             f("film_traction", film_traction);

@@ -5,20 +5,32 @@
 
 namespace doseki {
 
-/// How a pair shares momentum: factors of v_ij and of (v_ij.n) n. Morris, Fox & Zhu (J. Comput.
-/// Phys. 136, 1997) has (1, 0); Monaghan's form (Rep. Prog. Phys. 68, 2005), which keeps angular
-/// momentum, has (0, D + 2).
+/// See ViscousForm.
+enum class ViscousPairs { stress, morris, monaghan_cleary };
+
+/// Eq. (28), how a pair shares momentum: factors of v_ij, of what the transposed velocity gradient
+/// makes of r_ij, and of (v_ij.n) n. The stress 2 mu D has (1, 1, 0). Morris, Fox & Zhu (J. Comput.
+/// Phys. 136, 1997) have (1, 0, 0), the divergence of mu grad v; Monaghan's form (Rep. Prog. Phys.
+/// 68, 2005), along the line of the two, (0, 0, D + 2).
 template <class T>
 struct ViscousForm {
-    T along_jump, along_pair;
+    T along_jump, transposed, along_pair;
+
+    DOSEKI_DEVICE_FN static ViscousForm of(ViscousPairs pairs, int dim) {
+        if (pairs == ViscousPairs::morris) return {T(1), T(0), T(0)};
+        if (pairs == ViscousPairs::monaghan_cleary) return {T(0), T(0), T(dim + 2)};
+        return {T(1), T(1), T(0)};
+    }
 };
 
-/// What mu F multiplies: `v_dot_r` = v_ij.r_ij, `inverse_r` = 1/r.
+/// What mu F multiplies. `transposed`: L^T r_ij with the mean of both velocity gradients;
+/// `v_dot_r` = v_ij.r_ij, `inverse_r` = 1/r.
 template <class T, int D>
 DOSEKI_FN Vec<T, D> viscous_direction(const ViscousForm<T>& form, const Vec<T, D>& v_ij,
-                                      const T& v_dot_r, const T& inverse_r, const Vec<T, D>& r_ij) {
+                                      const Vec<T, D>& transposed, const T& v_dot_r,
+                                      const T& inverse_r, const Vec<T, D>& r_ij) {
     const T along = form.along_pair * v_dot_r * (inverse_r * inverse_r);
-    return form.along_jump * v_ij + along * r_ij;
+    return form.along_jump * v_ij + form.transposed * transposed + along * r_ij;
 }
 
 /// Eq. (136): pressure [Pa] of a bulk viscosity alpha rho c h, which damps sound (Sun, Pilloton,

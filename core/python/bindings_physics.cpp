@@ -32,10 +32,12 @@ void bind_flow(nb::module_& m) {
                                       vector<D>(in, 2 + 2 * D));
            });
     define(m, "viscous_direction", D,
-           [](const auto& in, auto& out) {  // along_jump, along_pair, v_ij, r_ij
-               const auto v = vector<D>(in, 2), x = vector<D>(in, 2 + D);
-               const ViscousForm<NumberOf<decltype(in)>> form{in[0], in[1]};
-               put(viscous_direction(form, v, dot(v, x), 1.0 / sqrt(dot(x, x)), x), out);
+           [](const auto& in, auto& out) {  // factors of the form, v_ij, L^T r_ij, r_ij
+               const auto v = vector<D>(in, 3), x = vector<D>(in, 3 + 2 * D);
+               const ViscousForm<NumberOf<decltype(in)>> form{in[0], in[1], in[2]};
+               put(viscous_direction(form, v, vector<D>(in, 3 + D), dot(v, x),
+                                     1.0 / sqrt(dot(x, x)), x),
+                   out);
            });
     define(m, "wall_excess_pressure", 1,
            [](const auto& in, auto& out) {  // p, rho, g_n, r.n, grad p, n, r

@@ -2,26 +2,11 @@
 // What the resolved scheme sums over pairs, and what one pair adds: numbers in, numbers out, so
 // that one source serves packs on a processor and one thread for each particle on a device.
 
-#include "model/particles.hpp"
 #include "physics/free_surface.hpp"
-#include "physics/rheology/pair_viscosity.hpp"
 #include "physics/riemann.hpp"
-#include "physics/viscosity.hpp"
-#include "physics/wall.hpp"
-#include "resolved/records.hpp"
+#include "resolved/wall_pair.hpp"
 
 namespace doseki {
-
-struct FlowConstants {
-    double c, dp;           // sound speed of the fluid [m/s], spacing [m]
-    double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
-    double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
-    ViscousForm<double> form;
-    // Rates of fluid pairs and of the strongest over that of Morris' form, Eq. (154).
-    double roughest = 0.0, nearest = 0.0;
-    double suction = 0.0;  // that water at bodies bears, Eq. (85) [Pa]
-    PairViscosity viscosity{};
-};
 
 /// What a fluid particle i sums over its neighbours for its density, half a step before its forces;
 /// gradients are those of the plain kernel.
@@ -75,142 +60,24 @@ struct ForceAccumulators {
 /// Over the fluid around a wall particle, with weights V W but for the force.
 template <class T, int D>
 struct WallAccumulators {
-    Vec<T, D> force;  // of the fluid, over the wall particle's volume
+    Vec<T, D> force;    // of the fluid, over the wall particle's volume
+    Turn<T, D> moment;  // of it about the wall particle: it acts where the fluid is, Eq. (163)
     T weight{}, height{}, pressure{}, density{};
-    Vec<T, D> velocity;
-    Vec<T, D> area;  // that it sees of the fluid, outwards, over the wall particle's volume
+    Vec<T, D> velocity;  // against the wall
+    Vec<T, D> area;      // that it sees of the fluid, outwards, over the wall particle's volume
     // Over the faces of other bodies around its own:
     Vec<T, D> film_force, face_velocity;
     T cover{}, film_pressure{}, film_density{};
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.force...), f(self.weight...), f(self.height...), f(self.pressure...);
+        f(self.force...), f(self.moment...), f(self.weight...), f(self.height...);
+        f(self.pressure...);
         f(self.density...), f(self.velocity...), f(self.area...), f(self.film_force...);
         f(self.face_velocity...), f(self.cover...), f(self.film_pressure...),
             f(self.film_density...);
     }
 };
-
-/// A wall as a fluid particle sees it from one of its particles.
-template <class T, int D>
-struct FacedWall {
-    Vec<T, D> normal;
-    T depth;        // of the wall particle below the surface [m]
-    T g_normal;     // see wall_excess_pressure
-    T in_front;     // 1: of one face or more
-    T beyond_edge;  // 1: of several
-};
-
-/// Normal, depth and part of gravity are those of the face that the fluid particle is in front of.
-/// Beyond an edge, in front of several, the way out leads between them from the edge. What is in
-/// front of none takes the line between the two, and no gravity. What lies on a face counts as in
-/// front of it, or rounding would choose.
-template <class T, int D>
-DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw, const T& r) {
-    const T on_face = number<T>(1 - 1e-4);
-    const Vec<T, D> height = w.faces * r_iw;
-    Vec<T, D> front, out;
-    T count(0);
-    for (int k = 0; k < D; ++k) {
-        const T above = height[k] - on_face * w.depths[k];
-        front[k] = select(above > T(0), T(1), T(0));
-        out[k] = front[k] * above, count += front[k];
-    }
-    const Mat<T, D> normals = transposed(w.faces);
-    FacedWall<T, D> seen;
-    seen.in_front = min(count, T(1));
-    seen.beyond_edge = select(count > T(1), T(1), T(0));
-    const T alone = seen.in_front - seen.beyond_edge, none = (T(1) - seen.in_front) / r;
-    const Vec<T, D> from_edge = normals * out, of_face = normals * front;
-    const T distance = sqrt(dot(from_edge, from_edge) + least_number<T>());
-    const T unit = seen.beyond_edge / distance;
-    for (int a = 0; a < D; ++a)
-        seen.normal[a] = alone * of_face[a] + unit * from_edge[a] + none * r_iw[a];
-    seen.depth = select(seen.beyond_edge > T(0), dot(r_iw, from_edge) / distance - distance,
-                        select(alone > T(0), dot(front, w.depths), w.depths[0]));
-    seen.g_normal = alone * dot(front, w.g_normal) + unit * dot(out, w.g_normal);
-    return seen;
-}
-
-/// How a fluid particle i moves against a wall particle w, the wall standing for fluid of mirrored
-/// velocity.
-template <class T, int D>
-struct WallContact {
-    FacedWall<T, D> seen;
-    Vec<T, D> v_iw;
-    Vec<T, D> corrected_r;  // B_i r_iw
-    T pushes;               // 0: at an edge that the fluid goes off past
-    T approach;             // (v_i - v_w).(-n)
-    T r_dot_n, corrected_r_dot_n;
-    T height;           // of i above the surface of the wall
-    T no_slip;          // share of it that holds here
-    Vec<T, D> sliding;  // part of v_i - v_w along the face
-};
-
-template <class T, int D>
-DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw,
-                                         const T& r, const FluidPoint<T, D>& i,
-                                         const WallPoint<T, D>& w) {
-    WallContact<T, D> contact;
-    const FacedWall<T, D> seen = contact.seen = facing(w, r_iw, r);
-    contact.v_iw = i.v - w.v;
-    contact.r_dot_n = dot(r_iw, seen.normal), contact.height = contact.r_dot_n - seen.depth;
-    contact.approach = -dot(contact.v_iw, seen.normal);
-    // An edge pushes what comes to it. It does not pull what goes off a face past it.
-    contact.pushes = select(contact.approach < T(0), T(1) - seen.beyond_edge, T(1));
-    contact.approach = contact.pushes * contact.approach;
-    contact.corrected_r = i.correction * r_iw;
-    contact.corrected_r_dot_n = dot(contact.corrected_r, seen.normal);
-    contact.no_slip =
-        w.no_slip * no_slip_factor(seen.depth, contact.height, number<T>(0.25 * constants.dp));
-    contact.sliding = contact.v_iw + contact.approach * seen.normal;
-    return contact;
-}
-
-/// Pressure and viscous stress between the two.
-template <class T, int D>
-struct WallForces {
-    Vec<T, D> pressure, viscous;  // on i over V_i
-    T excess;                     // of the pressure at w over p_i
-    T power;                      // dissipated, over V_i
-    T made;                       // by pressure beyond what approach does to the density, over V_i
-    T viscous_rate;               // see ForceAccumulators
-};
-
-template <class T, int D>
-DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
-                                       const WallContact<T, D>& contact, const Vec<T, D>& r_iw,
-                                       const T& r, const T& F, const FluidPoint<T, D>& i,
-                                       const WallPoint<T, D>& w) {
-    WallForces<T, D> forces;
-    const FacedWall<T, D>& seen = contact.seen;
-    const T c = number<T>(constants.c);
-    const Vec<T, D> at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
-    // Air comes in on free surfaces and at bodies that move: walls pull no harder than pores do.
-    const T vented =
-        select(i.surface > number<T>(FreeSurfaceIndicator::surface), T(1), w.inverse_density);
-    const T least =
-        select(vented > T(0), min(T(0), number<T>(-constants.suction) - i.p), T(-c * c) * i.rho);
-    const T solved = approach_pressure(T(-2) * contact.pushes * dot(contact.v_iw, at_foot), i.rho,
-                                       c, smooth_approach(i.resolved_strain, r));
-    const T extra = max(solved, least);
-    const Vec<T, D> across = contact.r_dot_n * at_foot;
-    // The line to what is in front of no face is no normal: across it as well the fluid goes on.
-    forces.excess = wall_excess_pressure(i.p, i.rho, i.pressure_gradient, seen.g_normal,
-                                         seen.in_front * seen.normal, contact.r_dot_n, r_iw);
-    const T p = i.p + number<T>(0.5) * forces.excess;
-    const T scale = T(-2) * w.volume * F, mu_wall = i.mu * contact.no_slip;
-    forces.pressure = (scale * p) * contact.corrected_r;
-    forces.viscous = scale * (extra * across - mu_wall * contact.sliding);
-    forces.power =
-        scale * (mu_wall * dot(contact.sliding, contact.v_iw) - extra * dot(across, contact.v_iw));
-    // The fluid and a light body take the same impulse, and the body goes faster by it.
-    forces.viscous_rate = scale * mu_wall * max(T(1), number<T>(1.5) * i.rho * w.inverse_density);
-    forces.made = dot(forces.pressure, contact.v_iw) +
-                  scale * i.p * contact.approach * contact.corrected_r_dot_n;
-    return forces;
-}
 
 /// Force of pressure on a fluid particle i over V_i: -sum_j V_j (p_i B_j + p_j B_i) grad W, with
 /// B_i and 2 p* in front of walls (reverse kernel gradient correction: Zhang, Adams and Hu,
@@ -280,15 +147,19 @@ DOSEKI_FN void add_fluid(ForceAccumulators<T, D>& sums, const FlowConstants& con
     const T VF = j.volume * gradient_factor<Kernel>(constants, inverse_support, pair.r);
     const Vec<T, D> v_ij = i.v - j.v;
     const T v_dot_r = dot(v_ij, pair.r_ij), rho = half * (i.rho + j.rho);
-    const T smooth = half * dot((i.strain + j.strain) * pair.r_ij, pair.r_ij);
-    const T inverse_r = T(1) / pair.r;
+    const Vec<T, D> strained = half * ((i.strain + j.strain) * pair.r_ij);
+    const T smooth = dot(strained, pair.r_ij), inverse_r = T(1) / pair.r;
     const T resolved = min(i.resolved_strain, j.resolved_strain);
     const T extra = approach_pressure((smooth - v_dot_r) * inverse_r, rho, c,
                                       smooth_approach(resolved, pair.r));
     const T mu = pair_viscosity(i.mu, j.mu, i.strain, j.strain, constants.viscosity);
     const ViscousForm<T> form{number<T>(constants.form.along_jump),
+                              number<T>(constants.form.transposed),
                               number<T>(constants.form.along_pair)};
-    const Vec<T, D> viscous = viscous_direction(form, v_ij, v_dot_r, inverse_r, pair.r_ij);
+    const Vec<T, D> transposed =
+        strained - turned_by<T, D>(half * (i.turning + j.turning), pair.r_ij);
+    const Vec<T, D> viscous =
+        viscous_direction(form, v_ij, transposed, v_dot_r, inverse_r, pair.r_ij);
     const T W = Kernel::value(pair.r, inverse_support);
     const T exchange = half * number<T>(constants.exchange) * rho * j.volume * W;
     for (int a = 0; a < D; ++a) {
@@ -314,12 +185,12 @@ DOSEKI_FN void add_wall(ContinuityAccumulators<T, D>& sums, const FlowConstants&
     sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
     sums.sliding_rate += T(2) * VF * dot(contact.sliding, contact.corrected_r);
     sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(contact.v_iw, contact.v_iw));
-    const T shear =
-        contact.no_slip * resolved_shear(i.mu, i.rho, sqrt(dot(contact.sliding, contact.sliding)),
-                                         number<T>(constants.dp));
-    // v_i less the velocity that the fluid goes on to at w.
-    const Vec<T, D> jump =
-        shear * contact.sliding - (T(2) * contact.approach) * contact.seen.normal;
+    const T resolved = resolved_shear(i.mu, i.rho, sqrt(dot(contact.sliding, contact.sliding)),
+                                      number<T>(constants.dp));
+    // v_i less the velocity that the fluid goes on to at w. What sticks to a wall turns with it.
+    const Vec<T, D> jump = (resolved * contact.no_slip) * contact.sliding -
+                           (T(2) * contact.approach) * contact.at_foot +
+                           (resolved * w.no_slip) * turned_by<T, D>(w.spin, pair.r_ij);
     add_gradients(sums, pair.r_ij, VF, jump);
     const T share = w.volume * Kernel::value(pair.r, inverse_support), film = share * w.film_cover;
     sums.wall_share += share;
@@ -360,9 +231,12 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     const auto contact = wall_contact(constants, r_jw, pair.r, j, w);
     const auto forces = wall_forces(constants, contact, r_jw, pair.r, F, j, w);
     const T share = (T(1) - j.in_film) * j.volume * W;
+    const Vec<T, D> force = T(-1) * j.volume * (forces.pressure + forces.viscous);
+    const Turn<T, D> moment = moment_of(r_jw, force);
+    for (std::size_t a = 0; a < moment.component.size(); ++a) sums.moment[a] += moment[a];
     for (int a = 0; a < D; ++a) {
-        sums.force[a] -= j.volume * (forces.pressure[a] + forces.viscous[a]);
-        sums.velocity[a] += share * j.v[a];
+        sums.force[a] += force[a];
+        sums.velocity[a] += share * contact.v_iw[a];
         sums.area[a] -= T(2) * j.volume * F * contact.corrected_r[a];
     }
     sums.weight += share;

@@ -29,6 +29,7 @@ public:
         const FreeSurfaceIndicator indicator = free_surface(at);
         state_.surface[p] = indicator.x;
         state_.surface_around[p] = sums.surface.value;
+        state_.least_pressure[p] = least_pressure(at);
         summary(p).fault.note_density(at.fields.rho, rho0(p), p);
         if (state_.is_free(p)) {
             const double strain = std::sqrt(sum_of_squares(state_.velocity_gradient[p]));
@@ -57,6 +58,18 @@ private:
     /// As the next evaluation will see it.
     DOSEKI_DEVICE_FN bool on_surface(std::size_t p) const {
         return state_.surface[p] > FreeSurfaceIndicator::surface;
+    }
+
+    /// Eq. (162): of a particle along the free surface, where the pressure falls inwards. Zero at
+    /// corners and of spray, which have no inside.
+    DOSEKI_DEVICE_FN double least_pressure(const Summed& at) const {
+        constexpr double depth = 1.5;  // dp; the row lies at a half
+        const double indicator = state_.surface[at.p];
+        if (!on_surface(at.p) || indicator >= FreeSurfaceIndicator::edge) return 0.0;
+        const Vec<double, D>& inwards = at.sums.concentration_gradient;
+        const double slope =
+            dot(state_.pressure_gradient[at.p], inwards) / std::sqrt(dot(inwards, inwards));
+        return std::min(0.0, depth * model_.spacing_power[1] * slope);
     }
 
     DOSEKI_DEVICE_FN FreeSurfaceIndicator free_surface(const Summed& at) const {
@@ -165,12 +178,13 @@ private:
     DOSEKI_DEVICE_FN double part_on_surface(const Summed& at) const {
         const std::size_t p = at.p;
         const double rho = at.fields.rho;
-        const bool had_tension = pressure(at) < 0.0;
-        if (rho >= rho0(p)) state_.parted[p] = 0.0;
-        if (rho >= rho0(p) || !on_surface(p)) return 0.0;
-        state_.parted[p] = 1.0;
-        if (!had_tension || dt_ <= 0.0) return 0.0;
         const Material& material = model_.material(state_.tag[p]);
+        const bool had_tension = pressure(at) < 0.0,
+                   closed = pressure_at(*material.laws, rho) >= state_.least_pressure[p];
+        if (closed) state_.parted[p] = 0.0;
+        if (closed || !on_surface(p) || dt_ <= 0.0) return 0.0;
+        state_.parted[p] = 1.0;
+        if (!had_tension) return 0.0;
         return -state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy / dt_;
     }
 

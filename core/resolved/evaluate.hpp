@@ -157,6 +157,7 @@ void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
     const auto timing = phases_.measure(Phase::pass_1);
     if (!has_wet_walls(records)) {
         std::ranges::fill(state.wall.force.stored(), Vec<double, D>{});
+        std::ranges::fill(state.wall.moment.stored(), Turn<double, D>{});
         return;
     }
     const std::size_t first = fluid_count_ / Backend::width;
@@ -208,8 +209,7 @@ ThermodynamicState<double> Resolved<D, real, Backend>::equation_of_state(const S
     if (state.is_wall(p)) return {state.wall.pressure[p], model_->constants.c, 0.0};
     const Material& material = model_->material(state.tag[p]);
     const auto at = thermodynamic_state(*material.laws, state.density[p]);
-    return {model_->without_surface_tension(at.pressure, state.surface[p], state.parted[p]),
-            material.c0, at.bulk_energy};
+    return {model_->without_surface_tension(at.pressure, state, p), material.c0, at.bulk_energy};
 }
 
 template <int D, class real, class Backend>

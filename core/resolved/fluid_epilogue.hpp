@@ -4,7 +4,6 @@
 #include <span>
 
 #include "base/pack.hpp"
-#include "resolved/flow_summary.hpp"
 #include "resolved/model.hpp"
 #include "resolved/timestep.hpp"
 

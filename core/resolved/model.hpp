@@ -25,6 +25,9 @@ inline constexpr double density_relaxation = 100.0, density_relaxation_at_rest =
 /// sum on a square lattice, 1.15 on a cubic one. Of two particles that nearly meet it is twice
 /// their own coefficient and once the others.
 inline constexpr double roughest_over_own = 1.4, nearest_over_own = 0.6;
+/// The same for a form along the line of the pair, over its factor: rows that go against each other
+/// in turns feel more of it than the mean over directions, 1/D. By dimension.
+inline constexpr std::array rough_share{0.0, 0.0, 0.7, 0.5};
 
 /// The time over which Voellmy's friction takes the mean of the normal stress on a bed, over the
 /// time that sound takes through the depth of which that stress is the weight.
@@ -90,9 +93,9 @@ struct ResolvedModel {
         own_gradient_factor = flow.wide_kernel ? own_factor<WendlandC6<D>>(constants, support)
                                                : own_factor<WendlandC2<D>>(constants, support);
         constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);
-        constants.form = flow.monaghan_cleary ? ViscousForm<double>{0.0, D + 2.0}
-                                              : ViscousForm<double>{1.0, 0.0};
-        const double directions = constants.form.along_jump + constants.form.along_pair / D;
+        constants.form = ViscousForm<double>::of(flow.viscosity, D);
+        const double directions =
+            constants.form.along_jump + rough_share[D] * constants.form.along_pair;
         constants.roughest = 2.0 * roughest_over_own * directions;
         constants.nearest = 2.0 * nearest_over_own * directions;
     }
@@ -116,10 +119,14 @@ struct ResolvedModel {
                            [](const WallCondition& wall) { return wall.has_friction(); });
     }
 
-    /// Tension holds inside; a free surface takes none, and what has parted there none either.
-    DOSEKI_DEVICE_FN static double without_surface_tension(double p, double surface,
-                                                           double parted) {
-        return surface > FreeSurfaceIndicator::surface || parted > 0.0 ? std::max(0.0, p) : p;
+    /// Tension holds inside. A free surface takes none, so that the particles along it take what
+    /// lies between it and them, and what has parted there takes none at all.
+    DOSEKI_DEVICE_FN static double without_surface_tension(double p, const ResolvedState<D>& state,
+                                                           std::size_t i) {
+        if (state.parted[i] > 0.0) return std::max(0.0, p);
+        return state.surface[i] > FreeSurfaceIndicator::surface
+                   ? std::max(state.least_pressure[i], p)
+                   : p;
     }
 
     /// rho l^2 |D| of Smagorinsky, or of Prandtl's mixing length, over rho [m^2/s].

@@ -59,8 +59,7 @@ struct FlowPacker {
         const double rho = record.rho = state.density[p];
         record.volume = state.mass[p] / rho, record.rest_volume = state.mass[p] / material.rho0;
         record.surface = state.surface[p];
-        record.p = model.without_surface_tension(pressure_at(*material.laws, rho), record.surface,
-                                                 state.parted[p]);
+        record.p = model.without_surface_tension(pressure_at(*material.laws, rho), state, p);
         record.pressure_gradient = state.pressure_gradient[p];
         record.correction = kernel_correction(state, p);
         record.in_film = state.in_film[p];
@@ -95,7 +94,7 @@ struct ContinuityPacker : FlowPacker<real, D> {
         FluidFields<double, D> record = this->fluid_fields(p);
         record.p += state.damping_pressure[p];
         record.mu = this->molecular_viscosity(p, this->sheared(p)) + this->eddy_viscosity(p);
-        record.strain = {}, record.carried = {}, record.resolved_strain = 0.0;
+        record.strain = {}, record.turning = {}, record.carried = {}, record.resolved_strain = 0.0;
         this->fluid[p] = converted<FluidRecord<real, D>>(record);
     }
 
@@ -124,6 +123,7 @@ private:
         record.inverse_density = state.is_bound(p) ? 1.0 / state.density[p] : 0.0;
         // Areas of faces are those of a body that keeps its shape.
         const bool deforms = state.is_point_of(p, BodyKind::deformable);
+        record.spin = deforms ? Turn<double, D>{} : walls.spin[p];
         record.face = deforms ? Face::none : walls.face[p], record.pressure = walls.pressure[p];
         record.film_density = walls.film_density[p];
         record.film_cover = walls.film_cover[p];
@@ -154,7 +154,7 @@ struct ForcePacker : FlowPacker<real, D> {
             record.surface > FreeSurfaceIndicator::surface
                 ? 0.0
                 : shear.rate * resolved_shear(mu, shear.rho, shear.rate * h, h);
-        record.strain = symmetric_part(L);
+        record.strain = symmetric_part(L), record.turning = turning_part(L);
         record.carried = L * state.shift[p];
         this->fluid[p] = converted<FluidRecord<real, D>>(record);
     }

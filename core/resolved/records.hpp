@@ -1,7 +1,20 @@
 #pragma once
 #include "pairs/records.hpp"
+#include "physics/rheology/pair_viscosity.hpp"
+#include "physics/viscosity.hpp"
 
 namespace doseki {
+
+struct FlowConstants {
+    double c, dp;           // sound speed of the fluid [m/s], spacing [m]
+    double gradient_scale;  // of kernel gradients, so that their moment on a lattice is 1
+    double exchange;        // 1 / (sum of V W over the neighbours on a lattice)
+    ViscousForm<double> form;
+    // Rates of fluid pairs and of the strongest over that of Morris' form, Eq. (154).
+    double roughest = 0.0, nearest = 0.0;
+    double suction = 0.0;  // that water at bodies bears, Eq. (85) [Pa]
+    PairViscosity viscosity{};
+};
 
 /// What the sums of the resolved scheme need of a fluid particle beside its motion: W of them, or
 /// one in memory.
@@ -9,6 +22,7 @@ template <class T, int D>
 struct FluidFields {
     Vec<T, D> pressure_gradient;
     Sym<T, D> strain;       // symmetric part of the velocity gradient
+    Turn<T, D> turning;     // the rest of it: half of the vorticity
     Sym<T, D> correction;   // of kernel gradients, see kernel_correction
     Vec<T, D> carried;      // L dv, what shifting makes of the velocity
     T volume, rest_volume;  // m/rho, m/rho0
@@ -20,7 +34,7 @@ struct FluidFields {
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
-        f(self.pressure_gradient...), f(self.strain...), f(self.correction...);
+        f(self.pressure_gradient...), f(self.strain...), f(self.turning...), f(self.correction...);
         f(self.carried...), f(self.volume...), f(self.rest_volume...), f(self.rho...), f(self.p...),
             f(self.mu...), f(self.surface...), f(self.resolved_strain...), f(self.in_film...);
     }
@@ -37,6 +51,7 @@ struct WallFields {
     T volume;
     T no_slip;          // 1: no slip; 0: the wall pass has the friction
     T inverse_density;  // of a body that moves, else 0
+    Turn<T, D> spin;    // of its body [rad/s]
     // Of the film between faces, see WallState:
     T face, pressure, film_density, film_cover;
     Vec<T, D> film_traction;
@@ -45,7 +60,7 @@ struct WallFields {
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.faces...), f(self.depths...), f(self.g_normal...), f(self.bend...);
         f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.inverse_density...),
-            f(self.face...);
+            f(self.spin...), f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_cover...),
             f(self.film_traction...);
     }

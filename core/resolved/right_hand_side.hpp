@@ -12,7 +12,6 @@
 #include "physics/equation_of_state/thermodynamic_state.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
-#include "resolved/flow_summary.hpp"
 #include "resolved/records.hpp"
 #include "resolved/state.hpp"
 

@@ -3,6 +3,8 @@
 #include "model/material.hpp"
 #include "model/options.hpp"
 #include "model/particles.hpp"
+#include "model/scheme_work.hpp"
+#include "model/step_summary.hpp"
 
 namespace doseki {
 
@@ -23,6 +25,7 @@ struct ResolvedState : Particles<D> {
     FluidField<double> surface;           // free-surface indicator
     FluidField<double> surface_around;    // the largest of the neighbours
     FluidField<double> parted;            // 1: a void that has not closed, Eq. (144)
+    FluidField<double> least_pressure;    // of the outermost particles, Eq. (162) [Pa]
     FluidField<double> in_film;           // share that is part of a film, Eq. (156)
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
@@ -37,7 +40,8 @@ struct ResolvedState : Particles<D> {
         this->for_each_common_field(f);
         f("pressure_gradient", pressure_gradient), f("velocity_gradient", velocity_gradient);
         f("inverse_moment", inverse_moment), f("shift", shift), f("surface", surface);
-        f("surface_around", surface_around), f("parted", parted), f("in_film", in_film);
+        f("surface_around", surface_around), f("parted", parted);
+        f("least_pressure", least_pressure), f("in_film", in_film);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
         f("damping_pressure", damping_pressure);
         if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);
@@ -60,6 +64,17 @@ struct ResolvedState : Particles<D> {
     bool has_density(std::size_t p) const { return !this->is_wall(p); }
     /// Not finite where any field is not that a step starts from.
     double sum_of_fields(std::size_t p) const { return this->sum_of_common_fields(p); }
+};
+
+/// What an evaluation learns of the fluid.
+template <int D>
+struct FlowSummary : StepSummary {
+    SchemeWork<D> work;
+
+    DOSEKI_DEVICE_FN void add(const FlowSummary& other) {
+        StepSummary::add(other);
+        work.add(other.work);
+    }
 };
 
 }  // namespace doseki

@@ -4,7 +4,6 @@
 
 #include "base/pack.hpp"
 #include "physics/contact.hpp"
-#include "resolved/flow_summary.hpp"
 #include "resolved/model.hpp"
 
 namespace doseki {
@@ -50,7 +49,7 @@ public:
             // What the fluid loses by friction and a bed that moves does not get.
             summary.power -= dot(drag, state_.velocity[p]);
         }
-        wall.force[p] = force;
+        wall.force[p] = force, wall.moment[p] = sums.moment;
     }
 
 private:
@@ -128,11 +127,10 @@ private:
         return volume(p) * dot(sums.area, all) / square;
     }
 
-    /// Velocity along the wall of the fluid around against it.
+    /// Velocity of the fluid around along the wall and against it.
     DOSEKI_DEVICE_FN Vec<double, D> sliding(std::size_t p,
                                             const WallAccumulators<double, D>& sums) const {
-        const Vec<double, D> u = (1.0 / sums.weight) * sums.velocity - state_.velocity[p];
-        return tangential(u, state_.wall.normal[p]);
+        return tangential((1.0 / sums.weight) * sums.velocity, state_.wall.normal[p]);
     }
 
     /// On a particle of the first row that is near enough to the fluid, Eq. (39).

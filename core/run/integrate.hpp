@@ -51,7 +51,8 @@ struct PushOfWall {
 
     DOSEKI_DEVICE_FN WallPush<State::dim> operator()(std::size_t p) const {
         if (!state.is_fixed(p)) return {};
-        return {state.wall.force[p], dot(state.wall.force[p], state.velocity[p])};
+        return {state.wall.force[p], dot(state.wall.force[p], state.velocity[p]) +
+                                         dot(state.wall.moment[p], state.wall.spin[p])};
     }
 };
 

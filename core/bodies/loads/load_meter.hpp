@@ -56,10 +56,9 @@ public:
         std::fill(flow_now_.begin(), flow_now_.end(), 0.0);
         for (const std::uint32_t p : members_)
             if (dot(particles.wall.normal[p], grid.normal) > backwards)
-                add(flow_now_, {particles.position[p], particles.wall.force[p], {}, grid.footprint},
-                    1.0);
+                add(flow_now_, flow_on(particles, p), 1.0);
             else
-                add_whole(flow_now_, {particles.position[p], particles.wall.force[p]}, 1.0);
+                add_whole(flow_now_, flow_on(particles, p), 1.0);
         sum(std::span<double>(flow_now_));
     }
     /// Finds the wall particles of its bodies, anew where particles have been sorted.
@@ -122,6 +121,11 @@ private:
     static constexpr double backwards = -0.5;
     static constexpr std::size_t first_panel = D + 3;
 
+    WallForce<D> flow_on(const Particles<D>& particles, std::uint32_t p) const {
+        const WallState<D>& wall = particles.wall;
+        return {particles.position[p], wall.force[p], about_axes<D>(wall.moment[p]),
+                grid.footprint};
+    }
     std::size_t numbers() const { return first_panel + grid.panels(); }
     static Vec<double, D> force_of(const Array<double>& sum) {
         Vec<double, D> force;

@@ -3,7 +3,6 @@
 #include "bodies/particles/rigid_particles.hpp"
 
 #include "base/bulk.hpp"
-#include "bodies/particles/force_on_points.hpp"
 #include "physics/wall.hpp"
 
 namespace doseki {
@@ -86,6 +85,7 @@ struct PlaceBound {
         particles.acceleration[p] = body.acceleration + turning_velocity(body.spin_rate, lever) +
                                     turning_velocity(body.spin, turning_velocity(body.spin, lever));
         if (dt > 0.0) particles.velocity[p] = (1.0 / dt) * step;
+        particles.wall.spin[p] = turn_of<D>(body.spin);
         return dot(step, step);
     }
 
@@ -108,21 +108,35 @@ struct MoveBound {
         const Bearing<D>& body = bound.bearing[point.index()];
         bound.particles.velocity[p] =
             body.velocity + turning_velocity(body.spin_ahead, rotated(body.rotation, point.offset));
+        bound.particles.wall.spin[p] = turn_of<D>(body.spin_ahead);
     }
 };
 
-/// What Eq. (152) takes of a particle: the pressure on it and, of its area, what water sees.
-struct WettedPoint {
-    double pressure = 0.0, share = 0.0;
-};
+/// What the fluid does to a point: force, its moment about the point, and what Eq. (152) takes, the
+/// pressure and the share of its area that water sees.
 template <int D>
-struct WettedAtPoint {
+struct FlowOnPoint {
+    Vec<double, D> force{};
+    Turn<double, D> moment{};
+    double pressure = 0.0, wetted = 0.0;
+};
+/// As numbers, which ranks add up.
+template <int D>
+std::span<double> numbers_of(Array<FlowOnPoint<D>>& points) {
+    static_assert(sizeof(FlowOnPoint<D>) % sizeof(double) == 0);
+    if (points.empty()) return {};
+    return {&points.data()->force[0], sizeof(FlowOnPoint<D>) / sizeof(double) * points.size()};
+}
+template <int D>
+struct FlowAtPoint {
     const Particles<D>& particles;
-    std::span<WettedPoint> wetted;
+    std::span<FlowOnPoint<D>> flow;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
+        const WallState<D>& wall = particles.wall;
         if (particles.is_point_of(p, BodyKind::rigid))
-            wetted[particles.point(p)] = {particles.wall.pressure[p], particles.wall.wetted[p]};
+            flow[particles.point(p)] = {wall.force[p], wall.moment[p], wall.pressure[p],
+                                        wall.wetted[p]};
     }
 };
 
@@ -131,8 +145,7 @@ template <int D>
 struct SumOfBody {
     std::span<const std::size_t> first, order;
     std::span<const RigidBodyPoint<D>> points;
-    std::span<const Vec<double, D>> force;
-    std::span<const WettedPoint> wetted;
+    std::span<const FlowOnPoint<D>> flow;
     std::span<RigidBodyState<D>> states;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
@@ -141,10 +154,11 @@ struct SumOfBody {
         Vec<double, D> sum{};
         Vec3 moment{};
         for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
-            const Vec<double, D>& push = force[order[n]];
+            const FlowOnPoint<D>& push = flow[order[n]];
             const Vec<double, D> lever = rotated(rotation, points[order[n]].offset);
-            sum = sum + push;
-            moment = moment + cross(in_space(lever), in_space(push));
+            sum = sum + push.force;
+            moment =
+                moment + cross(in_space(lever), in_space(push.force)) + about_axes<D>(push.moment);
         }
         state.flow_force = sum, state.flow_torque = moment;
         wet(k);
@@ -161,11 +175,11 @@ private:
         const double before = 1.0 - states[k].unwetted;
         double highest = 0.0, seen = 0.0, wet = 0.0, all = 0.0;
         for (std::size_t n = first[k]; n < first[k + 1]; ++n)
-            highest = max(highest, wetted[order[n]].pressure);
+            highest = max(highest, flow[order[n]].pressure);
         for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
-            const WettedPoint& point = wetted[order[n]];
+            const FlowOnPoint<D>& point = flow[order[n]];
             const Vec<double, D>& area = points[order[n]].area;
-            const double square = dot(area, area), share = before * point.share;
+            const double square = dot(area, area), share = before * point.wetted;
             all += square;
             if (share < least || !(point.pressure > deep * highest)) continue;
             seen += square * share, wet += square;
@@ -181,15 +195,12 @@ private:
 template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) {
-    Array<Vec<double, D>> force(points_.size());
-    Array<WettedPoint> wetted(points_.size());
-    bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::rigid, force});
-    bulk::for_each(particles.size(), WettedAtPoint<D>{particles, wetted});
-    ranks.sum(numbers_of(force));
-    ranks.sum({&wetted.data()->pressure, 2 * wetted.size()});
+    Array<FlowOnPoint<D>> flow(points_.size());
+    bulk::for_each(particles.size(), FlowAtPoint<D>{particles, flow});
+    ranks.sum(numbers_of(flow));
     sort_by_body(bodies.size());
-    bulk::for_each(bodies.size(), SumOfBody<D>{first_of_body_, of_body_, points_, force, wetted,
-                                               bodies.moved().states});
+    bulk::for_each(bodies.size(),
+                   SumOfBody<D>{first_of_body_, of_body_, points_, flow, bodies.moved().states});
 }
 
 template <int D>

@@ -99,7 +99,7 @@ def _options(case: Case) -> dict[str, Any]:
         "tension": "clamp_fluid", "h_mode": "constant",
         "domain_min": zero, "domain_max": zero, "periodic": [False] * case.dim,
         "flow": {
-            "dp": DP, "kernel": RESOLVED_KERNEL, "viscosity": "morris",
+            "dp": DP, "kernel": RESOLVED_KERNEL, "viscosity": "stress",
             "shifting": True, "acoustic_damping": 0.05,
             "turbulence": "smagorinsky", "smagorinsky": 0.12,
             "walls": [{"no_slip": True, "ks": 0.0}],

@@ -6,7 +6,8 @@ grad_i W = F r_ij.
 "Fluid" are the particles that move, "wall" the fixed ones. An evaluation sums for densities first,
 with the pressure gradients, corrections of gradients, measures of the surface and shifting
 velocities of the evaluation before, and then for forces, with what the first sums have given but
-the pressure gradients of before. Nothing moves, so both see the same places and densities.
+the pressure gradients of before. Nothing moves, so both see the same places and densities, and
+nothing parts.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ FIXED = 1
 KAPPA = 0.4
 SUPPORT = {"wendland_c2": 2.0, "wendland_c6": 2.5}
 SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surface
+LEAST_DEPTH = 1.5  # dp over which the pressure of the outermost row may fall
 LEAST_CONCENTRATION = 0.6
 ENOUGH_COMPANY = 0.05
 LEAST_BETA = 0.05  # of the Riemann dissipation
@@ -50,7 +52,7 @@ class FlowOptions:
     dp: float
     eta: float = 1.3
     kernel: str = "wendland_c2"
-    viscosity: str = "morris"
+    viscosity: str = "stress"
     eos: str = "linear"
     turbulence: str = "none"
     smagorinsky: float = 0.12
@@ -156,7 +158,7 @@ class FlowReference:
         n = len(self.x)
         self.pressure_gradient = np.zeros((n, self.dim))
         self.L = np.zeros((n, self.dim, self.dim))
-        self.surface, self.parted = np.zeros(n), np.zeros(n, bool)
+        self.surface, self.least_pressure = np.zeros(n), np.zeros(n)
         self.shift = np.zeros((n, self.dim))
         self.B = np.tile(np.eye(self.dim), (n, 1, 1))
         self.damping = np.zeros(n)
@@ -212,9 +214,16 @@ class FlowReference:
         return self._contact()
 
     def _pressure(self, surface: np.ndarray) -> np.ndarray:
-        """Linear or Tait's law; no tension on a free surface, and of what has parted there."""
+        """Linear or Tait's law; little tension on a free surface."""
         p = self._of_density(self.rho / self.rho0)
-        return np.where((surface > SURFACE) | self.parted, np.maximum(p, 0), p)
+        return np.where(surface > SURFACE, np.maximum(p, self.least_pressure), p)
+
+    def _take_least_pressure(self) -> None:
+        """Of the outermost row, where the pressure falls inwards; spray and corners have none."""
+        inwards = unit_or_zero(self.concentration_gradient)
+        slope = np.minimum(dot(self.pressure_gradient, inwards), 0)
+        row = (self.measure > SURFACE) & (self.measure < EDGE)
+        self.least_pressure = np.where(row, LEAST_DEPTH * self.options.dp * slope, 0)
 
     def _of_density(self, e: np.ndarray) -> np.ndarray:
         """Pressure of a density over that at rest."""
@@ -299,8 +308,9 @@ class FlowReference:
         """What a fluid particle i and a wall particle w make of each other."""
         pairs, dp = self.fw, self.options.dp
         n, depth, g_normal, in_front, beyond_edge = self._faces()
+        foot = self._normal_at_foot(n, in_front)
         r_n, v = dot(pairs.r_ij, n), self.v[:, None] - self.v_w[None]
-        approach = -dot(v, n)
+        approach = -dot(v, foot)
         pulled = beyond_edge & (approach < 0)
         approach = np.where(pulled, 0, approach)
         # Pressure of the wall over that of i: gravity across it, the fluid's gradient along it.
@@ -308,7 +318,6 @@ class FlowReference:
         along = pairs.r_ij - (in_front * r_n)[..., None] * n
         weight = self.rho[:, None] * g_normal * r_n
         excess = np.maximum(weight, np.minimum(0, -self.p[:, None])) - dot(gradient, along)
-        foot = self._normal_at_foot(n, in_front)
         smooth = self.resolved[:, None] * pairs.r
         solved = np.where(pulled, 0, -2 * dot(v, foot))
         extra = self._dissipation(solved, self.rho[:, None], smooth)
@@ -318,7 +327,7 @@ class FlowReference:
         p = self.p[:, None] + 0.5 * excess
         corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
         factor = self.stick * (1 + depth / np.maximum(r_n - depth, dp / 4))
-        sliding = v + approach[..., None] * n
+        sliding = v + approach[..., None] * foot
         mu = (self.mu[:, None] * factor)[..., None]
         layer = 0.1 * self.rho[:, None] * np.linalg.norm(sliding, axis=-1) * dp
         shear = factor * self.mu[:, None] / (self.mu[:, None] + layer)
@@ -328,11 +337,11 @@ class FlowReference:
             * (p[..., None] * corrected_r + extra[..., None] * across - mu * sliding),
             "excess": excess,
             "height": r_n - depth,
-            "v_dot_r": -2 * approach * dot(corrected_r, n),
+            "v_dot_r": -2 * approach * dot(corrected_r, foot),
             "viscous_rate": scale * mu[..., 0],
             "sliding_dot_r": 2 * dot(sliding, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
-            "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
+            "jump": shear[..., None] * sliding - 2 * approach[..., None] * foot,
             "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(across, v)),
         }
 
@@ -413,7 +422,7 @@ class FlowReference:
         self._set_shift()
         self._correct_pressure()
         self.surface = self.measure
-        self.parted = (self.parted | (self.surface > SURFACE)) & (self.rho < self.rho0)
+        self._take_least_pressure()
         self.damping = self._damping_pressure()
         self.power = (self.volume * (power + self.damping * of_pairs)).sum()
 
@@ -473,7 +482,8 @@ class FlowReference:
 
     def _viscous_rate(self) -> np.ndarray:
         """At which viscosity among fluid damps neighbours that go against each other."""
-        along = 1 if self.options.viscosity == "morris" else (self.dim + 2) / self.dim
+        central = self.options.viscosity == "monaghan_cleary"
+        along = (self.dim + 2) * {2: 0.7, 3: 0.5}[self.dim] if central else 1
         VF = self.volume[None] * self.ff.F * (self.ff.r > 0)
         pairs = -VF * self._pair_viscosity()
         rate = ROUGHEST * pairs.sum(axis=1) + NEAREST * pairs.max(axis=1)
@@ -490,10 +500,12 @@ class FlowReference:
         return 0.5 * (a[:, None] + a[None])
 
     def _viscous_direction(self, v: np.ndarray, v_r: np.ndarray) -> np.ndarray:
+        r = self.ff.r_ij
+        if self.options.viscosity == "monaghan_cleary":
+            return ((self.dim + 2) * v_r / self.ff.safe_r**2)[..., None] * r
         if self.options.viscosity == "morris":
             return v
-        along = (self.dim + 2) * v_r / self.ff.safe_r**2
-        return along[..., None] * self.ff.r_ij
+        return v + np.einsum("ijab,ija->ijb", self._mean(self.L), r)
 
     def _take_gradients(self, contact: Mapping[str, np.ndarray]) -> None:
         """Corrected gradient of velocity, and the plain one of concentration."""

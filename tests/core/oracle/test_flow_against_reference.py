@@ -83,6 +83,7 @@ CASES = {
     "sound undamped": Case({"acoustic_damping": 0.0}),
     "wide kernel": Case({"kernel": "wendland_c6", "eta": 1.2}),
     "wide kernel, periodic": Case({"kernel": "wendland_c6", "eta": 1.2}, periodic="xyz"),
+    "Morris": Case({"viscosity": "morris"}),
     "Monaghan and Cleary": Case({"viscosity": "monaghan_cleary"}),
     "slurry": Case(fluids=2, rheology=SLURRY),
     "dense grains": Case(fluids=2, rheology=GRAINS),

@@ -67,7 +67,9 @@ def test_pressure_jump_of_a_quadratic_field_vanishes(point, dim, random):
 def test_viscous_direction_of_morris_is_the_jump(point, dim, random):
     v, r = random.normal(size=(2, 50, dim))
     np.testing.assert_allclose(
-        point("viscous_direction", 1, 0, *rows(v), *rows(r), dim=dim), v.T, rtol=1e-15
+        point("viscous_direction", 1, 0, 0, *rows(v), *rows(v), *rows(r), dim=dim),
+        v.T,
+        rtol=1e-15,
     )
 
 
@@ -76,12 +78,19 @@ def test_viscous_direction_of_monaghan_is_central(point, dim, random):
     v, r = random.normal(size=(2, 50, dim))
     n = r / np.linalg.norm(r, axis=1)[:, None]
     expected = (dim + 2) * (v * n).sum(axis=1)[:, None] * n
-    actual = point("viscous_direction", 0, dim + 2, *rows(v), *rows(r), dim=dim)
+    actual = point("viscous_direction", 0, 0, dim + 2, *rows(v), *rows(v), *rows(r), dim=dim)
     np.testing.assert_allclose(actual, expected.T, rtol=1e-12, atol=1e-14)
 
 
-def test_both_viscous_forms_are_the_laplacian_of_a_shear_flow(point, dim):
-    """v_x = y^2/2: the integral of 2 F v_ij over the kernel is 1, in Monaghan's form as well."""
+def test_viscous_direction_of_the_stress_is_that_of_the_strain(point, dim, random):
+    """2 D r where velocity is linear; so nothing where it turns as a solid."""
+    L, r = random.normal(size=(dim, dim)), random.normal(size=(50, dim))
+    actual = point("viscous_direction", 1, 1, 0, *rows(r @ L.T), *rows(r @ L), *rows(r), dim=dim)
+    np.testing.assert_allclose(actual, (r @ (L + L.T)).T, rtol=1e-11, atol=1e-13)
+
+
+def test_viscous_forms_are_the_laplacian_of_a_shear_flow(point, dim):
+    """v_x = y^2/2: the integral of 2 F v_ij over the kernel is 1, in the other forms as well."""
     R, n = 1.0, 61
     axis = np.linspace(-R, R, n)
     x = np.stack(np.meshgrid(*[axis] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
@@ -89,8 +98,12 @@ def test_both_viscous_forms_are_the_laplacian_of_a_shear_flow(point, dim):
     _, F = point("wendland_c2", np.linalg.norm(x, axis=1), 1 / R, dim=dim)
     v_ij = np.zeros_like(x)
     v_ij[:, 0] = -0.5 * x[:, 1] ** 2
-    for form in ((1, 0), (0, dim + 2)):
-        direction = point("viscous_direction", *form, *rows(v_ij), *rows(-x), dim=dim)
+    transposed = np.zeros_like(x)  # of the mean velocity gradient, r_ij = -x
+    transposed[:, 1] = -0.5 * x[:, 1] * x[:, 0]
+    for form in ((1, 0, 0), (0, 0, dim + 2), (1, 1, 0)):
+        direction = point(
+            "viscous_direction", *form, *rows(v_ij), *rows(transposed), *rows(-x), dim=dim
+        )
         total = 2 * (F * direction).sum(axis=1) * (axis[1] - axis[0]) ** dim
         np.testing.assert_allclose(total, np.eye(dim)[0], atol=5e-3)
 

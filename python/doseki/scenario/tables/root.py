@@ -62,9 +62,9 @@ class ScenarioTable(Table):
     eos: Annotated[EquationOfState, OF_RESOLVED] = Field(
         "linear", description="resolved: law of pressure"
     )
-    viscosity: Annotated[Literal["morris", "monaghan_cleary"], OF_RESOLVED] = Field(
-        "morris",
-        description="resolved: form of the viscous term; the second keeps angular momentum",
+    viscosity: Annotated[Literal["stress", "morris", "monaghan_cleary"], OF_RESOLVED] = Field(
+        "stress",
+        description="resolved: form of the viscous term; morris resists rotation at free surfaces",
     )
     turbulence: Annotated[Literal["none", "smagorinsky", "mixing_length"], OF_RESOLVED] = Field(
         "none", description="resolved: eddy viscosity"
