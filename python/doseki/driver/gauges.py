@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, cast
 
 import numpy as np
@@ -12,6 +12,7 @@ from ..scenario.gauges.gauge import Gauge, Rows, Sampled, Setting, State
 from ..scenario.gauges.loads.load import Load
 from ..scenario.gauges.loads.panels import Panels
 from ..scenario.model import Scenario
+from ..scene.faces import faces_of
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,8 @@ class MeterReader(GaugeReader):
 
 def build_gauges(scenario: Scenario, body_names: list[str]) -> list[GaugeReader]:
     """A reader for every gauge of the scenario."""
-    setting, readers = scenario.setting(body_names), list[GaugeReader]()
+    setting = replace(scenario.setting(body_names), faces=faces_of(scenario))
+    readers = list[GaugeReader]()
     for name, gauge in scenario.gauge.items():
         known = name, gauge, setting, scenario.interval_of(gauge)
         metered = name in scenario.metered

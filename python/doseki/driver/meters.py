@@ -9,7 +9,7 @@ import numpy as np
 
 from ..scenario.gauges.gauge import Rows, Sampled
 from ..scenario.gauges.loads.load import Load
-from ..scenario.gauges.loads.standing_water import Box, surface_of
+from ..scenario.gauges.loads.surface import Box, surface_of
 from .gauges import GaugeReader, MeterReader
 from .means import Means
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..values.types import Duration, OptionalMaterialName, Position
 
 State = Mapping[str, np.ndarray]  # fields of particles by name, as record.fields has them
 Rows = list[list[float]]
+FacesAt = Callable[[float], np.ndarray]  # pieces (n, dim, dim) of faces by corners, m, at a time, s
 
 
 class Sampled(Protocol):
@@ -57,6 +58,7 @@ class Setting:
     moving: frozenset[str] = frozenset()  # fixed bodies with a motion, by table
     inflows: Sequence[np.ndarray] = ()  # positions (dim,) of their sections, m
     outflows: Sequence[tuple[np.ndarray, np.ndarray]] = ()  # corners of boxes, m
+    faces: Mapping[str, FacesAt] = field(default_factory=dict)  # by table, where a body has faces
 
     def periods(self) -> Iterator[tuple[int, float, float]]:
         """Each periodic axis, with where the domain begins and ends along it, m."""

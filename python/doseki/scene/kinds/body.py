@@ -115,6 +115,14 @@ class Body(Generic[T]):
         """The one body that those which touch it meet, where it is fixed and its shape is whole."""
         return None
 
+    def faces(self) -> np.ndarray | None:
+        """Corners (n, dim, dim), m, of the faces of a whole fixed body before it moves.
+
+        They are triangles, in 2-D segments, seen anticlockwise from outside.  None where it has no
+        faces, or particles lie along them as on a lattice.
+        """
+        return None
+
     def encloses(self, position: np.ndarray) -> np.ndarray:
         """Mask (N,) of the positions (N, dim), m, that lie in it where it is fixed.
 

@@ -14,6 +14,7 @@ from ..groups import Group
 from ..lattices import ROUNDING
 from ..meshes.layers import layer_count
 from ..meshes.making import MadeMesh, made_mesh, wall_particles
+from ..meshes.outside import outside_of
 from ..meshes.thin import thin_walls
 from ..shapes import ShapeError
 from .lattice import Turned
@@ -61,6 +62,11 @@ class MeshBody(Turned[Mesh]):
     def contact_shape(self) -> Group | None:
         """See Body."""
         return self.single_group(self.made.shape, self.centre, self.orientation)
+
+    def faces(self) -> np.ndarray:
+        """See Body: its triangles; those of both sides and of the rims of a sheet."""
+        corners = outside_of(self.made.shape)
+        return np.asarray(self.centre + corners @ self.rotation.T)
 
     def wall(self, position: np.ndarray, particles: object) -> tuple[np.ndarray, np.ndarray]:
         """See Body: outwards from the nearest triangle, the mean of faces beside an edge."""

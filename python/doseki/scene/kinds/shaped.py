@@ -14,7 +14,7 @@ from ..bodies import ElasticBody, ElasticSurface
 from ..groups import UPRIGHT, Group, matrices
 from ..meshes.cells import Cells, cells_of
 from ..periodic import wrapped
-from ..shapes import Edges, Particles, Shape
+from ..shapes import Convex, Edges, Particles, Shape
 from .body import Body
 
 S = TypeVar("S", bound=ShapedBody)
@@ -89,6 +89,18 @@ class Shaped(Body[S], Generic[S]):
             self.table.material,
             self.kinematics,
         )
+
+    def faces(self) -> np.ndarray | None:
+        """See Body: those of a convex body."""
+        if not self.is_of_bodies:
+            return None
+        group = self.group()
+        shape = group.shapes[0]
+        if not isinstance(shape, Convex) or len(group) != 1:
+            return None
+        turn = matrices(group.orientation, self.dim)[0]
+        corners: np.ndarray = shape.vertices[shape.faces]
+        return np.asarray(group.centre[0] + corners @ turn.T)
 
     def particles_of_bodies(
         self, group: Group, names: list[str], placed: Particles, owner: np.ndarray

@@ -46,7 +46,7 @@ def closed(file: Path, mesh: Triangles) -> Triangles:
     _expect_closed(file, mesh)
     faces = mesh.faces
     if not _is_oriented(faces):
-        faces = _oriented(mesh)
+        faces = oriented(mesh)
         if not _is_oriented(faces):
             raise ShapeError(
                 f"the surface in {file} has no inside and outside: more than two "
@@ -119,7 +119,7 @@ def _parts(faces: np.ndarray) -> np.ndarray:
     return np.asarray(connected_components(_graph(faces, links), directed=False)[1])
 
 
-def _oriented(mesh: Triangles) -> np.ndarray:
+def oriented(mesh: Triangles) -> np.ndarray:
     """Faces that agree with their neighbours, where each edge has two."""
     from scipy.sparse.csgraph import breadth_first_order
 

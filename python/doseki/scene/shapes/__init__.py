@@ -17,6 +17,7 @@ __all__ = [
     "EDGE",
     "Ball",
     "Convex",
+    "Convex",
     "Edges",
     "MeshShape",
     "Particles",

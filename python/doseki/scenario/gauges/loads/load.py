@@ -13,7 +13,8 @@ from ...table import Only
 from ...values.types import BodyNames, Length, Position, RefersTo
 from ..gauge import Rows, Sampled, Setting
 from .metered import Metered, Row
-from .standing_water import Box, standing_water
+from .standing_water import standing_water
+from .surface import Box
 
 PARTS = ("static", "dynamic", "contact")
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from ....record.particles import FIXED
 from ..gauge import State
+from .surface import PARTS
 
-PARTS = 4  # along each side of a piece of the surface, by which what is left of it is counted
-BEFORE = 0.1  # spacings in front of the surface: where the parts are looked at
+FLUSH = 0.2  # spacings within which a face that lies on a wall is covered by it
+PARALLEL = 0.9  # cosine from which on a face and a wall lie on each other
 WITHIN = 1.0  # spacings to the nearest particle of a wall; less within one
 BESIDE = 2.0  # spacings to the nearest particle of another body; farther off, none covers a piece
 CLEAR = 0.5  # spacings above a wall: its first row of fluid
@@ -19,20 +20,20 @@ WALL = ("position", "normal", "depth")
 
 
 def left_by_walls(
-    place: np.ndarray, normal: np.ndarray, body: np.ndarray, around: State, dp: float
+    parts: np.ndarray, normal: np.ndarray, body: np.ndarray, around: State, dp: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The share (n,) of each piece that is outside of the walls of other bodies, and its middle.
 
-    A piece has a side of `dp`, m, about its `place` (n, dim); it faces along the unit vector
+    A piece consists of `parts` (n, p, dim), m, of the same area; it faces along the unit vector
     `normal` and belongs to `body`.  Where nothing is left the middle (n, dim) is that of the piece.
     """
-    share, middle = np.ones(len(place)), place.copy()
+    middle = parts.mean(axis=1)
+    share, place = np.ones(len(parts)), middle.copy()
     for mine, walls in _beside(place, body, around, dp):
-        parts = place[mine, None] + dp * _squares(normal[mine])
-        free = _free(parts + BEFORE * dp * normal[mine, None], walls, dp)
+        free = _free(parts[mine], normal[mine], walls, dp)
         share[mine] = free.mean(axis=1)
         weights = free / np.maximum(free.sum(axis=1), 1e-300)[:, None]
-        moved = np.einsum("np,npa->na", weights, parts)
+        moved = np.einsum("np,npa->na", weights, parts[mine])
         middle[mine] = np.where(share[mine, None] > 0, moved, place[mine])
     return share, middle
 
@@ -67,9 +68,15 @@ def _beside(
             yield mine[near], walls
 
 
-def _free(points: np.ndarray, walls: State, dp: float) -> np.ndarray:
-    """How much of the part of a piece about each point (..., dim) is above the nearest wall."""
-    distance, _, height = _above(points, walls)
+def _free(parts: np.ndarray, normal: np.ndarray, walls: State, dp: float) -> np.ndarray:
+    """How much (n, p) of each part of pieces (n, p, dim) is above the nearest wall.
+
+    A face that lies on a wall has nothing above it, one that faces the same way all.
+    """
+    distance, nearest, height = _above(parts, walls)
+    facing = np.einsum("npa,na->np", walls["normal"][nearest], normal)
+    along = np.clip((np.abs(facing) - PARALLEL) / (1 - PARALLEL), 0.0, 1.0)
+    height = height + FLUSH * dp * np.sign(facing) * along
     return np.where(distance < WITHIN * dp, np.clip(0.5 + height * PARTS / dp, 0.0, 1.0), 1.0)
 
 
@@ -81,21 +88,3 @@ def _above(points: np.ndarray, walls: State) -> tuple[np.ndarray, np.ndarray, np
     away = points - walls["position"][nearest]
     height = (away * walls["normal"][nearest]).sum(axis=-1) - walls["depth"][nearest]
     return distance, nearest, height
-
-
-def _squares(normal: np.ndarray) -> np.ndarray:
-    """Points (n, parts, dim) of a square of side 1 (2-D: a line) across each normal (n, dim)."""
-    dim = normal.shape[1]
-    along = (np.arange(PARTS) + 0.5) / PARTS - 0.5
-    grid = np.stack(np.meshgrid(*[along] * (dim - 1), indexing="ij"), axis=-1)
-    return np.einsum("pa,nab->npb", grid.reshape(-1, dim - 1), _across(normal))
-
-
-def _across(normal: np.ndarray) -> np.ndarray:
-    """Unit vectors (n, dim - 1, dim) across normals; along the axes where the normal is."""
-    if normal.shape[1] == 2:
-        return np.stack([-normal[:, 1], normal[:, 0]], axis=1)[:, None]
-    axis = np.eye(3)[np.argmin(np.abs(normal), axis=1)]
-    first = np.cross(normal, axis)
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    return np.stack([first, np.cross(normal, first)], axis=1)

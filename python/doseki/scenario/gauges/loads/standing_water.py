@@ -11,26 +11,14 @@ from ....record.particles import BOUND, FIXED
 from ..gauge import Sampled, Setting, State
 from ..near import INSIDE, MIN_VOID, REACH, Column, particles_in
 from .outside_walls import clear_of_walls, left_by_walls
+from .surface import Box, Elements, surface_of
 
 OFF = 1.5  # spacings in front of the surface: where the water is looked at
 STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
 ASIDE = 0.27  # cells; keeps their edges off lattices, which rounding would put on either side
 CAPPED = 0.75  # share of walls around a point from which on a column ends there
-EDGE_REACH, LIKE, UNLIKE, EVEN = 1.5, 0.9, 0.5, 0.3  # neighbours and their normals at an edge
-
-
-@dataclass(frozen=True)
-class Elements:
-    """Pieces of the surface of the bodies: n wall particles of the first row."""
-
-    place: np.ndarray  # (n, dim) on the surface, m
-    area: np.ndarray  # (n, dim) outwards, m2; 2-D: m
-    probe: np.ndarray  # (n, dim) in front of it, m
-    body: np.ndarray  # (n,) which it is of
-
-
-Box = tuple[np.ndarray, np.ndarray]  # lower and upper corner, m
+UNDER = 2  # looks below such a point, in which a flow that ends does not end by itself
 
 
 def standing_water(
@@ -47,8 +35,8 @@ def standing_water(
     if g > 0 and len(force):
         up = -setting.gravity / g
         around = _around(run, setting, elements, up)
-        elements = _outside_of_walls(elements, around, setting.dp)
-        force = -g * _depths(elements, around, setting, up)[:, None] * elements.area
+        elements, probe = _outside_of_walls(elements, around, setting.dp)
+        force = -g * _depths(elements, probe, around, setting, up)[:, None] * elements.area
     return force.sum(axis=0), moment_of(elements.place - about, force)
 
 
@@ -59,65 +47,12 @@ def moment_of(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
     return np.asarray(np.cross(arm, force).sum(axis=0))
 
 
-def surface_of(run: Sampled, setting: Setting, bodies: Sequence[str], box: Box) -> Elements:
-    """The surface of the fixed bodies of some tables, which lie within a box."""
-    state = run.sample(list(box[0]), list(box[1]))
-    mine = _first_row(state, setting, bodies)
-    normal, position, depth = (state[key][mine] for key in ("normal", "position", "depth"))
-    place = position + depth[:, None] * normal
-    size = state["mass"][mine] / state["density"][mine] / setting.dp
-    size *= _faces(position, normal, depth, setting.dp)
-    probe = place + OFF * setting.dp * normal
-    return Elements(place, size[:, None] * normal, probe, state["body"][mine])
-
-
 def _around(run: Sampled, setting: Setting, elements: Elements, up: np.ndarray) -> State:
     """All particles near the surface or above it."""
     reach = (OFF + REACH) * setting.dp
     low = np.where(up < -1e-9, -np.inf, elements.place.min(axis=0) - reach)
     high = np.where(up > 1e-9, np.inf, elements.place.max(axis=0) + reach)
     return particles_in(run, setting, low, high)
-
-
-def _first_row(state: State, setting: Setting, bodies: Sequence[str]) -> np.ndarray:
-    facing = np.linalg.norm(state["normal"], axis=1) > 0.5
-    fixed = (state["motion"] == FIXED) & setting.is_of_bodies(bodies, state)
-    return np.flatnonzero(fixed & facing & (state["depth"] < setting.dp))
-
-
-def _faces(position: np.ndarray, normal: np.ndarray, depth: np.ndarray, dp: float) -> np.ndarray:
-    """Area (n,) of the surface over each particle, over that of a plane through it.
-
-    An edge has neighbours of other normals on both sides, whose mean is its own: where m faces
-    meet at right angles it has sqrt(m) of the area.  On a curved surface normals spread.
-    """
-    from scipy.spatial import cKDTree
-
-    i, j = cKDTree(position).query_pairs(EDGE_REACH * dp, output_type="ndarray").T
-    i, j = np.concatenate([i, j]), np.concatenate([j, i])
-    alike = np.einsum("ij,ij->i", normal[i], normal[j])
-    smooth = alike > LIKE
-    spread = _spread(position, normal, i[smooth], j[smooth])
-    curved = np.maximum(0.0, 1 + depth * spread) ** (position.shape[1] - 1)
-    other = (alike > UNLIKE + 1e-6) & ~smooth
-    i, j, alike = i[other], j[other], alike[other]
-    n = len(position)
-    count, least = np.bincount(i, minlength=n), np.ones(n)
-    np.minimum.at(least, i, alike)
-    aside = np.zeros_like(position)
-    np.add.at(aside, i, normal[j] - alike[:, None] * normal[i])
-    even = np.linalg.norm(aside, axis=1) < EVEN * np.maximum(count, 1)
-    edges = np.round(1 / least**2) * least
-    return np.where((count > 1) & even, edges, curved)
-
-
-def _spread(position: np.ndarray, normal: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-    """Mean curvature (n,), 1/m, from neighbours; of a ball 1 over the radius of the row."""
-    apart = position[j] - position[i]
-    turned = np.einsum("ij,ij->i", normal[j] - normal[i], apart)
-    rate = turned / np.einsum("ij,ij->i", apart, apart)
-    n = len(position)
-    return np.bincount(i, rate, n) / np.maximum(np.bincount(i, minlength=n), 1)
 
 
 @dataclass(frozen=True)
@@ -141,17 +76,19 @@ class _Lines:
         return cls(plan, of)
 
 
-def _depths(elements: Elements, around: State, setting: Setting, up: np.ndarray) -> np.ndarray:
+def _depths(
+    elements: Elements, probe: np.ndarray, around: State, setting: Setting, up: np.ndarray
+) -> np.ndarray:
     """Density times depth (n,) of the water above each element, kg/m2.
 
-    Where a body hangs over it, the level is that of the nearest column that none caps.
+    Points `probe` (n, dim) are in front of them.  Where a body hangs over it, the level is that of the nearest column that none caps.
     """
     n = len(elements.place)
-    height, probed = elements.place @ up, elements.probe @ up
+    height, probed = elements.place @ up, probe @ up
     level, density, wet = np.full(n, np.nan), np.zeros(n), np.zeros(n, bool)
     if not n:
         return level
-    lines = _Lines.through(elements.probe, up, CELL * setting.dp)
+    lines = _Lines.through(probe, up, CELL * setting.dp)
     for k, profile in enumerate(_profiles(lines.plan, around, setting, up, probed.min())):
         mine = np.flatnonzero(lines.of == k)
         wet[mine] = profile.is_wet(probed[mine])
@@ -169,15 +106,17 @@ def _depths(elements: Elements, around: State, setting: Setting, up: np.ndarray)
     return density * np.maximum(0.0, depth)
 
 
-def _outside_of_walls(elements: Elements, around: State, dp: float) -> Elements:
-    """The parts of the pieces that no other wall covers."""
-    size = np.linalg.norm(elements.area, axis=1)
-    normal = elements.area / np.maximum(size, 1e-300)[:, None]
-    share, middle = left_by_walls(elements.place, normal, elements.body, around, dp)
-    some, moved = share > 0, middle - elements.place
-    body, probe = elements.body[some], (elements.probe + moved)[some]
-    probe = clear_of_walls(probe, body, around, dp)
-    return Elements(middle[some], (share[:, None] * elements.area)[some], probe, body)
+def _outside_of_walls(
+    elements: Elements, around: State, dp: float
+) -> tuple[Elements, np.ndarray]:
+    """The parts of the pieces that no other wall covers, and points (n, dim) in front of them."""
+    normal = elements.normal
+    share, middle = left_by_walls(elements.parts, normal, elements.body, around, dp)
+    some = share > 0
+    body, area = elements.body[some], share[some, None] * elements.area[some]
+    left = Elements(middle[some], area, elements.parts[some], body)
+    probe = left.place + OFF * dp * normal[some]
+    return left, clear_of_walls(probe, body, around, dp)
 
 
 @dataclass(frozen=True)
@@ -196,6 +135,8 @@ class _Profile:
     def level(self, height: np.ndarray) -> np.ndarray:
         """Where the flow that is at heights (n,) ends above them; nan below something that caps."""
         gone, capped = self.filled < INSIDE, self.wall > CAPPED
+        for above in range(1, UNDER + 1):  # flows end before walls do
+            capped[:-above] |= gone[:-above] & (self.wall[above:] > CAPPED)
         ends = np.flatnonzero(gone | capped)
         found = np.searchsorted(self.height[ends], height, side="right")
         levels = np.full(len(height), np.nan)
