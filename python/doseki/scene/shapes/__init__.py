@@ -17,7 +17,6 @@ __all__ = [
     "EDGE",
     "Ball",
     "Convex",
-    "Convex",
     "Edges",
     "MeshShape",
     "Particles",

@@ -18,7 +18,8 @@ STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
 ASIDE = 0.27  # cells; keeps their edges off lattices, which rounding would put on either side
 CAPPED = 0.75  # share of walls around a point from which on a column ends there
-UNDER = 2  # looks below such a point, in which a flow that ends does not end by itself
+WITHIN = 0.5  # share of walls at their surface; beyond it no flow ends by itself
+UNDER = 2  # looks below such a point, in which none does either
 
 
 def standing_water(
@@ -81,7 +82,8 @@ def _depths(
 ) -> np.ndarray:
     """Density times depth (n,) of the water above each element, kg/m2.
 
-    Points `probe` (n, dim) are in front of them.  Where a body hangs over it, the level is that of the nearest column that none caps.
+    Points `probe` (n, dim) are in front of them.  Where a body hangs over one, the level is that of
+    the nearest column that none caps.
     """
     n = len(elements.place)
     height, probed = elements.place @ up, probe @ up
@@ -106,9 +108,7 @@ def _depths(
     return density * np.maximum(0.0, depth)
 
 
-def _outside_of_walls(
-    elements: Elements, around: State, dp: float
-) -> tuple[Elements, np.ndarray]:
+def _outside_of_walls(elements: Elements, around: State, dp: float) -> tuple[Elements, np.ndarray]:
     """The parts of the pieces that no other wall covers, and points (n, dim) in front of them."""
     normal = elements.normal
     share, middle = left_by_walls(elements.parts, normal, elements.body, around, dp)
@@ -135,6 +135,7 @@ class _Profile:
     def level(self, height: np.ndarray) -> np.ndarray:
         """Where the flow that is at heights (n,) ends above them; nan below something that caps."""
         gone, capped = self.filled < INSIDE, self.wall > CAPPED
+        capped |= gone & (self.wall > WITHIN)
         for above in range(1, UNDER + 1):  # flows end before walls do
             capped[:-above] |= gone[:-above] & (self.wall[above:] > CAPPED)
         ends = np.flatnonzero(gone | capped)
