@@ -88,6 +88,32 @@ def test_banks_count_as_the_bed_does(tmp_path, reach, fewer):
         assert abs(abs(found[0].at[1] - 2.0) - 0.8) < 3 * DP
 
 
+def mesh_wall(folder, reach):
+    """A wall of triangles across a valley, whose back leans, with so many spacings in the banks."""
+    grid(folder / "terrain.asc", lambda x, y: np.maximum(np.abs(y - 2.0) - 0.6, 0.0))
+    half, foot = 0.6 + 1.5 + reach * DP, -0.32
+    sides = [(3.0, foot), (4.4, foot), (3.8, 1.5), (3.0, 1.5)]
+    corners = np.array([(x, y, z) for y in (2 - half, 2 + half) for x, z in sides])
+    around = [(0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    quads = [(3, 2, 1, 0), (4, 5, 6, 7), *around]
+    faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
+    (folder / "dam.obj").write_text("\n".join(lines) + "\n")
+    path = folder / "case.toml"
+    lake = {"low": [2.0, 1.5, 0.0], "high": [3.0, 2.5, 0.5]}
+    filled = DAM.format(keys='file = "dam.obj"', kind="load", more="", **lake)
+    filled = filled.replace('shape = "box"', 'shape = "mesh"', 1)
+    path.write_text(text(3, dp=DP, speed=4.0, more=filled))
+    return path
+
+
+@pytest.mark.parametrize(("reach", "fewer"), [(-4, True), (4, False)])
+def test_a_crest_between_faces_is_no_end_of_a_wall(tmp_path, reach, fewer):
+    """Where the crest meets the bank, the normal of a particle is the mean of two faces."""
+    assert bool(findings(mesh_wall(tmp_path, reach), Shallow)) == fewer
+
+
 def test_a_wall_without_a_gauge_is_not_looked_at(tmp_path):
     path = wall_2d(tmp_path, 0)
     path.write_text(path.read_text().split("[gauge.dam]")[0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from ..kinds.box_walls import SLAB
 
 DEEP = 3  # spacings, as far as the kernel sees
 DEPTHS = (0.25, 0.75, 1.25, 1.75, 2.4)  # spacings, at which a structure is looked for
+BESIDE = 1.5  # spacings to the neighbours by which an edge is known
+ASIDE = 0.3  # sine of the angle between its normal and those on both sides of it
 NEAR = 0.87  # spacings from a place at which it is still there: inside a lattice, none is farther
 
 
@@ -68,7 +71,9 @@ def structure_findings(
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
         if not of_it.any():
             continue
-        yield from _shallow(scenario, name, gauge, particles.position[of_it], normal[of_it])
+        first_row = depth[of_it] < scenario.dp
+        place = particles.position[of_it]
+        yield from _shallow(scenario, name, gauge, place, normal[of_it], first_row)
         table = scenario.body[name]
         if isinstance(scenario.gauge[gauge], Load) and isinstance(table, Box):
             yield from _one_face(scenario, name, gauge, table)
@@ -91,7 +96,12 @@ def _one_face(scenario: Scenario, name: str, gauge: str, box: Box) -> Iterator[F
 
 
 def _shallow(
-    scenario: Scenario, name: str, gauge: str, position: np.ndarray, normal: np.ndarray
+    scenario: Scenario,
+    name: str,
+    gauge: str,
+    position: np.ndarray,
+    normal: np.ndarray,
+    first_row: np.ndarray,
 ) -> Iterator[Finding]:
     """Follows the body down into the ground from where its surface comes out of it.
 
@@ -105,16 +115,24 @@ def _shallow(
     found = ground.field.nearest(np.ascontiguousarray(position))
     height = found["distance"]
     unknown = ground.field.at(np.ascontiguousarray(position[:, :-1]))["unknown"]
-    out = (height > 0) & (height < dp) & (np.linalg.norm(normal, axis=1) > 0) & (unknown == 0)
+    out = (
+        first_row
+        & (height > 0)
+        & (height < dp)
+        & (np.linalg.norm(normal, axis=1) > 0)
+        & (unknown == 0)
+    )
     if not out.any():
         return
+    own, facing = _faces_over(position, normal, np.flatnonzero(out), tree, dp)
     # Along the face: the ground may slope across it.
-    facing, down = normal[out], -found["normal"][out]
+    down = -found["normal"][own]
     down = down - (down * facing).sum(axis=1)[:, None] * facing
     length = np.linalg.norm(down, axis=1)
     keep = length > 0.5  # a face that lies on the ground leads nowhere
     down = down[keep] / length[keep, None]
-    foot = position[out][keep] + height[out][keep, None] * down
+    own = own[keep]
+    foot = position[own] + height[own, None] * down
     reach, there = np.zeros(len(foot)), np.ones(len(foot), bool)
     for depth in DEPTHS:
         there &= tree.query(foot + depth * dp * down)[0] < NEAR * dp
@@ -123,3 +141,25 @@ def _shallow(
         least = int(np.argmin(reach))
         at = tuple(foot[least].tolist())
         yield Shallow(f"body.{name}", gauge, float(reach[least]), at, dp)
+
+
+def _faces_over(
+    position: np.ndarray, normal: np.ndarray, chosen: np.ndarray, tree: Any, dp: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The chosen particles (k,) with the normals (k, dim) of the faces over them.
+
+    Along an edge a normal is the mean of those of two faces, so that neighbours lean to either side
+    of it: such a particle comes twice, with theirs.
+    """
+    own, facing = [], []
+    for each, near in zip(
+        chosen, tree.query_ball_point(position[chosen], BESIDE * dp), strict=True
+    ):
+        aside = normal[near] - np.outer(normal[near] @ normal[each], normal[each])
+        length = np.linalg.norm(aside, axis=1)
+        along = aside @ (aside[length.argmax()] / max(length.max(), 1e-300))
+        is_edge = length.max() > ASIDE and along.min() < -ASIDE
+        of_it = [near[along.argmin()], near[along.argmax()]] if is_edge else [each]
+        own += [each] * len(of_it)
+        facing.append(normal[of_it])
+    return np.array(own), np.concatenate(facing)
