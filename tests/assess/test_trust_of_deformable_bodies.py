@@ -80,3 +80,61 @@ def test_momenta_and_energy_of_free_discs_are_judged(run):
 def test_a_clamp_takes_momentum_and_no_energy(run):
     found = verdicts(trust_checks(run('clamped = "= -x - 0.1"')))
     assert [found[name] for name in NAMES] == [NOT_AVAILABLE, GOOD, NOT_AVAILABLE]
+
+
+STRUCK = """\
+dim = 2
+dp = 0.01
+time_max = 0.02
+time_out = 0.002
+scheme = "resolved"
+speed_max = 5
+[contact]
+speed = 0.05
+[material.rubber]
+law = "solid"
+rho0 = 1000
+speedsound = 50
+young_modulus = 1e6
+poisson_ratio = 0.3
+friction = 0
+[material.steel]
+based_on = "basalt"
+[body.block]
+shape = "box"
+material = "rubber"
+kinematics = "elastic"
+min = [-0.1, 0]
+max = [0.1, 0.05]
+[body.ball]
+shape = "disc"
+material = "steel"
+velocity = [0, -3]
+centre = [0, 0.09]
+radius = 0.03
+"""
+OTHERS = """\
+[body.left]
+shape = "disc"
+material = "steel"
+centre = [1, 0]
+radius = 0.03
+velocity = [3, 0]
+[body.right]
+shape = "disc"
+material = "steel"
+centre = [1.07, 0]
+radius = 0.03
+"""
+
+
+@pytest.mark.parametrize(("others", "found"), [("", GOOD), (OTHERS, BAD)])
+def test_contacts_as_stiff_as_a_material_are_not_judged_by_contact_speed(tmp_path, others, found):
+    (tmp_path / "ball.toml").write_text(STRUCK + others, encoding="utf-8")
+    run_scenario(load_scenario(str(tmp_path / "ball.toml")), tmp_path / "run")
+    record = load(tmp_path / "run")
+    assert max(snapshot.overlaps().max() for snapshot in record) > 0.02
+    (check,) = (each for each in trust_checks(record) if each.name == "overlap of contacts")
+    assert check.verdict == found
+    if found == BAD:
+        assert "raise contact.speed" in check.remedy

@@ -65,10 +65,12 @@ def _left_in_residual(run: Run) -> str:
 
 
 def _energy_remedy(run: Run) -> str:
+    cflnumber = run.scenario.get("cflnumber", 0.1)
     if is_resolved(run.scenario):
         key, _ = sound_speed_from(run)
-        return f"raise {key}, then lower dp; shifting = false tells what shifting takes"
-    return f"lower cflnumber (now {run.scenario.get('cflnumber', 0.1):g}) and cfl_force by half"
+        remedy = f"raise {key}, then lower dp; lower cflnumber (now {cflnumber:g}) by half"
+        return f"{remedy}; shifting = false tells what shifting takes"
+    return f"lower cflnumber (now {cflnumber:g}) and cfl_force by half"
 
 
 def works_on(run: Run, seen: Seen) -> str:

@@ -74,11 +74,17 @@ def contact_check(seen: Seen, key: str, given: float) -> Check:
 
 
 def overlap_check(run: Run, seen: Seen) -> Check:
-    """How far bodies are pressed into one another, against what contacts are stiff enough for."""
+    """How far rigid bodies are pressed into one another, against what contacts are stiff for."""
     name, contact = "overlap of contacts", run.scenario.get("contact", {})
     allowed = float(contact.get("overlap", 0.01))
     limits = (allowed, 5 * allowed)
+    if not seen.overlap:
+        why = "all bodies deform or touch one that does: contacts are as stiff as its material"
+        return unknown(name, limits, why)
     value = max_of(seen.overlap)
-    counted = f"bodies that move in {len(seen.overlap)} snapshots, over the diameter"
+    counted = f"rigid bodies that move in {len(seen.overlap)} snapshots, over the diameter, without"
+    counted += " those that touch a body that deforms"
     remedy = f"raise contact.speed {max(rounded_up(value / allowed), 1.1):g} times"
+    if contact.get("stiffness") == "material":
+        remedy = "contacts are as stiff as the material: see young_modulus and speeds of impact"
     return judged(name, value, limits, counted, remedy)

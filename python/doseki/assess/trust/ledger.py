@@ -60,7 +60,8 @@ class Ledger:
         counted += " and corrections of the scheme gave, and viscosity, friction, outflows, cracks"
         counted += " and dampers of deformable bodies took"
         remedy = "lower dp: walls, bodies of few particles and bodies that shatter at once make or"
-        remedy += " take energy; raise speed_max"
+        remedy += " take energy; raise speed_max; lower cflnumber (now "
+        remedy += f"{self.run.scenario.get('cflnumber', 0.1):g}) by half"
         value = residual / largest if largest else residual
         return judged(name, value, limits, counted, remedy, residual=residual, **details)
 

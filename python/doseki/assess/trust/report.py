@@ -44,7 +44,7 @@ def trust_checks(run: Run) -> list[Check]:
         contact_check(seen, *given),
         *deformable_checks(run, seen),
         *([tension_check(seen.tension)] if is_resolved(scenario) else []),
-        *([overlap_check(run, seen)] if seen.overlap else []),
+        *([overlap_check(run, seen)] if seen.bodies_move else []),
     ]
 
 

@@ -15,6 +15,7 @@ from ...record.reader import Run, Snapshot
 from ...scenario.materials import Material
 from ...scenario.schemes import RESOLVED, UETA2022
 from ..warnings import MIN_ACROSS_GRAIN
+from .overlaps import overlaps_of_rigid
 from .tension import Hanging, hanging
 
 FIELDS = (  # that the checks of every snapshot read
@@ -43,6 +44,7 @@ class Seen:
     angular_momentum: list[np.ndarray] = field(default_factory=list)
     angular_scale: list[float] = field(default_factory=list)
     tension: list[Hanging] = field(default_factory=list)  # resolved scheme
+    bodies_move: bool = False  # whether there is a body that moves as a whole
     walls_go: bool = False  # whether a fixed particle has a velocity
 
 
@@ -55,7 +57,8 @@ def look(run: Run) -> Seen:
         snapshot.prefetch(FIELDS)
         seen.motions |= set(np.unique(snapshot["motion"]).tolist())
         free = snapshot["motion"] == FREE
-        if len(overlaps := snapshot.overlaps()):
+        seen.bodies_move |= len(snapshot.overlaps()) > 0
+        if len(overlaps := overlaps_of_rigid(run.scenario, snapshot)):
             seen.overlap.append(float(overlaps.max()))
         seen.walls_go |= bool(np.any(snapshot["velocity"][snapshot["motion"] == FIXED]))
         gravity = np.array(gravity_of(run.scenario))
