@@ -7,8 +7,8 @@ import pytest
 
 from doseki.driver.gauges import build_gauges
 from doseki.scenario.gauges.loads.surface import surface_of
-from doseki.scene.faces import cut, faces_of
 from doseki.solver.build import build_simulation
+from doseki.solver.faces import cut, faces_of
 
 from .scenes import scenario_of
 

@@ -21,6 +21,7 @@ from ..util.memory import available_bytes
 from ..util.telling import Tell, say_nothing
 from .cost import Estimate, estimate
 from .estimates import flow_depths, grain_spacings, mach_number
+from .lakes import filled_text, filled_volumes
 from .summary import duration_text
 from .warnings import findings, thorough_findings
 
@@ -126,13 +127,15 @@ def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str
         if count:
             material = scenario.material_names[state["material"][state["body"] == body][0]]
             counts.setdefault((_copied(name), material), []).append(count)
-    released = released_volumes(scenario)
+    released, filled = released_volumes(scenario), filled_volumes(scenario)
     for (name, material), each in counts.items():
         copies = f" in {len(each)} copies" if len(each) > 1 else ""
         yield _line(f"  {name}", f"{sum(each):,} {material}{copies}")
         yield from (_line("", size) for size in _resized(scenario, name))
         if name in released:
             yield _line("", volume_text(*released[name], scenario.dim))
+        if name in filled:
+            yield _line("", filled_text(*filled[name], scenario.dim))
 
 
 def _copied(name: str) -> str:

@@ -15,6 +15,7 @@ from ..measure.views import with_flow
 from ..record.reader import Run
 from ..record.units import unit_in
 from ..scene.kinds.release import volume_text
+from .lakes import filled_text
 from .loads import load_lines, loads_of
 from .trust.report import trust_lines
 
@@ -122,6 +123,9 @@ def _released(run: Run) -> Iterator[Row]:
     for name, volumes in run.summary.get("released", {}).items():
         asked, volume = (float(number) for number in volumes)
         yield _line(name, volume_text(asked, volume, run.scenario["dim"]))
+    for name, volumes in run.summary.get("filled", {}).items():
+        asked, volume = (float(number) for number in volumes)
+        yield _line(name, filled_text(asked, volume, run.scenario["dim"]))
 
 
 def _results(run: Run) -> Iterator[Row]:

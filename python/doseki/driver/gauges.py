@@ -12,7 +12,7 @@ from ..scenario.gauges.gauge import Gauge, Rows, Sampled, Setting, State
 from ..scenario.gauges.loads.load import Load
 from ..scenario.gauges.loads.panels import Panels
 from ..scenario.model import Scenario
-from ..scene.faces import faces_of
+from ..solver.faces import faces_of
 
 
 @dataclass(frozen=True)

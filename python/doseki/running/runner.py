@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..assess.failure.failure import Failure, explain_failure
+from ..assess.lakes import filled_volumes
 from ..assess.loads import write_loads
 from ..assess.trust.report import write_trust
 from ..driver.active_run import ActiveRun, Progress
@@ -74,6 +75,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
     last = run.history_row()
     released = run.ranks.on_root(lambda: released_volumes(scenario))
+    filled = run.ranks.on_root(lambda: filled_volumes(scenario))
     balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
     return {
         "status": status,
@@ -95,6 +97,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "largest_overlap": simulation.grains()["worst_overlap"],
         "warnings": sentences(run.warnings) + (run.maps.remarks if run.maps else []),
         **({"released": released} if released else {}),
+        **({"filled": filled} if filled else {}),
         **({"runout": run.maps.runout} if run.maps else {}),
         **last,
     }

@@ -9,9 +9,9 @@ import numpy as np
 from ..scenario.gauges.gauge import FacesAt
 from ..scenario.gauges.loads.load import Load
 from ..scenario.model import Scenario
-from .kinds.registry import body_of
-from .moved import Displacement
-from .periodic import wrapped
+from ..scene.kinds.registry import body_of
+from ..scene.moved import Displacement
+from ..scene.periodic import wrapped
 
 
 def faces_of(scenario: Scenario) -> Mapping[str, FacesAt]:

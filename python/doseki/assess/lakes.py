@@ -1,0 +1,53 @@
+"""Fluid over a terrain: what of it lies above the ground, and what of that particles make."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..record.particles import FREE
+from ..scenario.model import Scenario
+from ..scenario.tables.bodies import Box
+from ..scene.build import ON_THE_GROUND
+from ..scene.ground import ground_of
+from ..scene.kinds.registry import body_of
+
+PARTS = 4  # along each side of a cell, by which its share above the ground is counted
+NEAR = 0.9  # spacings from the ground beyond which a cell is on one side of it
+
+
+def filled_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
+    """Of each box of particles that the ground cuts: volume above it, and in particles, m3.
+
+    What other bodies take of it is not counted.
+    """
+    found: dict[str, tuple[float, float]] = {}
+    if scenario.bed is None:
+        return found
+    ground = ground_of(scenario.bed)
+    for name, table in scenario.body.items():
+        body = body_of(scenario, name)
+        if not isinstance(table, Box) or table.fixed or body.is_of_bodies:
+            continue
+        if name in scenario.carried:
+            continue
+        particles = body.particles([*scenario.body])
+        position = particles.position[particles.motion == FREE]
+        height, dp = ground.height_above(position), body.spacing
+        kept = height > ON_THE_GROUND * dp
+        share = kept.astype(float)
+        near = np.abs(height) < NEAR * dp
+        if near.any():
+            steps = dp * ((np.arange(PARTS) + 0.5) / PARTS - 0.5)
+            parts = np.stack(np.meshgrid(*[steps] * scenario.dim), axis=-1)
+            places = position[near, None] + parts.reshape(-1, scenario.dim)
+            above = ground.height_above(places.reshape(-1, scenario.dim)) * PARTS / dp
+            share[near] = np.clip(0.5 + above, 0, 1).reshape(len(places), -1).mean(axis=1)
+            cell = dp**scenario.dim
+            found[name] = float(share.sum() * cell), float(kept.sum() * cell)
+    return found
+
+
+def filled_text(asked: float, volume: float, dim: int) -> str:
+    """One line about such a box."""
+    unit = "m3" if dim == 3 else "m2"
+    return f"{volume:.5g} {unit} in particles; above the ground it has {asked:.5g} {unit}"
