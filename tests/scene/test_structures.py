@@ -7,7 +7,7 @@ import pytest
 from tests.terrain.scenes import grid, profile, text
 
 from doseki.scenario.load import load_scenario
-from doseki.scene.checks.structures import OneFace, Shallow
+from doseki.scene.checks.structures import InWalls, OneFace, Shallow
 from doseki.solver.build import filled_simulation
 
 DP = 0.1
@@ -144,3 +144,58 @@ def test_a_thin_box_has_one_face_in_the_static_part(tmp_path, thickness, keys, t
     assert bool(found) == told
     if told:
         assert "8.5 dp = 0.85 m" in str(found[0])
+
+
+@pytest.mark.parametrize(("ends", "told"), [(0.6, False), (1.2, True)])
+def test_a_mesh_that_goes_into_other_walls_is_told(tmp_path, ends, told):
+    """A dam of triangles three spacings into the floor and both banks, which end at it or not."""
+    corners = [(x, y, z) for x in (0.6, 1.2) for y in (-0.15, 0.55) for z in (-0.15, 0.6)]
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+    lines = ["v {} {} {}".format(*corner) for corner in corners]
+    lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
+    (tmp_path / "dam.obj").write_text("\n".join(lines) + "\n")
+    path = tmp_path / "case.toml"
+    path.write_text(BANKS.replace("ENDS", str(ends)))
+    found = findings(path, InWalls)
+    assert bool(found) == told
+    if told:
+        assert "let these walls end at its faces" in str(found[0])
+
+
+BANKS = """\
+dim = 3
+dp = 0.05
+gravity = [0, 0, -9.81]
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 4
+[body]
+water = { shape = "box", material = "water", min = [0, 0, 0], max = [0.6, 0.4, 0.5] }
+dam = { shape = "mesh", file = "dam.obj", material = "basalt" }
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, 0, 1]
+min = [-0.15, -0.15, -0.15]
+max = [ENDS, 0.55, 0]
+[body.left]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, 1, 0]
+min = [0, -0.15, 0]
+max = [ENDS, 0, 0.6]
+[body.right]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, -1, 0]
+min = [0, 0.4, 0]
+max = [ENDS, 0.55, 0.6]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+"""
