@@ -58,8 +58,8 @@ class InWalls(Finding):
     def __str__(self) -> str:
         place = ", ".join(f"{x:.4g}" for x in self.at)
         return (
-            f"{self.place}: {self.count:,} of its {self.all:,} particles lie in other walls and are "
-            f"left out, one at ({place}) m; what gauge.{self.gauge} reads of water beside them "
+            f"{self.place}: {self.count:,} of its {self.all:,} particles lie in other walls and "
+            f"are left out, one at ({place}) m; what gauge.{self.gauge} reads of water beside them "
             "is up to 8 % low: let these walls end at its faces"
         )
 
