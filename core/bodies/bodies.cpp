@@ -19,10 +19,9 @@ void Bodies<D>::number_bodies() {
 }
 
 template <int D>
-auto Bodies<D>::part(double time, double dt) -> Parted {
+auto Bodies<D>::part(double time, double dt, const Course& course) -> Parted {
     const Fragments<D> fragments = deformable.divide(dt);
     if (!fragments.any()) return {};
-    BodySums<D> born;
     auto origin = [&](std::int32_t parent) -> Origin {
         return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
     };
@@ -32,7 +31,12 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
     const std::size_t first = rigid.size();
     for (std::size_t k = 0; k < fragments.dust.size(); ++k)
         add_dust(fragments.dust[k], fragments.dust_normals[k], origin(fragments.dust_parent[k]));
-    born = rigid.sums().less(before);
+    const double kinetic = rigid.kinetic_energy() - before.kinetic_energy;
+    for (std::size_t k = first; k < rigid.size(); ++k)
+        rigid.push_by_flow(k, course.half - course.on_points);
+    const BodySums<D> born = rigid.sums().less(before);
+    for (std::size_t k = first; k < rigid.size(); ++k)
+        rigid.push_by_flow(k, course.on_rigid - course.half);
     prepare_contacts();
     if constexpr (D == 2) {
         shrink_dust(first);
@@ -40,7 +44,7 @@ auto Bodies<D>::part(double time, double dt) -> Parted {
     }
     renumber_contacts(fragments, contact_.solids.size());
     accept_overlaps(fragments, first);
-    return {born, fragments.lost - born.kinetic_energy};
+    return {born, fragments.lost - kinetic};
 }
 
 /// The rigid bodies of those that divide have not their shape.

@@ -102,7 +102,7 @@ public:
         if (label.size() != deformable.size())
             throw std::invalid_argument("cut: one label for each point of deformable bodies");
         deformable.cut(label);
-        part(time, 0.0);
+        part(time, 0.0, {});
         place(particles, 0.0);
     }
 
@@ -198,9 +198,17 @@ private:
         BodySums<D> born;
         double work = 0.0;
     };
+    /// A step of the run, as far as it has come.
+    struct Course {
+        BodySums<D> before;  // of rigid bodies at its start, with those that have become one since
+        BodyStep<D> given;   // to deformable bodies
+        double half = 0.0;   // of the step, for which the fluid has kicked bodies in these sums
+        // Times for which gravity and the fluid have acted on rigid bodies and on deformable ones.
+        double on_rigid = 0.0, on_points = 0.0;
+    };
     /// Makes bodies of parts that do not hold together any more, in a step `dt` whose forces
     /// have acted.
-    Parted part(double time, double dt);
+    Parted part(double time, double dt, const Course& course);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
     void shrink_dust(std::size_t first);
@@ -221,13 +229,6 @@ private:
         rebinds_ = false;
     }
 
-    /// A step of the run, as far as it has come.
-    struct Course {
-        BodySums<D> before;  // of rigid bodies at its start, with those that have become one since
-        BodyStep<D> given;   // to deformable bodies
-        // Times for which the fluid, in half the step, and gravity have yet to act on rigid ones.
-        double flow_lag{}, gravity_lag{};
-    };
     void start_breakable() {
         if (!breakable_.any()) return;
         breakable_.start(rigid.size(), deformable);
@@ -237,7 +238,7 @@ private:
     static double steps_of(double time, double longest);
     void part_if_cracked(double time, double dt, Course& course) {
         if (!deformable.has_cracked()) return;
-        const Parted parted = part(time, dt);
+        const Parted parted = part(time, dt, course);
         course.before = course.before + parted.born;
         course.given.parting_work += parted.work;
     }

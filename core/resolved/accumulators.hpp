@@ -61,7 +61,7 @@ struct ForceAccumulators {
 template <class T, int D>
 struct WallAccumulators {
     Vec<T, D> force;    // of the fluid, over the wall particle's volume
-    Turn<T, D> moment;  // of it about the wall particle: it acts where the fluid is, Eq. (163)
+    Turn<T, D> moment;  // of it about the wall particle: it acts where the fluid is, Eq. (164)
     T weight{}, height{}, pressure{}, density{};
     Vec<T, D> velocity;  // against the wall
     Vec<T, D> area;      // that it sees of the fluid, outwards, over the wall particle's volume

@@ -60,7 +60,7 @@ private:
         return state_.surface[p] > FreeSurfaceIndicator::surface;
     }
 
-    /// Eq. (162): of a particle along the free surface, where the pressure falls inwards. Zero at
+    /// Eq. (163): of a particle along the free surface, where the pressure falls inwards. Zero at
     /// corners and of spray, which have no inside.
     DOSEKI_DEVICE_FN double least_pressure(const Summed& at) const {
         constexpr double depth = 1.5;  // dp; the row lies at a half

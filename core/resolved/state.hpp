@@ -25,7 +25,7 @@ struct ResolvedState : Particles<D> {
     FluidField<double> surface;           // free-surface indicator
     FluidField<double> surface_around;    // the largest of the neighbours
     FluidField<double> parted;            // 1: a void that has not closed, Eq. (144)
-    FluidField<double> least_pressure;    // of the outermost particles, Eq. (162) [Pa]
+    FluidField<double> least_pressure;    // of the outermost particles, Eq. (163) [Pa]
     FluidField<double> in_film;           // share that is part of a film, Eq. (156)
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]

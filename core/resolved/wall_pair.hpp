@@ -52,7 +52,7 @@ DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw
 }
 
 /// How a fluid particle i moves against a wall particle w, the wall standing for fluid of mirrored
-/// velocity. The wall moves as its body does where i is, Eq. (163): what turns with it is at rest
+/// velocity. The wall moves as its body does where i is, Eq. (164): what turns with it is at rest
 /// against it.
 template <class T, int D>
 struct WallContact {

@@ -30,7 +30,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity, double stable_step
     if (size() == 0) return;
     sort();
     stepped_.choose(size(), [](std::uint32_t) { return true; });
-    a.assign(size(), {}), load.assign(size(), {});
+    a.assign(size(), {}), load.assign(size(), {}), steady.assign(size(), {});
     deformation_.assign(size(), identity<double, D>());
     motion_.resize(size()), place_.resize(size()), solid_.resize(size()),
         damping_force_.assign(size(), {});
@@ -241,9 +241,13 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
             particles.set_point(p, BodyKind::deformable, solids_.slot(particles.point(p)));
 }
 
+/// The force of this step acts from the next one on, and slowly: if it acted in this one, it would
+/// feed vibrations of two steps, and if it were all of the next one, those of one.
 template <int D>
 void DeformableBodies<D>::end_step(double dt, double memory) {
     const double share = std::min(1.0, dt / memory);
+    solids_.push_by(solids_.steady, -0.5 * dt);
+    solids_.follow(flow_force_, 0.5 * share);
     for (const std::uint32_t k : solids_.stepped().points()) {
         if (solids_.clamped(k)) continue;
         const Vec<double, D> mean =

@@ -22,7 +22,7 @@ void TotalLagrangian<D>::make_deformable(std::size_t body, const RigidPlacement<
     const Vec3 spin = inverse(still.inertia, 0.0) * own;
     for (const std::uint32_t p : points) {
         v[p] = placement.velocity + turning_velocity(spin, x[p] - still.centre);
-        a[p] = load[p] = {};
+        a[p] = load[p] = steady[p] = {};
         for (int i = 0; i < D; ++i)
             for (int j = 0; j < D; ++j) deformation_[p](i, j) = placement.turn(i, j);
     }

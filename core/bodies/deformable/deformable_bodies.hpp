@@ -178,12 +178,18 @@ public:
 
     /// See Bodies. In deformable_particles.cpp, with what puts the particles where points are.
     void gather(const Particles<D>& particles, const Ranks& ranks);
-    void kick(double half_dt) { solids_.kick(half_dt, flow_force_); }
-    void begin_step() {
+    /// Half a step of the forces of the fluid.
+    void kick(double half_dt) { solids_.push_by(flow_force_, half_dt); }
+    /// Begins a step of length dt after the first kick: what these forces have been so far acts all
+    /// through it instead, so that only their changes kick.
+    void begin_step(double dt) {
         before_.resize(size());
         for (const std::uint32_t p : solids_.stepped().points()) before_[p] = solids_.v[p];
+        solids_.follow(flow_force_, 0.0);
+        solids_.push_by(solids_.steady, -0.5 * dt);
     }
-    /// Accelerations as the fluid sees them, averaged over `memory`.
+    /// Ends it before the second kick. Averages accelerations, as the fluid sees them, over
+    /// `memory`, and its forces over twice as long.
     void end_step(double dt, double memory);
     /// Shows the contacts where the points are, and takes their forces.
     void show(ContactBodies<D>& contact) const { surfaces_.show(contact, solids_); }
@@ -224,14 +230,15 @@ public:
         archive("deformable_depth", depth_), archive("deformable_group", group_);
         archive("deformable_rigid_point", rigid_point_);
         archive("deformable_flow_force", flow_force_),
+            archive("deformable_steady_force", solids_.steady),
             archive("deformable_acceleration", acceleration_);
         if (archive.loads()) {
             const std::size_t n = solids_.size();
-            expect_fit(normal_.size() == n && flow_force_.size() == n &&
-                           acceleration_.size() == n && depth_.size() == n &&
-                           rigid_point_.size() == n && material_.size() == solids_.bodies() &&
-                           group_.size() == solids_.bodies(),
-                       "deformable_normal");
+            expect_fit(
+                normal_.size() == n && flow_force_.size() == n && solids_.steady.size() == n &&
+                    acceleration_.size() == n && depth_.size() == n && rigid_point_.size() == n &&
+                    material_.size() == solids_.bodies() && group_.size() == solids_.bodies(),
+                "deformable_normal");
         }
     }
 

@@ -20,15 +20,29 @@ struct DriftPoint {
 };
 
 template <int D>
-struct KickPoint {
+struct PushPointBy {
     SolidSpans<D> solids;
     std::span<const std::uint32_t> which;
     std::span<const Vec<double, D>> force;
-    double half_dt;
+    double dt;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t n) const {
         const std::uint32_t p = which[n];
-        if (!solids.clamped[p]) solids.v[p] = solids.v[p] + (half_dt / solids.mass(p)) * force[p];
+        if (!solids.clamped[p]) solids.v[p] = solids.v[p] + (dt / solids.mass(p)) * force[p];
+    }
+};
+
+template <int D>
+struct FollowForce {
+    std::span<Vec<double, D>> steady;
+    std::span<const std::uint32_t> which;
+    std::span<const Vec<double, D>> force;
+    double share;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t n) const {
+        Vec<double, D>& mean = steady[which[n]];
+        const bool is_first = !(dot(mean, mean) > 0.0);
+        mean = mean + (is_first ? 1.0 : share) * (force[which[n]] - mean);
     }
 };
 
@@ -66,9 +80,15 @@ struct PushPoint {
 }  // namespace
 
 template <int D>
-void TotalLagrangian<D>::kick(double half_dt, std::span<const Vec<double, D>> force) {
+void TotalLagrangian<D>::push_by(std::span<const Vec<double, D>> force, double dt) {
     const std::span<const std::uint32_t> which = stepped_.points();
-    bulk::for_each(which.size(), KickPoint<D>{spans(), which, force, half_dt});
+    bulk::for_each(which.size(), PushPointBy<D>{spans(), which, force, dt});
+}
+
+template <int D>
+void TotalLagrangian<D>::follow(std::span<const Vec<double, D>> force, double share) {
+    const std::span<const std::uint32_t> which = stepped_.points();
+    bulk::for_each(which.size(), FollowForce<D>{steady, which, force, share});
 }
 
 template <int D>
@@ -93,8 +113,10 @@ BodyStep<D> TotalLagrangian<D>::push_points(double dt, const Vec<double, D>& gra
                         PushPoint<D>{spans(), which, gravity, dt});
 }
 
-template void TotalLagrangian<2>::kick(double, std::span<const Vec<double, 2>>);
-template void TotalLagrangian<3>::kick(double, std::span<const Vec<double, 3>>);
+template void TotalLagrangian<2>::push_by(std::span<const Vec<double, 2>>, double);
+template void TotalLagrangian<3>::push_by(std::span<const Vec<double, 3>>, double);
+template void TotalLagrangian<2>::follow(std::span<const Vec<double, 2>>, double);
+template void TotalLagrangian<3>::follow(std::span<const Vec<double, 3>>, double);
 template double TotalLagrangian<2>::drift(double);
 template double TotalLagrangian<3>::drift(double);
 template void TotalLagrangian<2>::accelerate_whole(double, const Vec<double, 2>&);

@@ -21,7 +21,7 @@ struct SolidSpans {
     std::span<ElasticPlaceRecord<D>> place;
     std::span<ElasticRecord<D>> solid;
     std::span<Vec<double, D>> x, v, a, damping_force;
-    std::span<const Vec<double, D>> load;
+    std::span<const Vec<double, D>> load, steady;
 
     DOSEKI_DEVICE_FN const DeformableBody& body_of(std::size_t p) const {
         return bodies[static_cast<std::size_t>(body[p])];
@@ -50,9 +50,11 @@ struct SolidSpans {
     DOSEKI_DEVICE_FN void accelerate(std::size_t p, const InternalForce<double, D>& force,
                                      const Vec<double, D>& gravity) const {
         damping_force[p] = place[p].volume * force.damping;
-        a[p] = clamped[p]
-                   ? Vec<double, D>{}
-                   : (1.0 / body_of(p).rho0) * force.all + (1.0 / mass(p)) * load[p] + gravity;
+        if (clamped[p])
+            a[p] = {};
+        else
+            a[p] = (1.0 / body_of(p).rho0) * force.all + (1.0 / mass(p)) * (load[p] + steady[p]) +
+                   gravity;
     }
 };
 

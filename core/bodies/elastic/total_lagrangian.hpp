@@ -115,10 +115,12 @@ public:
     /// are in. The longest stable step [s] is found unless it is given.
     void start(const Vec<double, D>& gravity, double stable_step = 0.0);
 
-    /// Half a step of the forces of others, which change slowly [N], 2-D: [N/m].
-    void kick(double half_dt, std::span<const Vec<double, D>> force);
+    /// Velocities, by a force of others on each point alone [N], 2-D: [N/m].
+    void push_by(std::span<const Vec<double, D>> force, double dt);
+    /// Moves `steady` to such a force by a share of what they differ in; the first is it at once.
+    void follow(std::span<const Vec<double, D>> force, double share);
 
-    /// Steps of their own over `dt`, under `load` and gravity.
+    /// Steps of their own over `dt`, under `load`, `steady` and gravity.
     void advance(double dt, const Vec<double, D>& gravity) {
         const int steps = max(1, static_cast<int>(std::ceil(dt / timestep())));
         for (int n = 0; n < steps; ++n)
@@ -248,7 +250,8 @@ public:
     }
 
     Array<Vec<double, D>> x, v, a;  // [m], [m/s], [m/s^2]
-    Array<Vec<double, D>> load;     // force of others within a step [N], 2-D: [N/m]
+    Array<Vec<double, D>> load;     // force of contacts within a step [N], 2-D: [N/m]
+    Array<Vec<double, D>> steady;   // force of others that is the same in all steps
 
 private:
     /// Throws std::invalid_argument unless restored arrays are those of the same bodies.
@@ -293,7 +296,7 @@ private:
     ElasticRecords<D> records() const { return {motion_, place_, solid_}; }
     SolidSpans<D> spans() {
         return {bodies_, body_, clamped_, correction_, deformation_,   motion_, place_,
-                solid_,  x,     v,        a,           damping_force_, load};
+                solid_,  x,     v,        a,           damping_force_, load,    steady};
     }
 
     // Where loops may run elsewhere: bodies/deformable/internal_forces.hpp.

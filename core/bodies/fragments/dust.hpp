@@ -11,7 +11,7 @@
 namespace doseki {
 
 /// A grain that a few points of a deformable body become, Eq. (123): a ball with their mass,
-/// momentum and angular momentum.
+/// momentum, angular momentum and force of the fluid.
 template <int D>
 struct DustGrain {
     RigidBody<D> body;
@@ -32,6 +32,7 @@ DustGrain<D> dust_grain(const TotalLagrangian<D>& solids, std::span<const std::u
         body.mass += m, volume += solids.volume(p);
         state.centre = state.centre + m * solids.x[p];
         state.velocity = state.velocity + m * solids.v[p];
+        state.flow_force = state.flow_force + solids.steady[p];
     }
     state.centre = (1.0 / body.mass) * state.centre;
     state.velocity = (1.0 / body.mass) * state.velocity;
@@ -40,6 +41,7 @@ DustGrain<D> dust_grain(const TotalLagrangian<D>& solids, std::span<const std::u
         const Vec3 r = in_space(solids.x[p] - state.centre);
         const Vec3 v = in_space(solids.v[p] - state.velocity);
         state.angular_momentum = state.angular_momentum + m * cross(r, v);
+        state.flow_torque = state.flow_torque + cross(r, in_space(solids.steady[p]));
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b)
                 body.inertia(a, b) +=

@@ -11,8 +11,8 @@ namespace doseki {
 template <int D>
 BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt) {
     if (!any_moves() || dt <= 0.0) return {};
-    Course course{rigid.sums(), {}, 0.5 * dt};
-    rigid.begin_step(dt), deformable.begin_step();
+    Course course{.before = rigid.sums(), .half = 0.5 * dt};
+    rigid.begin_step(dt), deformable.begin_step(dt);
     deformable_step_ = deformable.timestep();
     wall_speed_ = rigid.speed_of_walls(walls, t);
     if (breakable_.any())
@@ -64,6 +64,7 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
         rigid.collect(contact_, contacts_.points(PairKind::all)), deformable.collect(contact_);
         if (!deformable.empty()) push_deformable(step, course);
         rigid.push(gravity_, step);
+        course.on_rigid += step, course.on_points += step;
         part_if_cracked(t + dt - left, step, course);
         drift(0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
@@ -119,11 +120,8 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
         if (step <= std::min(shorter, deformable.unstrained_timestep()))
             step_at_once(walls, now, step, course);
         else {
-            course.gravity_lag = 0.0;
             drift_apart(walls, now, 0.5 * step, course);
-            course.gravity_lag = 0.5 * step;
             push_slow(step, course);
-            course.gravity_lag = -0.5 * step;
             drift_apart(walls, now + 0.5 * step, 0.5 * step, course);
         }
         left = steps > 1.0 ? left - step : 0.0;
@@ -135,9 +133,7 @@ template <int D>
 void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course) {
     drift(0.5 * dt);
     follow_walls(walls, t, dt);
-    course.gravity_lag = 0.0;  // what becomes deformable here is pushed by gravity below
     push_slow(dt, course);
-    course.gravity_lag = -dt;
     push_fast(t, dt, course);
     drift(0.5 * dt);
 }
@@ -158,8 +154,10 @@ void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Co
         drift_together(0.5 * step);
         follow_walls(walls, now, step);
         const std::size_t before = rigid.size();
-        if (!together.empty() || deformable.any_deforms()) push_fast(now, step, course);
-        course.gravity_lag += step;
+        if (!together.empty() || deformable.any_deforms())
+            push_fast(now, step, course);
+        else
+            course.on_points += step;
         for (std::size_t k = before; k < rigid.size(); ++k)
             together.push_back(static_cast<std::uint32_t>(k));
         drift_together(0.5 * step);
@@ -171,13 +169,14 @@ template <int D>
 void Bodies<D>::push_slow(double dt, Course& course) {
     touch(PairKind::slow, dt, course);
     rigid.push(gravity_, dt);
-    course.flow_lag -= dt;
+    course.on_rigid += dt;
 }
 
 template <int D>
 void Bodies<D>::push_fast(double t, double dt, Course& course) {
     touch(PairKind::fast, dt, course);
     rigid.push_by_contacts(dt);
+    course.on_points += dt;
     if (!deformable.any_deforms()) return;
     deformable.collect(contact_);
     push_deformable(dt, course);
@@ -217,8 +216,8 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
     const Fragments<D> before = deformable.as_they_are();
     for (const std::size_t n : struck) {
         RigidBodyState<D>& state = rigid.state(breakable_[n].rigid);
-        state.velocity = state.velocity + course.gravity_lag * gravity_;
-        rigid.push_by_flow(breakable_[n].rigid, course.flow_lag);
+        state.velocity = state.velocity + (course.on_points - course.on_rigid) * gravity_;
+        rigid.push_by_flow(breakable_[n].rigid, course.half - course.on_rigid);
     }
     const BodySums<D> had = rigid.sums();
     const double kinetic = deformable.kinetic_energy();

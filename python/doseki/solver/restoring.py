@@ -24,8 +24,8 @@ ALIKE = (
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
-        "deformable_flow_force", "deformable_acceleration", "elastic_gone", "deformable_depth",
-        "deformable_rigid_point", "elastic_held_shape",
+        "deformable_flow_force", "deformable_steady_force", "deformable_acceleration",
+        "deformable_depth", "deformable_rigid_point", "elastic_gone", "elastic_held_shape",
     ),
     (
         "surface_point", "surface_offset", "surface_crease", "surface_radius", "surface_key",
