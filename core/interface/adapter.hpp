@@ -123,6 +123,7 @@ public:
         table["stress"] = BodyTables<D>::stress(sim_.bodies, sim_.particles, order, states());
         if (const auto& wall = sim_.particles.wall; wall.in_use) {
             table["force"] = ParticleTables<D>::column(wall.force, order);
+            table["moment"] = ParticleTables<D>::column(wall.moment, order);
             table["normal"] = ParticleTables<D>::column(wall.normal, order);
             table["grain"] = BodyTables<D>::body_number_of(sim_.bodies, sim_.particles, order);
             if (auto damage = BodyTables<D>::damage(sim_.bodies, sim_.particles, order))

@@ -240,10 +240,11 @@ def test_force_sums_fixed_particles_of_its_bodies(scenario_of):
     state = {
         "body": np.array([0, 0, 1]), "motion": np.array([FIXED, FIXED, FREE]),
         "force": np.array([[1.0, 0], [2, 0], [99, 99]]), "position": np.array([[0, 1.0]] * 3),
+        "moment": np.array([0.5, 0.25, 99]),  # of the forces about the particles
     }  # fmt: skip
     simulation = SimpleNamespace(state=lambda: state, time=0.5)
     setting = scenario.setting(["bed", "water"])
-    assert gauge.read(simulation, setting) == [[0.5, 3.0, 0.0, -3.0]]
+    assert gauge.read(simulation, setting) == [[0.5, 3.0, 0.0, -2.25]]
 
 
 @pytest.mark.parametrize("dim", [2, 3])

@@ -10,8 +10,8 @@ from doseki.validate.running import CASES
 
 # Cases that the default tier runs.
 CANARIES = (
-    "artificial-viscosity", "bingham", "dam-front", "elastic-oblique", "elastic-plate",
-    "elliptical-drop-disturbed", "grains-drag", "grains-incline", "grains-stream",
+    "artificial-viscosity", "bingham", "couette-disc", "dam-front", "elastic-oblique",
+    "elastic-plate", "elliptical-drop-disturbed", "grains-drag", "grains-incline", "grains-stream",
     "grains-under-water", "hydrostatic", "nusselt-film", "poiseuille", "shear-decay", "sound-wave",
     "still-water", "taylor-green-100-lattice", "voellmy-slab",
 )  # fmt: skip

@@ -51,7 +51,7 @@ class ForceGauge(Gauge):
         force, position = state["force"][of_them], state["position"][of_them]
         about = np.zeros(setting.dim) if self.about is None else self.about
         total, moment = force_and_moment(position, force, about)
-        return [[run.time, *total, *moment]]
+        return [[run.time, *total, *(moment + state["moment"][of_them].sum(axis=0))]]
 
 
 def force_and_moment(

@@ -1,0 +1,144 @@
+"""Liquids and bodies that turn: what turns with its surroundings is at rest in them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.record.particles import FREE
+
+from ..flows import advance
+
+HEAD = """\
+dim = 2
+scheme = "resolved"
+speed_max = 3
+dp = 0.01
+time_max = 1
+time_out = 1
+gravity = [0, 0]
+
+[material.oil]
+based_on = "water"
+nu = 0.01
+
+[material.light]
+based_on = "basalt"
+rho0 = 1000
+"""
+DROP = """
+[body.drop]
+shape = "disc"
+material = "oil"
+centre = [{x}, 0]
+radius = 0.1
+velocity = ["= -3*y", "= 3*(x - {x})"]
+"""
+# A disc that spins in water under pressure, between walls without friction.
+SPINNING = """
+[body.water]
+shape = "box"
+material = "water"
+pressure = 5000
+min = [-0.2, -0.2]
+max = [0.2, 0.2]
+
+[body.tank]
+shape = "tank"
+material = "basalt"
+min = [-0.2, -0.2]
+max = [0.2, 0.2]
+open = []
+wall = "free_slip"
+
+[body.disc]
+shape = "disc"
+material = "light"
+centre = {centre}
+radius = 0.06
+spin = 8
+"""
+# A tank that turns with its liquid.
+TURNING = """
+[body.liquid]
+shape = "box"
+material = "{material}"
+min = [-0.1, -0.1]
+max = [0.1, 0.1]
+velocity = ["= -3*y", "= 3*x"]
+pressure = "= 4500*(x**2 + y**2) + 1000"
+
+[body.tank]
+shape = "tank"
+material = "basalt"
+min = [-0.1, -0.1]
+max = [0.1, 0.1]
+open = []
+wall = "{wall}"
+motion = {{ angular_velocity = 3, pivot = [0, 0], start = 0 }}
+"""
+
+
+def angular_momentum(state, about=(0.0, 0.0)):
+    """Of what is free, kg m/s."""
+    free = state["motion"] == FREE
+    x, v = state["position"][free] - about, state["velocity"][free]
+    return float(state["mass"][free] @ (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]))
+
+
+def until(simulation, time):
+    """The same simulation at a time."""
+    simulation.advance(limit=time, pause=time, max_steps=10**6)
+    return simulation
+
+
+@pytest.mark.parametrize(
+    ("viscosity", "kept"), [("stress", True), ("monaghan_cleary", True), ("morris", False)]
+)
+@pytest.mark.parametrize("x", [0.0, 1.003])
+def test_a_drop_of_oil_goes_on_turning(flows, viscosity, kept, x):
+    """Nothing touches it. The divergence of mu grad v takes 4 nu/R^2 of its angular momentum."""
+    run = flows(HEAD + DROP.format(x=x), f"viscosity={viscosity}")
+    before = angular_momentum(run.state(), (x, 0))
+    after = angular_momentum(until(run, 0.1).state(), (x, 0))
+    assert (abs(after / before - 1) < 0.005) == kept
+
+
+@pytest.mark.parametrize("centre", [[0, 0], [0.013, -0.007]])
+def test_a_disc_spins_on_in_water_under_pressure(flows, centre):
+    """Pressure passes through its axis, and the viscosity of water takes 0.4 % here."""
+    run = until(flows(HEAD + SPINNING.format(centre=centre)), 0.2)
+    assert run.grains()["spin"][0][2] == pytest.approx(8, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("wall", "material"), [("free_slip", "water"), ("no_slip", "water"), ("no_slip", "oil")]
+)
+def test_a_tank_does_not_feel_the_liquid_that_turns_with_it(flows, wall, material):
+    """Shear of mu omega all along its walls would be 2.4 N in oil, twice its area."""
+    run = until(flows(HEAD + TURNING.format(wall=wall, material=material)), 0.2)
+    state = advance(run, 1).state()
+    walls = state["motion"] != FREE
+    x, f = state["position"][walls], state["force"][walls]
+    moment = (x[:, 0] * f[:, 1] - x[:, 1] * f[:, 0]).sum() + state["moment"][walls].sum()
+    assert abs(moment) < 0.05
+
+
+def test_bodies_get_the_moments_that_the_liquid_gives(flows):
+    """Free disc in oil that turns: what the disc gains the oil loses."""
+    disc = """
+[body.disc]
+shape = "disc"
+material = "light"
+centre = [0, 0]
+radius = 0.04
+"""
+    tank = SPINNING.split("[body.disc]")[0].replace('"water"\npressure', '"oil"\npressure')
+    run = flows(HEAD + tank + disc, "body.water.velocity=['= -3*y', '= 3*x']")
+    inertia = 0.5 * 1000 * np.pi * 0.04**4
+    until(run, 0.002)
+    spin, turning = run.grains()["spin"][0][2], angular_momentum(run.state())
+    until(run, 0.02)
+    gained = inertia * (run.grains()["spin"][0][2] - spin)
+    assert gained > 0.2 * inertia
+    assert turning - angular_momentum(run.state()) > gained
