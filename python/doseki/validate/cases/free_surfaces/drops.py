@@ -159,7 +159,7 @@ PATCH = Case(
             (at_most(0.02), at_most(0.01), at_most(0.01)),
             "pieces that fly freely keep energy and momentum too, so it must stay whole; loose is "
             "what has fewer than three others within 1.6 spacings",
-            short="the outer row of the hollow faces stays behind: a surface takes no tension",
+            short="the tips of the arms are threads of single particles",
         ),
     ),
     axes=("x (m)", "y (m)"),
