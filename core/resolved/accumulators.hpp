@@ -183,13 +183,13 @@ DOSEKI_FN void add_wall(ContinuityAccumulators<T, D>& sums, const FlowConstants&
     const T VF = w.volume * gradient_factor<Kernel>(constants, inverse_support, pair.r);
     const auto contact = wall_contact(constants, pair.r_ij, pair.r, i, w);
     sums.density_rate -= T(2) * VF * contact.approach * contact.corrected_r_dot_n;
-    sums.sliding_rate += T(2) * VF * dot(contact.sliding, contact.corrected_r);
-    sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(contact.v_iw, contact.v_iw));
+    sums.sliding_rate += T(2) * VF * dot(contact.past_edge, contact.corrected_r);
+    sums.sliding_size += T(-2) * VF * pair.r * sqrt(dot(contact.v_i_w, contact.v_i_w));
     const T resolved = resolved_shear(i.mu, i.rho, sqrt(dot(contact.sliding, contact.sliding)),
                                       number<T>(constants.dp));
     // v_i less the velocity that the fluid goes on to at w. What sticks to a wall turns with it.
     const Vec<T, D> jump = (resolved * contact.no_slip) * contact.sliding -
-                           (T(2) * contact.approach) * contact.at_foot +
+                           (T(2) * contact.approach) * contact.seen.normal +
                            (resolved * w.no_slip) * turned_by<T, D>(w.spin, pair.r_ij);
     add_gradients(sums, pair.r_ij, VF, jump);
     const T share = w.volume * Kernel::value(pair.r, inverse_support), film = share * w.film_cover;

@@ -52,20 +52,21 @@ DOSEKI_FN FacedWall<T, D> facing(const WallPoint<T, D>& w, const Vec<T, D>& r_iw
 }
 
 /// How a fluid particle i moves against a wall particle w, the wall standing for fluid of mirrored
-/// velocity. The wall moves as its body does where i is, Eq. (164): what turns with it is at rest
-/// against it.
+/// velocity.
 template <class T, int D>
 struct WallContact {
     FacedWall<T, D> seen;
-    Vec<T, D> v_iw;
+    Vec<T, D> at_foot;      // normal n' of the wall where i is in front of it
     Vec<T, D> corrected_r;  // B_i r_iw
     T pushes;               // 0: at an edge that the fluid goes off past
-    Vec<T, D> at_foot;      // normal n' of the wall where i is in front of it
-    T approach;             // v_iw.(-n')
     T r_dot_n, corrected_r_dot_n;
-    T height;           // of i above the surface of the wall
-    T no_slip;          // share of it that holds here
-    Vec<T, D> sliding;  // part of v_iw along the face
+    T height;   // of i above the surface of the wall
+    T no_slip;  // share of it that holds here
+    // Against w:
+    T approach;                  // (v_i - v_w).(-n)
+    Vec<T, D> v_i_w, past_edge;  // v_i - v_w, and its part along the face
+    // Against the wall as its body moves where i is, Eq. (164): what turns with it is at rest.
+    Vec<T, D> v_iw, sliding;
 };
 
 template <class T, int D>
@@ -74,18 +75,21 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
                                          const WallPoint<T, D>& w) {
     WallContact<T, D> contact;
     const FacedWall<T, D> seen = contact.seen = facing(w, r_iw, r);
-    contact.v_iw = i.v - (w.v + turned_by<T, D>(w.spin, r_iw));
+    contact.v_i_w = i.v - w.v;
     contact.r_dot_n = dot(r_iw, seen.normal), contact.height = contact.r_dot_n - seen.depth;
-    contact.at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
-    contact.approach = -dot(contact.v_iw, contact.at_foot);
+    contact.approach = -dot(contact.v_i_w, seen.normal);
     // An edge pushes what comes to it. It does not pull what goes off a face past it.
     contact.pushes = select(contact.approach < T(0), T(1) - seen.beyond_edge, T(1));
     contact.approach = contact.pushes * contact.approach;
+    contact.past_edge = contact.v_i_w + contact.approach * seen.normal;
     contact.corrected_r = i.correction * r_iw;
-    contact.corrected_r_dot_n = dot(contact.corrected_r, contact.at_foot);
+    contact.corrected_r_dot_n = dot(contact.corrected_r, seen.normal);
     contact.no_slip =
         w.no_slip * no_slip_factor(seen.depth, contact.height, number<T>(0.25 * constants.dp));
-    contact.sliding = contact.v_iw + contact.approach * contact.at_foot;
+    contact.at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
+    contact.v_iw = contact.v_i_w - turned_by<T, D>(w.spin, r_iw);
+    contact.sliding =
+        contact.v_iw - (contact.pushes * dot(contact.v_iw, contact.at_foot)) * contact.at_foot;
     return contact;
 }
 
@@ -125,8 +129,10 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     forces.viscous = scale * (extra * across - mu_wall * contact.sliding);
     forces.power =
         scale * (mu_wall * dot(contact.sliding, contact.v_iw) - extra * dot(across, contact.v_iw));
-    // The fluid and a light body take the same impulse, and the body goes faster by it.
-    forces.viscous_rate = scale * mu_wall * max(T(1), number<T>(1.5) * i.rho * w.inverse_density);
+    // The fluid and a light body take the same impulse, and the body goes and turns faster by it.
+    constexpr double of_body = D == 2 ? 3.5 : 4.5;
+    forces.viscous_rate =
+        scale * mu_wall * max(T(1), number<T>(of_body) * i.rho * w.inverse_density);
     forces.made = dot(forces.pressure, contact.v_iw) +
                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return forces;

@@ -7,7 +7,7 @@ import numpy as np
 from ..record.particles import FREE
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
-from ..scene.build import ON_THE_GROUND
+from ..scene.build import LEAST_HEIGHT
 from ..scene.ground import ground_of
 from ..scene.kinds.registry import body_of
 
@@ -33,7 +33,7 @@ def filled_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
         particles = body.particles([*scenario.body])
         position = particles.position[particles.motion == FREE]
         height, dp = ground.height_above(position), body.spacing
-        kept = height > ON_THE_GROUND * dp
+        kept = height > LEAST_HEIGHT * dp
         share = kept.astype(float)
         near = np.abs(height) < NEAR * dp
         if near.any():

@@ -39,9 +39,7 @@ from .meshes.meeting import without_common
 from .shapes import no_edges
 
 BURIED = 0.5  # spacings in the ground that no flow gets to
-ON_THE_GROUND = (
-    1e-6  # spacings above it; what is no higher has no more than half of its volume there
-)
+LEAST_HEIGHT = 0.25  # spacings above a bed; what rests on it lies at a half
 
 
 class Settled(NamedTuple):
@@ -279,11 +277,7 @@ def _outside(scenario: Scenario, particles: ParticleSet, takers: list[Group]) ->
 
 
 def _above_ground(scenario: Scenario, name: str, particles: ParticleSet) -> ParticleSet:
-    """The particles of a body without the free ones that lie in the ground of the terrain.
-
-    Those whose middle is above it are kept, so that their volume is right on the mean; where they
-    lie is nothing to water at rest.
-    """
+    """The particles of a body without the free ones that lie in the ground of the terrain."""
     assert scenario.bed is not None
     if not len(particles):
         return particles
@@ -297,7 +291,7 @@ def _above_ground(scenario: Scenario, name: str, particles: ParticleSet) -> Part
                 f"lie in the ground, up to {-distance.min():.3g} m deep: keep its terrain",
             )
         return particles
-    keep = (distance > ON_THE_GROUND * scenario.dp) | (particles.motion != FREE)
+    keep = (distance > LEAST_HEIGHT * scenario.dp) | (particles.motion != FREE)
     return particles if keep.all() else particles.chosen(keep)
 
 

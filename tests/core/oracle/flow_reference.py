@@ -310,7 +310,7 @@ class FlowReference:
         n, depth, g_normal, in_front, beyond_edge = self._faces()
         foot = self._normal_at_foot(n, in_front)
         r_n, v = dot(pairs.r_ij, n), self.v[:, None] - self.v_w[None]
-        approach = -dot(v, foot)
+        approach = -dot(v, n)
         pulled = beyond_edge & (approach < 0)
         approach = np.where(pulled, 0, approach)
         # Pressure of the wall over that of i: gravity across it, the fluid's gradient along it.
@@ -327,7 +327,8 @@ class FlowReference:
         p = self.p[:, None] + 0.5 * excess
         corrected_r = np.einsum("iab,iwb->iwa", self.B, pairs.r_ij)
         factor = self.stick * (1 + depth / np.maximum(r_n - depth, dp / 4))
-        sliding = v + approach[..., None] * foot
+        past_edge = v + approach[..., None] * n
+        sliding = v - np.where(pulled, 0, dot(v, foot))[..., None] * foot
         mu = (self.mu[:, None] * factor)[..., None]
         layer = 0.1 * self.rho[:, None] * np.linalg.norm(sliding, axis=-1) * dp
         shear = factor * self.mu[:, None] / (self.mu[:, None] + layer)
@@ -337,11 +338,11 @@ class FlowReference:
             * (p[..., None] * corrected_r + extra[..., None] * across - mu * sliding),
             "excess": excess,
             "height": r_n - depth,
-            "v_dot_r": -2 * approach * dot(corrected_r, foot),
+            "v_dot_r": -2 * approach * dot(corrected_r, n),
             "viscous_rate": scale * mu[..., 0],
-            "sliding_dot_r": 2 * dot(sliding, corrected_r),
+            "sliding_dot_r": 2 * dot(past_edge, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
-            "jump": shear[..., None] * sliding - 2 * approach[..., None] * foot,
+            "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
             "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(across, v)),
         }
 
