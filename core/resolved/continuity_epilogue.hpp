@@ -174,18 +174,19 @@ private:
     }
 
     /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
-    /// meets again, until it has closed. Returns the power of the tension that is lost [W].
+    /// meets again, until it has closed. Returns the power of the tension that is lost, or there
+    /// again [W].
     DOSEKI_DEVICE_FN double part_on_surface(const Summed& at) const {
         const std::size_t p = at.p;
-        const double rho = at.fields.rho;
-        const Material& material = model_.material(state_.tag[p]);
-        const bool had_tension = pressure(at) < 0.0,
-                   closed = pressure_at(*material.laws, rho) >= state_.least_pressure[p];
-        if (closed) state_.parted[p] = 0.0;
-        if (closed || !on_surface(p) || dt_ <= 0.0) return 0.0;
-        state_.parted[p] = 1.0;
-        if (!had_tension) return 0.0;
-        return -state_.mass[p] * thermodynamic_state(*material.laws, rho).bulk_energy / dt_;
+        const auto now = thermodynamic_state(*model_.material(state_.tag[p]).laws, at.fields.rho);
+        const bool closed = now.pressure >= state_.least_pressure[p],
+                   parts = !closed && on_surface(p) && dt_ > 0.0;
+        const double before = state_.parted[p];
+        state_.parted[p] = parts ? 1.0 : closed ? 0.0 : before;
+        const bool had_tension = pressure(at) < 0.0, has_again = before > 0.0 && closed;
+        if (dt_ <= 0.0 || !(now.pressure < 0.0)) return 0.0;
+        const double energy = state_.mass[p] * now.bulk_energy / dt_;
+        return parts && had_tension ? -energy : has_again ? energy : 0.0;
     }
 
     /// Of sound, over c h. Beside bodies that move it is that of the fluid: what they squeeze out

@@ -126,13 +126,16 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     const T p = i.p + number<T>(0.5) * forces.excess;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * contact.no_slip;
     forces.pressure = (scale * p) * contact.corrected_r;
-    forces.viscous = scale * (extra * across - mu_wall * contact.sliding);
-    forces.power =
-        scale * (mu_wall * dot(contact.sliding, contact.v_iw) - extra * dot(across, contact.v_iw));
+    // A wall bears the viscous stress across it, with friction or without.
+    const T mu_across = number<T>(2 * constants.form.transposed) * seen.in_front * i.mu;
+    const Vec<T, D> sheared = mu_wall * contact.sliding +
+                              (mu_across * dot(contact.at_foot, i.strain * r_iw)) * contact.at_foot;
+    forces.viscous = scale * (extra * across - sheared);
+    forces.power = scale * (dot(sheared, contact.v_iw) - extra * dot(across, contact.v_iw));
     // The fluid and a light body take the same impulse, and the body goes and turns faster by it.
     constexpr double of_body = D == 2 ? 3.5 : 4.5;
     forces.viscous_rate =
-        scale * mu_wall * max(T(1), number<T>(of_body) * i.rho * w.inverse_density);
+        scale * (mu_wall + mu_across) * max(T(1), number<T>(of_body) * i.rho * w.inverse_density);
     forces.made = dot(forces.pressure, contact.v_iw) +
                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return forces;

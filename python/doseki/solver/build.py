@@ -71,10 +71,17 @@ def core_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
 
 def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """What only the resolved scheme has."""
-    names = "dp kernel viscosity shifting acoustic_damping turbulence smagorinsky".split()
+    names = "dp kernel shifting acoustic_damping turbulence smagorinsky".split()
     return {name: getattr(scenario, name) for name in names} | {
-        "walls": [_wall_condition(scenario, _wall_of(scenario, name)) for name in body_names]
+        "viscosity": scenario.viscosity or _viscous_form(scenario),
+        "walls": [_wall_condition(scenario, _wall_of(scenario, name)) for name in body_names],
     }
+
+
+def _viscous_form(scenario: Scenario) -> str:
+    """Heaps of mu(I) that keep their shape are braked too much by beds with the stress."""
+    laws = {scenario.materials[name].rheology for name in scenario.liquids}
+    return "morris" if "mu_i" in laws else "stress"
 
 
 def _contact_options(scenario: Scenario) -> dict[str, Any]:

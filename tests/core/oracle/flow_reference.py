@@ -162,6 +162,7 @@ class FlowReference:
         self.shift = np.zeros((n, self.dim))
         self.B = np.tile(np.eye(self.dim), (n, 1, 1))
         self.damping = np.zeros(n)
+        self.stressed = options.viscosity == "stress"
 
     def _take_fluid(self, particles: Any, materials: Sequence[Mapping[str, Any]]) -> None:
         self.fluid = particles.motion != FIXED
@@ -333,18 +334,27 @@ class FlowReference:
         layer = 0.1 * self.rho[:, None] * np.linalg.norm(sliding, axis=-1) * dp
         shear = factor * self.mu[:, None] / (self.mu[:, None] + layer)
         scale = -2 * self.V_w * pairs.F
+        across_wall = self._stress_across_walls(foot, in_front)
+        sheared = mu * sliding + across_wall[..., None] * foot
+        mu_across = self.stressed * in_front * self.mu[:, None]
         return {
             "force": scale[..., None]
-            * (p[..., None] * corrected_r + extra[..., None] * across - mu * sliding),
+            * (p[..., None] * corrected_r + extra[..., None] * across - sheared),
             "excess": excess,
             "height": r_n - depth,
             "v_dot_r": -2 * approach * dot(corrected_r, n),
-            "viscous_rate": scale * mu[..., 0],
+            "viscous_rate": scale * (mu[..., 0] + 2 * mu_across),
             "sliding_dot_r": 2 * dot(past_edge, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
             "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
-            "power": scale * (mu[..., 0] * dot(sliding, v) - extra * dot(across, v)),
+            "power": scale * (dot(sheared, v) - extra * dot(across, v)),
         }
+
+    def _stress_across_walls(self, normal: np.ndarray, in_front: np.ndarray) -> np.ndarray:
+        """mu n.2D r of each pair, where the stress is that of the strain."""
+        D = 0.5 * (self.L + self.L.transpose(0, 2, 1))
+        strained = np.einsum("iab,iwb->iwa", 2 * D, self.fw.r_ij)
+        return self.stressed * in_front * self.mu[:, None] * dot(normal, strained)
 
     def _faces(self) -> tuple[np.ndarray, ...]:
         """Normal, depth and part of gravity of a wall as seen by the fluid; whether that is in

@@ -62,9 +62,12 @@ class ScenarioTable(Table):
     eos: Annotated[EquationOfState, OF_RESOLVED] = Field(
         "linear", description="resolved: law of pressure"
     )
-    viscosity: Annotated[Literal["stress", "morris", "monaghan_cleary"], OF_RESOLVED] = Field(
-        "stress",
-        description="resolved: form of the viscous term; morris resists rotation at free surfaces",
+    viscosity: Annotated[Literal["stress", "morris", "monaghan_cleary"] | None, OF_RESOLVED] = (
+        Field(
+            None,
+            description="resolved: form of the viscous term, Eq. (28); default: stress, in runs "
+            "with grains of mu(I) morris",
+        )
     )
     turbulence: Annotated[Literal["none", "smagorinsky", "mixing_length"], OF_RESOLVED] = Field(
         "none", description="resolved: eddy viscosity"
