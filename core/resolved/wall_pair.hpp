@@ -126,8 +126,9 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     const T p = i.p + number<T>(0.5) * forces.excess;
     const T scale = T(-2) * w.volume * F, mu_wall = i.mu * contact.no_slip;
     forces.pressure = (scale * p) * contact.corrected_r;
-    // A wall bears the viscous stress across it, with friction or without.
-    const T mu_across = number<T>(2 * constants.form.transposed) * seen.in_front * i.mu;
+    // A wall bears the viscous stress across it. Where fluid sticks to it there is none.
+    const T mu_across =
+        number<T>(2 * constants.form.transposed) * (T(1) - w.no_slip) * seen.in_front * i.mu;
     const Vec<T, D> sheared = mu_wall * contact.sliding +
                               (mu_across * dot(contact.at_foot, i.strain * r_iw)) * contact.at_foot;
     forces.viscous = scale * (extra * across - sheared);

@@ -336,7 +336,7 @@ class FlowReference:
         scale = -2 * self.V_w * pairs.F
         across_wall = self._stress_across_walls(foot, in_front)
         sheared = mu * sliding + across_wall[..., None] * foot
-        mu_across = self.stressed * in_front * self.mu[:, None]
+        mu_across = self.stressed * (1 - self.stick) * in_front * self.mu[:, None]
         return {
             "force": scale[..., None]
             * (p[..., None] * corrected_r + extra[..., None] * across - sheared),
@@ -354,7 +354,8 @@ class FlowReference:
         """mu n.2D r of each pair, where the stress is that of the strain."""
         D = 0.5 * (self.L + self.L.transpose(0, 2, 1))
         strained = np.einsum("iab,iwb->iwa", 2 * D, self.fw.r_ij)
-        return self.stressed * in_front * self.mu[:, None] * dot(normal, strained)
+        share = self.stressed * (1 - self.stick) * in_front
+        return share * self.mu[:, None] * dot(normal, strained)
 
     def _faces(self) -> tuple[np.ndarray, ...]:
         """Normal, depth and part of gravity of a wall as seen by the fluid; whether that is in
