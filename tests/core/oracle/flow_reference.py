@@ -346,7 +346,7 @@ class FlowReference:
             "viscous_rate": scale * (mu[..., 0] + 2 * mu_across),
             "sliding_dot_r": 2 * dot(past_edge, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
-            "jump": shear[..., None] * sliding - 2 * approach[..., None] * n,
+            "jump": shear[..., None] * sliding + 2 * (v - sliding),
             "power": scale * (dot(sheared, v) - extra * dot(across, v)),
         }
 
