@@ -65,7 +65,7 @@ def test_defaults_of_the_scheme(rows, key):
     assert any(f"`{key}`" in row[2] and row[3] == f"{default:g}" for row in rows if len(row) == 4)
 
 
-@pytest.mark.parametrize("key", ["kernel", "eos", "viscosity", "turbulence", "smagorinsky"])
+@pytest.mark.parametrize("key", ["kernel", "eos", "turbulence", "smagorinsky"])
 def test_defaults_of_the_resolved_scheme(rows, key):
     default = RESOLVED_DEFAULTS.get(key, ScenarioTable.model_fields[key].default)
     assert any(row[2] == f"`{key}`" and row[3] == f"{default}" for row in rows if len(row) == 4)
@@ -76,3 +76,4 @@ def test_numbers_of_the_resolved_scheme(rows):
     eta = "{wendland_c2} (C6: {wendland_c6})".format(**RESOLVED_ETA)
     assert limits in [row[3] for row in rows if row[2] == "`cflnumber`, `cfl_force`"]
     assert eta in [row[3] for row in rows if row[2] == "`eta`"]
+    assert "stress (mu(I): morris)" in [row[3] for row in rows if row[2] == "`viscosity`"]
