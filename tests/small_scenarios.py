@@ -24,3 +24,47 @@ material = "water"
 min = [0, 0]
 max = [1, 0.5]
 """
+# A dam of triangles that holds water back between two banks, and reads its load.
+BANKS = """\
+dim = 3
+dp = 0.05
+gravity = [0, 0, -9.81]
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 4
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0, 0]
+max = [{length}, 0.4, 0.5]
+[body.dam]
+shape = "mesh"
+file = "{file}"
+material = "basalt"
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, 0, 1]
+min = [-0.15, -0.15, -0.15]
+max = [{ends}, 0.55, 0]
+[body.left]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, 1, 0]
+min = [0, -0.15, 0]
+max = [{ends}, 0, 0.6]
+[body.right]
+shape = "box"
+material = "basalt"
+fixed = true
+normal = [0, -1, 0]
+min = [0, 0.4, 0]
+max = [{ends}, 0.55, 0.6]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+about = [0.6, 0.2, 0]
+"""

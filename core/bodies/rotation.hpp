@@ -37,12 +37,7 @@ DOSEKI_FN Turn<double, D> turn_of(const Vec3& axis) {
     return turn;
 }
 
-DOSEKI_FN Vec3 cross(const Vec3& u, const Vec3& v) {
-    Vec3 w;
-    w[0] = u[1] * v[2] - u[2] * v[1], w[1] = u[2] * v[0] - u[0] * v[2],
-    w[2] = u[0] * v[1] - u[1] * v[0];
-    return w;
-}
+DOSEKI_FN Vec3 cross(const Vec3& u, const Vec3& v) { return turned_by<double, 3>(u, v); }
 
 /// spin x r, both ends in the space of the run.
 template <int D>

@@ -31,10 +31,7 @@ struct WallMotion {
 
     /// The same about the axes of the run.
     DOSEKI_DEVICE_FN Turn<double, D> turn_at(double t) const {
-        Turn<double, D> turn;
-        constexpr std::size_t axes = std::size_t{D == 2 ? 1 : 3};
-        for (std::size_t a = 0; a < axes; ++a) turn[a] = moves(t) ? spin[3 - axes + a] : 0.0;
-        return turn;
+        return moves(t) ? turn() : Turn<double, D>{};
     }
 
     DOSEKI_DEVICE_FN Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
@@ -64,12 +61,14 @@ private:
         return pivot + (std::clamp(t, start, stop) - start) * velocity;
     }
 
+    DOSEKI_DEVICE_FN Turn<double, D> turn() const {
+        constexpr std::size_t axes = std::size_t{D == 2 ? 1 : 3};
+        Turn<double, D> turn;
+        for (std::size_t a = 0; a < axes; ++a) turn[a] = spin[3 - axes + a];
+        return turn;
+    }
     DOSEKI_DEVICE_FN Vec<double, D> cross_spin(const Vec<double, D>& r) const {
-        Vec<double, D> v{};
-        v[0] = -spin[2] * r[1], v[1] = spin[2] * r[0];
-        if constexpr (D == 3)
-            v[0] += spin[1] * r[2], v[1] -= spin[0] * r[2], v[2] = spin[0] * r[1] - spin[1] * r[0];
-        return v;
+        return turned_by<double, D>(turn(), r);
     }
 };
 

@@ -10,6 +10,7 @@ from doseki.scenario.gauges.loads.surface import surface_of
 from doseki.solver.build import build_simulation
 from doseki.solver.faces import cut, faces_of
 
+from ..small_scenarios import BANKS
 from .scenes import scenario_of
 
 WEIGHT = 9810.0  # of a cubic metre of water, N
@@ -211,45 +212,6 @@ def test_faces_go_where_their_body_goes(tmp_path):
     np.testing.assert_allclose(gone, np.broadcast_to([0, 0.2, 0], gone.shape), atol=1e-12)
 
 
-DAM = """\
-dim = 3
-dp = 0.05
-gravity = [0, 0, -9.81]
-time_max = 1
-time_out = 1
-scheme = "resolved"
-speed_max = 4
-[body]
-water = { shape = "box", material = "water", min = [0, 0, 0], max = [LENGTH, 0.4, 0.5] }
-dam = { shape = "mesh", file = "dam.stl", material = "basalt" }
-[body.floor]
-shape = "box"
-material = "basalt"
-fixed = true
-normal = [0, 0, 1]
-min = [-0.15, -0.15, -0.15]
-max = [2, 0.55, 0]
-[body.left]
-shape = "box"
-material = "basalt"
-fixed = true
-normal = [0, 1, 0]
-min = [0, -0.15, 0]
-max = [2, 0, 0.6]
-[body.right]
-shape = "box"
-material = "basalt"
-fixed = true
-normal = [0, -1, 0]
-min = [0, 0.4, 0]
-max = [2, 0.55, 0.6]
-[gauge.dam]
-kind = "load"
-bodies = ["dam"]
-about = [0.6, 0.2, 0]
-"""
-
-
 @pytest.mark.parametrize("face", [90, 75, 60, 45])
 def test_a_leaning_dam_of_triangles_holds_its_water(tmp_path, face):
     """It reaches into the floor and both sides; the moment is about its foot."""
@@ -258,7 +220,7 @@ def test_a_leaning_dam_of_triangles_holds_its_water(tmp_path, face):
     corners, _, _ = hull(np.array([(x, y, z) for y in (-0.15, 0.55) for x, z in sides]))
     write_stl(tmp_path / "dam.stl", corners)
     length = 0.05 * round((0.6 + 0.5 * lean) / 0.05 + 0.5)
-    scenario = scenario_of(tmp_path, DAM.replace("LENGTH", f"{length}"))
+    scenario = scenario_of(tmp_path, BANKS.format(file="dam.stl", length=length, ends=2))
     simulation, names = build_simulation(scenario)
     (reader,) = build_gauges(scenario, names)
     far = np.full(3, np.inf)

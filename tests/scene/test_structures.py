@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.small_scenarios import BANKS
 from tests.terrain.scenes import grid, profile, text
 
 from doseki.scenario.load import load_scenario
@@ -156,46 +157,8 @@ def test_a_mesh_that_goes_into_other_walls_is_told(tmp_path, ends, told):
     lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
     (tmp_path / "dam.obj").write_text("\n".join(lines) + "\n")
     path = tmp_path / "case.toml"
-    path.write_text(BANKS.replace("ENDS", str(ends)))
+    path.write_text(BANKS.format(file="dam.obj", length=0.6, ends=ends))
     found = findings(path, InWalls)
     assert bool(found) == told
     if told:
         assert "let these walls end at its faces" in str(found[0])
-
-
-BANKS = """\
-dim = 3
-dp = 0.05
-gravity = [0, 0, -9.81]
-time_max = 1
-time_out = 1
-scheme = "resolved"
-speed_max = 4
-[body]
-water = { shape = "box", material = "water", min = [0, 0, 0], max = [0.6, 0.4, 0.5] }
-dam = { shape = "mesh", file = "dam.obj", material = "basalt" }
-[body.floor]
-shape = "box"
-material = "basalt"
-fixed = true
-normal = [0, 0, 1]
-min = [-0.15, -0.15, -0.15]
-max = [ENDS, 0.55, 0]
-[body.left]
-shape = "box"
-material = "basalt"
-fixed = true
-normal = [0, 1, 0]
-min = [0, -0.15, 0]
-max = [ENDS, 0, 0.6]
-[body.right]
-shape = "box"
-material = "basalt"
-fixed = true
-normal = [0, -1, 0]
-min = [0, 0.4, 0]
-max = [ENDS, 0.55, 0.6]
-[gauge.dam]
-kind = "load"
-bodies = ["dam"]
-"""

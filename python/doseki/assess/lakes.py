@@ -25,10 +25,10 @@ def filled_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
         return found
     ground = ground_of(scenario.bed)
     for name, table in scenario.body.items():
-        body = body_of(scenario, name)
-        if not isinstance(table, Box) or table.fixed or body.is_of_bodies:
+        if not isinstance(table, Box) or table.fixed or name in scenario.carried:
             continue
-        if name in scenario.carried:
+        body = body_of(scenario, name)
+        if body.is_of_bodies:
             continue
         particles = body.particles([*scenario.body])
         position = particles.position[particles.motion == FREE]

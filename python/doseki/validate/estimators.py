@@ -21,8 +21,12 @@ def volume(state: State) -> float:
 
 def angular_momentum(state: State) -> float:
     """About the origin, 2-D, counted counter-clockwise, kg m/s."""
-    x, v = state["position"], state["velocity"]
-    return float(np.sum(state["mass"] * (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0])))
+    return float(np.sum(state["mass"] * moments(state["position"], state["velocity"])))
+
+
+def moments(lever: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """lever x vector (n,) of vectors of the plane (n, 2)."""
+    return np.asarray(lever[:, 0] * vector[:, 1] - lever[:, 1] * vector[:, 0])
 
 
 def mean_velocity(state: State, axis: int = 0) -> float:

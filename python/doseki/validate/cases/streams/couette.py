@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...case import Case, Control, Criterion, Curve, Outcome, Value, at_most, within
-from ...estimators import rms
+from ...estimators import moments, rms
 from ...running import Running, moving
 
 SPEEDS = "L2(u)"
@@ -21,7 +21,7 @@ def turning(particles: float, *overrides: str) -> Outcome:
     of_disc = 2 - run.constant("turning")
     state = moving(run.advance(run.scenario.time_max))
     r = np.linalg.norm(state["position"], axis=1)
-    u = _moments(state["position"], state["velocity"]) / r
+    u = moments(state["position"], state["velocity"]) / r
     B = omega * inner**2 * outer**2 / (outer**2 - inner**2) * (2 * of_disc - 1)
     A = omega * of_disc - B / inner**2
     torque = 4 * np.pi * 1000 * nu * B
@@ -32,13 +32,9 @@ def turning(particles: float, *overrides: str) -> Outcome:
     return Outcome(values, [Curve("", r, u, points=True)], [Curve("exact", at, A * at + B / at)])
 
 
-def _moments(lever: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    return lever[:, 0] * vector[:, 1] - lever[:, 1] * vector[:, 0]
-
-
 def _torque(run: Running, body: str) -> float:
     walls = run.of_body(run.state(), body)
-    return float((_moments(walls["position"], walls["force"]) + walls["moment"]).sum())
+    return float((moments(walls["position"], walls["force"]) + walls["moment"]).sum())
 
 
 def _case(name: str, which: str, turns: int) -> Case:
