@@ -75,7 +75,8 @@ struct Inflow {
     double next_event() const {
         if (closed) return std::numeric_limits<double>::infinity();
         if (!open) return speed.start();
-        return min(speed.stop(), speed.time_at((static_cast<double>(released) + 0.5) * spacing));
+        const double layers = static_cast<double>(released) + 0.5 - kRounding;
+        return min(speed.stop(), speed.time_at(layers * spacing));
     }
 
     void serialise(Archive& archive) {
@@ -87,7 +88,7 @@ struct Inflow {
     /// Stands where it would at time t had it been there from the start; before it has opened.
     void begin_at(double t) {
         const double until = min(t, speed.stop());
-        while (advance(released, until) >= 0.0) ++released;
+        while (has_crossed(released, until)) ++released;
         open = closed = t >= speed.stop();
     }
 
@@ -95,6 +96,13 @@ struct Inflow {
     double advance(std::int64_t k, double t) const {
         return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
     }
+    bool has_crossed(std::int64_t k, double t) const {
+        return advance(k, t) >= -kRounding * spacing;
+    }
+
+    // Spacings. Of a layer that is due at the very time of a step, as steps and speeds of round
+    // numbers make it, rounding must not decide in which step it enters.
+    static constexpr double kRounding = 1e-9;
 
 private:
     std::int64_t counted_ = 0;  // whole layers, of requested_mass()
@@ -266,14 +274,14 @@ void OpenBoundaries<D>::add_layer(Particles<D>& particles, const Inflow<D>& infl
 
 template <int D>
 void OpenBoundaries<D>::release(Particles<D>& particles, Inflow<D>& inflow, double t) {
-    for (; inflow.advance(inflow.released, t) >= 0.0; ++inflow.released)
+    for (; inflow.has_crossed(inflow.released, t); ++inflow.released)
         add_layer(particles, inflow, inflow.released + inflow.buffer_layers, t);
     for (std::size_t p = 0; p < particles.size(); ++p) {
         Tag& tag = particles.tag[p];
         if (tag.motion != Motion::driven || tag.body != inflow.body) continue;
         const double beyond = dot(particles.position[p] - inflow.layer[0], inflow.direction);
         // Half the way to the next layer at most: a layer is set free as a whole.
-        if (beyond >= -(inflow.jitter + 1e-9) * inflow.spacing) {
+        if (beyond >= -(inflow.jitter + 2.0 * Inflow<D>::kRounding) * inflow.spacing) {
             tag.motion = Motion::free;
             ledger.inflow.add(particles, p);
         }
