@@ -23,6 +23,10 @@ struct RigidBodiesSeen {
     }
     /// omega = R I^-1 R^T L (eq. 51).
     DOSEKI_DEVICE_FN Vec3 spin_of(std::size_t k, const Vec3& L) const {
+        return spin_of(k, L, states[k].orientation);
+    }
+    DOSEKI_DEVICE_FN Vec3 spin_of(std::size_t k, const Vec3& L,
+                                  const Quaternion& orientation) const {
         if (bodies[k].fixed) return L;
         if (turns_alike[k]) {
             const double I = bodies[k].inertia(2, 2);
@@ -30,7 +34,7 @@ struct RigidBodiesSeen {
             for (int c = 0; c < 3; ++c) spin[c] = L[c] / I;
             return spin;
         }
-        const Mat<double, 3> R = states[k].orientation.matrix();
+        const Mat<double, 3> R = orientation.matrix();
         return rotated(R, inverse_inertia[k] * rotated_back(R, L));
     }
     DOSEKI_DEVICE_FN Vec3 spin(std::size_t k) const {
@@ -40,7 +44,22 @@ struct RigidBodiesSeen {
     DOSEKI_DEVICE_FN Vec3 spin(std::size_t k, double ahead) const {
         return spin_of(k, states[k].angular_momentum + ahead * states[k].flow_torque);
     }
-    /// The same of the centre.
+    /// By what it turns in dt while nothing turns it, Eq. (51a): with the spin that it has half the
+    /// way. With that of the start it would gain energy until it turns about its longest axis.
+    DOSEKI_DEVICE_FN Vec3 free_turn(std::size_t k, double dt) const {
+        constexpr int most = 12;  // each brings two digits at the steps of Eq. (52)
+        constexpr double rounding = 1e-15;
+        Vec3 turn = dt * spin(k);
+        if (bodies[k].fixed || turns_alike[k]) return turn;
+        for (int n = 0; n < most; ++n) {
+            const Quaternion half_way = states[k].orientation.turned(0.5 * turn);
+            const Vec3 before = turn;
+            turn = dt * spin_of(k, states[k].angular_momentum, half_way);
+            if (norm(turn - before) < rounding) break;
+        }
+        return turn;
+    }
+    /// Of the centre, when the fluid will have acted for `ahead` more.
     DOSEKI_DEVICE_FN Vec<double, D> velocity(std::size_t k, double ahead) const {
         return states[k].velocity + (ahead / bodies[k].mass) * states[k].flow_force;
     }
@@ -63,7 +82,7 @@ struct RigidBodiesMoved {
     DOSEKI_DEVICE_FN double drift(std::size_t k, double dt) const {
         if (!seen.is_free(k)) return 0.0;
         RigidBodyState<D>& state = states[k];
-        const Vec3 turn = dt * seen.spin(k);
+        const Vec3 turn = seen.free_turn(k, dt);
         const double distance = dt * norm(state.velocity);
         state.centre = state.centre + dt * state.velocity;
         if (seen.shape(k).is_ball()) {

@@ -70,3 +70,68 @@ def test_spin_follows_from_angular_momentum_with_a_full_inertia(tmp_path):
         }
     )
     np.testing.assert_allclose(simulation.grains()["spin"][-1:], spin, rtol=1e-12)
+
+
+FREE_BOX = """
+dim = 3
+scheme = "resolved"
+dp = 0.1
+time_max = 20
+time_out = 20
+gravity = [0, 0, 0]
+speed_max = 3
+[body.box]
+shape = "box"
+material = "basalt"
+min = [-0.3, -0.2, -0.1]
+max = [0.3, 0.2, 0.1]
+spin = {spin}
+rotate = {angle}
+rotate_axis = [1, 2, 3]
+"""
+
+
+def spins_of_euler(spin, moments, times):
+    """About the axes of a body that nothing touches, by Euler's equations (Runge-Kutta)."""
+
+    def rate(w):
+        return np.cross(moments * w, w) / moments
+
+    spins, w, steps = [], np.array(spin, float), 200
+    for length in np.diff(times, prepend=0.0):
+        h = length / steps
+        for _ in range(steps):
+            a = rate(w)
+            b = rate(w + h / 2 * a)
+            c = rate(w + h / 2 * b)
+            w = w + h / 6 * (a + 2 * b + 2 * c + rate(w + h * c))
+        spins.append(w)
+    return np.array(spins)
+
+
+def turn_about(axis, angle):
+    """Rodrigues' matrix."""
+    x, y, z = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+@pytest.mark.parametrize("angle", [0.0, 37.0])
+@pytest.mark.parametrize("spin", [[0.5, 5.0, 0.5], [3.0, 1.0, 2.0]])
+def test_what_turns_freely_keeps_its_energy(flows, spin, angle):
+    """Also about its middle axis, where it turns over and over (Dzhanibekov)."""
+    turn = turn_about((1, 2, 3), np.radians(angle))
+    simulation = flows(FREE_BOX.format(spin=(turn @ spin).tolist(), angle=angle))
+    edges = np.array([0.6, 0.4, 0.2])
+    moments = (edges @ edges - edges**2) / 12
+    times, energies, spins = np.arange(1, 41) * 0.5, [], []
+    for time in times:
+        simulation.advance(limit=time, pause=time, max_steps=10**6)
+        grains = simulation.grains()
+        w, x, y, z = grains["orientation"][0]
+        R = turn_about((x, y, z), 2 * np.arctan2(np.linalg.norm((x, y, z)), w))
+        own = R.T @ grains["spin"][0]
+        spins.append(own), energies.append(moments @ own**2)
+    exact = spins_of_euler(spin, moments, times)
+    np.testing.assert_allclose(energies, moments @ np.array(spin) ** 2, rtol=1e-4)
+    np.testing.assert_allclose(spins, exact, atol=0.05 * np.linalg.norm(spin))
