@@ -5,6 +5,7 @@
 
 #include "base/array.hpp"
 #include "base/error.hpp"
+#include "boundaries/counting_planes.hpp"
 #include "boundaries/speed_table.hpp"
 #include "model/particles.hpp"
 
@@ -155,6 +156,7 @@ class OpenBoundaries {
 public:
     Array<Inflow<D>> inflows;
     Array<Outflow<D>> outflows;
+    CountingPlanes<D> planes;
     Ledger<D> ledger;  // of the particles of this rank
     std::int64_t next_id = 0;
     bool adds = true;  // on one rank only; from there particles go to their owners
@@ -164,6 +166,9 @@ public:
         for (const Inflow<D>& inflow : inflows) next = min(next, inflow.next_event());
         return next;
     }
+
+    /// Another rank keeps the account.
+    void forget() { ledger = {}, planes.forget(); }
 
     /// Goes on from time t in place of the start: what inflows have brought by then is taken for
     /// entered, and not for what was there initially.
@@ -230,6 +235,7 @@ void OpenBoundaries<D>::serialise(Archive& archive) {
     archive("entered", ledger.inflow), archive("left", ledger.outflow);
     archive.optional("through_ground", ledger.through_ground);
     archive("next_id", next_id);
+    planes.serialise(archive);
     for (std::size_t k = 0; k < inflows.size(); ++k)
         archive.nested(std::to_string(k) + "_", inflows[k]);
 }
@@ -283,7 +289,7 @@ void OpenBoundaries<D>::release(Particles<D>& particles, Inflow<D>& inflow, doub
         // Half the way to the next layer at most: a layer is set free as a whole.
         if (beyond >= -(inflow.jitter + 2.0 * Inflow<D>::kRounding) * inflow.spacing) {
             tag.motion = Motion::free;
-            ledger.inflow.add(particles, p);
+            ledger.inflow.add(particles, p), planes.enters(particles, p);
         }
     }
 }
@@ -325,7 +331,8 @@ bool OpenBoundaries<D>::remove_outflow(const Particles<D>& particles, const Leav
         for (const Outflow<D>& outflow : outflows)
             if (particles.is_free(p) && outflow.contains(particles.position[p])) removed[p] = 1;
         if (leaves(p)) removed[p] = 1;
-        if (removed[p] && particles.is_counted(p)) ledger.outflow.add(particles, p);
+        if (removed[p] && particles.is_counted(p))
+            ledger.outflow.add(particles, p), planes.leaves(particles, p);
         any |= removed[p] != 0;
     }
     return any;

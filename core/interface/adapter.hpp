@@ -69,6 +69,9 @@ public:
     void add_outflow(const Corner& low, const Corner& high) override {
         sim_.open_boundaries.outflows.push_back(BoundaryTables<D>::outflow(low, high));
     }
+    void add_plane(const Corner& point, const Corner& normal) override {
+        sim_.open_boundaries.planes.push_back(BoundaryTables<D>::plane(point, normal));
+    }
     void move_body(const NamedValues& motion) override {
         sim_.moving_walls.add(BoundaryTables<D>::motion(motion));
     }
@@ -165,6 +168,13 @@ public:
         table["momentum_left"] = list_of(ledger.outflow.momentum);
         table["energy_entered"] = ledger.inflow.energy;
         table["energy_left"] = ledger.outflow.energy;
+        List passed, volume, supplied;
+        for (const CountingPlane<D>& plane : sim_.open_boundaries.planes) {
+            passed.push_back(plane.passed.mass), volume.push_back(plane.passed.volume);
+            supplied.push_back(plane.supplied);
+        }
+        table["plane_mass"] = passed, table["plane_volume"] = volume;
+        table["plane_supplied"] = supplied;
         const Account<D>& account = sim_.account();
         table["impulse"] = list_of(account.impulse);
         table["gravity_work"] = account.gravity_work, table["wall_work"] = account.wall_work;

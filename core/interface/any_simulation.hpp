@@ -48,6 +48,8 @@ public:
     virtual void add_elastic_body(const NamedValues& body) = 0;
     virtual void add_inflow(const NamedValues& inflow) = 0;
     virtual void add_outflow(const std::vector<double>& low, const std::vector<double>& high) = 0;
+    /// Counts what crosses a plane; `normal` points downstream.
+    virtual void add_plane(const std::vector<double>& point, const std::vector<double>& normal) = 0;
     virtual void move_body(const NamedValues& motion) = 0;
     /// A bed that is a surface, and what its wall particles are like.
     virtual void set_terrain(const NamedValues& field, const NamedValues& wall) = 0;

@@ -1,5 +1,7 @@
 #include "interface/boundaries.hpp"
 
+#include <cmath>
+
 #include "interface/reader.hpp"
 
 namespace doseki {
@@ -48,6 +50,19 @@ Outflow<D> BoundaryTables<D>::outflow(std::span<const double> low, std::span<con
     if (low.size() != D || high.size() != D)
         throw std::invalid_argument("box: corners of the wrong dimension");
     return {vectors_of<D>(low)[0], vectors_of<D>(high)[0]};
+}
+
+template <int D>
+CountingPlane<D> BoundaryTables<D>::plane(std::span<const double> point,
+                                          std::span<const double> normal) {
+    if (point.size() != D || normal.size() != D)
+        throw std::invalid_argument("plane: a point or normal of the wrong dimension");
+    CountingPlane<D> plane;
+    plane.point = vectors_of<D>(point)[0], plane.normal = vectors_of<D>(normal)[0];
+    const double length = std::sqrt(dot(plane.normal, plane.normal));
+    if (!(length > 0.0)) throw std::invalid_argument("plane: a normal of length 0");
+    plane.normal = (1.0 / length) * plane.normal;
+    return plane;
 }
 
 template <int D>

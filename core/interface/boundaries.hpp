@@ -15,6 +15,7 @@ struct BoundaryTables {
     /// `stop`.
     static Inflow<D> inflow(const NamedValues& table);
     static Outflow<D> outflow(std::span<const double> low, std::span<const double> high);
+    static CountingPlane<D> plane(std::span<const double> point, std::span<const double> normal);
     static WallMotion<D> motion(const NamedValues& table);
     /// `origin` and `cell` of a grid of `heights`, which has a row for each node along the first
     /// axis (3-D: along the second, each of them a row of nodes along the first), and where it is

@@ -119,7 +119,7 @@ struct Particles {
         wall.body_kind[p] = kind, wall.point[p] = static_cast<std::int32_t>(point);
     }
     /// One that is in the account of masses.
-    bool is_counted(std::size_t p) const { return is_free(p) || is_bound(p); }
+    DOSEKI_DEVICE_FN bool is_counted(std::size_t p) const { return is_free(p) || is_bound(p); }
 
 protected:
     /// Calls f(name, field) for the fields above.

@@ -39,6 +39,7 @@ public:
     void add_elastic_body(const nb::dict& body) { core_->add_elastic_body(to_table(body)); }
     void add_inflow(const nb::dict& inflow) { core_->add_inflow(to_table(inflow)); }
     void add_outflow(const Corner& low, const Corner& high) { core_->add_outflow(low, high); }
+    void add_plane(const Corner& point, const Corner& normal) { core_->add_plane(point, normal); }
     void move_body(const nb::dict& motion) { core_->move_body(to_table(motion)); }
     void set_terrain(const nb::dict& field, const nb::dict& wall) {
         core_->set_terrain(to_table(field), to_table(wall));
@@ -163,6 +164,7 @@ void bind_setup(Class& c) {
         .def("add_inflow", &P::add_inflow, nb::arg("inflow"),
              nb::sig("def add_inflow(self, inflow: doseki.solver.protocol.Table) -> None"))
         .def("add_outflow", &P::add_outflow, nb::arg("low"), nb::arg("high"))
+        .def("add_plane", &P::add_plane, nb::arg("point"), nb::arg("normal"))
         .def("move_body", &P::move_body, nb::arg("motion"),
              nb::sig("def move_body(self, motion: doseki.solver.protocol.Table) -> None"))
         .def("set_terrain", &P::set_terrain, nb::arg("field"), nb::arg("wall"),

@@ -56,11 +56,11 @@ public:
         phases().restart(true);
     }
 
-    /// Leaves a restored state to rank 0; the next sort sends particles to their owners.
+    /// Leaves a state to rank 0; the next sort sends particles to their owners.
     void leave_to_first_rank() {
         if (ranks().rank() == 0) return;
         resize(particles, 0);
-        open_boundaries.ledger = {}, account_ = {}, dissipation_ = 0.0, updates_ = 0;
+        open_boundaries.forget(), account_ = {}, dissipation_ = 0.0, updates_ = 0;
     }
 
     /// Sets the clock [s] of a run that goes on from another; after the inflows, before the start.
@@ -72,10 +72,7 @@ public:
     /// Sorts, builds lists and evaluates the right-hand side. Call once, after the particles are
     /// in.
     void start() {
-        if (ranks().rank() > 0) {  // was filled for the sake of bodies
-            resize(particles, 0);
-            open_boundaries.ledger = {};
-        }
+        leave_to_first_rank();  // others were filled for the sake of bodies
         for (std::size_t p = 0; p < particles.size(); ++p)
             if (particles.is_counted(p)) open_boundaries.ledger.initial += particles.mass[p];
         moving_walls.set_velocities(particles, time_);
@@ -282,6 +279,7 @@ void Simulation<Lists>::kick(double half_dt) {
 /// Returns the largest distance that a particle went.
 template <class Lists>
 double Simulation<Lists>::drift(double dt) {
+    open_boundaries.planes.look(particles);
     const double of_bodies = drift_bodies(dt);
     const auto timing = phases().measure(Phase::integrate);
     open_boundaries.impose_mean_velocity(particles, time_, dt);
@@ -308,6 +306,7 @@ double Simulation<Lists>::next_event() const {
 
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
+    open_boundaries.planes.count(particles);
     const bool worn = lists_.wear(particles, moved);
     const bool added = open_boundaries.inject(particles, time_);
     bool changed = moving_walls.remove(particles, before, time_, open_boundaries.removed) || added;
@@ -341,7 +340,7 @@ template <class Lists>
 void Simulation<Lists>::rebuild_lists(double moved) {
     const std::int64_t lost = lost_particle(particles, domain_);
     if (ranks().largest(static_cast<double>(lost)) >= 0.0) fail(FailureKind::outside, lost);
-    wrap_positions(particles, domain_);
+    open_boundaries.planes.wrap(particles, domain_);
     bodies.loads.lose_members();
     lists_.cut_space(particles, phases());
     drop_removed();

@@ -38,7 +38,7 @@ shape = "box"
 material = "aluminium"
 fixed = true
 wall = "free_slip"
-normal = ["= c", "= s"]
+normal = [1, 0]
 min = ["= -rows*dp", 0]
 max = [0, 0.8]
 rotate = "= angle"
@@ -49,7 +49,7 @@ shape = "box"
 material = "aluminium"
 fixed = true
 wall = "free_slip"
-normal = ["= -s", "= c"]
+normal = [0, 1]
 min = ["= -rows*dp", "= -rows*dp"]
 max = [0.8, 0]
 rotate = "= angle"

@@ -35,7 +35,7 @@ shape = "box"
 material = "aluminium"
 fixed = true
 wall = "free_slip"
-normal = ["= -s", "= c"]
+normal = [0, 1]
 min = ["= -4*dp", "= -4*dp"]
 max = ["= depth", 0]
 rotate = "= angle"
@@ -46,7 +46,7 @@ shape = "box"
 material = "aluminium"
 fixed = true
 wall = "free_slip"
-normal = ["= c", "= s"]
+normal = [1, 0]
 min = ["= -4*dp", 0]
 max = [0, "= height"]
 rotate = "= angle"

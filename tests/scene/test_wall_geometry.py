@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.record.particles import FIXED
+from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_bodies, build_scene
 from doseki.scene.wall_normals import wall_geometry
@@ -168,6 +169,27 @@ def test_a_given_normal_counts(geometry):
     x, n, depth = geometry("block", WATER + wall("block", (3, 0), (5, 1), "normal = [0, -3]"))
     np.testing.assert_allclose(n, np.broadcast_to([0, -1], x.shape))
     np.testing.assert_allclose(depth, x[:, 1], atol=1e-12)
+
+
+def test_a_given_normal_turns_with_its_body(geometry):
+    """By its own `rotate`, and as a turned copy."""
+    keys = "normal = [0, -3]\nrotate = 25\npivot = [3, 0]"
+    down = np.array([np.sin(np.radians(25)), -np.cos(np.radians(25))])
+    x, n, depth = geometry("block", WATER + wall("block", (3, 0), (5, 1), keys))
+    np.testing.assert_allclose(n, np.broadcast_to(down, x.shape), atol=1e-12)
+    np.testing.assert_allclose(depth, -((x - [3, 0]) @ down), atol=1e-12)
+    keys = keys.replace("25", "15") + "\narray = { turns = 2, about = [3, 0], angle = 10 }"
+    y, m, below = geometry("block.2", WATER + wall("block", (3, 0), (5, 1), keys))
+    for one, other in ((x, y), (n, m), (depth, below)):
+        np.testing.assert_allclose(one, other, atol=1e-12)
+
+
+@pytest.mark.parametrize("rotate", ["", "rotate = 30\npivot = [3, 0]"])
+def test_a_normal_of_no_face_is_refused(geometry, rotate):
+    """As one that was turned by hand is, beside `rotate`."""
+    keys = f"normal = [-0.5, 0.866]\n{rotate}"
+    with pytest.raises(UserError, match=r"body.block.*\[-0.5, 0.866\] is no normal of a face"):
+        geometry("block", WATER + wall("block", (3, 0), (5, 1), keys))
 
 
 def test_a_slab_of_a_flow_that_enters_faces_the_inflow(geometry):

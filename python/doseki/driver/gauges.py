@@ -10,6 +10,7 @@ import numpy as np
 
 from ..scenario.gauges.gauge import Gauge, Rows, Sampled, Setting, State
 from ..scenario.gauges.loads.load import Load
+from ..scenario.gauges.loads.overtopping import Overtopping
 from ..scenario.gauges.loads.panels import Panels
 from ..scenario.model import Scenario
 from ..solver.faces import faces_of
@@ -89,16 +90,29 @@ class MeterReader(GaugeReader):
         return cast(Panels, self.gauge).rows(simulation.time, row)
 
 
+@dataclass(frozen=True)
+class PlaneReader(GaugeReader):
+    """One that reads a plane of the core at which crossings are counted."""
+
+    plane: int  # its number
+
+    def read(self, simulation: Sampled) -> Rows:
+        """A sample; all ranks must take part."""
+        return cast(Overtopping, self.gauge).rows(simulation, self.plane)
+
+
 def build_gauges(scenario: Scenario, body_names: list[str]) -> list[GaugeReader]:
     """A reader for every gauge of the scenario."""
     setting = replace(scenario.setting(body_names), faces=faces_of(scenario))
     readers = list[GaugeReader]()
     for name, gauge in scenario.gauge.items():
         known = name, gauge, setting, scenario.interval_of(gauge)
-        metered = name in scenario.metered
-        readers.append(
-            MeterReader(*known, scenario.metered.index(name)) if metered else GaugeReader(*known)
-        )
+        if name in scenario.metered:
+            readers.append(MeterReader(*known, scenario.metered.index(name)))
+        elif name in scenario.crossed:
+            readers.append(PlaneReader(*known, scenario.crossed.index(name)))
+        else:
+            readers.append(GaugeReader(*known))
     return readers
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 
@@ -18,8 +19,8 @@ from ..solver.protocol import (
     Grains,
     Loads,
     Rates,
-    Totals,
 )
+from ..solver.totals import Totals
 from .balance import Balance
 from .engines import chosen_engine
 from .transport import Transport
@@ -27,10 +28,11 @@ from .transport import Transport
 # Of a checkpoint: what each rank has its own part of, added up over the ranks, if at all.
 SUMMED = (
     "mass_initial", "entered", "left", "account", "av_dissipation", "av_power", "scheme_work",
-    "through_ground", "updates",
+    "through_ground", "updates", "plane_mass", "plane_volume", "plane_supplied",
 )  # fmt: skip
 # Of a checkpoint: what only the rank that wrote it can go on with.
 LISTS = ("lists_moving", "lists_fixed", "lists_entries", "lists_position", "stress_record")
+NUMBER = re.compile(r"^\d+_")  # of one of several of a kind, as of planes
 SHORT = 1e-3  # s of work; too short to tell how it is shared
 
 
@@ -214,8 +216,9 @@ class RankedSimulation:
         particles = {name: state[name] for name in self.core.particle_arrays}
         whole = gathered(self.comm, particles)
         found = state | whole
-        for name in filter(state.__contains__, SUMMED):
-            found[name] = self.comm.allreduce(state[name])
+        for name in state:
+            if NUMBER.sub("", name) in SUMMED:
+                found[name] = self.comm.allreduce(state[name])
         for name in LISTS:
             if name in found:
                 found[name] = found[name][:0]

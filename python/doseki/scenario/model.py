@@ -20,6 +20,7 @@ from .bed import Bed
 from .earlier import Earlier
 from .gauges.gauge import Gauge, Setting
 from .gauges.loads.metered import Metered
+from .gauges.loads.overtopping import Overtopping
 from .kinematics import Kinematics
 from .materials import MATERIAL_PARAMETERS, Material, fracture_keys
 from .particle_files.reader import ParticleTable
@@ -247,14 +248,17 @@ class Scenario(ScenarioTable):
             named={name: self.names_of_bodies(name) for name in self.body},
             support=self.support,
             moving=frozenset(name for name, body in self.body.items() if body.prescribed_motion),
-            inflows=[inflow.position for inflow in self.inflow.values()],
-            outflows=[(outflow.min, outflow.max) for outflow in self.outflow.values()],
         )
 
     @property
     def metered(self) -> list[str]:
         """The gauges that have load meters of the core, in the order of these."""
         return [name for name, gauge in self.gauge.items() if isinstance(gauge, Metered)]
+
+    @property
+    def crossed(self) -> list[str]:
+        """The gauges whose planes the core counts at, in the order of these."""
+        return [name for name, gauge in self.gauge.items() if isinstance(gauge, Overtopping)]
 
     def ends_of(self, axis: int) -> tuple[float, float]:
         """Lower and upper end of the domain along an axis that has them, m."""

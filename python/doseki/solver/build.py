@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiled import available_instruction_sets, load_core
 from ..scenario.gauges.loads.metered import Metered
+from ..scenario.gauges.loads.overtopping import Overtopping
 from ..scenario.materials import Material, equation_of_state, fracture_keys
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
@@ -206,6 +207,9 @@ def empty_simulation(
     setting = scenario.setting(body_names)
     for name in scenario.metered:
         simulation.add_load_meter(cast(Metered, scenario.gauge[name]).meter(setting))
+    for name in scenario.crossed:
+        plane = cast(Overtopping, scenario.gauge[name])
+        simulation.add_plane(list(plane.position), list(plane.normal))
     if scenario.earlier is not None:
         simulation.begin_at(scenario.begins_at)
     return simulation

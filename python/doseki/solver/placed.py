@@ -67,6 +67,10 @@ class Placed:
         """See CoreSimulation."""
         self._core.add_outflow(self._near(low).tolist(), self._near(high).tolist())
 
+    def add_plane(self, point: Sequence[float], normal: Sequence[float]) -> None:
+        """See CoreSimulation."""
+        self._core.add_plane(self._near(point).tolist(), list(normal))
+
     def move_body(self, motion: Table) -> None:
         """See CoreSimulation."""
         self._core.move_body({**motion, "pivot": self._near(motion["pivot"]).tolist()})

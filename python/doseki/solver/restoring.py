@@ -57,7 +57,7 @@ NOT_NEGATIVE = {
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides
-OF_METER = re.compile(r"\d+_load_")  # arrays of a load meter
+OF_METER = re.compile(r"\d+_(load|plane)_")  # arrays of a load meter, or of a plane that counts
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
 LATER = {"through_ground"}  # older checkpoints lack these, and are taken to have none
 # Infinite where nothing limits a step.
@@ -92,7 +92,7 @@ def check_state(simulation: CoreSimulation, state: Arrays, materials: int, bodie
 
 
 def with_new_meters(simulation: CoreSimulation, state: Arrays) -> dict[str, np.ndarray]:
-    """A state of another run, with the load meters that an empty simulation has: from zero."""
+    """A state of another run, with the meters that an empty simulation has: from zero."""
     other = {name: values for name, values in state.items() if not OF_METER.match(name)}
     own = {name: v for name, v in simulation.checkpoint().items() if OF_METER.match(name)}
     return other | own

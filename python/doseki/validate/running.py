@@ -15,7 +15,7 @@ from ..errors import PhysicsError
 from ..record.particles import FREE
 from ..scenario.load import load_scenario
 from ..solver.build import build_simulation, load_core
-from ..solver.protocol import Totals
+from ..solver.totals import Totals
 
 FOREVER = 10**9  # steps
 CASES = Path(__file__).resolve().parent / "cases"

@@ -41,7 +41,7 @@ shape = "box"
 material = "aluminium"
 fixed = true
 wall = "free_slip"
-normal = { d2 = ["= s", "= -c"], d3 = ["= s", "= -c", 0] }
+normal = { d2 = [0, -1], d3 = [0, -1, 0] }
 min = { d2 = [-0.1, 0], d3 = [-0.1, 0, -0.1] }
 max = { d2 = [0.5, 0.04], d3 = [0.3, 0.04, 0.3] }
 rotate = "= turn"

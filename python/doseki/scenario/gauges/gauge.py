@@ -35,7 +35,7 @@ class Sampled(Protocol):
         """The rigid bodies, as solver.protocol.Grains has them; on all ranks."""
 
     def totals(self) -> Mapping[str, Any]:
-        """Sums over the particles, as solver.protocol.Totals has them; on all ranks."""
+        """Sums over the particles, as solver.totals.Totals has them; on all ranks."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,6 @@ class Setting:
     named: Mapping[str, Sequence[str]]  # bodies that a table stands for
     support: float = 0.0  # how far a particle acts, m
     moving: frozenset[str] = frozenset()  # fixed bodies with a motion, by table
-    inflows: Sequence[np.ndarray] = ()  # positions (dim,) of their sections, m
-    outflows: Sequence[tuple[np.ndarray, np.ndarray]] = ()  # corners of boxes, m
     faces: Mapping[str, FacesAt] = field(default_factory=dict)  # by table, where a body has faces
 
     def periods(self) -> Iterator[tuple[int, float, float]]:

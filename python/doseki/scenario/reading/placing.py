@@ -14,6 +14,7 @@ from ..values.expressions import is_expression
 POINTS = ("centre", "position", "vertices", "pivot", "about")
 CORNERS = ("min", "max")
 VECTORS = ("velocity", "normal", "direction")
+OF_SHAPE = ("normal",)  # of VECTORS, what `rotate` turns with the shape
 SPINS = ("spin", "angular_velocity")
 OF_SPACE = ("where", "clamped", "pressure", "displacement", "velocity")
 
@@ -50,8 +51,10 @@ def turned(part: Part, kind: type[Table], degrees: float, about: np.ndarray) -> 
     def go_round(x: np.ndarray) -> np.ndarray:
         return about + (x - about) @ turn.T
 
-    vectors = _mapped(_turned_spins(part, turn), VECTORS, lambda v: v @ turn.T)
-    if "rotate" not in kind.model_fields:
+    turns_itself = "rotate" in kind.model_fields
+    keys = tuple(key for key in VECTORS if not (turns_itself and key in OF_SHAPE))
+    vectors = _mapped(_turned_spins(part, turn), keys, lambda v: v @ turn.T)
+    if not turns_itself:
         if set(CORNERS) & set(kind.model_fields):
             raise ValueError("a box along the axes has no turned copies")
         return _mapped(vectors, POINTS, go_round)

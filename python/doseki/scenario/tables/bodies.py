@@ -29,6 +29,7 @@ from .motion import Motion
 from .terrain.release import Release
 from .wall import WallKeys
 
+TILT = 1e-6  # of a unit vector, by which rounding may turn it
 Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 
 
@@ -51,6 +52,18 @@ class Box(LatticeBody):
     def _wetted_whole(self) -> Box:
         if self.wetted_by is not None and self.where is not None:
             raise ValueError("wetted_by and where exclude each other: a wetted box is whole")
+        return self
+
+    @model_validator(mode="after")
+    def _normal_of_a_face(self) -> Box:
+        """A part that `where` leaves may have any face."""
+        normal = None if self.where is not None else self.normal
+        if normal is not None and np.sum(np.abs(normal) > TILT * np.abs(normal).max()) > 1:
+            raise ValueError(
+                f"normal = {normal.tolist()} is no normal of a face of the box, which lies along "
+                "the axes and is turned by rotate, normal and all; a plane at a slant is a box "
+                "with rotate"
+            )
         return self
 
     def filled_size(self, dp: float) -> np.ndarray:

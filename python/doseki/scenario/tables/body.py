@@ -91,7 +91,9 @@ class ShapedBody(WallKeys, BodyTable):
         None, description="initial velocity, m/s; expressions may use x, y, z"
     )
     normal: Annotated[Vector | None, OF_WALLS] = Field(
-        None, description="fixed, resolved scheme: direction into the fluid; default from the shape"
+        None,
+        description="fixed, resolved scheme: direction into the fluid before rotation, of a whole "
+        "box along an axis; default from the shape",
     )
     kinematics: Literal["rigid", "elastic", "breakable", "single"] | None = Field(
         None,
@@ -151,7 +153,11 @@ class TurnedBody(ShapedBody):
     """A body that can be rotated."""
 
     dp: Length | None = Field(None, description="particle spacing, m (default: the run's)")
-    rotate: Angle = Field(0.0, description="degrees, from the first axis towards the last")
+    rotate: Angle = Field(
+        0.0,
+        description="degrees, from the first axis towards the last; turns its shape and `normal`: "
+        "velocity, spin, motion and expressions of x, y, z are along the axes of the scene",
+    )
     rotate_axis: Annotated[Vector | None, Only(dim=3)] = Field(
         None, description="3-D: axis of a right-handed rotation"
     )

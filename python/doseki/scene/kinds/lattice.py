@@ -25,7 +25,7 @@ class Turned(Shaped[R], Generic[R]):
 
     @property
     def rotation(self) -> np.ndarray:
-        """The matrix (dim, dim) of its rotation."""
+        """See Shaped."""
         if self.table.rotate == 0:
             return np.eye(self.dim)
         return rotation_matrix(self.table.rotate, self.dim, self.table.rotate_axis)

@@ -184,11 +184,16 @@ class Shaped(Body[S], Generic[S]):
         vertex = group.centre[k] + curve.vertex @ matrices(group.orientation, 2)[k].T
         return ElasticSurface(vertex, cKDTree(rest).query(vertex)[1], curve.crease)
 
+    @property
+    def rotation(self) -> np.ndarray:
+        """The matrix (dim, dim) by which it is turned."""
+        return np.eye(self.dim)
+
     def wall(self, position: np.ndarray, particles: ParticleSet) -> tuple[np.ndarray, np.ndarray]:
         """See Body: along the given normal, by the gradient of `where`, or from the shape."""
         given = self.table.normal
         if given is not None:
-            return self.plane_wall(position, given / np.linalg.norm(given))
+            return self.plane_wall(position, self.rotation @ (given / np.linalg.norm(given)))
         if self.table.given("where") is not None:
             return self._carved_wall(position)
         return self.shape_wall(position, particles)

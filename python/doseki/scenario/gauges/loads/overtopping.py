@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
@@ -11,7 +10,7 @@ from pydantic import Field
 from ....record.particles import DRIVEN, FIXED
 from ....record.units import unit_in
 from ...values.types import Direction, Position
-from ..gauge import Gauge, Rows, Sampled, Setting
+from ..gauge import Gauge, Rows, Sampled
 
 
 class Overtopping(Gauge):
@@ -37,75 +36,27 @@ class Overtopping(Gauge):
         """What has come and passed counts from the first sample."""
         return ["mass_supplied", "mass_passed", "volume_passed"]
 
-    def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
-        """The ledger must tell what has come or gone on which side."""
-        for low, high in setting.outflows:
-            first, last = self._extent(low, high)
-            if first < 0 < last:
-                yield (
-                    "position",
-                    f" = {self.position.tolist()}: the plane cuts the outflow from {low.tolist()} "
-                    f"to {high.tolist()} m, so that what leaves there may not have crossed it",
-                )
-                return
-        sides_of = {"outflows": self._outflows(setting), "inflows": self._inflows(setting)}
-        for name, sides in sides_of.items():
-            if len(set(sides)) > 1:
-                yield (
-                    "position",
-                    f" = {self.position.tolist()}: {name} lie on both sides of the plane; what "
-                    "passes them is known for all of them together",
-                )
-
-    def read(self, run: Sampled, setting: Setting) -> Rows:
-        """The time, mass and volume upstream, the mass that inflows have brought there less what
-        has left there, and mass and volume downstream with what has left there.
+    def rows(self, run: Sampled, plane: int) -> Rows:
+        """The time, mass and volume upstream, the mass that has come there other than through the
+        plane less what has left there, and mass and volume that have gone through it; `plane` is
+        its number in the core, which sees every particle that crosses it.
         """
-        state = run.state()
+        state, totals = run.state(), run.totals()
         counts = (state["motion"] != FIXED) & (state["motion"] != DRIVEN)
-        mass, volume = state["mass"][counts], (state["mass"] / state["density"])[counts]
-        below = (state["position"][counts] - self.position) @ self._normal >= 0
-        totals = run.totals()
-        net = np.array([0.0, 0.0])  # mass and volume that came less what left, downstream
-        supplied = totals["mass_entered"] - totals["mass_left"]
-        if any(self._outflows(setting)):
-            net -= totals["mass_left"], totals["volume_left"]
-            supplied += totals["mass_left"]
-        if any(self._inflows(setting)):
-            net += totals["mass_entered"], totals["volume_entered"]
-            supplied -= totals["mass_entered"]
+        counts &= (state["position"] - self.position) @ self.normal < 0
+        mass = state["mass"][counts]
         return [
             [
                 run.time,
-                float(mass[~below].sum()),
-                float(volume[~below].sum()),
-                float(supplied),
-                float(mass[below].sum() - net[0]),
-                float(volume[below].sum() - net[1]),
+                float(mass.sum()),
+                float((mass / state["density"][counts]).sum()),
+                totals["plane_supplied"][plane],
+                totals["plane_mass"][plane],
+                totals["plane_volume"][plane],
             ]
         ]
 
     @property
-    def _normal(self) -> np.ndarray:
+    def normal(self) -> np.ndarray:
+        """Of length 1, (dim,)."""
         return np.asarray(self.direction / np.linalg.norm(self.direction))
-
-    def is_downstream(self, place: np.ndarray) -> bool:
-        """Whether a point (dim,) lies beyond the plane."""
-        return bool((place - self.position) @ self._normal >= 0)
-
-    def box_is_downstream(self, low: np.ndarray, high: np.ndarray) -> bool:
-        """Whether all of a box does."""
-        return self._extent(low, high)[0] >= 0
-
-    def _inflows(self, setting: Setting) -> list[bool]:
-        return [self.is_downstream(place) for place in setting.inflows]
-
-    def _outflows(self, setting: Setting) -> list[bool]:
-        return [self.box_is_downstream(low, high) for low, high in setting.outflows]
-
-    def _extent(self, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
-        """Least and greatest distance beyond the plane in a box whose corners may be infinite."""
-        along = self._normal != 0
-        ends = np.array([low - self.position, high - self.position])[:, along]
-        ends = ends * self._normal[along]
-        return float(ends.min(axis=0).sum()), float(ends.max(axis=0).sum())
