@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.record.particles import FIXED
 from doseki.errors import UserError
+from doseki.record.particles import FIXED
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_bodies, build_scene
 from doseki.scene.wall_normals import wall_geometry

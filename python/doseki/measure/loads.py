@@ -15,7 +15,7 @@ from ..scenario.gauges.gauge import Gauge
 from ..scenario.gauges.loads.approach import Approach
 from ..scenario.gauges.loads.load import PARTS, Load
 from . import design
-from .views import tables
+from .views import gauge_record, tables
 
 WINDOWS = (0.010, 0.100)  # s, of the running means
 RESOLVED = 1 + 1e-6  # of a window, the longest interval between samples that shows it
@@ -81,8 +81,7 @@ def body_loads(run: Run) -> list[BodyLoad]:
     gauges = tables(run, "gauge", Gauge)
     found = []
     for name, gauge in gauges.items():
-        record = run.gauges.get(name)
-        if isinstance(gauge, Load) and record is not None and len(record["time"]) > 1:
+        if isinstance(gauge, Load) and len((record := gauge_record(run, name))["time"]) > 1:
             approach = gauges.get(gauge.approach or "")
             section = approach if isinstance(approach, Approach) else None
             found.append(_body_load(run, name, gauge, record, section))
@@ -98,10 +97,10 @@ def _body_load(
     direction = _direction(record, dim, gravity, section)
     thrust = {part: columns(record, _prefix(part), dim) @ direction for part in ("total", *PARTS)}
     expected: list[Expected] = []
-    if section is not None and gauge.approach in run.gauges:
+    if section is not None:
         width = gauge.width or 1.0
         g = float(np.linalg.norm(gravity))
-        expected = expected_loads(run.gauges[str(gauge.approach)], width, g)
+        expected = expected_loads(gauge_record(run, str(gauge.approach)), width, g)
     return BodyLoad(
         name=name,
         direction=direction,

@@ -8,15 +8,17 @@ from ..record.reader import Run
 from ..scenario.gauges.gauge import Gauge
 from ..scenario.gauges.loads.overtopping import Overtopping
 from .loads import DamBalance, Peak
-from .views import tables
+from .views import gauge_record, tables
 
 
 def dam_balances(run: Run) -> list[DamBalance]:
     """One for each gauge of kind overtopping that has a sample."""
     found = []
     for name, gauge in tables(run, "gauge", Gauge).items():
-        record = run.gauges.get(name)
-        if not isinstance(gauge, Overtopping) or record is None or not len(record["time"]):
+        if not isinstance(gauge, Overtopping):
+            continue
+        record = gauge_record(run, name)
+        if not len(record["time"]):
             continue
         upstream = record["mass_upstream"]
         highest = int(np.argmax(upstream))

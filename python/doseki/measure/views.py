@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ..errors import UserError
-from ..record.reader import Run, Snapshot
+from ..record.reader import GaugeRecord, Run, Snapshot
 from ..scenario.materials import Material, MaterialError, complete_materials
 from ..scenario.reading.messages import to_user_error
 from ..scenario.table import Kinds, Part, Table
@@ -75,6 +75,13 @@ def _all_tables(run: Run, section: str, kind: type[T]) -> dict[str, T]:
 
 def _where(run: Run) -> Where:
     return Where([read_toml(run.folder.scenario)])
+
+
+def gauge_record(run: Run, name: str) -> GaugeRecord:
+    """What the gauge [gauge.NAME] of a run has read; raises UserError where its file is gone."""
+    if name not in run.gauges:
+        raise UserError(f"{run.folder.gauge(name)}: no such file; [gauge.{name}] writes it")
+    return run.gauges[name]
 
 
 def windows(run: Run) -> dict[str, View]:

@@ -116,12 +116,26 @@ class Snapshot(Mapping[str, np.ndarray]):
         return np.array(names, dtype=str)[index]
 
 
+class MissingColumnError(UserError, KeyError):
+    """A table of a record has no such column: the name is wrong, or the file is damaged."""
+
+    def __init__(self, path: str | Path, column: str, known: Sequence[str]) -> None:
+        said = (
+            f"is not a column{suggestion(column, known)}" if known else "is no column: it is empty"
+        )
+        super().__init__(f"{path}: {column!r} {said}")
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # a KeyError quotes it
+
+
 class History(Mapping[str, np.ndarray]):
     """The diagnostics of a run: a mapping from column name to the values over time."""
 
-    of = "the history"  # what its columns belong to
-
-    def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    def __init__(
+        self, columns: Sequence[str], rows: Sequence[Sequence[str]], path: str | Path
+    ) -> None:
+        self.path = path  # of its file
         self.columns = list(columns)
         self.units: dict[str, str] = history_units(self.columns)
         """Unit of each column; "" where it has none."""
@@ -130,8 +144,7 @@ class History(Mapping[str, np.ndarray]):
 
     def __getitem__(self, column: str) -> np.ndarray:
         if column not in self.columns:
-            known = suggestion(column, self.columns)
-            raise KeyError(f"{column!r} is not a column of {self.of}{known}")
+            raise MissingColumnError(self.path, column, self.columns)
         return self._table[:, self.columns.index(column)]
 
     def __iter__(self) -> Iterator[str]:
@@ -147,12 +160,12 @@ class GaugeRecord(History):
     A velocity profile has one row for each sample and height.
     """
 
-    of = "the gauge"
-
-    def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    def __init__(
+        self, columns: Sequence[str], rows: Sequence[Sequence[str]], path: str | Path
+    ) -> None:
         """`columns` as in the file, "name [unit]" each."""
         parts = [column.removesuffix("]").split(" [") for column in columns]
-        super().__init__([name for name, _ in parts], rows)
+        super().__init__([name for name, _ in parts], rows, path)
         self.units = dict(parts)
 
 
@@ -250,7 +263,7 @@ class Run(Sequence[Snapshot]):
 
     def _history(self, kind: type[H]) -> H:
         with readable(self.folder.history):
-            return kind(*read_history(self.folder.history))
+            return kind(*read_history(self.folder.history), self.folder.history)
 
     @cached_property
     def gauges(self) -> Mapping[str, GaugeRecord]:
@@ -261,7 +274,7 @@ class Run(Sequence[Snapshot]):
         records = {}
         for file in sorted(self.folder.gauges.glob("*.csv")):
             with readable(file):
-                records[file.stem] = kind(*read_history(file))
+                records[file.stem] = kind(*read_history(file), file)
         return records
 
     @cached_property

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...errors import UserError
-from ...measure.views import tables
+from ...measure.views import gauge_record, tables
 from ...record.reader import GaugeRecord, Run
 from ...scenario.gauges.gauge import Gauge
 from ...scenario.tables.figure import GaugeFigure
@@ -28,10 +28,10 @@ def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
     Raises UserError if the gauge has left no record.
     """
     gauges = tables(run, "gauge", Gauge)
-    if table.gauge not in run.gauges or table.gauge not in gauges:
-        known = suggestion(table.gauge, run.gauges)
+    if table.gauge not in gauges:
+        known = suggestion(table.gauge, gauges)
         raise UserError(f"{run.directory}: no gauge {table.gauge!r}{known}")
-    record, gauge = run.gauges[table.gauge], gauges[table.gauge]
+    record, gauge = gauge_record(run, table.gauge), gauges[table.gauge]
     shown = table.columns or gauge.curves(run.scenario["dim"])
     height = TALL if len(shown) <= MANY else LOW
     figure, grid = chart_grid(len(shown), 1, (7.0, height), table.title or table.gauge)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...errors import UserError
-from ...measure.views import tables
+from ...measure.views import gauge_record, tables
 from ...record.reader import GaugeRecord, Run
 from ...scenario.gauges.gauge import Gauge
 from ...scenario.gauges.loads.load import PARTS, Load
@@ -27,10 +27,10 @@ def draw_load(run: Run, name: str, table: LoadFigure) -> Figure:
     Raises UserError if the gauge has left no record.
     """
     gauges = tables(run, "gauge", Gauge)
-    if table.gauge not in run.gauges or table.gauge not in gauges:
-        known = suggestion(table.gauge, run.gauges)
+    if table.gauge not in gauges:
+        known = suggestion(table.gauge, gauges)
         raise UserError(f"{run.directory}: no gauge {table.gauge!r}{known}")
-    record, gauge = run.gauges[table.gauge], gauges[table.gauge]
+    record, gauge = gauge_record(run, table.gauge), gauges[table.gauge]
     if len(np.unique(record["time"])) < 2:
         raise NothingToDrawError(f"{table.gauge} has no two samples")
     title = table.title or table.gauge

@@ -22,13 +22,21 @@ DPI = 110
 def gauges(run: Run, album: Album) -> Markup | None:
     """The section of the gauges."""
     shown = {t.gauge for t in tables(run, "figure", Figure).values() if isinstance(t, GaugeFigure)}
-    wanted = [name for name in run.gauges if name not in shown and len(run.gauges[name]["time"])]
+    wanted = [name for name in run.gauges if name not in shown and _has_rows(run, name, album)]
     if len(wanted) > MOST:
         album.notes.append(f"{len(wanted) - MOST} of {len(wanted)} gauges are left out.")
     figures = list(_figures(run, wanted[:MOST], album))
     return (
         section("Gauges", tag("div", figures, class_="gallery"), name="gauges") if figures else None
     )
+
+
+def _has_rows(run: Run, name: str, album: Album) -> bool:
+    try:
+        return len(run.gauges[name]["time"]) > 0
+    except DosekiError as error:
+        album.notes.append(one_line(f"gauge {name} is left out: {error}."))
+        return False
 
 
 def _figures(run: Run, names: list[str], album: Album) -> Iterator[Markup]:
