@@ -52,11 +52,12 @@ def test_force_and_moment_are_those_of_the_particles(tmp_path):
     scenario = load_scenario(str(tmp_path / "tank.toml"))
     simulation, names = build_simulation(scenario)
     simulation.advance(limit=0.02, pause=0.02, max_steps=10**6)
-    ((time, fx, fy, moment),) = build_gauges(scenario, names)[0].read(simulation)
+    ((time, fx, fy, moment, *contact),) = build_gauges(scenario, names)[0].read(simulation)
     state = simulation.state()
     gate = state["body"] == names.index("gate")
     f, x = state["force"][gate], state["position"][gate] - [0.4, 0]
     assert time == 0.02
+    assert contact == [0, 0, 0]
     assert fx > 10
     np.testing.assert_allclose([fx, fy], f.sum(axis=0))
     own = state["moment"][gate].sum()  # of the forces about the particles

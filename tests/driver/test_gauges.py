@@ -10,7 +10,7 @@ import pytest
 from doseki.assess.warnings import GaugeOutside, findings
 from doseki.driver.gauges import build_gauges
 from doseki.errors import UserError
-from doseki.scenario.gauges.force import ForceGauge, force_and_moment
+from doseki.scenario.gauges.loads.force import Force, force_and_moment
 from doseki.scenario.gauges.near import kernel
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation
@@ -234,7 +234,7 @@ def test_force_and_moment():
 
 def test_force_sums_fixed_particles_of_its_bodies(scenario_of):
     scenario = scenario_of('kind = "pressure"\nposition = [0, 0]')
-    gauge = ForceGauge.model_validate(
+    gauge = Force.model_validate(
         {"kind": "force", "bodies": ["bed"], "about": [0.0, 0.0]}, context={"dim": 2}
     )
     state = {
@@ -244,7 +244,8 @@ def test_force_sums_fixed_particles_of_its_bodies(scenario_of):
     }  # fmt: skip
     simulation = SimpleNamespace(state=lambda: state, time=0.5)
     setting = scenario.setting(["bed", "water"])
-    assert gauge.read(simulation, setting) == [[0.5, 3.0, 0.0, -2.25]]
+    meter = {"contact_impulse": np.array([4.0, 5.0]), "contact_turning": np.array([0.0, 0.0, 6.0])}
+    assert gauge.rows(simulation, setting, meter) == [[0.5, 3.0, 0.0, -2.25, 4.0, 5.0, 6.0]]
 
 
 @pytest.mark.parametrize("dim", [2, 3])

@@ -230,3 +230,14 @@ def test_the_turning_is_what_grains_lose(tmp_path, rolling):
     assert abs(lost) > 0.2 * abs(turning(run[0].grains))
     assert given == pytest.approx(lost, rel=1e-9)
     np.testing.assert_array_equal(record["contact_moment"], record["moment"])
+
+
+def test_a_force_has_the_contacts_beside_it(tmp_path):
+    """Those that a load has, at the same times; the flow alone is what the particles say."""
+    force = '\n[gauge.force]\nkind = "force"\nbodies = ["sill"]\ninterval = 0.01\n'
+    gauges = run_of(tmp_path, RAIN + force, "time_max=0.12").gauges
+    columns = ("contact_force_x", "contact_force_y", "contact_moment")
+    for column in columns:
+        np.testing.assert_array_equal(gauges["force"][column], gauges["sill"][column])
+    assert np.isnan(gauges["force"]["contact_force_y"][0])
+    assert gauges["force"]["contact_force_y"][1:].min() < -10

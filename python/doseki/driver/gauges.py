@@ -9,6 +9,7 @@ from typing import Protocol, cast
 import numpy as np
 
 from ..scenario.gauges.gauge import Gauge, Rows, Sampled, Setting, State
+from ..scenario.gauges.loads.force import Force
 from ..scenario.gauges.loads.load import Load
 from ..scenario.gauges.loads.overtopping import Overtopping
 from ..scenario.gauges.loads.panels import Panels
@@ -87,6 +88,8 @@ class MeterReader(GaugeReader):
             far = np.full(setting.dim, np.inf)
             static = self.gauge.static(simulation, setting, (-far, far))
             return self.gauge.rows(simulation.time, row, static, self.gauge.sums(row, setting.dim))
+        if isinstance(self.gauge, Force):
+            return self.gauge.rows(simulation, setting, row)
         return cast(Panels, self.gauge).rows(simulation.time, row)
 
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from ..table import Kinds
 from .discharge import Discharge
-from .force import ForceGauge
 from .gauge import Gauge
 from .loads.approach import Approach
+from .loads.force import Force
 from .loads.load import Load
 from .loads.overtopping import Overtopping
 from .loads.panels import Panels
@@ -26,7 +26,7 @@ GAUGES = Kinds.by_word(
     VelocityProfile,
     PressureGauge,
     Discharge,
-    ForceGauge,
+    Force,
     MassCentre,
     Motion,
     Section,

@@ -8,23 +8,22 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from ....record.units import unit_in
 from ...table import Only
-from ...values.types import BodyNames, Length, Position, RefersTo
+from ...values.types import BodyNames, Length, RefersTo
 from ..gauge import Rows, Sampled, Setting
-from .metered import Metered, Row
+from .force_meter import ForceMeter, about_axes, force_columns, impulse_of
+from .metered import Row
 from .standing_water import standing_water
 from .surface import Box
 
 PARTS = ("static", "dynamic", "contact")
 
 
-class Load(Metered):
+class Load(ForceMeter):
     """Force and moment on fixed bodies, in parts: water at rest, its motion, and contacts."""
 
     kind: Literal["load"]
     bodies: BodyNames = Field(description="names of fixed bodies")
-    about: Position | None = Field(None, description="point of the moment, m; default: the origin")
     approach: Annotated[str | None, RefersTo("gauge")] = Field(
         None, description="gauge of kind approach in the flow that comes, for design formulas"
     )
@@ -36,12 +35,12 @@ class Load(Metered):
         """Name and unit of each column of its file."""
         named = {"time": "s"}
         for part in ("", *(f"{part}_" for part in PARTS), "peak_"):
-            named |= _vectors(part, dim)
+            named |= force_columns(part, dim)
         return named | {"peak_time": "s", "hit_speed": "m/s", "hit_radius": "m"}
 
     def curves(self, dim: int) -> list[str]:
         """The columns that a figure draws where none are named."""
-        return [name for name in _vectors("", dim) if name.startswith("force")]
+        return [name for name in force_columns("", dim) if name.startswith("force")]
 
     def objections(self, setting: Setting) -> Iterator[tuple[str, str]]:
         """A width is that of design formulas, which in 3-D need one."""
@@ -51,45 +50,22 @@ class Load(Metered):
         if self.approach is not None and self.width is None and setting.dim == 3:
             yield "width", " is missing: that of the structure, for the formulas of `approach`"
 
-    def meter(self, setting: Setting) -> dict[str, object]:
-        """The table of the core's add_load_meter."""
-        return super().meter(setting) | {"about": self._about(setting.dim).tolist()}
-
     def static(self, run: Sampled, setting: Setting, box: Box) -> np.ndarray:
         """Force and moment (m,) of the water that stands against the bodies, Eq. (96)."""
-        about = self._about(setting.dim)
+        about = self.pole(setting.dim)
         return np.concatenate(standing_water(run, setting, self.bodies, about, box))
 
     def sums(self, row: Row, dim: int) -> np.ndarray:
         """Impulses (2, m) of flow and contacts since the start, of force and moment."""
-        return np.array([_joined(row, name, dim) for name in ("flow", "contact")])
+        return np.array([impulse_of(row, name, dim) for name in ("flow", "contact")])
 
     def rows(self, time: float, row: Row, static: np.ndarray, means: np.ndarray) -> Rows:
         """A sample: `static` (m,) and the `means` (2, m) of flow and contacts since the last."""
         dim = len(row["peak_force"])
         flow, contact = means
         parts = [flow + contact, static, flow - static, contact]
-        peak = np.concatenate([row["peak_force"], _turn(row["peak_moment"], dim)])
+        peak = np.concatenate([row["peak_force"], about_axes(row["peak_moment"], dim)])
         seen = float(row["peak_time"])
         last = [*peak, seen] if seen >= 0 else [np.nan] * (len(peak) + 1)
         hit = [float(row["hit_speed"]), float(row["hit_radius"])]
         return [[time, *np.concatenate(parts).tolist(), *map(float, last), *hit]]
-
-    def _about(self, dim: int) -> np.ndarray:
-        return np.zeros(dim) if self.about is None else self.about
-
-
-def _vectors(prefix: str, dim: int) -> dict[str, str]:
-    """Columns of a force and its moment, with their units."""
-    axes = "xyz"[:dim]
-    moments = ["moment"] if dim == 2 else [f"moment_{axis}" for axis in axes]
-    forces = {f"{prefix}force_{axis}": unit_in("N", dim) for axis in axes}
-    return forces | {f"{prefix}{moment}": unit_in("N m", dim) for moment in moments}
-
-
-def _turn(moment: np.ndarray, dim: int) -> np.ndarray:
-    return moment[2:] if dim == 2 else moment
-
-
-def _joined(row: Row, name: str, dim: int) -> np.ndarray:
-    return np.concatenate([row[f"{name}_impulse"], _turn(row[f"{name}_turning"], dim)])
