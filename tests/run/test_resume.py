@@ -49,6 +49,37 @@ def test_stop_and_resume(channel_file, uninterrupted, tmp_path):
         assert summary[name] == expected[name], name
 
 
+POOL = """
+dim = 2
+dp = 0.02
+time_max = 0.02
+time_out = 0.01
+speed_max = 2
+gravity = [0, -9.81]
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.2, 0.2]
+[outflow.end]
+min = [-1, -1]
+max = [0.05, 1]
+"""
+
+
+def test_what_was_known_at_the_start_stays_with_the_run(tmp_path):
+    """Warnings about the scene, and the key by which its sound speed was given."""
+    (tmp_path / "pool.toml").write_text(POOL)
+    whole = run_channel(tmp_path / "pool.toml", tmp_path / "whole")
+    progress = stop_at(tmp_path / "run", 0.005)
+    run_channel(tmp_path / "pool.toml", tmp_path / "run", progress=progress)
+    summary, _ = resume_run(tmp_path / "run", (), RunOptions(threads=1))
+    assert summary["sound_speed_from"] == whole["sound_speed_from"] == {"speed_max": 2.0}
+    (warning,) = summary["warnings"]
+    assert "outflow.end" in warning
+    assert whole["warnings"] == [warning]
+
+
 @pytest.mark.minutes
 @pytest.mark.parametrize(
     ("dim", "precision", "h_mode"),

@@ -13,8 +13,8 @@ from ..record.writer import Recorder
 from ..scenario.model import Scenario
 from ..solver.protocol import Simulation
 from ..solver.rigid_bodies import grain_table
-from ..util.finding import Finding
-from .checkpoint import Checkpoint, CheckpointFolder, Position
+from ..util.finding import Finding, sentences
+from .checkpoint import Beginning, Checkpoint, CheckpointFolder, Position
 from .counts import Counts, build_counts
 from .gauges import GaugeReader, build_gauges
 from .identity import identity_of
@@ -96,6 +96,7 @@ class ActiveRun:
         readers = [gauge for gauge, _ in self.gauges]
         self.maps = RunningMaps(scenario, body_names, self.folder, ranks) if scenario.maps else None
         self.warnings = [*warnings, *(self.maps.findings if self.maps else ())]
+        self.beginning = Beginning(sentences(warnings), dict([scenario.sound_speed_key]))
         self.sensors = build_sensors(readers)
         self.means: dict[str, Means | LoadMeans | Counts] = {
             **build_means(readers),
@@ -153,7 +154,8 @@ class ActiveRun:
         position = Position(**vars(self.position) | now)
         names = self.scenario.material_names, self.body_names
         maps = self.maps.state if self.maps else {}
-        return Checkpoint(self.simulation.checkpoint(), position, *names, maps, self.identity)
+        said = maps, self.identity, self.beginning
+        return Checkpoint(self.simulation.checkpoint(), position, *names, *said)
 
     def write_checkpoint(self, clock: CheckpointClock | None = None) -> None:
         """Put the state safely on the disk, and `clock` forward if it was that which said so."""
@@ -201,6 +203,7 @@ class ActiveRun:
     def go_on_from(self, checkpoint: Checkpoint) -> None:
         """Stand in the record where a checkpoint did; raises ValueError for one of another run."""
         self.position = position = checkpoint.position
+        self.beginning = checkpoint.beginning
         if set(position.sensors) != set(self._with_memory):
             raise ValueError("the gauges with filter_hz or means are not those of its checkpoint")
         for name, each in self._with_memory.items():

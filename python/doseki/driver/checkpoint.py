@@ -46,6 +46,15 @@ class Position:
 
 
 @dataclass
+class Beginning:
+    """What was known of a run when it began, and its stored scenario does not say."""
+
+    warnings: list[str] = field(default_factory=list)  # about its scene
+    # The key by which the reduced sound speed was given, and its value.
+    sound_speed_from: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
 class Checkpoint:
     """A state of the core (its arrays by name) and what the run around it must remember."""
 
@@ -55,6 +64,7 @@ class Checkpoint:
     body_names: list[str]
     maps: dict[str, np.ndarray] = field(default_factory=dict)  # state of measure.maps.peaks
     scenario: str | None = None  # identity of its run; None: it does not say
+    beginning: Beginning = field(default_factory=Beginning)
 
     @property
     def time(self) -> float:
@@ -85,6 +95,7 @@ class Around:
     material_names: list[str]
     body_names: list[str]
     scenario: str | None = None
+    beginning: Beginning = field(default_factory=Beginning)
 
 
 AROUND: TypeAdapter[Around] = TypeAdapter(Around)
@@ -100,6 +111,7 @@ def to_bytes(checkpoint: Checkpoint) -> memoryview:
             "material_names": checkpoint.material_names,
             "body_names": checkpoint.body_names,
             "scenario": checkpoint.scenario,
+            "beginning": asdict(checkpoint.beginning),
         }
         # No attribute, which holds 64 kB at most.
         file[AROUND_STATE] = np.frombuffer(json.dumps(said).encode(), np.uint8)
@@ -142,7 +154,7 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
             raise UserError(f'{path}: "{name}" is missing, or not one number')
     names = around.material_names, around.body_names
     maps = {name.removeprefix(MAP): values for name, values in maps.items()}
-    return Checkpoint(state, around.position, *names, maps, around.scenario)
+    return Checkpoint(state, around.position, *names, maps, around.scenario, around.beginning)
 
 
 class CheckpointFolder:

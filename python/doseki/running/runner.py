@@ -85,7 +85,7 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "precision": scenario.precision,
         "dp": scenario.dp,
         "xi": scenario.xi,
-        "sound_speed_from": dict([scenario.sound_speed_key]),
+        "sound_speed_from": run.beginning.sound_speed_from,
         "ranks": run.ranks.count,
         "wall_seconds": run.wall_seconds,
         "particle_updates_per_second": simulation.updates / run.wall_seconds,
@@ -95,12 +95,17 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "ledger_residual": balance,
         "mass_through_ground": simulation.totals()["mass_through_ground"],
         "largest_overlap": simulation.grains()["worst_overlap"],
-        "warnings": sentences(run.warnings) + (run.maps.remarks if run.maps else []),
+        "warnings": [*run.beginning.warnings, *_of_maps(run)],
         **({"released": released} if released else {}),
         **({"filled": filled} if filled else {}),
         **({"runout": run.maps.runout} if run.maps else {}),
         **last,
     }
+
+
+def _of_maps(run: ActiveRun) -> list[str]:
+    """What is to be said of the maps of a run."""
+    return sentences(run.maps.findings) + run.maps.remarks if run.maps else []
 
 
 def run_scenario(
