@@ -60,8 +60,14 @@ def test_plot_names_the_file(run, text):
 
 
 def test_a_report_names_what_it_leaves_out(run):
-    file = run / "gauges" / "sill.csv"
+    """Of loads it leaves out nothing: there the file is named."""
+    file = run / "gauges" / "top.csv"
     file.write_text("")
     done = called("report", run)
     assert done.exit_code == 0, done.output
-    assert f"gauge sill is left out: {file}" in done.output.replace("\n", "")
+    assert f"gauge top is left out: {file}" in done.output.replace("\n", "")
+    file = run / "gauges" / "sill.csv"
+    file.write_text("")
+    done = called("report", run)
+    assert isinstance(done.exception, UserError), done.output
+    assert str(file) in str(done.exception)

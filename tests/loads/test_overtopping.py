@@ -154,8 +154,6 @@ def test_the_command_prints_and_writes_them(stream):
 @pytest.mark.parametrize(
     ("table", "said"),
     [
-        ('kind = "overtopping"\nposition = [2.5, 0]\ndirection = [1, 0]', "cuts the outflow"),
-        ('kind = "overtopping"\nposition = [1.5, 0.1]\ndirection = [1, 1]', "cuts the outflow"),
         (
             'kind = "load"\nbodies = ["dam"]\napproach = "crest"',
             'kind "overtopping", not "approach"',

@@ -202,6 +202,11 @@ HOSTILE = {
     "far.stl": (stl_of(1e30 * box().triangles), "beyond"),
     "many.ply": (b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999999\n"
                  b"property float x\nend_header\n", "more than it has"),
+    "cut.ply": (box().export(file_type="ply", encoding="ascii", vertex_normal=False)[:-20],
+                "has 18 lines after its header, which says 20"),
+    "again.stl": (stl_of(box().triangles[[*range(12), 4]]), "triangle 13 is triangle 5 again;"),
+    "turned.stl": (stl_of(np.roll(box().triangles[[*range(12), 4, 7]], 1, axis=1)),
+                   "triangle 13 is triangle 5 again, and 1 more"),
     "index.obj": (CORNERS + b"f 1 2 9\n", "obj: a face names a vertex that is not there"),
     "zero.obj": (CORNERS + b"f 1 2 3\nf 1//1 0//1 3//1\n", "line 5: a face names vertex 0"),
     "text.obj": (b"hello", "no triangle|cannot be read"),

@@ -41,12 +41,21 @@ def read_triangles(file: Path, scale: float) -> Triangles:
 
 
 def _check_counts(file: Path, kind: str, content: bytes) -> None:
-    """Refuse what says that it has more than fits, before room is made for it."""
-    if kind == "ply":
-        header = content[:HEADER_PLY].partition(b"end_header")[0]
-        for name, count in re.findall(rb"element\s+(\S+)\s+(\d+)", header):
-            if int(count[:20]) > len(content):
-                raise UserError(f"{file}: {name.decode('ascii', 'replace')[:30]}: more than it has")
+    """Refuse what says that it has more than fits, before room is made for it, and a text that has
+    been cut short, of which a reader takes what is there.
+    """
+    if kind != "ply":
+        return
+    header = content[:HEADER_PLY].partition(b"end_header")[0]
+    counts = re.findall(rb"element\s+(\S+)\s+(\d+)", header)
+    for name, count in counts:
+        if int(count[:20]) > len(content):
+            raise UserError(f"{file}: {name.decode('ascii', 'replace')[:30]}: more than it has")
+    if re.search(rb"^format\s+ascii\b", header, re.MULTILINE):
+        said = sum(int(count) for _, count in counts)
+        rows = content.partition(b"end_header")[2].splitlines()
+        if (found := sum(1 for row in rows if row.strip())) != said:
+            raise UserError(f"{file}: has {found} lines after its header, which says {said}")
 
 
 def _readable(file: Path, kind: str, content: bytes) -> bytes:
@@ -96,4 +105,22 @@ def _joined(file: Path, vertices: np.ndarray, faces: np.ndarray, scale: float) -
     kept = np.linalg.norm(found.areas, axis=1) > 1e-14 * size**2
     if not kept.any():
         raise ShapeError(f"{file}: its triangles have no area")
-    return Triangles(places, found.faces[kept])
+    faces = found.faces[kept]
+    _check_repeated(file, np.flatnonzero(kept), faces)
+    return Triangles(places, faces)
+
+
+def _check_repeated(file: Path, number: np.ndarray, faces: np.ndarray) -> None:
+    """Refuse a triangle that is there twice, turned the same way; `number` (n,) is where each of
+    `faces` stands in the file, from 0 on.
+    """
+    first = np.argmin(faces, axis=1)[:, None]
+    turned = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
+    _, of, index = np.unique(turned, axis=0, return_index=True, return_inverse=True)
+    again = np.flatnonzero(of[index.ravel()] != np.arange(len(faces)))
+    if len(again):
+        one, other = number[of[index.ravel()[again[0]]]] + 1, number[again[0]] + 1
+        others = f", and {len(again) - 1} more are twice" if len(again) > 1 else ""
+        raise ShapeError(
+            f"{file}: triangle {other} is triangle {one} again{others}; leave each out once"
+        )
