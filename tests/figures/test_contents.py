@@ -176,6 +176,7 @@ def test_energy_has_the_potential_energy_and_the_total(tmp_path):
         tmp_path / "run", SCENARIO.format(dim=2, zeros=""), ["a", "b", "c"], ["d"] * 3, 2
     )
     zero = dict.fromkeys(("bulk_energy", "shear_energy", "av_dissipation"), 0.0)
+    zero |= {"mass_entered": 0.0, "mass_left": 0.0}
     for t in times:
         # Gravity is (-1, -9): they fall along both axes.
         moved = -0.5 * np.array([1.0, g]) * t**2
@@ -195,6 +196,29 @@ def test_energy_has_the_potential_energy_and_the_total(tmp_path):
     np.testing.assert_allclose(total, total[0])
     # The fixed one does not count, however low it lies.
     assert potential_energy(run).max() < 600
+
+
+@pytest.mark.parametrize("scheme", ["resolved", "ueta2022"])
+def test_the_total_of_energy_is_a_balance_or_not_there(tmp_path, scheme):
+    """Water that falls, and of which a part leaves: only the account knows what that took along."""
+    text = SCENARIO.format(dim=2, zeros="").replace("dim = 2", f'dim = 2\nscheme = "{scheme}"')
+    recorder = Recorder(tmp_path / "run", text, MATERIALS, BODIES, 2)
+    for time in (0.0, 1.0, 2.0):
+        recorder.snapshot(flow_state(time), time=time, step=0, dt=0.1)
+        recorder.history(
+            history_row(time)
+            | dict.fromkeys(("bulk_energy", "shear_energy", "elastic_energy"), 0.0)
+            | dict.fromkeys(("fracture_work", "parting_work", "damping_work"), 0.0)
+            | {"kinetic_energy": 5 * time, "gravity_work": 12 * time, "energy_left": 4 * time}
+            | {"av_dissipation": 6 * time, "wall_work": time, "contact_work": 0.0}
+            | {"scheme_work": 0.0, "energy_entered": 2 * time, "mass_left": time}
+        )
+    lines = {line.get_label(): line for line in draw_energy(load(tmp_path / "run")).axes[0].lines}
+    assert ("total" in lines) == (scheme == "resolved")
+    if scheme == "resolved":
+        total = lines["total"].get_ydata()
+        np.testing.assert_allclose(total, total[0])
+        np.testing.assert_allclose(lines["less wall work"].get_ydata(), [0, -1, -2])
 
 
 def wave(time):

@@ -154,8 +154,8 @@ class ActiveRun:
         position = Position(**vars(self.position) | now)
         names = self.scenario.material_names, self.body_names
         maps = self.maps.state if self.maps else {}
-        said = maps, self.identity, self.beginning
-        return Checkpoint(self.simulation.checkpoint(), position, *names, *said)
+        state = self.simulation.checkpoint()
+        return Checkpoint(state, position, *names, maps, self.identity, self.beginning)
 
     def write_checkpoint(self, clock: CheckpointClock | None = None) -> None:
         """Put the state safely on the disk, and `clock` forward if it was that which said so."""

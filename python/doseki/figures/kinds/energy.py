@@ -6,17 +6,26 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...record.history import BODY_ENERGIES
-from ...record.reader import Run
+from ...record.reader import History, Run
 from ...record.units import unit_in
+from ...scenario.schemes import RESOLVED
 from ..layout import chart_grid, figure_legend
 from ..nothing import NothingToDrawError
 from .series import draw_curves
 
 ENERGIES = ("kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation")
+GRAVITY, TAKEN = "gravity_work", "energy_left"
+GIVEN = ("wall_work", "contact_work", "scheme_work", "energy_entered")
+PASSED = ("mass_entered", "mass_left")
 
 
 def draw_energy(run: Run) -> Figure:
-    """Energies of the history; potential energy and total at the times of the snapshots.
+    """Energies of the history with the potential energy, and their total where it is a balance.
+
+    Where the run keeps an account of works, the total has what was given taken off and what was
+    taken added, so that it stays what it was at the start; the potential energy is that of the
+    start less the work of gravity, in which what leaves counts as it left.  Without an account
+    there is no total where mass comes or goes.
 
     Raises NothingToDrawError for a history without energies.
     """
@@ -24,17 +33,54 @@ def draw_energy(run: Run) -> Figure:
         raise NothingToDrawError("the history has no energies")
     figure, grid = chart_grid(1, 1, (7.0, 3.2), "Energy")
     axes, history = grid[0, 0], run.history
-    names = [*ENERGIES, *(name for name in BODY_ENERGIES if name in history)]
-    stored = {name: history[name] for name in names if history[name].any()}
-    draw_curves(axes, history["time"], {name.replace("_", " "): e for name, e in stored.items()})
     potential = potential_energy(run)
-    known = [np.interp(run.times, history["time"], energy) for energy in stored.values()]
-    of_snapshots = {"potential energy": potential} if potential.any() else {}
-    draw_curves(axes, run.times, of_snapshots)
-    axes.plot(run.times, sum(known, potential), "k-", label="total", linewidth=2.0, alpha=0.6)
+    accounted = _has_account(run) and potential.size > 0
+    if accounted:
+        times, curves = history["time"], _accounted(history, potential[0])
+    else:
+        times, curves = run.times, _recorded(run, potential)
+    draw_curves(axes, times, curves)
+    if accounted or not _is_open(history):
+        total = np.sum(list(curves.values()), axis=0)
+        axes.plot(times, total, "k-", label="total", linewidth=2.0, alpha=0.6)
     axes.set(xlabel="time (s)", ylabel=f"energy ({unit_in('J', run.scenario['dim'])})")
     figure_legend(figure, grid.flat)
     return figure
+
+
+def _has_account(run: Run) -> bool:
+    """Whether all that its particles got and lost is in the history."""
+    resolved = run.scenario.get("scheme") == RESOLVED and not run.scenario.get("attraction")
+    return resolved and GRAVITY in run.history
+
+
+def _accounted(history: History, potential: float) -> dict[str, np.ndarray]:
+    """What is there or was taken, less what was given; `potential` is that at the start, J."""
+    since = history[GRAVITY] - history[GRAVITY][0]
+    curves = {"potential energy": potential - since} if potential or since.any() else {}
+    for name in (*ENERGIES, *BODY_ENERGIES, TAKEN, *GIVEN):
+        values = history[name] if name in history else np.zeros(0)
+        if values.any():
+            said = name.replace("_", " ")
+            curves[f"less {said}" if name in GIVEN else said] = -values if name in GIVEN else values
+    return curves
+
+
+def _recorded(run: Run, potential: np.ndarray) -> dict[str, np.ndarray]:
+    """What is there, at the times of the snapshots."""
+    history = run.history
+    names = [name for name in (*ENERGIES, *BODY_ENERGIES) if name in history]
+    found = {
+        name.replace("_", " "): np.interp(run.times, history["time"], history[name])
+        for name in names
+        if history[name].any()
+    }
+    return found | ({"potential energy": potential} if potential.any() else {})
+
+
+def _is_open(history: History) -> bool:
+    """Whether mass has come or gone."""
+    return any(history[name].any() for name in PASSED if name in history)
 
 
 def potential_energy(run: Run) -> np.ndarray:
