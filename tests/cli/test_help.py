@@ -40,7 +40,7 @@ def test_help_loses_none_of_its_words(name):
     ("name", "words"),
     [
         ("run", ["(all cores)", "(runs/NAME)"]),
-        ("census", ["(0)", "(outlet, else everywhere)"]),
+        ("census", ["(0, where that is in the scene)", "(outlet, else everywhere)"]),
         ("validate", ["(all)", "(runs/validation)"]),
         ("bench", ["(1, 2, all)", "(ueta2022)"]),
         ("check", ["doseki list", "doseki explain"]),

@@ -33,6 +33,8 @@ from doseki.measure.census import (
 from doseki.measure.views import View, fluid_names
 from doseki.record.reader import load
 
+from ..synthetic_runs import flow_state
+
 D = 0.01  # m, of the grains
 FAST, SLOW = 1.0, 0.01  # m/s
 
@@ -280,6 +282,24 @@ def test_the_command_writes_tables_and_figures(flow_folder, capsys):
         np.testing.assert_allclose(file["passed"]["x = 0"][:], census.passed(0.0))
         assert file["grains"]["class"][0].decode() in CLASSES
     assert {"classes.png", "speeds.png", "passed.png"} <= {path.name for path in folder.iterdir()}
+
+
+def test_zero_is_no_section_of_a_map(tmp_path, record_run, capsys):
+    """Where the scene has no x = 0, nothing is said to have passed it, but how to say where."""
+
+    def on_a_map(time):
+        state = flow_state(time)
+        return state | {"position": state["position"] + [500000, 0]}
+
+    record_run(tmp_path / "run", state_at=on_a_map)
+    with pytest.raises(SystemExit) as done:
+        main(["census", str(tmp_path / "run")])
+    told = capsys.readouterr().out
+    assert done.value.code == 0
+    assert "passed x" not in told
+    assert "x = 0 is not in the scene, which goes from 49999" in told
+    assert "say where with --section X" in told
+    assert not (tmp_path / "run" / "census" / "passed.csv").exists()
 
 
 @pytest.mark.parametrize(

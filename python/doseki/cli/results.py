@@ -89,7 +89,7 @@ def census(
             parser=number(),
             metavar="X",
             help="Where passing is counted, m; repeatable.",
-            show_default="0",
+            show_default="0, where that is in the scene",
         ),
     ] = None,
     sample: Annotated[
@@ -104,7 +104,7 @@ def census(
     """Take a census of the grains of a run into DIR/census: tables and figures."""
     from ..figures.census_output import CensusOptions, write_census
 
-    chosen = tuple(sections or [0.0])
+    chosen = tuple(sections) if sections else None
     options = CensusOptions(window, start, end, chosen, sample, draws, bin_width)
     for line in write_census(directory, options):
         typer.echo(line)

@@ -38,7 +38,8 @@ class CensusOptions:
     window: str | None = None  # of the speeds; default: "outlet" if there is one, else everywhere
     start: float = -math.inf  # s, of the speeds
     end: float = math.inf
-    sections: tuple[float, ...] = (0.0,)  # m, at which passing mass is summed
+    # m, at which passing mass is summed; default: zero, where that is in the scene
+    sections: tuple[float, ...] | None = None
     sample: int = 30
     draws: int = 2000
     bin_width: float = 0.1  # m/s
@@ -67,8 +68,10 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
         "grains": grain_table(census),
         "classes": class_table(census),
         "speeds": speed_table(drawn),
-        "passed": passed_table(census, options.sections),
     }
+    sections = _sections(run, census) if options.sections is None else options.sections
+    if sections:
+        tables["passed"] = passed_table(census, sections)
     outline = _outline(census, known)
     if outline is not None:
         tables["deposit"] = {
@@ -81,12 +84,31 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
     write_tables(folder, tables)
     where = f"window {name}" if name else "everywhere"
     with plain_text() as complaints:
-        _write_figures(folder, run, census, drawn, where, outline, options.sections)
+        _write_figures(folder, run, census, drawn, where, outline, sections)
         if breaks:
             figure = draw_grading(gradings(run))
             write_whole(folder / "grading.png", partial(figure.savefig, format="png"))
     files = f"In {folder}: {', '.join(tables)} (.csv, census.h5), figures"
-    return [*census_lines(census, drawn, where, options.sections), files, *complaints]
+    lines = census_lines(census, drawn, where, sections)
+    if not sections:
+        low, high = _ends(run, census)
+        lines.append(
+            f"no passing is counted: x = 0 is not in the scene, which goes from {low:.8g} to "
+            f"{high:.8g} m; say where with --section X"
+        )
+    return [*lines, files, *complaints]
+
+
+def _sections(run: Run, census: Census) -> tuple[float, ...]:
+    """Zero, unless nothing is there, as on a map."""
+    low, high = _ends(run, census)
+    return (0.0,) if low <= 0 <= high else ()
+
+
+def _ends(run: Run, census: Census) -> tuple[float, float]:
+    """Between which x anything was, m: particles at the start, and grains at any time."""
+    x = np.concatenate([run[0]["position"][:, 0], census.table["position"][:, 0]])
+    return float(x.min()), float(x.max())
 
 
 def _outline(census: Census, known: Mapping[str, View]) -> np.ndarray | None:
@@ -161,8 +183,9 @@ def _write_figures(
     figures = {
         "classes": draw_classes(census),
         "speeds": draw_speed_histogram(drawn, where),
-        "passed": draw_passed(census, sections, run.scenario["dim"]),
     }
+    if sections:
+        figures["passed"] = draw_passed(census, sections, run.scenario["dim"])
     if outline is not None and len(outline):
         figures["deposit"] = draw_deposit(outline, run.scenario["dim"])
     for name, figure in figures.items():
