@@ -5,6 +5,20 @@ from __future__ import annotations
 from doseki.assess.summary import duration_text, summary_text
 from doseki.record.reader import load
 
+from ..synthetic_runs import flow_state
+
+
+def test_a_front_of_no_fluid_is_none(tmp_path, record_run):
+    """All of it has left."""
+
+    def draining(time):
+        state = flow_state(time)
+        stays = (state["material"] != 0) | (time < 2)
+        return {name: values[stays] for name, values in state.items()}
+
+    record_run(tmp_path / "run", state_at=draining)
+    assert "front             no fluid is left at 2 s" in summary_text(load(tmp_path / "run"))
+
 
 def test_summary_of_a_flow(flow_folder):
     text = summary_text(load(flow_folder))

@@ -115,7 +115,10 @@ REFUSED = {
     "degrees": ({"crs": "EPSG:4326"}, "gdalwarp -t_srs"),
     "geocentric": ({"crs": "EPSG:4978"}, "geocentric"),
     "a map in feet": ({"crs": "EPSG:2227"}, "foot"),
-    "heights in feet": ({"after": feet}, '"ft"'),
+    "heights in feet": (
+        {"after": feet},
+        'heights are in "ft", and metres are needed; multiply them',
+    ),
     "nowhere": ({"place": (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)}, "where on the map"),
     "complex numbers": ({"dtype": "complex64"}, "complex64"),
     "infinite": ({"values": np.array([[1.0, np.inf]])}, "infinite"),

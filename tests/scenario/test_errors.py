@@ -140,7 +140,8 @@ def test_inflows(write, error_of, old, new, part):
         (b"extends = 3", "extends = 3 must be the name or path"),
         (b"extends = 'flum'", 'no scenario named "flum"; did you mean flume?'),
         (b"extends = 'case.toml'", "leads back to the file itself"),
-        (b"extends = 'nowhere.toml'", "no such file"),
+        (b"extends = 'nowhere.toml'", 'case.toml: extends = "nowhere.toml": '),
+        (b"dim = 2\ndp = 1\nthreads = 2", "an option of the command, --threads"),
     ],
 )
 def test_files(tmp_path, error_of, content, part):

@@ -99,6 +99,19 @@ def test_bodies_in_an_outflow_are_told(told):
     assert any(each.startswith("outflow.end: all of discs starts inside it") for each in said)
 
 
+@pytest.mark.parametrize(("left", "is_far"), [(100, True), (2, False)])
+def test_an_outflow_far_from_everything_is_told(told, left, is_far):
+    said = told(OUTFLOW.format(left=left))
+    assert [each.startswith("outflow.end: lies ") for each in said] == [True] * is_far
+
+
+def test_a_figure_of_times_after_the_end_is_told(told):
+    figure = '[figure.late]\nkind = "snapshot"\ntimes = [0.5, {}]\n'
+    (said,) = told(figure.format(4))
+    assert said.startswith("figure.late.times: not before 4 s, and the run ends at")
+    assert told(figure.format(1)) == []
+
+
 @pytest.mark.parametrize(
     ("tables", "place"),
     [

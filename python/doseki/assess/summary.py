@@ -133,7 +133,9 @@ def _results(run: Run) -> Iterator[Row]:
     flow = measure_flow(run)
     if flow is None:
         return
-    yield _line("front", f"x = {_place(flow.front[-1])} m at {flow.times[-1]:.4g} s")
+    front = flow.front[-1]
+    place = f"x = {_place(front)} m" if math.isfinite(front) else "no fluid is left"
+    yield _line("front", f"{place} at {flow.times[-1]:.4g} s")
     for name, entry in flow.windows.items():
         yield _line(f"window {name}", _window(run, flow, entry))
 

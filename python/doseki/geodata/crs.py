@@ -69,9 +69,12 @@ def check_map_coordinates(path: object, crs: str) -> None:
 
 
 def _check_units(path: object, wkt: str) -> None:
-    if unit := FEET.search(wkt):
+    of_map = _horizontal(wkt)
+    if unit := FEET.search(of_map):
         raise GeodataError(not_metres(path, unit[1]))
-    units = LENGTH_UNIT.findall(_horizontal(wkt))
+    if unit := FEET.search(wkt):
+        raise GeodataError(heights_not_metres(path, unit[1]))
+    units = LENGTH_UNIT.findall(of_map)
     if units and float(units[-1][1]) != 1.0:
         raise GeodataError(not_metres(path, units[-1][0]))
 
@@ -186,7 +189,16 @@ def _length(start: tuple[float, float], end: tuple[float, float]) -> float:
 
 def not_metres(path: object, unit: str) -> str:
     """What is said of a map in feet."""
-    return f'{path}: the unit is "{unit}", and metres are needed; convert it with gdalwarp -t_srs'
+    return f'{path}: the unit is "{unit}", and metres are needed; {CONVERT}'
+
+
+def heights_not_metres(path: object, unit: str) -> str:
+    """What is said of heights in feet, which no change of the map's system converts."""
+    return (
+        f'{path}: heights are in "{unit}", and metres are needed; multiply them by its length, as '
+        'in gdal_calc.py -A IN --calc="A*0.3048" --outfile OUT, and say so with '
+        "gdal_edit.py -a_srs EPSG:CODE -units m OUT"
+    )
 
 
 def same_crs(one: str | None, other: str | None) -> bool | None:

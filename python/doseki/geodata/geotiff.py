@@ -13,7 +13,7 @@ from ..util.files import write_whole
 from ..util.foreign import readable
 from ..util.memory import available_bytes
 from .ascii_grid import SQUARE, not_square
-from .crs import check_map_coordinates, not_metres
+from .crs import check_map_coordinates, heights_not_metres
 from .errors import GeodataError, needed
 from .grid import Raster, means_no_data
 
@@ -66,7 +66,7 @@ def _check(path: Path, dataset: Any) -> None:
         check_map_coordinates(path, dataset.crs.to_wkt())
     unit = dataset.units[0] or ""
     if unit.lower() not in METRES:
-        raise GeodataError(not_metres(path, unit))
+        raise GeodataError(heights_not_metres(path, unit))
     if np.dtype(dataset.dtypes[0]).kind not in "iuf":
         raise GeodataError(f"{path}: holds {dataset.dtypes[0]}, and numbers are needed")
     if dataset.width * dataset.height * BYTES > available_bytes():

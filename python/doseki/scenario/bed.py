@@ -186,7 +186,10 @@ def _bed_of_profile(path: Path, terrain: Terrain, dp: float, where: Where) -> Be
     for key in ("section", "window"):
         if getattr(terrain, key) is not None:
             raise where.error(("terrain", key), f"terrain.{key}: is for grids, not for a profile")
-    columns = read_csv_columns(path)
+    try:
+        columns = read_csv_columns(path)
+    except UserError as error:
+        raise _error(where, str(error)) from None
     try:
         x, z = (np.array(numbers_in(columns, name, LENGTH, PROFILE_EXAMPLE)) for name in "xz")
     except ValueError as error:

@@ -22,7 +22,7 @@ from .carried import (
 )
 from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps
-from .checks.outflows import outflow_findings
+from .checks.outflows import far_findings, outflow_findings
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
 from .checks.placing import placing_findings
@@ -115,6 +115,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     warnings += list(terrain_findings(scenario, bodies))
     warnings += list(placing_findings(scenario, particles, names))
     warnings += [*outflow_findings(scenario, particles, names, groups), *late_findings(scenario)]
+    warnings += far_findings(scenario, particles, names)
     warnings += find_overlaps(particles, names, scenario.carried)
     if carried is None:
         return Scene(particles, names, rigid, warnings)

@@ -97,6 +97,8 @@ def _check_header(path: Path, names: list[str]) -> None:
         raise UserError(f"{path}: the file is empty; expected a CSV header such as x,y,vx,vy,...")
     if len(names) > MAX_COLUMNS:
         raise UserError(f"{path}: {len(names)} columns; at most {MAX_COLUMNS} are allowed")
+    if any("\0" in name for name in names):
+        raise UserError(f"{path}: a NUL byte in the header, which no text has")
     repeated = [name for name in names if names.count(name) > 1]
     if repeated:
         raise UserError(f'{path}: the column "{repeated[0]}" appears twice')
@@ -110,6 +112,8 @@ def _checked_rows(
             raise UserError(
                 f"{path}, line {lines.number}: {len(row)} fields; the header has {width} columns"
             )
+        if any("\0" in field for field in row):
+            raise UserError(f"{path}, line {lines.number}: a NUL byte, which no text has")
         if max(map(len, row)) > MAX_FIELD:
             raise UserError(f"{path}, line {lines.number}: a field is too long")
         yield row

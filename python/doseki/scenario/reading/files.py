@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import UserError
+from ...util.foreign import check_regular_file
 from ...util.spelling import suggestion
 from ..tables.sections import ALIASES, EXCLUSIVE
 from ..values.toml_source import Source, TomlSource, Where, read_toml
@@ -37,13 +38,22 @@ def read_with_bases(first: Source) -> list[Source]:
         if not isinstance(base, str):
             name = last.name
             raise UserError(f"{name}: extends = {base!r} must be the name or path of a scenario")
-        path = find_scenario(base)
-        source = read_toml(path if path.is_absolute() else last.folder / path)
+        source = read_toml(_extended(last, base))
         if any(source.path.samefile(known) for known in files):
             raise UserError(f'{last.name}: extends = "{base}" leads back to the file itself')
         sources.append(source)
         files.append(source.path)
     return sources
+
+
+def _extended(source: Source, base: str) -> Path:
+    """The file that a source extends; raises UserError, which names both, where it is not there."""
+    try:
+        path = source.folder / find_scenario(base)
+        check_regular_file(path)
+    except UserError as error:
+        raise UserError(f'{source.name}: extends = "{base}": {error}') from None
+    return path
 
 
 def merged_table(sources: Sequence[Source], where: Where) -> dict[str, Any]:

@@ -24,6 +24,8 @@ EXPECTED = {
     "model_type": "a table",
     "model_attributes_type": "a table",
 }
+# Of commands that run a scenario, which some write into it.
+OPTIONS = ("threads", "ranks", "device", "output", "overwrite")
 RANGES = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
 
 
@@ -124,6 +126,8 @@ def _nearest_key(keys: KeyPath, table: dict[str, Any], kind_at: KindAt) -> str:
     if kind is None:
         return ""
     known = [field.alias or name for name, field in kind.model_fields.items()]
+    if len(keys) == 1 and keys[0] in OPTIONS:
+        return f": it is an option of the command, --{keys[0]}"
     return suggestion(str(keys[-1]), known)
 
 

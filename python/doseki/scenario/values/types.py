@@ -108,7 +108,9 @@ def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             if not is_number or not 0 <= value <= LARGEST:
                 shown = repr(value)[:60]
-                raise ValueError(f"row {number}: {name} = {shown}; allowed: numbers from 0 on")
+                raise ValueError(
+                    f"row {number}: {name} = {shown}; allowed: numbers from 0 to {LARGEST:g}"
+                )
         if number > 1 and t < rows[number - 2][0]:
             before = rows[number - 2][0]
             raise ValueError(f"row {number}: t = {t:g} s goes back; allowed: {before:g} s or later")
@@ -135,7 +137,9 @@ def checked_surge(rows: Sequence[Sequence[Any]]) -> list[list[float]]:
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             if not is_number or not 0 <= value <= LARGEST:
                 shown = repr(value)[:60]
-                raise ValueError(f"row {number}: {name} = {shown}; allowed: numbers from 0 on")
+                raise ValueError(
+                    f"row {number}: {name} = {shown}; allowed: numbers from 0 to {LARGEST:g}"
+                )
     checked_hydrograph([(t, thickness * velocity) for t, thickness, velocity in rows])
     return [[float(value) for value in row] for row in rows]
 

@@ -9,6 +9,8 @@ from ...scenario.model import Scenario
 from ...scenario.tables.inflow import Inflow
 from ...util.finding import Finding
 
+ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class TooLate(Finding):
@@ -25,10 +27,14 @@ class TooLate(Finding):
 
 
 def late_findings(scenario: Scenario) -> Iterator[Finding]:
-    """One for each motion and inflow that this run sees nothing of; it may be continued."""
+    """One for each motion, inflow and figure that this run sees nothing of; it may be continued."""
     for place, time in _beginnings(scenario):
         if time >= scenario.time_max:
             yield TooLate(place, time, scenario.time_max)
+    for name, figure in scenario.figure.items():
+        times: list[float] = figure.given("times") or []
+        if times and max(times) > scenario.time_max * (1 + ROUNDING):
+            yield TooLate(f"figure.{name}.times", max(times), scenario.time_max)
 
 
 def _beginnings(scenario: Scenario) -> Iterator[tuple[str, float]]:
