@@ -22,4 +22,4 @@ def test_of_much_only_what_is_alike_is_listed():
     names = [f"{letter}{k}" for letter in "nmo" for k in range(9)]
     assert len(names) > MAX_LISTED
     assert suggestion("mist", names) == ""
-    assert suggestion("mist", [*names, "stimulus"]) == "; nearest: stimulus"
+    assert suggestion("mist", [*names, "mixture"]) == "; nearest: mixture"
