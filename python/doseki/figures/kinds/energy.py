@@ -41,7 +41,7 @@ def draw_energy(run: Run) -> Figure:
         times, curves = run.times, _recorded(run, potential)
     draw_curves(axes, times, curves)
     if accounted or not _is_open(history):
-        total = np.sum(list(curves.values()), axis=0)
+        total = sum(curves.values(), np.zeros(len(times)))
         axes.plot(times, total, "k-", label="total", linewidth=2.0, alpha=0.6)
     axes.set(xlabel="time (s)", ylabel=f"energy ({unit_in('J', run.scenario['dim'])})")
     figure_legend(figure, grid.flat)
