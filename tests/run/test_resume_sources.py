@@ -143,7 +143,7 @@ def test_samples_are_at_their_times_exactly(case):
         np.testing.assert_allclose(times, expected, rtol=1e-12, err_msg=name)
     assert len(run.gauges["profile"]["time"]) == 3 * 7
     assert run.gauges["weir"].units == {"time": "s", "discharge": "m2/s", "mass_rate": "kg/s/m"}
-    with pytest.raises(KeyError, match="not a column of the gauge; did you mean height"):
+    with pytest.raises(KeyError, match="is not a column; did you mean height"):
         run.gauges["depth"]["heigth"]
 
 
