@@ -173,3 +173,40 @@ def test_overlaps_are_those_of_all_pairs():
     for name, pair in (("a", 0), ("b", 1)):
         assert found[name, name] == ((first == pair) & (second == pair)).sum()
     assert found["a", "b"] == (first != second).sum() > 0
+
+
+ELASTIC_BALLS = """
+dim = {dim}
+dp = 0.01
+scheme = "resolved"
+time_max = 1
+time_out = 1
+speed_max = 1
+[material.rubber]
+law = "solid"
+rho0 = 1000
+speedsound = 90
+young_modulus = 1e7
+poisson_ratio = 0.3
+"""
+BALL = """
+[body.{name}]
+shape = "{shape}"
+material = "rubber"
+kinematics = "elastic"
+radius = 0.05
+centre = {centre}
+"""
+
+
+@pytest.mark.parametrize(("dim", "balls", "told"), [(3, 2, True), (3, 1, False), (2, 2, False)])
+def test_what_touches_as_balls_is_told(tmp_path, dim, balls, told):
+    text = ELASTIC_BALLS.format(dim=dim)
+    for n in range(balls):
+        centre = [0.2 * n + 0.1] * dim
+        shape = "sphere" if dim == 3 else "disc"
+        text += BALL.format(name=f"b{n}", shape=shape, centre=centre)
+    path = tmp_path / "case.toml"
+    path.write_text(text)
+    said = " ".join(map(str, build_scene(load_scenario(str(path))).warnings))
+    assert ("layers of balls" in said) == told
