@@ -50,7 +50,7 @@ struct RigidBodiesSeen {
         constexpr int most = 12;  // each brings two digits at the steps of Eq. (52)
         constexpr double rounding = 1e-15;
         Vec3 turn = dt * spin(k);
-        if (bodies[k].fixed || turns_alike[k]) return turn;
+        if (turns_alike[k]) return turn;
         for (int n = 0; n < most; ++n) {
             const Quaternion half_way = states[k].orientation.turned(0.5 * turn);
             const Vec3 before = turn;

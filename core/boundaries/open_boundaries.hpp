@@ -76,7 +76,7 @@ struct Inflow {
     double next_event() const {
         if (closed) return std::numeric_limits<double>::infinity();
         if (!open) return speed.start();
-        const double layers = static_cast<double>(released) + 0.5 - kRounding;
+        const double layers = static_cast<double>(released) + 0.5 - rounding;
         return min(speed.stop(), speed.time_at(layers * spacing));
     }
 
@@ -98,12 +98,12 @@ struct Inflow {
         return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
     }
     bool has_crossed(std::int64_t k, double t) const {
-        return advance(k, t) >= -kRounding * spacing;
+        return advance(k, t) >= -rounding * spacing;
     }
 
     // Spacings. Of a layer that is due at the very time of a step, as steps and speeds of round
     // numbers make it, rounding must not decide in which step it enters.
-    static constexpr double kRounding = 1e-9;
+    static constexpr double rounding = 1e-9;
 
 private:
     std::int64_t counted_ = 0;  // whole layers, of requested_mass()
@@ -287,7 +287,7 @@ void OpenBoundaries<D>::release(Particles<D>& particles, Inflow<D>& inflow, doub
         if (tag.motion != Motion::driven || tag.body != inflow.body) continue;
         const double beyond = dot(particles.position[p] - inflow.layer[0], inflow.direction);
         // Half the way to the next layer at most: a layer is set free as a whole.
-        if (beyond >= -(inflow.jitter + 2.0 * Inflow<D>::kRounding) * inflow.spacing) {
+        if (beyond >= -(inflow.jitter + 2.0 * Inflow<D>::rounding) * inflow.spacing) {
             tag.motion = Motion::free;
             ledger.inflow.add(particles, p), planes.enters(particles, p);
         }

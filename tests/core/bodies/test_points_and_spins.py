@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doseki.record.particles import BOUND
+from doseki.scene.lattices import rotation_matrix
 from doseki.solver.build import filled_simulation
 
 from ..flows import Flows
@@ -109,18 +110,11 @@ def spins_of_euler(spin, moments, times):
     return np.array(spins)
 
 
-def turn_about(axis, angle):
-    """Rodrigues' matrix."""
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-
-
 @pytest.mark.parametrize("angle", [0.0, 37.0])
 @pytest.mark.parametrize("spin", [[0.5, 5.0, 0.5], [3.0, 1.0, 2.0]])
 def test_what_turns_freely_keeps_its_energy(flows, spin, angle):
     """Also about its middle axis, where it turns over and over (Dzhanibekov)."""
-    turn = turn_about((1, 2, 3), np.radians(angle))
+    turn = rotation_matrix(angle, 3, np.array([1, 2, 3]))
     simulation = flows(FREE_BOX.format(spin=(turn @ spin).tolist(), angle=angle))
     edges = np.array([0.6, 0.4, 0.2])
     moments = (edges @ edges - edges**2) / 12
@@ -129,7 +123,8 @@ def test_what_turns_freely_keeps_its_energy(flows, spin, angle):
         simulation.advance(limit=time, pause=time, max_steps=10**6)
         grains = simulation.grains()
         w, x, y, z = grains["orientation"][0]
-        R = turn_about((x, y, z), 2 * np.arctan2(np.linalg.norm((x, y, z)), w))
+        half = np.arctan2(np.linalg.norm((x, y, z)), w)
+        R = rotation_matrix(np.degrees(2 * half), 3, np.array([x, y, z]))
         own = R.T @ grains["spin"][0]
         spins.append(own), energies.append(moments @ own**2)
     exact = spins_of_euler(spin, moments, times)

@@ -11,7 +11,6 @@ from ..groups import Group
 from ..kinds.body import Body
 
 MIN_ACROSS = 5  # particles; below, a body is not resolved
-SPACE = 3
 MIN_ACROSS_ELASTIC = 2  # particles; fewer do not span an elastic body
 
 
@@ -69,7 +68,7 @@ def resolution_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) ->
         across = min(shape.width for shape in group.shapes) / body.spacing
         if group.deforms:
             yield from _elastic_warnings(body, across)
-            if body.dim == SPACE and sum(len(one) for one in groups if not one.fixed) > 1:
+            if body.dim == 3 and sum(len(one) for one in groups if not one.fixed) > 1:
                 yield TouchesAsBalls(group.name)
         elif across < MIN_ACROSS - 1e-6:
             yield CoarseBody(group.name, across, body.spacing)
