@@ -282,13 +282,14 @@ private:
     void choose_margin();
     void show_bodies(const ShownPoints& points) {
         rigid.show(contact_, points);
-        deformable.show(contact_);
+        deformable.choose_all(), deformable.show(contact_);
     }
     /// Looks for contacts that a step would meet; returns whether it had to.
     bool look_ahead(double step);
     void find_contacts() {
         moved_ = 0.0;
         contacts_.find(contact_, margin_);
+        deformable.choose(contact_, contacts_.points_of_deformable());
         find_companions();
     }
     /// Also short against the smallest bodies, at the speed of now and in a fall from rest.
@@ -374,6 +375,7 @@ void Bodies<D>::serialise(Archive& archive) {
         start_breakable();
         prepare_contacts();
         contacts_.restore(contact_);
+        deformable.choose(contact_, contacts_.points_of_deformable());
         find_companions();
     }
 }

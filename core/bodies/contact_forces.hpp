@@ -87,6 +87,9 @@ void Contacts<D>::restore(const ContactBodies<D>& bodies) {
         contacts_.push_back(contact_of(bodies, pair));
         at(contacts_.back()) += 1.0;
     }
+    // Those that were near when pairs were found, and may not be the nearest now.
+    for (std::size_t k = 0; k < vertices_.size(); ++k) contacts_[k].vertex = vertices_[k];
+    vertices_.clear();
     selections_ = {};
     if (apart_)
         select(bodies, PairKind::slow), select(bodies, PairKind::fast);
@@ -177,7 +180,7 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
     if (const Surface<D>* surface = bodies.surface(pair)) {
         const Vec<double, D>& x = points.position[pair.first()];
         return {first, surface->body, laws_.between(a, surface->side()), 0.0,
-                surface->nearest_vertex(x, domain_)};
+                surface->nearest_vertex(x, points.outward[pair.first()], domain_)};
     }
     if (pair.with_shape()) {
         const ContactSolid<D>& solid = bodies.solids[pair.shape()];

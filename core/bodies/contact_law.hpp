@@ -22,6 +22,9 @@ struct ContactSide {
     bool flat;           // touched on a facet
     double share = 1.0;  // of the spring of a point of a deformable body
     bool dust = false;   // a few points that came off one
+
+    /// Of what touches: a deformable body does so with its points.
+    double width() const { return deformable ? diameter : 2.0 * radius; }
 };
 
 /// Springs of one contact: stretch of friction, then of rolling, the overlap up to which it does
@@ -208,9 +211,9 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     law.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
     law.steps = penalty || a.dust || b.dust ? few_steps : options_.steps;
     if (penalty) {
-        const double spacing = 2.0 * (b.flat ? a.radius : std::min(a.radius, b.radius));
+        const double width = b.flat ? a.width() : std::min(a.width(), b.width());
         law.stiffness =
-            penalty_factor * contact_modulus(u, v) * (D == 3 ? spacing : a.share * b.share);
+            penalty_factor * contact_modulus(u, v) * (a.share * b.share * (D == 3 ? width : 1.0));
         law.zeta = law.rolling = 0.0;
     } else
         law.stiffness = stiffness(law, u, v);

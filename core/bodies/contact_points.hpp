@@ -6,6 +6,7 @@
 
 #include "base/array.hpp"
 #include "base/matrix.hpp"
+#include "bodies/contact/surface_in_space.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/shapes/contact_surface.hpp"
 #include "bodies/surface.hpp"

@@ -54,6 +54,10 @@ public:
     bool any(PairKind kind) const { return !of(kind).rows.empty(); }
     /// The contact points of these pairs.
     const ShownPoints& points(PairKind kind) const { return of(kind).points; }
+    /// Among them all those of deformable bodies.
+    std::span<const std::int32_t> points_of_deformable() const {
+        return points(apart_ ? PairKind::fast : PairKind::all).points;
+    }
     const Domain<D>& domain() const { return domain_; }
     /// Step that follows the stiffest pair of a kind, infinite without any.
     double timestep(PairKind kind) const { return of(kind).timestep; }
@@ -92,10 +96,15 @@ public:
     void serialise(Archive& archive) {
         Array<std::int32_t> a, b;
         for (const ContactPair& pair : pairs_) a.push_back(pair.a), b.push_back(pair.b);
+        vertices_.clear();
+        for (const PairContact& contact : contacts_) vertices_.push_back(contact.vertex);
         archive("contact_a", a), archive("contact_b", b), archive("contact_springs", springs_);
+        archive("contact_vertex", vertices_);
         archive("contact_normals", normals_), archive("worst_overlap", max_overlap_);
         expect_fit(b.size() == a.size() && springs_.size() == a.size(), "contact_springs");
         expect_fit(normals_.size() == a.size(), "contact_normals");
+        expect_fit(vertices_.size() == a.size(), "contact_vertex");
+        if (!archive.loads()) return vertices_.clear();
         pairs_.resize(a.size());
         for (std::size_t k = 0; k < a.size(); ++k) pairs_[k] = {a[k], b[k]};
     }
@@ -150,6 +159,7 @@ private:
     bool apart_ = false;                   // whether these are of kinds, or of all pairs
     std::size_t slow_bodies_ = 0;
     Array<PairContact> contacts_;
+    Array<std::uint32_t> vertices_;  // of contacts_, as they were saved
     Array<PairPush<D>> pushes_;
     double max_overlap_ = 0.0;
 };

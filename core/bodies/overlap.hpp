@@ -15,7 +15,7 @@ template <int D>
 struct Overlap {
     double depth;
     Vec<double, D> normal, lever_a, lever_b;
-    SurfaceWeights at{};  // where the second one's surface is touched
+    typename Surface<D>::Place at{};  // where the second one's surface is touched
 };
 
 /// Those of one pair, few.
@@ -79,8 +79,9 @@ DOSEKI_DEVICE_FN std::optional<Overlap<D>> overlap_of(const ContactPointSpans<D>
     const auto foot = surface.foot(points.position[a], vertex, domain);
     if (!foot || foot->depth <= 0.0) return {};
     Overlap<D> overlap{foot->depth, -1.0 * foot->normal, {}, {}, foot->at};
-    overlap.lever_a = 0.5 * foot->apart;
-    overlap.lever_b = -0.5 * foot->apart;
+    // Halfway between the surfaces; in space the mean of the vertices lies beside the second one.
+    overlap.lever_a = D == 2 ? 0.5 * foot->apart : 0.5 * foot->depth * foot->normal;
+    overlap.lever_b = overlap.lever_a - foot->apart;
     return overlap;
 }
 
@@ -96,7 +97,8 @@ template <int D>
 DOSEKI_DEVICE_FN MotionAt<D> motion_of_second(const ContactBodySpans<D>& bodies,
                                               const ContactPair& pair, const Overlap<D>& overlap) {
     if (const Surface<D>* surface = bodies.surface(pair))
-        return {surface->mean(surface->velocity, overlap.at), surface->spin[overlap.at.nearest()]};
+        return {surface->mean(surface->velocity, overlap.at),
+                surface->spin[surface->nearest(overlap.at)]};
     if (pair.with_shape()) {
         const ContactSolid<D>& solid = bodies.solids[pair.shape()];
         return {solid.velocity, solid.spin};

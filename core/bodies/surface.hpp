@@ -25,10 +25,12 @@ struct SurfaceWeights {
 
 /// The surface of a deformable body: vertices that its points carry along. In 2-D they control
 /// closed curves, anticlockwise, and clockwise around holes: uniform cubic B-splines that are twice
-/// continuously differentiable but for the creases, vertices in which smooth parts of them end. In
-/// 3-D they are contact points themselves.
+/// continuously differentiable but for the creases, vertices in which smooth parts of them end. For
+/// 3-D see contact/surface_in_space.hpp.
 template <int D>
 struct Surface {
+    using Place = SurfaceWeights;
+
     std::int32_t body = 0, material = 0;
     double mass = 0.0, spacing = 0.0;  // of its points
     Array<std::uint32_t> first;        // vertex of each curve
@@ -92,7 +94,9 @@ struct Surface {
         torque[at.nearest()] = torque[at.nearest()] + moment;
     }
 
-    std::uint32_t nearest_vertex(const Vec<double, D>& x, const Domain<D>& domain) const {
+    DOSEKI_DEVICE_FN static std::uint32_t nearest(const SurfaceWeights& at) { return at.nearest(); }
+    std::uint32_t nearest_vertex(const Vec<double, D>& x, const Vec<double, D>& /*outward*/,
+                                 const Domain<D>& domain) const {
         std::uint32_t nearest = 0;
         double least = std::numeric_limits<double>::infinity();
         for (std::uint32_t v = 0; v < size(); ++v) {
@@ -121,7 +125,7 @@ private:
 template <int D>
 DOSEKI_DEVICE_FN auto Surface<D>::foot(const Vec<double, D>& x, std::uint32_t vertex,
                                        const Domain<D>& domain) const -> std::optional<Foot> {
-    static_assert(D == 2, "in 3-D a surface is no more than its vertices");
+    static_assert(D == 2, "in 3-D a surface is no curve");
     auto sum = [this](const SurfaceWeights& w) { return mean(position, w); };
     const Vec<double, D> near = position[vertex],
                          here = near - nearest_image(domain, near - x);  // the image of x

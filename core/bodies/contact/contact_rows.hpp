@@ -95,9 +95,8 @@ private:
 template <int D>
 DOSEKI_DEVICE_FN Overlaps<D> ContactRows<D>::overlaps(std::size_t k) const {
     const ContactPair& pair = pairs[k];
-    if constexpr (D == 2)
-        if (const Surface<D>* surface = bodies.surface(pair))
-            return overlap_of(bodies.points, pair.first(), *surface, contacts[k].vertex, domain);
+    if (const Surface<D>* surface = bodies.surface(pair))
+        return overlap_of(bodies.points, pair.first(), *surface, contacts[k].vertex, domain);
     if (!pair.with_shape()) return overlap_of(bodies.points, pair.first(), pair.second(), domain);
     return overlaps_of(bodies, pair.first(), bodies.solids[pair.shape()], domain);
 }
@@ -107,11 +106,10 @@ DOSEKI_DEVICE_FN double ContactRows<D>::gap(std::size_t k, double margin) const 
     const ContactPair& pair = pairs[k];
     const Vec<double, D>& x = bodies.points.position[pair.first()];
     const double radius = bodies.points.radius[pair.first()];
-    if constexpr (D == 2)
-        if (const Surface<D>* surface = bodies.surface(pair)) {
-            const auto foot = surface->foot(x, contacts[k].vertex, domain);
-            return foot ? std::max(0.0, -foot->depth) : 0.0;
-        }
+    if (const Surface<D>* surface = bodies.surface(pair)) {
+        const auto foot = surface->foot(x, contacts[k].vertex, domain);
+        return foot ? std::max(0.0, -foot->depth) : 0.0;
+    }
     if (!pair.with_shape()) {
         const Vec<double, D> r = nearest_image(domain, bodies.points.position[pair.second()] - x);
         return std::max(0.0, norm(r) - radius - bodies.points.radius[pair.second()]);

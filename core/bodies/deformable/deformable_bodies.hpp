@@ -193,6 +193,11 @@ public:
     void end_step(double dt, double memory);
     /// Shows the contacts where the points are, and takes their forces.
     void show(ContactBodies<D>& contact) const { surfaces_.show(contact, solids_); }
+    /// Shows from now on only what these contact points may need, see DeformableSurfaces.
+    void choose(const ContactBodies<D>& contact, std::span<const std::int32_t> touching) {
+        surfaces_.choose(contact, touching);
+    }
+    void choose_all() { surfaces_.choose_all(); }
     void collect(ContactBodies<D>& contact) { surfaces_.collect(contact, solids_); }
     double place(Particles<D>& particles, const Domain<D>& domain, double dt);
     void set_velocities(Particles<D>& particles, double ahead);

@@ -2,6 +2,7 @@
 // How deformable bodies fall apart, which deformable.cpp compiles.
 
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/deformable/surface_division.hpp"
 #include "bodies/fragments/components.hpp"
 
 namespace doseki {

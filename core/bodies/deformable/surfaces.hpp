@@ -1,14 +1,16 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
-#include <map>
-#include <set>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/patches.hpp"
+#include "bodies/deformable/surface_carriers.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/crack_faces.hpp"
 #include "bodies/fragments/outlines.hpp"
@@ -19,9 +21,9 @@
 namespace doseki {
 
 /// The surfaces of deformable bodies: they show contacts where the points are and hand on what the
-/// contacts do. A vertex goes with its point by the point's deformation gradient, x + F (offset),
-/// which is a mean of points with fixed weights: its force is shared with the same weights, so that
-/// momentum and angular momentum are kept.
+/// contacts do. A vertex goes with points around it, as a mean of them with fixed weights: its
+/// force is shared with the same weights, so that momentum and angular momentum are kept. In 3-D
+/// the faces of cracks are balls, which are vertices of no surface.
 template <int D>
 class DeformableSurfaces {
     /// Samples of the curve from one vertex to the next.
@@ -55,14 +57,13 @@ public:
             vertex.key =
                 D == 3 ? vertex.point
                        : VertexKey::of_outline(CellNode::outline | static_cast<std::uint32_t>(v));
-            vertex.radius = D == 3 ? 0.5 * solids.body_of(vertex.point).spacing : 0.0;
         }
         cells_.start([&](std::uint32_t number) { return solids.slot(number); });
     }
     /// Where the vertices are, but those of rigid bodies.
     Array<Vec<double, D>> places(const TotalLagrangian<D>& solids) const {
         Array<Vec<double, D>> places;
-        for (const auto& [p, offset, crease, radius, key, curve] : vertices_)
+        for (const auto& [p, offset, crease, radius, key, curve, outward, share] : vertices_)
             places.push_back(is_rigid(p, solids) ? Vec<double, D>{}
                                                  : solids.x[p] + solids.motion_around(p) * offset);
         return places;
@@ -99,33 +100,46 @@ public:
                 const TotalLagrangian<D>& solids, const Array<std::int32_t>& material);
     /// Shows the contacts where the points are.
     void show(ContactBodies<D>& contact, const TotalLagrangian<D>& solids) const;
+    /// Shows from now on what these contact points, which may touch something, and what touches
+    /// them may need. In 2-D that is everything.
+    void choose(const ContactBodies<D>& contact, std::span<const std::int32_t> touching);
+    void choose_all() {
+        chosen_.resize(shown_.size()), chosen_samples_.resize(samples_.size());
+        std::iota(chosen_.begin(), chosen_.end(), 0u);
+        std::iota(chosen_samples_.begin(), chosen_samples_.end(), 0u);
+    }
     /// Takes the forces of the contacts.
     void collect(ContactBodies<D>& contact, TotalLagrangian<D>& solids) const;
 
     void serialise(Archive& archive, const TotalLagrangian<D>& solids) {
         Array<std::uint32_t> point, curve;
-        Array<Vec<double, D>> offset;
+        Array<Vec<double, D>> offset, outward;
         Array<std::uint8_t> crease;
-        Array<double> radius;
+        Array<double> radius, share;
         Array<std::uint64_t> key;
         for (const SurfaceVertex<D>& vertex : vertices_)
             point.push_back(vertex.point), offset.push_back(vertex.offset),
                 crease.push_back(vertex.crease), radius.push_back(vertex.radius),
-                key.push_back(vertex.key), curve.push_back(vertex.curve);
+                key.push_back(vertex.key), curve.push_back(vertex.curve),
+                outward.push_back(vertex.outward), share.push_back(vertex.share);
         archive("surface_point", point), archive("surface_offset", offset),
             archive("surface_crease", crease), archive("surface_radius", radius),
             archive("surface_key", key), archive("surface_curve", curve),
+            archive("surface_outward", outward), archive("surface_share", share),
             archive("surface_at_rest", carrier_at_rest_);
         if (archive.loads()) {
             const std::size_t n = point.size();
             expect_fit(offset.size() == n && crease.size() == n && radius.size() == n &&
-                           key.size() == n && curve.size() == n,
+                           key.size() == n && curve.size() == n && outward.size() == n &&
+                           share.size() == n,
                        "surface_point");
             vertices_.clear();
             for (std::size_t v = 0; v < n; ++v) {
                 expect_index(point[v], solids.size(), "surface_point");
                 expect_fit(radius[v] >= 0.0, "surface_radius");
-                vertices_.push_back({point[v], offset[v], crease[v], radius[v], key[v], curve[v]});
+                expect_fit(share[v] >= 0.0, "surface_share");
+                vertices_.push_back({point[v], offset[v], crease[v], radius[v], key[v], curve[v],
+                                     outward[v], share[v]});
             }
             for (const std::uint32_t p : carrier_at_rest_)
                 expect_index(p, solids.size(), "surface_at_rest");
@@ -153,9 +167,19 @@ private:
     Vec<double, D> rest(std::size_t n, const TotalLagrangian<D>& solids) const {
         return solids.rest_position(shown_vertex(n).point) + shown_vertex(n).offset;
     }
+    /// Of a vertex that is shown, now; zero of a ball.
+    Vec<double, D> normal(std::size_t n, const TotalLagrangian<D>& solids) const {
+        const Vec<double, D> turned =
+            cofactors(carriers_[n].motion(solids.x)) * shown_vertex(n).outward;
+        const double length = norm(turned);
+        return length > 0.0 ? (1.0 / length) * turned : turned;
+    }
     void add_sample(ContactBodies<D>& contact, const Sample& sample, const ContactSide& side);
     void add_samples(ContactBodies<D>& contact, std::size_t surface,
                      const TotalLagrangian<D>& solids);
+    void add_shown(Surface<D>& surface, std::size_t v, bool begins,
+                   const TotalLagrangian<D>& solids);
+    void connect(Surface<D>& surface, std::size_t first, const TotalLagrangian<D>& solids) const;
 
     bool same_curve(std::size_t v, std::size_t w, const TotalLagrangian<D>& solids) const {
         return solids.body(point_of(v)) == solids.body(point_of(w)) &&
@@ -169,11 +193,13 @@ private:
     Array<std::uint32_t> carrier_at_rest_;  // 2-D: of each vertex that there was at the start
     Cells cells_;
     Array<std::int32_t> shown_;  // see shown(); what follows is of those alone, in their order
-    Array<Array<PointShare>> carriers_;
+    Array<SurfaceCarriers<D>> carriers_;
     Array<Patch<D>> patches_;          // around the point of each
     Array<std::size_t> first_vertex_;  // of each surface, and the end
     Array<Sample> samples_;
     std::size_t first_contact_point_ = 0;
+    Array<std::uint32_t> chosen_, chosen_samples_;  // of the vertices that contacts have
+    Array<std::uint32_t> surface_of_;               // of each of these vertices
 };
 
 template <int D>
@@ -182,6 +208,8 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
                                    const Array<std::int32_t>& material) {
     first_contact_point_ = contact.points.size();
     carriers_.clear(), patches_.clear(), first_vertex_.clear(), samples_.clear(), shown_.clear();
+    surface_of_.clear();
+    VertexCarriers<D> carriers(solids);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const std::size_t k = point_of(v);
         if (is_rigid(k, solids)) continue;
@@ -189,6 +217,7 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
         const bool begins =
             shown_.empty() || body != solids.body(shown_vertex(shown_.size() - 1).point);
         shown_.push_back(static_cast<std::int32_t>(v));
+        surface_of_.push_back(static_cast<std::uint32_t>(contact.surfaces.size() - !begins));
         if (begins) {
             first_vertex_.push_back(shown_.size() - 1);
             Surface<D>& surface = contact.surfaces.emplace_back();
@@ -196,13 +225,41 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
             surface.material = material[static_cast<std::size_t>(body)];
             surface.mass = solids.mass(k), surface.spacing = solids.body_of(k).spacing;
         }
-        if (begins || !same_curve(v, v - 1, solids)) contact.surfaces.back().begin_curve();
-        contact.surfaces.back().add(vertices_[v].crease != 0);
-        carriers_.push_back(solids.carriers(k, vertices_[v].offset));
+        add_shown(contact.surfaces.back(), v, begins, solids);
+        if (vertices_[v].radius > 0.0)
+            carriers_.push_back({{{vertices_[v].point, 1.0}}, {}});
+        else
+            carriers_.push_back(carriers.of(vertices_[v].point, vertices_[v].offset));
         patches_.emplace_back(solids.neighbours_of(k));
     }
     first_vertex_.push_back(shown_.size());
-    for (std::size_t s = 0; s < contact.surfaces.size(); ++s) add_samples(contact, s, solids);
+    for (std::size_t s = 0; s < contact.surfaces.size(); ++s) {
+        if constexpr (D == 3) connect(contact.surfaces[s], first_vertex_[s], solids);
+        add_samples(contact, s, solids);
+    }
+    choose_all();
+}
+
+template <int D>
+void DeformableSurfaces<D>::add_shown(Surface<D>& surface, std::size_t v, bool begins,
+                                      const TotalLagrangian<D>& solids) {
+    const SurfaceVertex<D>& vertex = vertices_[v];
+    if constexpr (D == 2) {
+        if (begins || !same_curve(v, v - 1, solids)) surface.begin_curve();
+        surface.add(vertex.crease != 0);
+    } else {
+        surface.add(vertex.share);
+    }
+}
+
+template <int D>
+void DeformableSurfaces<D>::connect(Surface<D>& surface, std::size_t first,
+                                    const TotalLagrangian<D>& solids) const {
+    Array<Vec<double, D>> places, outward;
+    for (std::size_t v = 0; v < surface.size(); ++v)
+        places.push_back(rest(first + v, solids)),
+            outward.push_back(shown_vertex(first + v).outward);
+    surface.connect(places, outward);
 }
 
 template <int D>
@@ -215,8 +272,12 @@ void DeformableSurfaces<D>::add_samples(ContactBodies<D>& contact, std::size_t s
     side.flat = false;
     for (std::uint32_t v = 0; v < surface.size(); ++v) {
         if constexpr (D == 3) {
-            side.radius = shown_vertex(first + v).radius, side.share = 1.0, side.fixed = clamped(v);
+            const SurfaceVertex<D>& vertex = shown_vertex(first + v);
+            const bool ball = vertex.radius > 0.0;
+            side.radius = vertex.radius, side.share = ball ? 1.0 : vertex.share;
+            side.mass = side.share * surface.mass, side.fixed = clamped(v);
             add_sample(contact, {s, {{v, v, v, v}, {1.0, 0.0, 0.0, 0.0}}}, side);
+            if (!ball) contact.points.surface.back() = static_cast<std::int32_t>(s);
         } else {
             const auto part = rest(first + surface.after(v, 1), solids) - rest(first + v, solids);
             side.share = norm(part) / surface.spacing / samples;
@@ -232,74 +293,6 @@ void DeformableSurfaces<D>::add_samples(ContactBodies<D>& contact, std::size_t s
     }
 }
 
-/// Vertices of the parts of 2-D bodies that divide, in order.
-template <int D>
-Array<PlacedVertex> DeformableSurfaces<D>::parts_of(const TotalLagrangian<D>& solids,
-                                                    const Division& division,
-                                                    std::span<const std::int32_t> before,
-                                                    const Array<Vec<double, D>>& places) const {
-    Array<PlacedVertex> known, parts;
-    for (std::size_t v = 0; v < vertices_.size(); ++v) {
-        const std::int32_t body = before[point_of(v)];
-        if (body >= 0 && division.divides[static_cast<std::size_t>(body)])
-            known.push_back({vertices_[v], places[v], static_cast<std::int32_t>(v)});
-    }
-    OutlineTracer tracer({cells_, carrier_at_rest_, before, division.body, solids.x}, known);
-    std::set<std::int32_t> bodies;
-    for (std::size_t p = 0; p < before.size(); ++p)
-        if (division.body[p] >= 0 && division.divides[static_cast<std::size_t>(before[p])])
-            bodies.insert(division.body[p]);
-    for (const std::int32_t body : bodies) {
-        const auto curves = tracer.trace(body);
-        for (std::uint32_t curve = 0; curve < curves.size(); ++curve)
-            for (PlacedVertex placed : curves[curve]) {
-                const std::uint32_t p = placed.vertex.point;
-                placed.vertex.curve = curve;
-                placed.vertex.offset =
-                    inverse(solids.motion_around(p), 0.0) * (placed.place - solids.x[p]);
-                parts.push_back(placed);
-            }
-    }
-    return parts;
-}
-
-template <int D>
-Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& solids,
-                                                  const Division& division,
-                                                  std::span<const std::int32_t> before,
-                                                  const Array<std::uint32_t>& crack,
-                                                  const Array<Vec<double, D>>& places) {
-    Array<std::pair<SurfaceVertex<D>, std::int32_t>> kept;  // and their number before
-    auto divides = [&](std::uint32_t p) {
-        if (is_rigid(p, solids)) return false;
-        return before[p] < 0 || division.divides[static_cast<std::size_t>(before[p])];
-    };
-    for (std::size_t v = 0; v < vertices_.size(); ++v)
-        if (!divides(vertices_[v].point) || (D == 3 && division.body[vertices_[v].point] >= 0))
-            kept.push_back({vertices_[v], static_cast<std::int32_t>(v)});
-    if constexpr (D == 2)
-        for (const PlacedVertex& part : parts_of(solids, division, before, places))
-            kept.push_back({part.vertex, part.number});
-    else {
-        std::set<std::uint32_t> ball;
-        for (const auto& [vertex, number] : kept) ball.insert(vertex.point);
-        for (const std::uint32_t p : crack)
-            if (division.body[p] >= 0 && !ball.contains(p))
-                kept.push_back({{p, {}, 0, 0.5 * solids.body_of(p).spacing, p, 0}, -1});
-    }
-    std::stable_sort(kept.begin(), kept.end(), [&](const auto& a, const auto& b) {
-        return solids.body(a.first.point) < solids.body(b.first.point);
-    });
-    Array<std::int32_t> number(vertices_.size(), -1);
-    vertices_.clear();
-    for (const auto& [vertex, old] : kept) {
-        if (old >= 0)
-            number[static_cast<std::size_t>(old)] = static_cast<std::int32_t>(vertices_.size());
-        vertices_.push_back(vertex);
-    }
-    return number;
-}
-
 template <int D>
 void DeformableSurfaces<D>::add_sample(ContactBodies<D>& contact, const Sample& sample,
                                        const ContactSide& side) {
@@ -308,48 +301,73 @@ void DeformableSurfaces<D>::add_sample(ContactBodies<D>& contact, const Sample& 
 }
 
 template <int D>
+void DeformableSurfaces<D>::choose(const ContactBodies<D>& contact,
+                                   std::span<const std::int32_t> touching) {
+    choose_all();
+    if constexpr (D == 3) {
+        Array<std::uint8_t> needed(shown_.size(), 0), touches(samples_.size(), 0);
+        for (const std::int32_t c : touching) {
+            if (static_cast<std::size_t>(c) < first_contact_point_) continue;
+            const std::size_t n = static_cast<std::size_t>(c) - first_contact_point_;
+            const std::size_t first = first_vertex_[surface_of_[n]];
+            needed[n] = touches[n] = 1;
+            for (const std::uint32_t v : contact.surfaces[surface_of_[n]].around(n - first))
+                needed[first + v] = 1;
+        }
+        auto keep = [](Array<std::uint32_t>& numbers, const Array<std::uint8_t>& kept) {
+            std::size_t count = 0;
+            for (const std::uint32_t n : numbers)
+                if (kept[n]) numbers[count++] = n;
+            numbers.resize(count);
+        };
+        keep(chosen_, needed), keep(chosen_samples_, touches);
+    }
+}
+
+template <int D>
 void DeformableSurfaces<D>::show(ContactBodies<D>& contact,
                                  const TotalLagrangian<D>& solids) const {
-    for (std::size_t s = 0; s < contact.surfaces.size(); ++s) {
-        Surface<D>& surface = contact.surfaces[s];
-        for (std::size_t v = 0; v < surface.size(); ++v) {
-            Vec<double, D> x{}, u{};
-            for (const auto& [p, share] : carriers_[first_vertex_[s] + v])
-                x = x + share * solids.x[p], u = u + share * solids.v[p];
-            surface.position[v] = x, surface.velocity[v] = u;
-            surface.spin[v] = patches_[first_vertex_[s] + v].spin(solids.x, solids.v);
-            surface.force[v] = {}, surface.torque[v] = {};
-        }
-    }
+    for_each_contact(chosen_.size(), [&](std::size_t k) {
+        const std::uint32_t n = chosen_[k];
+        Surface<D>& surface = contact.surfaces[surface_of_[n]];
+        const std::size_t v = n - first_vertex_[surface_of_[n]];
+        Vec<double, D> x{}, u{};
+        for (const auto& [p, share] : carriers_[n].shares)
+            x = x + share * solids.x[p], u = u + share * solids.v[p];
+        surface.position[v] = x, surface.velocity[v] = u;
+        surface.spin[v] = patches_[n].spin(solids.x, solids.v);
+        surface.force[v] = {}, surface.torque[v] = {};
+        if constexpr (D == 3) surface.normal[v] = normal(n, solids);
+    });
     ContactPoints<D>& points = contact.points;
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
+    for_each_contact(chosen_samples_.size(), [&](std::size_t n) {
+        const std::size_t k = chosen_samples_[n], c = first_contact_point_ + k;
         const auto& [s, at] = samples_[k];
         const Surface<D>& surface = contact.surfaces[s];
-        const std::size_t c = first_contact_point_ + k;
         points.position[c] = surface.mean(surface.position, at);
         points.velocity[c] = surface.mean(surface.velocity, at);
         points.spin[c] = surface.spin[at.nearest()];
         points.force[c] = {}, points.torque[c] = {};
-    }
+        if constexpr (D == 3) points.outward[c] = surface.normal[at.vertex[0]];
+    });
 }
 
 /// A moment goes to the points around.
 template <int D>
 void DeformableSurfaces<D>::collect(ContactBodies<D>& contact, TotalLagrangian<D>& solids) const {
-    for (std::size_t k = 0; k < samples_.size(); ++k) {
+    for (const std::uint32_t k : chosen_samples_) {
         const std::size_t c = first_contact_point_ + k;
         contact.surfaces[samples_[k].surface].push(samples_[k].at, contact.points.force[c],
                                                    contact.points.torque[c]);
     }
     for (const std::uint32_t p : solids.stepped().points()) solids.load[p] = {};
-    for (std::size_t s = 0; s < contact.surfaces.size(); ++s) {
-        const Surface<D>& surface = contact.surfaces[s];
-        for (std::size_t v = 0; v < surface.size(); ++v) {
-            for (const auto& [p, share] : carriers_[first_vertex_[s] + v])
-                solids.load[p] = solids.load[p] + share * surface.force[v];
-            if (norm(surface.torque[v]) > 0.0)
-                patches_[first_vertex_[s] + v].add_moment(surface.torque[v], solids.x, solids.load);
-        }
+    for (const std::uint32_t n : chosen_) {
+        const Surface<D>& surface = contact.surfaces[surface_of_[n]];
+        const std::size_t v = n - first_vertex_[surface_of_[n]];
+        for (const auto& [p, share] : carriers_[n].shares)
+            solids.load[p] = solids.load[p] + share * surface.force[v];
+        if (norm(surface.torque[v]) > 0.0)
+            patches_[n].add_moment(surface.torque[v], solids.x, solids.load);
     }
 }
 

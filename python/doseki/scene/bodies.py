@@ -12,11 +12,16 @@ from .meshes.cells import Cells
 
 @dataclass(frozen=True)
 class ElasticSurface:
-    """Its vertices at rest, not wrapped; in 2-D those of a closed curve, anticlockwise."""
+    """Its vertices at rest, not wrapped; in 2-D those of a closed curve, anticlockwise.
+
+    In 3-D each has the outward normal there and stands for an area; in 2-D both are 0.
+    """
 
     vertex: np.ndarray  # (m, dim) m
     carrier: np.ndarray  # (m,) the particle, counted within the body, with which each goes
     crease: np.ndarray  # (m,) bool: where smooth parts of the curve end
+    outward: np.ndarray  # (m, dim)
+    share: np.ndarray  # (m,) the area, over spacing^2
 
 
 @dataclass(frozen=True)

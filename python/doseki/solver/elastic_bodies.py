@@ -43,6 +43,8 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
             "vertex": np.ascontiguousarray(body.surface.vertex),
             "carrier": np.ascontiguousarray(body.surface.carrier, np.int32),
             "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
+            "outward": np.ascontiguousarray(body.surface.outward),
+            "share": np.ascontiguousarray(body.surface.share),
             "cell_count": body.cells.count,
             "cell_node": body.cells.node,
             "rigid_first": body.rigid_first,

@@ -20,7 +20,7 @@ ALIKE = (
     ),
     ("shape_radius", "shape_facets", "shape_sample_count", "shape_kind", "shape_thickness"),
     ("lists_moving", "lists_fixed"),
-    ("contact_a", "contact_b", "contact_springs", "contact_normals"),
+    ("contact_a", "contact_b", "contact_springs", "contact_normals", "contact_vertex"),
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
         "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
@@ -29,7 +29,7 @@ ALIKE = (
     ),
     (
         "surface_point", "surface_offset", "surface_crease", "surface_radius", "surface_key",
-        "surface_curve",
+        "surface_curve", "surface_outward", "surface_share",
     ),
     (
         "elastic_apart", "elastic_rigid", "elastic_held_energy", "deformable_material",
@@ -52,8 +52,8 @@ NOT_NEGATIVE = {
     "time", "last_timestep", "steps", "updates", "rebuilds", "rebuild_step", "moved", "skin",
     "skin_width", "next_timestep", "next_id", "inflow_released", "bodies_moved",
     "shape_thickness", "lanes", "approach", "lists_reach", "min_support", "moved_since_outflow",
-    "surface_radius", "rigid_origin_born", "deformable_origin_born", "body_numbers",
-    "breakable_deforms_for", "bodies_at_start", "through_ground",
+    "surface_radius", "surface_share", "rigid_origin_born", "deformable_origin_born",
+    "body_numbers", "breakable_deforms_for", "bodies_at_start", "through_ground",
 }  # fmt: skip
 PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
 BALL = 0  # the kind of a shape without sides

@@ -140,7 +140,7 @@ class Shaped(Body[S], Generic[S]):
             own = np.flatnonzero(owner == k)
             volume = group.shapes[group.shape[k]].measure / len(own)
             spacing = volume ** (1 / self.dim)
-            surface = self._surface(group, k, placed.position[own], placed.depth[own] < spacing)
+            surface = self._surface(group, k, placed.position[own], spacing)
             made.append(
                 ElasticBody(
                     self.name,
@@ -173,16 +173,18 @@ class Shaped(Body[S], Generic[S]):
             )
         return cells
 
-    def _surface(
-        self, group: Group, k: int, rest: np.ndarray, outermost: np.ndarray
-    ) -> ElasticSurface:
-        """That of body k, whose particles are at `rest`; in 3-D its `outermost` ones."""
+    def _surface(self, group: Group, k: int, rest: np.ndarray, spacing: float) -> ElasticSurface:
+        """That of body k, whose particles are at `rest`, `spacing` apart."""
+        shape, turn = group.shapes[group.shape[k]], matrices(group.orientation, self.dim)[k]
         if self.dim == 3:
-            carrier = np.flatnonzero(outermost)
-            return ElasticSurface(rest[carrier], carrier, np.zeros(len(carrier), bool))
-        curve = group.shapes[group.shape[k]].curve(self.spacing)
-        vertex = group.centre[k] + curve.vertex @ matrices(group.orientation, 2)[k].T
-        return ElasticSurface(vertex, cKDTree(rest).query(vertex)[1], curve.crease)
+            place, normal, area = shape.surface(spacing)
+            crease, share = np.zeros(len(area), bool), area / spacing**2
+        else:
+            place, crease = shape.curve(self.spacing)
+            normal, share = np.zeros_like(place), np.zeros(len(place))
+        vertex = group.centre[k] + place @ turn.T
+        nearest = cKDTree(rest).query(vertex)[1]
+        return ElasticSurface(vertex, nearest, crease, normal @ turn.T, share)
 
     @property
     def rotation(self) -> np.ndarray:

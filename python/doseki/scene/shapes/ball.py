@@ -12,6 +12,7 @@ import numpy as np
 from ..lattices import ROUNDING, ball_measure
 from .balance import balanced
 from .particles import Curve, Particles, alike, from_centre
+from .surface import PARTS, SurfaceVertices, on_sphere
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,10 @@ class Ball:
         vertex = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         return Curve(vertex, np.zeros(number, bool))
 
+    def surface(self, dp: float) -> SurfaceVertices:
+        """What a deformable sphere touches with."""
+        return on_sphere(self.radius, _shell(4 * np.pi * (PARTS * self.radius / dp) ** 2), dp)
+
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""
         radius = self.wetted * self.radius * (1 - ROUNDING)
@@ -160,6 +165,7 @@ def _ring(number: float, between: bool) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([np.cos(angle), np.sin(angle)], axis=1), alike(n)
 
 
+@lru_cache(maxsize=16)
 def _shell(number: float) -> tuple[np.ndarray, np.ndarray]:
     """The 4 k^2 + 2 points of an octahedron whose edges are cut into k parts, on the sphere.
 

@@ -11,6 +11,7 @@ import numpy as np
 from .frame import own_frame
 from .outline import BULGE, FLAT, Outline, outline_of
 from .particles import EDGE, Curve, Particles, alike, beside_edges, nearest_faces, no_edges
+from .surface import SurfaceVertices, on_triangles
 
 SAME_DEPTH = 1e-6  # dp
 LEAST = 0.3  # of a particle's volume: particles that would have less are left out
@@ -97,6 +98,10 @@ class Convex:
             vertex.append(start + share * (end - start))
             crease.append(np.arange(parts + 1) == 0)
         return Curve(np.concatenate(vertex), np.concatenate(crease))
+
+    def surface(self, dp: float) -> SurfaceVertices:
+        """What a deformable polyhedron touches with."""
+        return on_triangles(self.vertices[self.faces], dp)
 
     def single(self) -> Particles:
         """One particle in the centre."""
