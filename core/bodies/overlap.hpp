@@ -97,8 +97,7 @@ template <int D>
 DOSEKI_DEVICE_FN MotionAt<D> motion_of_second(const ContactBodySpans<D>& bodies,
                                               const ContactPair& pair, const Overlap<D>& overlap) {
     if (const Surface<D>* surface = bodies.surface(pair))
-        return {surface->mean(surface->velocity, overlap.at),
-                surface->spin[surface->nearest(overlap.at)]};
+        return {surface->mean(surface->velocity, overlap.at), surface->spin_at(overlap.at)};
     if (pair.with_shape()) {
         const ContactSolid<D>& solid = bodies.solids[pair.shape()];
         return {solid.velocity, solid.spin};

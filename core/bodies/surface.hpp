@@ -94,7 +94,7 @@ struct Surface {
         torque[at.nearest()] = torque[at.nearest()] + moment;
     }
 
-    DOSEKI_DEVICE_FN static std::uint32_t nearest(const SurfaceWeights& at) { return at.nearest(); }
+    DOSEKI_DEVICE_FN Vec3 spin_at(const SurfaceWeights& at) const { return spin[at.nearest()]; }
     std::uint32_t nearest_vertex(const Vec<double, D>& x, const Vec<double, D>& /*outward*/,
                                  const Domain<D>& domain) const {
         std::uint32_t nearest = 0;

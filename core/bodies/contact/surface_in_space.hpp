@@ -69,10 +69,11 @@ struct Surface<3> {
         torque[at.vertex[0]] = torque[at.vertex[0]] + moment;
     }
     void push(const Place& place, const Vec<double, 3>& by, const Vec3& moment) {
-        for_each_weight(place, [&](std::uint32_t v, double w) { force[v] = force[v] + w * by; });
-        torque[place.vertex] = torque[place.vertex] + moment;
+        for_each_weight(place, [&](std::uint32_t v, double w) {
+            force[v] = force[v] + w * by, torque[v] = torque[v] + w * moment;
+        });
     }
-    DOSEKI_DEVICE_FN static std::uint32_t nearest(const Place& place) { return place.vertex; }
+    DOSEKI_DEVICE_FN Vec3 spin_at(const Place& place) const { return mean(spin, place); }
 
     /// Of those that face what looks outwards at x; size() where none near does.
     std::uint32_t nearest_vertex(const Vec<double, 3>& x, const Vec<double, 3>& outward,

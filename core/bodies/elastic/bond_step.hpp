@@ -155,7 +155,7 @@ private:
     /// it bears itself counts too.
     bool begins() {
         const auto [stress, normal] = largest_principal(
-            symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))));
+            symmetric_part(0.5 * (full(material_stress(a_)) + full(material_stress(b_)))), rest_);
         const double along = dot(normal, rest_);
         if (!(stress > 0.0) || std::abs(along) < least_crossing * norm(rest_)) return false;
         const Vec<double, D> outward = along > 0.0 ? normal : -1.0 * normal;

@@ -15,6 +15,7 @@ from ..groups import UPRIGHT, Group, matrices
 from ..meshes.cells import Cells, cells_of
 from ..periodic import wrapped
 from ..shapes import Convex, Edges, Particles, Shape
+from ..shapes.surface import shared_among
 from .body import Body
 
 S = TypeVar("S", bound=ShapedBody)
@@ -176,15 +177,16 @@ class Shaped(Body[S], Generic[S]):
     def _surface(self, group: Group, k: int, rest: np.ndarray, spacing: float) -> ElasticSurface:
         """That of body k, whose particles are at `rest`, `spacing` apart."""
         shape, turn = group.shapes[group.shape[k]], matrices(group.orientation, self.dim)[k]
+        centre = group.centre[k]
         if self.dim == 3:
-            place, normal, area = shape.surface(spacing)
+            particles = (rest - centre) @ turn
+            (place, normal, area), nearest = shared_among(particles, shape.surface(spacing))
             crease, share = np.zeros(len(area), bool), area / spacing**2
-        else:
-            place, crease = shape.curve(self.spacing)
-            normal, share = np.zeros_like(place), np.zeros(len(place))
-        vertex = group.centre[k] + place @ turn.T
+            return ElasticSurface(centre + place @ turn.T, nearest, crease, normal @ turn.T, share)
+        place, crease = shape.curve(self.spacing)
+        vertex = centre + place @ turn.T
         nearest = cKDTree(rest).query(vertex)[1]
-        return ElasticSurface(vertex, nearest, crease, normal @ turn.T, share)
+        return ElasticSurface(vertex, nearest, crease, np.zeros_like(place), np.zeros(len(place)))
 
     @property
     def rotation(self) -> np.ndarray:

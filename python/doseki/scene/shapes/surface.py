@@ -5,6 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
+
+from ..lattices import ROUNDING
 
 PARTS = 4  # vertices from one particle to the next
 
@@ -40,6 +43,23 @@ def on_triangles(corners: np.ndarray, dp: float) -> SurfaceVertices:
         areas.append(np.full(len(i), area / len(i)))
     vertices = SurfaceVertices(*map(np.concatenate, (places, normals, areas)))
     return _near_each_other(vertices, dp)
+
+
+def shared_among(
+    particles: np.ndarray, vertices: SurfaceVertices
+) -> tuple[SurfaceVertices, np.ndarray]:
+    """The vertices, and the particle (n,) nearest to each, with which it comes off.
+
+    One as near to several is as many, each with its part of the area: else it would depend on the
+    order of the particles with which of them it comes off.
+    """
+    tree = cKDTree(particles)
+    reach = (1 + ROUNDING) * tree.query(vertices.place)[0]
+    nearest = tree.query_ball_point(vertices.place, reach, return_sorted=True)
+    parts = np.array([len(near) for near in nearest])
+    place, normal, area = (np.repeat(column, parts, axis=0) for column in vertices)
+    area = area / np.repeat(parts, parts)
+    return SurfaceVertices(place, normal, area), np.concatenate(nearest).astype(int)
 
 
 def _parts(number: int) -> tuple[np.ndarray, np.ndarray]:
