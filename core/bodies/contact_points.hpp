@@ -6,10 +6,10 @@
 
 #include "base/array.hpp"
 #include "base/matrix.hpp"
-#include "bodies/contact/surface_in_space.hpp"
+#include "bodies/surface/in_space.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/shapes/contact_surface.hpp"
-#include "bodies/surface.hpp"
+#include "bodies/surface/surface.hpp"
 
 namespace doseki {
 

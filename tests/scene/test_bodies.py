@@ -189,6 +189,11 @@ speedsound = 90
 young_modulus = 1e7
 poisson_ratio = 0.3
 """
+BREAKS = """
+fracture = "cohesive"
+tensile_strength = 1e6
+fracture_energy = 1e5
+"""
 BALL = """
 [body.{name}]
 shape = "{shape}"
@@ -199,9 +204,12 @@ centre = {centre}
 """
 
 
-@pytest.mark.parametrize(("dim", "balls", "told"), [(3, 2, True), (3, 1, False), (2, 2, False)])
-def test_what_touches_as_balls_is_told(tmp_path, dim, balls, told):
-    text = ELASTIC_BALLS.format(dim=dim)
+@pytest.mark.parametrize(
+    ("dim", "balls", "breaks", "told"),
+    [(3, 2, True, True), (3, 1, True, False), (2, 2, True, False), (3, 2, False, False)],
+)
+def test_what_touches_as_balls_is_told(tmp_path, dim, balls, breaks, told):
+    text = ELASTIC_BALLS.format(dim=dim) + (BREAKS if breaks else "")
     for n in range(balls):
         centre = [0.2 * n + 0.1] * dim
         shape = "sphere" if dim == 3 else "disc"

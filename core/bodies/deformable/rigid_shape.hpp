@@ -2,7 +2,6 @@
 // The shape that a deformable body has when it becomes rigid, which bodies.cpp compiles.
 
 #include <algorithm>
-#include <set>
 
 #include "bodies/deformable/surfaces.hpp"
 
@@ -18,11 +17,9 @@ Shape<D> DeformableSurfaces<D>::shape_of(const ContactBodies<D>& contact, std::i
     Shape<D> shape;
     if constexpr (D == 3) {
         shape.kind = ShapeKind::balls, shape.thickness = spacing;
-        std::set<std::uint32_t> points;
         for (const SurfaceVertex<D>& vertex : vertices_)
             if (solids.body(vertex.point) == static_cast<std::int32_t>(body))
-                points.insert(vertex.point);
-        for (const std::uint32_t p : points) shape.samples.push_back(in_frame(solids.x[p]));
+                shape.samples.push_back(in_frame(solids.x[vertex.point]));
     } else {
         shape.kind = ShapeKind::mesh;
         for (const Surface<D>& surface : contact.surfaces)

@@ -50,22 +50,15 @@ Array<std::int32_t> DeformableSurfaces<D>::divide(const TotalLagrangian<D>& soli
         if (is_rigid(p, solids)) return false;
         return before[p] < 0 || division.divides[static_cast<std::size_t>(before[p])];
     };
-    // A point that a crack lays bare has no smooth surface any more: it is a ball.
-    const std::set<std::uint32_t> bare(crack.begin(), crack.end());
-    auto stays = [&](const SurfaceVertex<D>& vertex) {
-        return division.body[vertex.point] >= 0 &&
-               (vertex.radius > 0.0 || !bare.contains(vertex.point));
-    };
     for (std::size_t v = 0; v < vertices_.size(); ++v)
-        if (!divides(vertices_[v].point) || (D == 3 && stays(vertices_[v])))
+        if (!divides(vertices_[v].point) || (D == 3 && division.body[vertices_[v].point] >= 0))
             kept.push_back({vertices_[v], static_cast<std::int32_t>(v)});
     if constexpr (D == 2)
         for (const PlacedVertex& part : parts_of(solids, division, before, places))
             kept.push_back({part.vertex, part.number});
     else {
         std::set<std::uint32_t> ball;
-        for (const auto& [vertex, number] : kept)
-            if (vertex.radius > 0.0) ball.insert(vertex.point);
+        for (const auto& [vertex, number] : kept) ball.insert(vertex.point);
         for (const std::uint32_t p : crack)
             if (division.body[p] >= 0 && !ball.contains(p))
                 kept.push_back({{p, {}, 0, 0.5 * solids.body_of(p).spacing, p, 0}, -1});

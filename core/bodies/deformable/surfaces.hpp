@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -10,20 +11,20 @@
 #include "base/parallel.hpp"
 #include "bodies/contact_points.hpp"
 #include "bodies/deformable/patches.hpp"
-#include "bodies/deformable/surface_carriers.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/crack_faces.hpp"
 #include "bodies/fragments/outlines.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
 #include "bodies/fragments/surface_vertex.hpp"
 #include "bodies/shapes/shape.hpp"
+#include "bodies/surface/carriers.hpp"
 
 namespace doseki {
 
 /// The surfaces of deformable bodies: they show contacts where the points are and hand on what the
 /// contacts do. A vertex goes with points around it, as a mean of them with fixed weights: its
 /// force is shared with the same weights, so that momentum and angular momentum are kept. In 3-D
-/// the faces of cracks are balls, which are vertices of no surface.
+/// bodies that break have balls around their outermost points instead, vertices of no surface.
 template <int D>
 class DeformableSurfaces {
     /// Samples of the curve from one vertex to the next.
@@ -57,6 +58,8 @@ public:
             vertex.key =
                 D == 3 ? vertex.point
                        : VertexKey::of_outline(CellNode::outline | static_cast<std::uint32_t>(v));
+            if (D == 3 && vertex.share == 0.0)
+                vertex.radius = 0.5 * solids.body_of(vertex.point).spacing;
         }
         cells_.start([&](std::uint32_t number) { return solids.slot(number); });
     }
@@ -104,9 +107,12 @@ public:
     /// them may need. In 2-D that is everything.
     void choose(const ContactBodies<D>& contact, std::span<const std::int32_t> touching);
     void choose_all() {
-        chosen_.resize(shown_.size()), chosen_samples_.resize(samples_.size());
-        std::iota(chosen_.begin(), chosen_.end(), 0u);
-        std::iota(chosen_samples_.begin(), chosen_samples_.end(), 0u);
+        auto all = [](Array<std::uint32_t>& numbers, std::size_t count) {
+            numbers.resize(count);
+            std::iota(numbers.begin(), numbers.end(), 0u);
+        };
+        all(chosen_, shown_.size()), all(chosen_samples_, samples_.size());
+        all(chosen_patches_, patches_.size());
     }
     /// Takes the forces of the contacts.
     void collect(ContactBodies<D>& contact, TotalLagrangian<D>& solids) const;
@@ -194,12 +200,13 @@ private:
     Cells cells_;
     Array<std::int32_t> shown_;  // see shown(); what follows is of those alone, in their order
     Array<SurfaceCarriers<D>> carriers_;
-    Array<Patch<D>> patches_;          // around the point of each
+    Array<std::uint32_t> patch_of_;    // around the point of each
+    Array<Patch<D>> patches_;
     Array<std::size_t> first_vertex_;  // of each surface, and the end
     Array<Sample> samples_;
     std::size_t first_contact_point_ = 0;
-    Array<std::uint32_t> chosen_, chosen_samples_;  // of the vertices that contacts have
-    Array<std::uint32_t> surface_of_;               // of each of these vertices
+    Array<std::uint32_t> surface_of_;  // of each vertex
+    Array<std::uint32_t> chosen_, chosen_samples_, chosen_patches_;  // see choose()
 };
 
 template <int D>
@@ -208,8 +215,9 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
                                    const Array<std::int32_t>& material) {
     first_contact_point_ = contact.points.size();
     carriers_.clear(), patches_.clear(), first_vertex_.clear(), samples_.clear(), shown_.clear();
-    surface_of_.clear();
+    surface_of_.clear(), patch_of_.clear();
     VertexCarriers<D> carriers(solids);
+    std::map<std::size_t, std::uint32_t> patch_around;  // a point
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const std::size_t k = point_of(v);
         if (is_rigid(k, solids)) continue;
@@ -230,7 +238,10 @@ void DeformableSurfaces<D>::add_to(ContactBodies<D>& contact, std::int32_t first
             carriers_.push_back({{{vertices_[v].point, 1.0}}, {}});
         else
             carriers_.push_back(carriers.of(vertices_[v].point, vertices_[v].offset));
-        patches_.emplace_back(solids.neighbours_of(k));
+        const auto next = static_cast<std::uint32_t>(patches_.size());
+        const auto [patch, is_new] = patch_around.try_emplace(k, next);
+        if (is_new) patches_.emplace_back(solids.neighbours_of(k));
+        patch_of_.push_back(patch->second);
     }
     first_vertex_.push_back(shown_.size());
     for (std::size_t s = 0; s < contact.surfaces.size(); ++s) {
@@ -305,7 +316,8 @@ void DeformableSurfaces<D>::choose(const ContactBodies<D>& contact,
                                    std::span<const std::int32_t> touching) {
     choose_all();
     if constexpr (D == 3) {
-        Array<std::uint8_t> needed(shown_.size(), 0), touches(samples_.size(), 0);
+        Array<std::uint8_t> needed(shown_.size(), 0), touches(samples_.size(), 0),
+            around(patches_.size(), 0);
         for (const std::int32_t c : touching) {
             if (static_cast<std::size_t>(c) < first_contact_point_) continue;
             const std::size_t n = static_cast<std::size_t>(c) - first_contact_point_;
@@ -321,12 +333,19 @@ void DeformableSurfaces<D>::choose(const ContactBodies<D>& contact,
             numbers.resize(count);
         };
         keep(chosen_, needed), keep(chosen_samples_, touches);
+        for (const std::uint32_t n : chosen_) around[patch_of_[n]] = 1;
+        keep(chosen_patches_, around);
     }
 }
 
 template <int D>
 void DeformableSurfaces<D>::show(ContactBodies<D>& contact,
                                  const TotalLagrangian<D>& solids) const {
+    Array<Vec3> spin(patches_.size());
+    for_each_contact(chosen_patches_.size(), [&](std::size_t k) {
+        const std::uint32_t patch = chosen_patches_[k];
+        spin[patch] = patches_[patch].spin(solids.x, solids.v);
+    });
     for_each_contact(chosen_.size(), [&](std::size_t k) {
         const std::uint32_t n = chosen_[k];
         Surface<D>& surface = contact.surfaces[surface_of_[n]];
@@ -335,7 +354,7 @@ void DeformableSurfaces<D>::show(ContactBodies<D>& contact,
         for (const auto& [p, share] : carriers_[n].shares)
             x = x + share * solids.x[p], u = u + share * solids.v[p];
         surface.position[v] = x, surface.velocity[v] = u;
-        surface.spin[v] = patches_[n].spin(solids.x, solids.v);
+        surface.spin[v] = spin[patch_of_[n]];
         surface.force[v] = {}, surface.torque[v] = {};
         if constexpr (D == 3) surface.normal[v] = normal(n, solids);
     });
@@ -361,14 +380,17 @@ void DeformableSurfaces<D>::collect(ContactBodies<D>& contact, TotalLagrangian<D
                                                    contact.points.torque[c]);
     }
     for (const std::uint32_t p : solids.stepped().points()) solids.load[p] = {};
+    Array<Vec3> moment(patches_.size(), Vec3{});
     for (const std::uint32_t n : chosen_) {
         const Surface<D>& surface = contact.surfaces[surface_of_[n]];
         const std::size_t v = n - first_vertex_[surface_of_[n]];
         for (const auto& [p, share] : carriers_[n].shares)
             solids.load[p] = solids.load[p] + share * surface.force[v];
-        if (norm(surface.torque[v]) > 0.0)
-            patches_[n].add_moment(surface.torque[v], solids.x, solids.load);
+        moment[patch_of_[n]] = moment[patch_of_[n]] + surface.torque[v];
     }
+    for (const std::uint32_t patch : chosen_patches_)
+        if (norm(moment[patch]) > 0.0)
+            patches_[patch].add_moment(moment[patch], solids.x, solids.load);
 }
 
 }  // namespace doseki

@@ -11,7 +11,7 @@
 #include "base/array.hpp"
 #include "bodies/fragments/cells.hpp"
 #include "bodies/fragments/surface_vertex.hpp"
-#include "bodies/surface.hpp"
+#include "bodies/surface/surface.hpp"
 
 namespace doseki {
 

@@ -14,8 +14,8 @@ struct SurfaceVertex {
     double radius = 0.0;      // 3-D: of the ball that it is [m]
     std::uint64_t key = 0;    // what it is, see VertexKey; 3-D: the point
     std::uint32_t curve = 0;  // 2-D: which of the closed curves of its body it is on
-    // 3-D, but of a ball: normal at rest, and the area for which it stands, over the square of the
-    // spacing.
+    // 3-D: normal at rest, and the area for which it stands, over the square of the spacing; 0: of
+    // a ball.
     Vec<double, D> outward{};
     double share = 0.0;
 };

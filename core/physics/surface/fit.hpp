@@ -13,52 +13,31 @@ DOSEKI_DEVICE_FN inline double weight_on_surface(double area, double square) {
     return square < 1.0 ? area * WendlandC2<2>::value(std::sqrt(square), 1.0) : 0.0;
 }
 
-/// What a vertex has, summed with its weight alone and times where it lies.
-template <class T>
-struct LinearSums {
-    T alone{}, times[3]{};
-
-    DOSEKI_DEVICE_FN void add(double weight, const Vec<double, 3>& at, const T& value) {
-        alone = alone + weight * value;
-        for (int a = 0; a < 3; ++a) times[a] = times[a] + weight * at[a] * value;
-    }
-};
-
 /// Weights theta (constant + slope . t) that are exact for what is linear in the plane, Eq. (166).
 struct LinearWeights {
     double constant = 0.0;
     Vec<double, 3> slope{};
 
-    DOSEKI_DEVICE_FN double at(double weight, const Vec<double, 3>& t) const {
-        return weight * (constant + dot(slope, t));
-    }
-    template <class T>
-    DOSEKI_DEVICE_FN T mean(const LinearSums<T>& sums) const {
-        T mean = constant * sums.alone;
-        for (int a = 0; a < 3; ++a) mean = mean + slope[a] * sums.times[a];
-        return mean;
+    DOSEKI_DEVICE_FN double at(double theta, const Vec<double, 3>& t) const {
+        return theta * (constant + dot(slope, t));
     }
 };
 
-/// Sums over the vertices around a place.
-struct SurfaceSums {
+/// How the vertices around a place lie in its plane.
+struct SurfaceMoments {
     double weight = 0.0;
     Vec<double, 3> first{};
-    Mat<double, 3> second{};
-    LinearSums<Vec<double, 3>> place, normal;  // from the place; of the vertices
-    LinearSums<double> depth;                  // of the place below the plane of each
+    Sym<double, 3> second{};
 
-    DOSEKI_DEVICE_FN void add(double theta, const Vec<double, 3>& t, const Vec<double, 3>& r,
-                              const Vec<double, 3>& n) {
+    DOSEKI_DEVICE_FN void add(double theta, const Vec<double, 3>& t) {
         weight += theta, first = first + theta * t;
         for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) second(a, b) += theta * t[a] * t[b];
-        place.add(theta, t, r), normal.add(theta, t, n), depth.add(theta, t, dot(n, r));
+            for (int b = a; b < 3; ++b) second(a, b) += theta * t[a] * t[b];
     }
     /// From the place to the middle of the vertices: nothing inside a surface, some 0.21 on its
     /// straight rim.
     DOSEKI_DEVICE_FN Vec<double, 3> middle() const { return (1.0 / weight) * first; }
-    /// n: normal of the plane. Means without a slope where the vertices do not span it.
+    /// n: normal of the plane. Without a slope where the vertices do not span it.
     DOSEKI_DEVICE_FN LinearWeights weights(const Vec<double, 3>& n) const {
         constexpr double least_determinant = 1e-5;
         const Vec<double, 3> m = middle();
@@ -71,11 +50,20 @@ struct SurfaceSums {
     }
 };
 
-/// How deep a place lies below the surface, Eq. (167): halfway between the planes of the vertices
-/// and that of the place, which is exact on every sphere and to the third order elsewhere.
-DOSEKI_DEVICE_FN inline double depth_below(const SurfaceSums& sums, const LinearWeights& weights,
-                                           const Vec<double, 3>& n) {
-    return 0.5 * (weights.mean(sums.depth) + dot(n, weights.mean(sums.place)));
-}
+/// Means over the vertices around a place, with the weights of Eq. (166).
+struct SurfaceMeans {
+    Vec<double, 3> place{}, normal{};  // from the place; of the vertices
+    double depth = 0.0;                // of the place below the planes of the vertices
+
+    DOSEKI_DEVICE_FN void add(double weight, const Vec<double, 3>& r, const Vec<double, 3>& n) {
+        place = place + weight * r, normal = normal + weight * n, depth += weight * dot(n, r);
+    }
+    /// How deep the place lies below the surface, whose normal there is n, Eq. (167): halfway
+    /// between the planes of the vertices and that of the place, which is exact on every sphere and
+    /// to the third order elsewhere.
+    DOSEKI_DEVICE_FN double depth_below(const Vec<double, 3>& n) const {
+        return 0.5 * (depth + dot(n, place));
+    }
+};
 
 }  // namespace doseki

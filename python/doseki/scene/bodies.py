@@ -14,7 +14,8 @@ from .meshes.cells import Cells
 class ElasticSurface:
     """Its vertices at rest, not wrapped; in 2-D those of a closed curve, anticlockwise.
 
-    In 3-D each has the outward normal there and stands for an area; in 2-D both are 0.
+    In 3-D each has the outward normal there and stands for an area, or is a ball around its
+    particle, where both are 0, as they are in 2-D.
     """
 
     vertex: np.ndarray  # (m, dim) m
@@ -22,6 +23,14 @@ class ElasticSurface:
     crease: np.ndarray  # (m,) bool: where smooth parts of the curve end
     outward: np.ndarray  # (m, dim)
     share: np.ndarray  # (m,) the area, over spacing^2
+
+
+def balls_around(rest: np.ndarray, particles: np.ndarray) -> ElasticSurface:
+    """Of some of the particles of a 3-D body, which are at `rest` (n, 3)."""
+    none = np.zeros(len(particles))
+    return ElasticSurface(
+        rest[particles], particles, none.astype(bool), np.zeros((len(particles), 3)), none
+    )
 
 
 @dataclass(frozen=True)

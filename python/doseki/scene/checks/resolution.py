@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ...scenario.materials import NO_FRACTURE
 from ...util.finding import Finding, no_more_than
 from ..groups import Group
 from ..kinds.body import Body
@@ -45,11 +46,11 @@ class CoarseElasticBody(Finding):
 
 @dataclass(frozen=True)
 class TouchesAsBalls(Finding):
-    """A deformable body in space that may touch others."""
+    """A body in space that breaks and may touch others."""
 
     def __str__(self) -> str:
         return (
-            f"{self.place}: deformable bodies in 3-D touch as layers of balls of one spacing: what "
+            f"{self.place}: bodies that break touch as layers of balls of one spacing in 3-D: what "
             "meets them at a slant to their particles is turned aside, by up to 28 % of its speed "
             "where smooth spheres meet head-on, at any dp; give it velocities along an axis, or "
             "look at it in 2-D, where surfaces are smooth"
@@ -68,7 +69,8 @@ def resolution_warnings(bodies: Mapping[str, Body[Any]], groups: list[Group]) ->
         across = min(shape.width for shape in group.shapes) / body.spacing
         if group.deforms:
             yield from _elastic_warnings(body, across)
-            if body.dim == 3 and sum(len(one) for one in groups if not one.fixed) > 1:
+            breaks = body.scenario.materials[body.table.material].fracture != NO_FRACTURE
+            if breaks and body.dim == 3 and sum(len(one) for one in groups if not one.fixed) > 1:
                 yield TouchesAsBalls(group.name)
         elif across < MIN_ACROSS - 1e-6:
             yield CoarseBody(group.name, across, body.spacing)

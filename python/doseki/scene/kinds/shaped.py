@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from ...record.particles import BOUND, FIXED, FREE, ParticleSet
 from ...scenario.materials import NO_FRACTURE
 from ...scenario.tables.body import ShapedBody
-from ..bodies import ElasticBody, ElasticSurface
+from ..bodies import ElasticBody, ElasticSurface, balls_around
 from ..groups import UPRIGHT, Group, matrices
 from ..meshes.cells import Cells, cells_of
 from ..periodic import wrapped
@@ -141,7 +141,7 @@ class Shaped(Body[S], Generic[S]):
             own = np.flatnonzero(owner == k)
             volume = group.shapes[group.shape[k]].measure / len(own)
             spacing = volume ** (1 / self.dim)
-            surface = self._surface(group, k, placed.position[own], spacing)
+            surface = self._surface(group, k, placed.position[own], placed.depth[own], spacing)
             made.append(
                 ElasticBody(
                     self.name,
@@ -174,8 +174,12 @@ class Shaped(Body[S], Generic[S]):
             )
         return cells
 
-    def _surface(self, group: Group, k: int, rest: np.ndarray, spacing: float) -> ElasticSurface:
-        """That of body k, whose particles are at `rest`, `spacing` apart."""
+    def _surface(
+        self, group: Group, k: int, rest: np.ndarray, depth: np.ndarray, spacing: float
+    ) -> ElasticSurface:
+        """That of body k, whose particles are at `rest`, so deep in it, and `spacing` apart."""
+        if self.dim == 3 and self.breaks:
+            return balls_around(rest, np.flatnonzero(depth < spacing))
         shape, turn = group.shapes[group.shape[k]], matrices(group.orientation, self.dim)[k]
         centre = group.centre[k]
         if self.dim == 3:

@@ -26,7 +26,7 @@ struct SurfaceWeights {
 /// The surface of a deformable body: vertices that its points carry along. In 2-D they control
 /// closed curves, anticlockwise, and clockwise around holes: uniform cubic B-splines that are twice
 /// continuously differentiable but for the creases, vertices in which smooth parts of them end. For
-/// 3-D see contact/surface_in_space.hpp.
+/// 3-D see surface/in_space.hpp.
 template <int D>
 struct Surface {
     using Place = SurfaceWeights;

@@ -9,7 +9,7 @@
 
 #include "base/array.hpp"
 #include "bodies/shapes/box_tree.hpp"
-#include "bodies/surface.hpp"
+#include "bodies/surface/surface.hpp"
 #include "physics/surface/fit.hpp"
 
 namespace doseki {
@@ -93,14 +93,6 @@ struct Surface<3> {
 private:
     static constexpr double reach = 1.25;  // of weights, in spacings
 
-    DOSEKI_DEVICE_FN SurfaceSums sums_around(const Vec<double, 3>& at, std::uint32_t vertex,
-                                             const Vec<double, 3>& n) const {
-        SurfaceSums sums;
-        for_each_around(at, vertex, n, [&](std::uint32_t v, double theta, const Vec<double, 3>& t) {
-            sums.add(theta, t, position[v] - at, normal[v]);
-        });
-        return sums;
-    }
     /// Calls f(vertex, weight, where it is in the plane).
     template <class F>
     DOSEKI_DEVICE_FN void for_each_around(const Vec<double, 3>& at, std::uint32_t vertex,
@@ -165,19 +157,25 @@ DOSEKI_DEVICE_FN inline auto Surface<3>::foot(const Vec<double, 3>& x, std::uint
                                               const Domain<3>& domain) const
     -> std::optional<Foot> {
     constexpr int planes = 2;        // whose normals come nearer to that of the surface
-    constexpr double beyond = 0.25;  // of the reach, see SurfaceSums::middle()
+    constexpr double beyond = 0.25;  // of the reach, see SurfaceMoments::middle()
     if (vertex >= size()) return {};
     const Vec<double, 3> near = position[vertex], at = near - nearest_image(domain, near - x);
     Foot foot{};
     Vec<double, 3> n = normal[vertex];
     for (int k = 0; k < planes; ++k) {
-        const SurfaceSums sums = sums_around(at, vertex, n);
-        if (!(sums.weight > 0.0) || norm(sums.middle()) > beyond) return {};
-        foot.at = {vertex, at, n, sums.weights(n)};
-        const Vec<double, 3> mean = foot.at.weights.mean(sums.normal);
-        n = (1.0 / norm(mean)) * mean;
-        foot.apart = foot.at.weights.mean(sums.place);
-        foot.depth = depth_below(sums, foot.at.weights, n);
+        SurfaceMoments moments;
+        for_each_around(at, vertex, n, [&](std::uint32_t, double theta, const Vec<double, 3>& t) {
+            moments.add(theta, t);
+        });
+        if (!(moments.weight > 0.0) || norm(moments.middle()) > beyond) return {};
+        foot.at = {vertex, at, n, moments.weights(n)};
+        SurfaceMeans means;
+        for_each_weight(foot.at, [&](std::uint32_t v, double w) {
+            means.add(w, position[v] - at, normal[v]);
+        });
+        n = (1.0 / norm(means.normal)) * means.normal;
+        foot.apart = means.place;
+        foot.depth = means.depth_below(n);
     }
     foot.normal = n;
     return foot;
