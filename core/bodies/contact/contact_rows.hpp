@@ -64,7 +64,7 @@ struct ContactRows {
 
     DOSEKI_DEVICE_FN Overlaps<D> overlaps(std::size_t k) const;
     /// 0 where it is not known.
-    DOSEKI_DEVICE_FN double gap(std::size_t k, double margin) const;
+    DOSEKI_WHOLE_DEVICE_FN double gap(std::size_t k, double margin) const;
     /// Finds what a pair does whose run of rows begins with k, its springs stretching for dt; of a
     /// joint one, where it touches.
     DOSEKI_WHOLE_DEVICE_FN void push(std::size_t k, double dt) const;
@@ -102,7 +102,7 @@ DOSEKI_DEVICE_FN Overlaps<D> ContactRows<D>::overlaps(std::size_t k) const {
 }
 
 template <int D>
-DOSEKI_DEVICE_FN double ContactRows<D>::gap(std::size_t k, double margin) const {
+DOSEKI_WHOLE_DEVICE_FN double ContactRows<D>::gap(std::size_t k, double margin) const {
     const ContactPair& pair = pairs[k];
     const Vec<double, D>& x = bodies.points.position[pair.first()];
     const double radius = bodies.points.radius[pair.first()];

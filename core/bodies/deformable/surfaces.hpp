@@ -200,12 +200,12 @@ private:
     Cells cells_;
     Array<std::int32_t> shown_;  // see shown(); what follows is of those alone, in their order
     Array<SurfaceCarriers<D>> carriers_;
-    Array<std::uint32_t> patch_of_;    // around the point of each
+    Array<std::uint32_t> patch_of_;  // around the point of each
     Array<Patch<D>> patches_;
     Array<std::size_t> first_vertex_;  // of each surface, and the end
     Array<Sample> samples_;
     std::size_t first_contact_point_ = 0;
-    Array<std::uint32_t> surface_of_;  // of each vertex
+    Array<std::uint32_t> surface_of_;                                // of each vertex
     Array<std::uint32_t> chosen_, chosen_samples_, chosen_patches_;  // see choose()
 };
 

@@ -96,7 +96,7 @@ struct FindGap {
     ContactRows<D> rows;
     double margin;
 
-    DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
+    DOSEKI_WHOLE_DEVICE_FN void operator()(std::size_t k) const {
         rows.contacts[k].gap = rows.gap(k, margin);
     }
 };

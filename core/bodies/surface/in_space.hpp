@@ -170,9 +170,8 @@ DOSEKI_DEVICE_FN inline auto Surface<3>::foot(const Vec<double, 3>& x, std::uint
         if (!(moments.weight > 0.0) || norm(moments.middle()) > beyond) return {};
         foot.at = {vertex, at, n, moments.weights(n)};
         SurfaceMeans means;
-        for_each_weight(foot.at, [&](std::uint32_t v, double w) {
-            means.add(w, position[v] - at, normal[v]);
-        });
+        for_each_weight(
+            foot.at, [&](std::uint32_t v, double w) { means.add(w, position[v] - at, normal[v]); });
         n = (1.0 / norm(means.normal)) * means.normal;
         foot.apart = means.place;
         foot.depth = means.depth_below(n);
