@@ -6,9 +6,9 @@
 
 #include "base/array.hpp"
 #include "base/matrix.hpp"
-#include "bodies/surface/in_space.hpp"
 #include "bodies/contact_law.hpp"
 #include "bodies/shapes/contact_surface.hpp"
+#include "bodies/surface/in_space.hpp"
 #include "bodies/surface/surface.hpp"
 
 namespace doseki {
