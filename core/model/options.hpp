@@ -21,8 +21,8 @@ enum class Turbulence { none, smagorinsky, mixing_length };
 
 /// How fluid meets the fixed particles of a body.
 struct WallCondition {
-    bool no_slip = true;   // otherwise free slip, and friction where ks > 0 or `voellmy`
-    double ks = 0.0;       // equivalent sand roughness [m]
+    bool no_slip = true;   // fluid sticks to it
+    double ks = 0.0;       // equivalent sand roughness [m], where there is friction by it
     bool voellmy = false;  // Coulomb's and turbulent friction
     double mu = 0.0;       // coefficient of friction
     double turbulent_xi = std::numeric_limits<double>::infinity();  // [m/s^2]

@@ -62,7 +62,7 @@ template <class T, int D>
 struct WallAccumulators {
     Vec<T, D> force;    // of the fluid, over the wall particle's volume
     Turn<T, D> moment;  // of it about the wall particle: it acts where the fluid is, Eq. (164)
-    T weight{}, height{}, pressure{}, density{};
+    T weight{}, height{}, pressure{}, density{}, viscosity{};
     Vec<T, D> velocity;  // against the wall
     Vec<T, D> area;      // that it sees of the fluid, outwards, over the wall particle's volume
     // Over the faces of other bodies around its own:
@@ -72,8 +72,8 @@ struct WallAccumulators {
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.moment...), f(self.weight...), f(self.height...);
-        f(self.pressure...);
-        f(self.density...), f(self.velocity...), f(self.area...), f(self.film_force...);
+        f(self.pressure...), f(self.density...), f(self.viscosity...);
+        f(self.velocity...), f(self.area...), f(self.film_force...);
         f(self.face_velocity...), f(self.cover...), f(self.film_pressure...),
             f(self.film_density...);
     }
@@ -241,6 +241,7 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     }
     sums.weight += share;
     sums.density += share * j.rho;
+    sums.viscosity += share * j.mu;
     sums.height += share * contact.height;
     sums.pressure += share * (j.p + forces.excess);
 }

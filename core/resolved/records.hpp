@@ -49,7 +49,7 @@ struct WallFields {
     Sym<T, D> bend;      // of the surface, see WallState
     Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
     T volume;
-    T no_slip;          // 1: no slip; 0: the wall pass has the friction
+    T no_slip;          // 1: fluid sticks to it; 0: what friction there is comes from the wall pass
     T inverse_density;  // of a body that moves, else 0
     Turn<T, D> spin;    // of its body [rad/s]
     // Of the film between faces, see WallState:

@@ -17,6 +17,7 @@ from ..scene.ground import ground_of
 from ..util.finding import Finding, no_more_than
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
 from .open_sides import open_sides
+from .rheology import rheology_findings
 from .sound_speed import raised
 
 MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
@@ -192,7 +193,7 @@ def findings(
     found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
     found += [*_voellmy(scenario, state, names), *_gauges(scenario, state), *_mach(scenario, state)]
     found += open_sides(scenario, state, names)
-    found += [*_films(scenario, state)]
+    found += [*_films(scenario, state), *rheology_findings(scenario)]
     return list(dict.fromkeys(found))
 
 

@@ -101,7 +101,9 @@ def _wall_of(scenario: Scenario, name: str) -> BodyTable | Terrain | None:
 def _wall_condition(scenario: Scenario, body: BodyTable | Terrain | None) -> dict[str, Any]:
     wall = (body.given("wall") if body is not None else None) or "no_slip"
     moves = getattr(body, "prescribed_motion", None) is not None
-    condition: dict[str, Any] = {"no_slip": wall == "no_slip", "ks": 0.0, "moves": moves}
+    # With eddies the viscosity is theirs as well, whose stress at a rough wall is that of the law.
+    sticks = wall == "no_slip" or (wall == "rough" and scenario.turbulence == "none")
+    condition: dict[str, Any] = {"no_slip": sticks, "ks": 0.0, "moves": moves}
     if body is not None and wall == "rough":
         condition["ks"] = body.given("ks")
     if body is not None and wall == "voellmy":

@@ -412,8 +412,12 @@ class FlowReference:
         rough = (self.ks > 0) & (self.depth < dp) & (weight > LEAST_FILLED)
         z = np.maximum((share * contact["height"]).sum(axis=0) / filled, ks / 30)
         rho = (share * self.rho[:, None]).sum(axis=0) / filled
-        friction = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * dp ** (self.dim - 1)
-        drag = (rough * friction * np.linalg.norm(u, axis=1))[:, None] * u
+        turbulent = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * np.linalg.norm(u, axis=1)
+        mu = (share * self.mu[:, None]).sum(axis=0) / filled
+        height = np.maximum((share * contact["height"]).sum(axis=0) / filled, 0.25 * dp)
+        viscous = self.stick * mu / height
+        drag = np.where(rough, np.maximum(turbulent - viscous, 0), 0)[:, None] * u
+        drag *= dp ** (self.dim - 1)
         self.wall_force += drag
         self.power_to_rough_walls = dot(drag, self.v_w).sum()
         self.traction = -drag / filled[:, None]

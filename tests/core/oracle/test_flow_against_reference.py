@@ -33,6 +33,7 @@ ACROSS = {2: 14, 3: 8}  # particles along each side of the unit box
 STICK = {"no_slip": True, "ks": 0.0}
 SLIP = {"no_slip": False, "ks": 0.0}
 ROUGH = {"no_slip": False, "ks": 0.02}
+ROUGH_AND_VISCOUS = {"no_slip": True, "ks": 0.02}
 TOLERANCE, MIXED_TOLERANCE = 1e-10, 2e-5
 SLURRY = {
     "rheology": "herschel_bulkley", "yield_stress": 500.0, "consistency": 40.0, "flow_index": 0.6,
@@ -73,6 +74,7 @@ CASES = {
     "two fluids": Case(fluids=2),
     "free slip": Case(walls=(STICK, SLIP, SLIP)),
     "rough": Case(walls=(STICK, ROUGH, STICK)),
+    "rough and viscous": Case(walls=(STICK, ROUGH_AND_VISCOUS, SLIP)),
     "rough, periodic": Case(walls=(STICK, ROUGH, ROUGH), periodic="xy"),
     "periodic": Case(periodic="xyz"),
     "holes, periodic": Case(periodic="xyz", thinned=0.2),

@@ -1,0 +1,87 @@
+"""Fluids whose friction a run would not have are named before it."""
+
+from __future__ import annotations
+
+import pytest
+
+from doseki.assess.rheology import rheology_findings
+from doseki.scenario.load import load_scenario
+
+SCENARIO = """\
+dim = 2
+scheme = "resolved"
+dp = 0.02
+time_max = 1
+time_out = 1
+speed_max = 3
+
+[material.fluid]
+based_on = "water"
+{fluid}
+
+[body.bed]
+shape = "box"
+material = "aluminium"
+fixed = true
+wall = "rough"
+ks = 0.02
+min = [0, -0.08]
+max = [1, 0]
+
+[body.layer]
+shape = "box"
+material = "fluid"
+min = [0, 0]
+max = [1, 0.2]
+"""
+WATER_ABOVE = """
+[body.lake]
+shape = "box"
+material = "water"
+min = [0, 0.2]
+max = [1, 0.4]
+"""
+MUD = (
+    'rheology = "herschel_bulkley"\nyield_stress = 100\nconsistency = 1\nflow_index = 1\n'
+    "regularisation = 100\nviscosity_max = 1000"
+)
+GRAINS = (
+    'rheology = "mu_i"\nmu_s = 0.38\nmu_2 = 0.64\ninertial_number = 0.279\n'
+    "grain_diameter = 1e-3\ngrain_density = 2500\nviscosity_max = 1000"
+)
+
+
+@pytest.fixture
+def said(tmp_path):
+    """What is said of a fluid on a rough bed."""
+
+    def sentences(fluid, *settings, more=""):
+        file = tmp_path / "case.toml"
+        file.write_text(SCENARIO.format(fluid=fluid) + more)
+        return [str(one) for one in rheology_findings(load_scenario(file, settings))]
+
+    return sentences
+
+
+@pytest.mark.parametrize(
+    ("fluid", "turbulence", "told"),
+    [
+        (MUD, "mixing_length", True),
+        (GRAINS, "smagorinsky", True),
+        ("nu = 0.02", "mixing_length", True),
+        ("nu = 1e-6", "mixing_length", False),
+        (MUD, "none", False),
+    ],
+)
+def test_a_viscous_fluid_on_a_rough_wall_with_eddies(said, fluid, turbulence, told):
+    found = said(fluid, f"turbulence={turbulence}")
+    assert bool(found) == told
+    if told:
+        assert "body.bed.wall" in found[0]
+        assert 'set turbulence = "none"' in found[0]
+
+
+def test_grains_under_water(said):
+    assert said(GRAINS) == []
+    assert "material.fluid.rheology" in said(GRAINS, more=WATER_ABOVE)[0]
+    assert said(MUD, more=WATER_ABOVE) == []
