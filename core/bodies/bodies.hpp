@@ -324,12 +324,8 @@ private:
                                   dt);
             });
     }
-    void drift(double dt) { moved_ += std::max(deformable.drift(dt), rigid.drift(dt)); }
-    void follow_walls(const MovingWalls<D>& walls, double t, double dt) {
-        const auto step = rigid.follow_walls(walls, t, dt);
-        if (step.any_removed) moved_ = margin_;
-        moved_ += step.distance;
-    }
+    void drift(const MovingWalls<D>& walls, double t, double dt);
+    void follow_walls(const MovingWalls<D>& walls, double t, double dt);
 
     Vec<double, D> gravity_;
     double memory_;

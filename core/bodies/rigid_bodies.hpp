@@ -98,6 +98,7 @@ public:
         double distance = 0.0;  // the largest
         bool any_removed = false;
     };
+    /// Takes them from t to t + dt, within which no motion changes.
     WallStep follow_walls(const MovingWalls<D>& walls, double t, double dt);
     /// Largest speed of a point of a fixed body that moves at t.
     double speed_of_walls(const MovingWalls<D>& walls, double t) const;
@@ -271,11 +272,12 @@ auto RigidBodies<D>::follow_walls(const MovingWalls<D>& walls, double t, double 
         const WallMotion<D>* motion = walls.motions().of(bodies_[k].group);
         if (!motion) continue;
         RigidBodyState<D>& state = states_[k];
-        state.velocity = motion->velocity_at(state.centre, t);
+        const Vec<double, D> before = state.centre;
+        if (motion->moves(t)) state.centre = motion->moved(before, t, dt);
+        const Vec<double, D> move = state.centre - before;
+        state.velocity =
+            motion->moves(t) ? motion->moving_velocity(state.centre, t + dt) : Vec<double, D>{};
         state.angular_momentum = motion->spin_at(t);
-        const Vec<double, D> move =
-            motion->moves(t) ? motion->moved(state.centre, t, dt) - state.centre : Vec<double, D>{};
-        state.centre = state.centre + move;
         const Vec3 turn = dt * motion->spin_at(t);
         state.orientation = state.orientation.turned(turn);
         step.distance = std::max(step.distance, norm(move) + shape(k).radius * norm(turn));

@@ -35,7 +35,10 @@ struct WallMotion {
     }
 
     DOSEKI_DEVICE_FN Vec<double, D> velocity_at(const Vec<double, D>& x, double t) const {
-        if (!moves(t)) return {};
+        return moves(t) ? moving_velocity(x, t) : Vec<double, D>{};
+    }
+    /// The same up to the end of the motion itself.
+    DOSEKI_DEVICE_FN Vec<double, D> moving_velocity(const Vec<double, D>& x, double t) const {
         return velocity + cross_spin(x - pivot_at(t));
     }
 

@@ -45,6 +45,21 @@ bool Bodies<D>::look_ahead(double step) {
     return true;
 }
 
+/// Half a step of all that moves. Walls go along, so that contacts see both sides where they are
+/// at one time, whatever moves the two of them together.
+template <int D>
+void Bodies<D>::drift(const MovingWalls<D>& walls, double t, double dt) {
+    moved_ += std::max(deformable.drift(dt), rigid.drift(dt));
+    follow_walls(walls, t, dt);
+}
+
+template <int D>
+void Bodies<D>::follow_walls(const MovingWalls<D>& walls, double t, double dt) {
+    const auto step = rigid.follow_walls(walls, t, dt);
+    if (step.any_removed) moved_ = margin_;
+    moved_ += step.distance;
+}
+
 /// Position Verlet in the steps of eq. (52): contacts see the velocities of the middle of a step.
 template <int D>
 void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double dt, Course& course) {
@@ -52,9 +67,8 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
         measure_speed();
         double steps = steps_of(left, contact_step());
         if (look_ahead(left / steps)) steps = steps_of(left, contact_step());
-        const double step = left / steps;
-        drift(0.5 * step);
-        follow_walls(walls, t + dt - left, step);
+        const double step = left / steps, now = t + (dt - left);
+        drift(walls, now, 0.5 * step);
         if (2.0 * moved_ >= margin_)
             show_bodies(all_points_), find_contacts();
         else if (contacts_.any(PairKind::all))
@@ -65,8 +79,8 @@ void Bodies<D>::advance_together(const MovingWalls<D>& walls, double t, double d
         if (!deformable.empty()) push_deformable(step, course);
         rigid.push(gravity_, step);
         course.on_rigid += step, course.on_points += step;
-        part_if_cracked(t + dt - left, step, course);
-        drift(0.5 * step);
+        part_if_cracked(now, step, course);
+        drift(walls, now + 0.5 * step, 0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
 }
@@ -116,7 +130,7 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
         measure_speed();
         double steps = steps_of(left, step_apart(shorter_step()));
         if (look_ahead(left / steps)) steps = steps_of(left, step_apart(shorter_step()));
-        const double shorter = shorter_step(), step = left / steps, now = t + dt - left;
+        const double shorter = shorter_step(), step = left / steps, now = t + (dt - left);
         if (step <= std::min(shorter, deformable.unstrained_timestep()))
             step_at_once(walls, now, step, course);
         else {
@@ -131,11 +145,10 @@ void Bodies<D>::advance_apart(const MovingWalls<D>& walls, double t, double dt, 
 /// Where two short steps are longer than a long one, also those of what may be struck in it.
 template <int D>
 void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, Course& course) {
-    drift(0.5 * dt);
-    follow_walls(walls, t, dt);
+    drift(walls, t, 0.5 * dt);
     push_slow(dt, course);
     push_fast(t, dt, course);
-    drift(0.5 * dt);
+    drift(walls, t + 0.5 * dt, 0.5 * dt);
 }
 
 template <int D>
@@ -143,16 +156,16 @@ void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Co
     Array<std::uint32_t> together = companions_;  // and dust that is born on the way
     double ahead = rigid.drift(dt, others_);
     moved_ += ahead;
-    auto drift_together = [&](double step) {
+    auto drift_together = [&](double now, double step) {
         const double way = std::max(deformable.drift(step), rigid.drift(step, together));
         moved_ += std::max(0.0, way - ahead), ahead = std::max(0.0, ahead - way);
+        follow_walls(walls, now, step);
     };
     for (double left = dt; left > 0.0;) {
         measure_speed();
         const double steps = steps_of(left, shorter_step()), step = left / steps,
-                     now = t + dt - left;
-        drift_together(0.5 * step);
-        follow_walls(walls, now, step);
+                     now = t + (dt - left);
+        drift_together(now, 0.5 * step);
         const std::size_t before = rigid.size();
         if (!together.empty() || deformable.any_deforms())
             push_fast(now, step, course);
@@ -160,7 +173,7 @@ void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Co
             course.on_points += step;
         for (std::size_t k = before; k < rigid.size(); ++k)
             together.push_back(static_cast<std::uint32_t>(k));
-        drift_together(0.5 * step);
+        drift_together(now + 0.5 * step, 0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
 }
