@@ -21,7 +21,7 @@ from .carried import (
     present,
 )
 from .checks.fracture import fracture_warnings
-from .checks.groups import check_overlaps
+from .checks.groups import check_overlaps, period_findings
 from .checks.outflows import far_findings, outflow_findings
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
@@ -97,6 +97,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         groups += walls
         warnings += resolution_warnings(bodies, groups)
         warnings += fracture_warnings(bodies, made)
+        warnings += period_findings(scenario, groups)
         check_overlaps(scenario, groups)
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)

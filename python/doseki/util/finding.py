@@ -25,6 +25,12 @@ def no_more_than(most: float) -> str:
     return f"{math.floor(most / unit + 1e-9) * unit:.2g}"
 
 
+def no_less_than(least: float) -> str:
+    """The smallest number of three digits that is no smaller."""
+    unit = 10.0 ** (math.floor(math.log10(least)) - 2)
+    return f"{math.ceil(least / unit - 1e-9) * unit:.4g}"
+
+
 def sentences(findings: Iterable[Finding]) -> list[str]:
     """What findings say; what they say alike of copies NAME.1, NAME.2 ... is said once."""
     places: dict[tuple[str, str], list[str]] = {}

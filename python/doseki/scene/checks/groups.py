@@ -1,8 +1,9 @@
-"""Bodies that start inside one another or inside walls."""
+"""Bodies that start inside one another or inside walls, and those that may meet images."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
@@ -10,9 +11,50 @@ import numpy as np
 
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
+from ...util.finding import Finding, no_less_than
 from ..ground import ground_of
 from ..groups import Group, matrices
+from ..periodic import periods
 from ..shapes import Ball, Convex, MeshShape
+
+SPANS = 1e-6  # of a period: what is as long but for rounding spans it
+
+
+@dataclass(frozen=True)
+class TouchesItself(Finding):
+    """Bodies that may touch their own images."""
+
+    diameter: float  # of the largest, m
+    axis: str
+    period: float  # m
+    enough: float  # period, m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: bodies up to {self.diameter:.3g} m across may touch their own images, "
+            f"{self.period:.3g} m away along {self.axis}, which do not act on them: make the "
+            f"domain at least {no_less_than(self.enough)} m long there, or the bodies smaller"
+        )
+
+
+@dataclass(frozen=True)
+class TouchesTwice(Finding):
+    """Two bodies that may touch on both sides at once."""
+
+    other: str
+    diameters: tuple[float, float]  # m
+    axis: str
+    period: float  # m
+
+    def __str__(self) -> str:
+        other = "another of its own" if self.other == self.place else f"one of {self.other}"
+        one, two = self.diameters
+        return (
+            f"{self.place}: a body of {one:.3g} m and {other} of {two:.3g} m may touch on both "
+            f"sides at once in a period of {self.period:.3g} m along {self.axis}, where only the "
+            f"nearer side counts: make the domain at least {no_less_than(one + two)} m long "
+            "there, or the bodies smaller"
+        )
 
 
 class _Ball(NamedTuple):
@@ -65,6 +107,77 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
                 f"body.{name}: a body of it overlaps {whom} by {overlap:.3g} m at the start; "
                 f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m",
             )
+
+
+def period_findings(scenario: Scenario, groups: list[Group]) -> Iterator[Finding]:
+    """Doubts about bodies that are large against a period, of which a pair has one contact.
+
+    Raises UserError where a body that moves overlaps its own image from the start.
+    """
+    for axis, period in enumerate(periods(scenario)):
+        if period > 0:
+            _refuse_longer(scenario, groups, axis, period)
+            yield from _met_images(groups, "xyz"[axis], period, scenario.dp)
+            yield from _met_twice(groups, axis, period)
+
+
+def _refuse_longer(scenario: Scenario, groups: list[Group], axis: int, period: float) -> None:
+    for group in groups:
+        if group.fixed or group.name in scenario.carried:
+            continue
+        length = _lengths(group, axis).max(initial=0.0)
+        if length > period * (1 + SPANS):
+            raise scenario.where.error(
+                ("body", group.name),
+                f"body.{group.name}: a body of it is {length:.3g} m long along {'xyz'[axis]} and "
+                f"overlaps its own image, {period:.3g} m away: make it shorter, or the domain "
+                "longer",
+            )
+
+
+def _met_images(groups: list[Group], axis: str, period: float, spacing: float) -> Iterator[Finding]:
+    for group in groups:
+        diameter = _diameters(group).max(initial=0.0)
+        if not group.fixed and diameter > period - spacing:
+            yield TouchesItself(group.name, diameter, axis, period, diameter + spacing)
+
+
+def _met_twice(groups: list[Group], axis: int, period: float) -> Iterator[Finding]:
+    """The largest two that may; what is fixed and spans the period has no sides."""
+    moving, still = list[tuple[float, str]](), list[tuple[float, str]]()
+    for group in groups:
+        if group.fixed:
+            lengths = _lengths(group, axis)
+            across = lengths[lengths < period * (1 - SPANS)]
+        else:
+            across = _diameters(group)
+        (still if group.fixed else moving).extend((d, group.name) for d in np.sort(across)[-2:])
+    if not moving:
+        return
+    moving.sort()
+    (one, name), others = moving[-1], [*moving[-2:-1], *still]
+    two, other = max(others, default=(0.0, name))
+    if two > 0 and one + two > period * (1 + SPANS):
+        yield TouchesTwice(name, other, (one, two), "xyz"[axis], period)
+
+
+def _diameters(group: Group) -> np.ndarray:
+    """Of the balls (n,) around the bodies, m: their extent whichever way they turn."""
+    return 2 * np.array([shape.reach for shape in group.shapes])[group.shape]
+
+
+def _lengths(group: Group, axis: int) -> np.ndarray:
+    """Extent (n,) of the bodies along an axis as they stand, m."""
+    along = matrices(group.orientation, group.centre.shape[1])[:, axis]
+    length = np.zeros(len(group))
+    for k, shape in enumerate(group.shapes):
+        which = group.shape == k
+        if isinstance(shape, Ball):
+            length[which] = 2 * shape.radius
+        else:
+            corners = shape.vertices if isinstance(shape, Convex) else shape.mesh.vertices
+            length[which] = np.ptp(corners @ along[which].T, axis=0)
+    return length
 
 
 def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
