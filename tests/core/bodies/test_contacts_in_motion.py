@@ -10,9 +10,25 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from doseki.solver.build import empty_simulation
+from doseki.solver.restoring import check_state
+from doseki.validate.running import FOREVER
+
 from .blocks import ball, box, head, moving, started
 
 RADIUS, WIDTH, DP = 0.08, 0.12, 0.02
+CHALK = """
+[material.chalk]
+law = "solid"
+rho0 = 1000
+young_modulus = 1e7
+poisson_ratio = 0.2
+restitution = 0.5
+fracture = "cohesive"
+tensile_strength = 2e5
+fracture_energy = 100
+
+"""
 SETTINGS = [(2, 0, "linear"), (2, 30, "linear"), (3, 0, "linear"), (3, 30, "hertz")]
 settings = pytest.mark.parametrize(("dim", "degrees", "law"), SETTINGS)
 
@@ -28,8 +44,10 @@ def upright(dim, degrees):
 class Frame:
     """A floor and what lies or falls on it, all of which goes with `speed` along the normal."""
 
-    def __init__(self, folder, setting, speed, *, gravity=0.0, fall=0.0, gap=0.0, shape="ball"):
-        """The body comes with `fall` from `gap` above the floor."""
+    def __init__(
+        self, folder, setting, speed, *, gravity=0.0, fall=0.0, gap=0.0, shape="ball", **values
+    ):
+        """The body comes with `fall` from `gap` above the floor; `values` go into its table."""
         dim, degrees, law = setting
         turn = upright(dim, degrees)
         self.up, self.speed = turn[:, -1], speed
@@ -41,10 +59,10 @@ class Frame:
         velocity = ((speed - fall) * self.up).tolist()
         middle = np.array([*[0.0] * (dim - 1), RADIUS + gap])
         if shape == "ball":
-            text += ball("body", turn @ middle, RADIUS, velocity=velocity)
+            text += ball("body", turn @ middle, RADIUS, velocity=velocity, **values)
         else:
             text += box("body", middle - RADIUS, middle + RADIUS, velocity=velocity, **turned)
-        self.run = started(folder, text)
+        self.run = started(folder, text.replace("\n[contact]", CHALK + "[contact]"))
 
     def advance(self, start, end):
         """Where the body is and how fast, m and m/s from the floor, after steps of many lengths."""
@@ -73,6 +91,27 @@ def test_what_bounces_off_a_floor_does_so_in_any_frame(tmp_path, dim, degrees, l
     at_rest = restitution(0.0)
     assert at_rest == pytest.approx(0.5, abs=0.01)
     assert restitution(speed) == pytest.approx(at_rest, abs=0.005)
+
+
+@pytest.mark.parametrize("fall", [0.1, 2.0])
+@pytest.mark.parametrize("kind", ["elastic", "breakable"])
+@pytest.mark.parametrize(("dim", "degrees"), [(2, 0), (2, 30), (3, 0)])
+def test_what_deforms_bounces_alike_in_any_frame(tmp_path, dim, degrees, kind, fall):
+    """Also what is rigid until it is struck, as it is at 2 m/s."""
+    kinds = {"material": '"chalk"', "kinematics": f'"{kind}"'}
+
+    def bounced(speed):
+        setting = dim, degrees, "linear"
+        frame = Frame(tmp_path, setting, speed, fall=fall, gap=0.001, **kinds)
+        for time in uneven(0, 0.03, 2e-4):
+            state = frame.run.advance(time)
+        deforms = len(frame.run.simulation.fragments()["mass"]) > 0
+        return state["velocity"][state["body"] == 1].mean(axis=0) @ frame.up - speed, deforms
+
+    at_rest, deforms = bounced(0.0)
+    assert at_rest > 0.4 * fall
+    assert deforms == (kind == "elastic" or fall == 2.0)
+    assert bounced(-3.0) == pytest.approx((at_rest, deforms), rel=1e-6)
 
 
 @settings
@@ -125,3 +164,16 @@ def test_a_wall_that_turns_strikes_as_fast_as_it_comes(tmp_path):
     for time in uneven(0, 0.05, 1e-3):
         run.advance(time)
     assert np.linalg.norm(moving(run, "velocity")[0]) == pytest.approx(2 * rate * 0.8, rel=0.005)
+
+
+def test_a_restored_lift_goes_on_with_the_same_bits(tmp_path):
+    frame = Frame(tmp_path, (2, 30, "linear"), 1.5, gravity=9.81, fall=0.1)
+    frame.advance(0, 0.02)
+    saved, run = frame.run.simulation.checkpoint(), frame.run
+    other = empty_simulation(run.scenario, run.body_names)
+    check_state(other, saved, 1, 2)
+    assert other.restore(saved)
+    for one in (run.simulation, other):
+        one.advance(limit=0.04, pause=0.04, max_steps=FOREVER)
+    for key, values in run.simulation.grains().items():
+        assert np.array_equal(values, other.grains()[key]), key
