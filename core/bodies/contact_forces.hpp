@@ -44,12 +44,21 @@ void Contacts<D>::find(ContactBodies<D>& bodies, double margin) {
 template <int D>
 void Contacts<D>::add_rows(const ContactBodies<D>& bodies) {
     Array<ContactPair> rows;
-    for (const ContactPair& pair : pairs_) {
-        const bool ball = bodies.points.radius[pair.first()] > 0.0;
-        const ContactSolid<D>* solid = bodies.solid(pair);
-        rows.insert(rows.end(), ball && solid ? solid->surface->most_touched() : 1, pair);
-    }
+    for (const ContactPair& pair : pairs_)
+        rows.insert(rows.end(), most_touched(bodies, pair), pair);
     pairs_ = std::move(rows);
+}
+
+/// At how many places or images a pair may touch at once.
+template <int D>
+std::size_t Contacts<D>::most_touched(const ContactBodies<D>& bodies,
+                                      const ContactPair& pair) const {
+    const Array<double>& radius = bodies.points.radius;
+    const ContactSolid<D>* solid = bodies.solid(pair);
+    if (solid && radius[pair.first()] > 0.0) return solid->surface->most_touched();
+    if (pair.with_shape()) return 1;
+    const double reach = radius[pair.first()] + radius[pair.second()];
+    return std::min(SurfacePoints<D>::most, images_within(domain_, reach));
 }
 
 /// Each once, in rising order.

@@ -140,6 +140,7 @@ private:
     PairContact contact_of(const ContactBodies<D>& bodies, const ContactPair& pair) const;
     /// As many rows of the pair as it may have places.
     void add_rows(const ContactBodies<D>& bodies);
+    std::size_t most_touched(const ContactBodies<D>& bodies, const ContactPair& pair) const;
     void turn_round(std::size_t k);
     /// Lists for each point, in rising order, the pairs that push it.
     void list_pushes(Selection& selection) const;
@@ -151,7 +152,7 @@ private:
     Domain<D> domain_;
     ContactLaws<D> laws_;
     // One row for each place at which a pair may touch: several in a row for a ball and a surface
-    // with hollows.
+    // with hollows, and for balls of which two images are near.
     Array<ContactPair> pairs_;
     Array<ContactSprings> springs_;
     Array<Vec<double, D>> normals_;        // of what touches; zero: nothing

@@ -26,7 +26,10 @@ public:
     DOSEKI_DEVICE_FN Overlaps(const std::optional<Overlap<D>>& overlap) {
         if (overlap) add(*overlap);
     }
-    DOSEKI_DEVICE_FN void add(const Overlap<D>& overlap) { overlaps_[count_++] = overlap; }
+    /// Unless there are as many as there may be.
+    DOSEKI_DEVICE_FN void add(const Overlap<D>& overlap) {
+        if (count_ < overlaps_.size()) overlaps_[count_++] = overlap;
+    }
     DOSEKI_DEVICE_FN std::size_t size() const { return count_; }
     DOSEKI_DEVICE_FN const Overlap<D>& operator[](std::size_t k) const { return overlaps_[k]; }
     DOSEKI_DEVICE_FN const Overlap<D>* begin() const { return overlaps_.data(); }
@@ -37,11 +40,38 @@ private:
     std::size_t count_ = 0;
 };
 
+/// How many images may be nearer than `distance` at once: two along each axis of which that is more
+/// than half. It is less than any period.
+template <int D>
+std::size_t images_within(const Domain<D>& domain, double distance) {
+    std::size_t images = 1;
+    for (int c = 0; c < D; ++c)
+        if (domain.periodic[c] && 2.0 * distance > domain.length(c)) images *= 2;
+    return images;
+}
+
+/// Calls f with the vectors to the images that are nearer than `distance`, the nearest first.
+template <int D, class F>
+DOSEKI_DEVICE_FN void for_each_image_within(const Domain<D>& domain, const Vec<double, D>& r,
+                                            double distance, F&& f) {
+    const Vec<double, D> nearest = nearest_image(domain, r);
+    for (int image = 0; image < 1 << D; ++image) {
+        Vec<double, D> other = nearest;
+        bool is_there = true;
+        for (int c = 0; c < D; ++c) {
+            if (!(image >> c & 1)) continue;
+            is_there = is_there && domain.periodic[c];
+            other[c] -= std::copysign(domain.length(c), nearest[c]);
+        }
+        if (is_there && dot(other, other) < distance * distance) f(other);
+    }
+}
+
+/// Of two balls, r from the first to the second.
 template <int D>
 DOSEKI_DEVICE_FN std::optional<Overlap<D>> overlap_of(const ContactPointSpans<D>& points,
                                                       std::size_t a, std::size_t b,
-                                                      const Domain<D>& domain) {
-    const Vec<double, D> r = nearest_image(domain, points.position[b] - points.position[a]);
+                                                      const Vec<double, D>& r) {
     const double reach = points.radius[a] + points.radius[b], square = dot(r, r);
     if (square >= reach * reach || square == 0.0) return {};
     const double distance = std::sqrt(square);
@@ -49,6 +79,19 @@ DOSEKI_DEVICE_FN std::optional<Overlap<D>> overlap_of(const ContactPointSpans<D>
     overlap.lever_a = (points.radius[a] - 0.5 * overlap.depth) * overlap.normal;
     overlap.lever_b = overlap.lever_a - r;
     return overlap;
+}
+
+/// With each image that it touches.
+template <int D>
+DOSEKI_DEVICE_FN Overlaps<D> overlaps_of(const ContactPointSpans<D>& points, std::size_t a,
+                                         std::size_t b, const Domain<D>& domain) {
+    Overlaps<D> overlaps;
+    for_each_image_within(domain, points.position[b] - points.position[a],
+                          points.radius[a] + points.radius[b], [&](const Vec<double, D>& r) {
+                              if (const auto overlap = overlap_of(points, a, b, r))
+                                  overlaps.add(*overlap);
+                          });
+    return overlaps;
 }
 
 /// At each place of the solid that the point touches, the nearest first.

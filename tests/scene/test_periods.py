@@ -1,4 +1,4 @@
-"""Bodies that are large against a period are told: of two bodies one side alone touches."""
+"""Bodies that are large against a period are told, as far as contacts miss some of theirs."""
 
 from __future__ import annotations
 
@@ -88,31 +88,17 @@ def test_a_long_body_is_refused_only_along_the_period(told):
         told(box("tall", (0.3, -0.1), (0.7, 1.1), rotate=90), 1)
 
 
-def test_two_that_may_touch_on_both_sides_are_told(told):
-    discs = disc("one", [0.3, 0.5], 0.25) + disc("other", [0.85, 0.5], 0.2601)
-    (said,) = told(discs, 1)
+def test_a_ball_and_a_block_that_may_touch_on_both_sides_are_told(told):
+    """The block counts with its diagonal, 0.495 m; two balls do so as they should."""
+    both = disc("ball", [0.25, 0.5], 0.26) + box("block", (0.6, 0.3), (0.95, 0.65))
+    (said,) = told(both, 1)
     assert said == (
-        "other: a body of 0.52 m and one of one of 0.5 m may touch on both sides at once in a "
-        "period of 1 m along x, where only the nearer side counts: make the domain at least 1.03 m "
+        "ball: a ball of 0.52 m and one of block of 0.495 m may touch on both sides at once in a "
+        "period of 1 m along x, where only the nearer side counts: make the domain at least 1.02 m "
         "long there, or the bodies smaller"
     )
-    assert told(discs, 1.03) == []
-
-
-def test_bodies_of_one_table_count_as_two(told):
-    grains = """
-        [body.grains]
-        shape = "disc"
-        material = "basalt"
-        d = {d}
-        packing = 0.4
-        min = [0, 0]
-        max = [1, 3]
-        settle = false
-    """
-    assert told(grains.format(d=0.49), 1) == []
-    (said,) = told(grains.format(d=0.51), 1)
-    assert said.startswith("grains: a body of 0.51 m and another of its own of 0.51 m may touch")
+    assert told(both, 1.02) == []
+    assert told(disc("one", [0.25, 0.5], 0.26) + disc("other", [0.75, 1.1], 0.26), 1) == []
 
 
 def test_walls_count_where_they_do_not_span_the_period(told):
@@ -122,7 +108,7 @@ def test_walls_count_where_they_do_not_span_the_period(told):
     assert told(ball + bed, 1) == []
     (said,) = told(ball + bed + pier, 1)
     assert said.startswith(
-        "ball: a body of 0.4 m and one of pier of 0.65 m may touch on both sides"
+        "ball: a ball of 0.4 m and one of pier of 0.65 m may touch on both sides"
     )
     assert told(ball + box("pier", (0.2, 0), (0.75, 0.5), fixed="true"), 1) == []
 
@@ -135,6 +121,6 @@ def test_the_remedy_is_one(told):
     """What is said to be long enough is long enough, however it is rounded."""
     rng = np.random.default_rng(1)
     for radius in rng.uniform(0.2501, 0.2999, 5):
-        discs = disc("one", [0.3, 0.5], radius) + disc("other", [0.7, 1.2], radius)
-        (said,) = told(discs, 1)
-        assert told(discs, float(said.split("at least ")[1].split()[0])) == []
+        both = disc("ball", [0.3, 0.5], radius) + box("block", (0.5, 1), (0.9, 1.4))
+        (said,) = told(both, 1)
+        assert told(both, float(said.split("at least ")[1].split()[0])) == []

@@ -79,9 +79,11 @@ struct ContactRows {
     }
 
 private:
-    /// What two balls do, which touch at one place.
+    /// What two balls do, of which one image is near at most.
     DOSEKI_DEVICE_FN void push_balls(std::size_t k, double dt) const {
-        const auto overlap = overlap_of(bodies.points, pairs[k].first(), pairs[k].second(), domain);
+        const std::size_t a = pairs[k].first(), b = pairs[k].second();
+        const auto& x = bodies.points.position;
+        const auto overlap = overlap_of(bodies.points, a, b, nearest_image(domain, x[b] - x[a]));
         if (!overlap) return part(k);
         touch(k, *overlap, 1.0), push_there(k, dt);
     }
@@ -97,7 +99,7 @@ DOSEKI_DEVICE_FN Overlaps<D> ContactRows<D>::overlaps(std::size_t k) const {
     const ContactPair& pair = pairs[k];
     if (const Surface<D>* surface = bodies.surface(pair))
         return overlap_of(bodies.points, pair.first(), *surface, contacts[k].vertex, domain);
-    if (!pair.with_shape()) return overlap_of(bodies.points, pair.first(), pair.second(), domain);
+    if (!pair.with_shape()) return overlaps_of(bodies.points, pair.first(), pair.second(), domain);
     return overlaps_of(bodies, pair.first(), bodies.solids[pair.shape()], domain);
 }
 
@@ -124,7 +126,7 @@ template <int D>
 DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const {
     const std::size_t rows = run_from(k);
     if (rows == 0) return;
-    if (!pairs[k].with_shape()) return push_balls(k, dt);
+    if (rows == 1 && !pairs[k].with_shape()) return push_balls(k, dt);
     const Overlaps<D> found = overlaps(k);
     const auto share = shares_of(found);
     const auto row = rows_of(found, std::span<const Vec<double, D>>(normals.data() + k, rows));

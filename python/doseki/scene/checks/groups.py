@@ -39,7 +39,7 @@ class TouchesItself(Finding):
 
 @dataclass(frozen=True)
 class TouchesTwice(Finding):
-    """Two bodies that may touch on both sides at once."""
+    """A ball and a body of another shape that may touch on both sides at once."""
 
     other: str
     diameters: tuple[float, float]  # m
@@ -47,13 +47,12 @@ class TouchesTwice(Finding):
     period: float  # m
 
     def __str__(self) -> str:
-        other = "another of its own" if self.other == self.place else f"one of {self.other}"
         one, two = self.diameters
         return (
-            f"{self.place}: a body of {one:.3g} m and {other} of {two:.3g} m may touch on both "
-            f"sides at once in a period of {self.period:.3g} m along {self.axis}, where only the "
-            f"nearer side counts: make the domain at least {no_less_than(one + two)} m long "
-            "there, or the bodies smaller"
+            f"{self.place}: a ball of {one:.3g} m and one of {self.other} of {two:.3g} m may touch "
+            f"on both sides at once in a period of {self.period:.3g} m along {self.axis}, where "
+            f"only the nearer side counts: make the domain at least {no_less_than(one + two)} m "
+            "long there, or the bodies smaller"
         )
 
 
@@ -110,7 +109,7 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
 
 
 def period_findings(scenario: Scenario, groups: list[Group]) -> Iterator[Finding]:
-    """Doubts about bodies that are large against a period, of which a pair has one contact.
+    """Doubts about bodies that are large against a period, of which contacts miss some.
 
     Raises UserError where a body that moves overlaps its own image from the start.
     """
@@ -143,22 +142,31 @@ def _met_images(groups: list[Group], axis: str, period: float, spacing: float) -
 
 
 def _met_twice(groups: list[Group], axis: int, period: float) -> Iterator[Finding]:
-    """The largest two that may; what is fixed and spans the period has no sides."""
-    moving, still = list[tuple[float, str]](), list[tuple[float, str]]()
-    for group in groups:
-        if group.fixed:
-            lengths = _lengths(group, axis)
-            across = lengths[lengths < period * (1 - SPANS)]
-        else:
-            across = _diameters(group)
-        (still if group.fixed else moving).extend((d, group.name) for d in np.sort(across)[-2:])
-    if not moving:
-        return
-    moving.sort()
-    (one, name), others = moving[-1], [*moving[-2:-1], *still]
-    two, other = max(others, default=(0.0, name))
-    if two > 0 and one + two > period * (1 + SPANS):
-        yield TouchesTwice(name, other, (one, two), "xyz"[axis], period)
+    """The largest two, of which one moves; what is fixed and spans the period has no sides.
+
+    Two balls touch with all of their images, and points of other shapes with the one that is near.
+    """
+    bodies = [_largest(group, axis, period) for group in groups if not group.elastic]
+    balls = [(group, ball) for group, ball, _ in bodies if ball > 0]
+    others = [(group, other) for group, _, other in bodies if other > 0]
+    pairs = [
+        (one + two, group.name, other.name, (one, two))
+        for group, one in balls
+        for other, two in others
+        if not (group.fixed and other.fixed)
+    ]
+    both, name, other_name, diameters = max(pairs, default=(0.0, "", "", (0.0, 0.0)))
+    if both > period * (1 + SPANS):
+        yield TouchesTwice(name, other_name, diameters, "xyz"[axis], period)
+
+
+def _largest(group: Group, axis: int, period: float) -> tuple[Group, float, float]:
+    """The largest extents of its balls and of its bodies of other shapes, m; 0: none."""
+    across = _lengths(group, axis) if group.fixed else _diameters(group)
+    across = np.where(group.fixed & (across > period * (1 - SPANS)), 0.0, across)
+    is_ball = np.array([isinstance(shape, Ball) for shape in group.shapes])[group.shape]
+    ball, other = (float(across[of].max(initial=0.0)) for of in (is_ball, ~is_ball))
+    return group, ball, other
 
 
 def _diameters(group: Group) -> np.ndarray:
