@@ -40,8 +40,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// How many images may be nearer than `distance` at once: two along each axis of which that is more
-/// than half. It is less than any period.
+/// How many images may be nearer at once than `distance`, which is less than any period: two along
+/// each axis of whose period it is more than half.
 template <int D>
 std::size_t images_within(const Domain<D>& domain, double distance) {
     std::size_t images = 1;
