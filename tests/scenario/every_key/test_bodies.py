@@ -38,7 +38,7 @@ BODY = {
     "motion": ["{ velocity = [1, {zeros}0] }"],
     "velocity": ["[-0.5, {zeros}0.1]"],
     "wall": ["free_slip", "rough", "voellmy"],
-    "ks": ["0.01", "0.01 with body.subject.wall=rough; body.subject.ks=0.02"],
+    "ks": ["0.01", "0.01 with body.subject.wall=rough; body.subject.ks=0.02; turbulence=mixing_length"],
     "mu": ["0.4", "0.4 with {voellmy}"],
     "turbulent_xi": ["1", "1 with {voellmy}"],
     "normal": ["[-1, {zeros}0]"],

@@ -69,7 +69,7 @@ def test_a_terrain_and_a_release(folder, dim):
         "section": ["[[0.2, 0.4], [3.6, 1.8]]"],
         "material": ["water"],
         "wall": ["free_slip"],
-        "ks": ["0.02 with terrain.wall=rough; terrain.ks=0.01", "0.02"],
+        "ks": ["0.02 with terrain.wall=rough; terrain.ks=0.01; turbulence=mixing_length", "0.02"],
         "mu": ["0.3 with terrain.wall=voellmy; terrain.mu=0.2", "0.3"],
         "turbulent_xi": ["900 with terrain.wall=voellmy; terrain.mu=0.2", "900"],
     }
