@@ -1,4 +1,4 @@
-"""Structures on a terrain whose loads are read: how far they go into the ground, and how thick."""
+"""Structures whose loads are read: how far they go into ground and walls, and how thick."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.small_scenarios import BANKS
 from tests.terrain.scenes import grid, profile, text
 
 from doseki.scenario.load import load_scenario
-from doseki.scene.checks.structures import InWalls, OneFace, Shallow
+from doseki.scene.checks.structures import EndsAtWall, InWalls, OneFace, Shallow
 from doseki.solver.build import filled_simulation
 
 DP = 0.1
@@ -162,3 +162,50 @@ def test_a_mesh_that_goes_into_other_walls_is_told(tmp_path, ends, told):
     assert bool(found) == told
     if told:
         assert "let these walls end at its faces" in str(found[0])
+
+
+CORNER = """
+dim = 2
+scheme = "resolved"
+dp = 0.05
+time_max = 1
+time_out = 1
+speed_max = 4
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [-1, -0.15]
+max = [{end}, 0]
+rotate = {turn}
+pivot = [0, 0]
+[body.wall]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [0, {foot}]
+max = [0.15, 1]
+rotate = {turn}
+pivot = [0, 0]
+[body.lake]
+shape = "box"
+material = "water"
+min = [-1, 0]
+max = [0, 0.5]
+rotate = {turn}
+pivot = [0, 0]
+[gauge.thrust]
+kind = "force"
+bodies = ["wall"]
+interval = 0.1
+"""
+
+
+@pytest.mark.parametrize("turn", [0, 30, 180])
+@pytest.mark.parametrize(("foot", "end", "fewer"), [(0, 0.15, True), (-0.15, 0, False)])
+def test_a_wall_that_ends_at_the_floor_is_told(tmp_path, turn, foot, end, fewer):
+    path = tmp_path / "case.toml"
+    path.write_text(CORNER.format(turn=turn, foot=foot, end=end))
+    found = findings(path, EndsAtWall)
+    assert [(each.place, each.other) for each in found] == [("body.wall", "body.floor")] * fewer
+    assert all("gauge.thrust does not read" in str(each) for each in found)

@@ -38,7 +38,7 @@ BODY = {
     "motion": ["{ velocity = [1, {zeros}0] }"],
     "velocity": ["[-0.5, {zeros}0.1]"],
     "wall": ["free_slip", "rough", "voellmy"],
-    "ks": ["0.01", "0.01 with body.subject.wall=rough; body.subject.ks=0.02; turbulence=mixing_length"],
+    "ks": ["0.01", "0.01 with {rough}"],
     "mu": ["0.4", "0.4 with {voellmy}"],
     "turbulent_xi": ["1", "1 with {voellmy}"],
     "normal": ["[-1, {zeros}0]"],
@@ -105,6 +105,7 @@ def test_bodies(tmp_path, subject, scheme, dim, way):
         "copies": "[2, 1, 1]" if dim == 3 else "[2, 1]",
         "folder": str(tmp_path),
         "voellmy": "body.subject.wall=voellmy; body.subject.mu=0.2",
+        "rough": "body.subject.wall=rough; body.subject.ks=0.02; turbulence=mixing_length",
     }
     values = {key: [replaced(v, words) for v in entries] for key, entries in BODY.items()}
     if subject == "one":

@@ -47,6 +47,24 @@ class Shallow(Finding):
 
 
 @dataclass(frozen=True)
+class EndsAtWall(Finding):
+    """A structure that ends where the face of another fixed body begins."""
+
+    gauge: str
+    other: str
+    at: tuple[float, ...]  # m
+    dp: float
+
+    def __str__(self) -> str:
+        place = ", ".join(f"{x:.4g}" for x in self.at)
+        return (
+            f"{self.place}: ends at {self.other}, at ({place}) m, whose particles behind its face "
+            f"carry the thrust on a quarter of dp there, which gauge.{self.gauge} does not read: "
+            f"let it go {DEEP} dp = {DEEP * self.dp:.3g} m on, and {self.other} end at its face"
+        )
+
+
+@dataclass(frozen=True)
 class InWalls(Finding):
     """A mesh that goes into other walls, which keep their particles where it loses its own."""
 
@@ -93,7 +111,11 @@ def structure_findings(
             continue
         first_row = depth[of_it] < scenario.dp
         place = particles.position[of_it]
-        yield from _in_walls(scenario, name, gauge, place)
+        lost = list(_in_walls(scenario, name, gauge, place))
+        yield from lost
+        if not lost and not scenario.is_dry:
+            faces = _Faces(particles, normal, depth < scenario.dp)
+            yield from _ends_at_wall(scenario, name, gauge, faces, of_it, names)
         if scenario.bed is None:
             continue
         yield from _shallow(scenario, name, gauge, place, normal[of_it], first_row)
@@ -126,6 +148,49 @@ def _in_walls(scenario: Scenario, name: str, gauge: str, position: np.ndarray) -
     if gone.any():
         first = tuple(made[gone][0].tolist())
         yield InWalls(f"body.{name}", gauge, int(gone.sum()), len(made), first)
+
+
+@dataclass(frozen=True)
+class _Faces:
+    """What is fixed of all particles, and which of it is the first row of a face."""
+
+    particles: ParticleSet
+    normal: np.ndarray  # (N, dim)
+    is_first: np.ndarray  # (N,)
+
+
+def _ends_at_wall(
+    scenario: Scenario, name: str, gauge: str, faces: _Faces, of_it: np.ndarray, names: list[str]
+) -> Iterator[Finding]:
+    """Looks in each hollow corner that its face makes with that of another for what lies behind."""
+    from scipy.spatial import cKDTree
+
+    dp, particles, normal = scenario.dp, faces.particles, faces.normal
+    is_face = (
+        (particles.motion == FIXED) & faces.is_first & (np.linalg.norm(normal, axis=1) > ASIDE)
+    )
+    own, others = np.flatnonzero(is_face & of_it), np.flatnonzero(is_face & ~of_it)
+    if not len(own) or not len(others):
+        return
+    position = particles.position
+    near = cKDTree(position[others]).query_ball_point(position[own], BESIDE * dp)
+    one = np.repeat(own, [len(each) for each in near])
+    other = others[np.concatenate(near).astype(int)]
+    apart = position[other] - position[one]
+    hollow = (
+        ((apart * normal[one]).sum(axis=1) > ASIDE * dp)
+        & ((apart * normal[other]).sum(axis=1) < -ASIDE * dp)
+        & (np.abs((normal[one] * normal[other]).sum(axis=1)) < ASIDE)
+    )
+    one, other = one[hollow], other[hollow]
+    tree, there = cKDTree(position[of_it]), np.ones(len(one), bool)
+    for on in DEPTHS[2:]:
+        there &= tree.query(position[one] - on * dp * normal[other])[0] < NEAR * dp
+    if not there.all():
+        k = int(np.argmin(there))
+        body = names[particles.body[other[k]]]
+        at = tuple(position[one[k]].tolist())
+        yield EndsAtWall(f"body.{name}", gauge, f"body.{body}", at, dp)
 
 
 def _one_face(scenario: Scenario, name: str, gauge: str, box: Box) -> Iterator[Finding]:
