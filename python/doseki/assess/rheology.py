@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from ..scenario.materials import Material
 from ..scenario.model import Scenario
 from ..util.finding import Finding
+from .sound_speed import usual_speed
 
 KARMAN = 0.40
 
@@ -64,7 +65,6 @@ def _is_viscous(scenario: Scenario, fluid: Material, ks: float) -> bool:
     if fluid.rheology != "newtonian":
         return True
     height = scenario.dp / 2
-    # Half of the speed that the sound speed is for: of most of a flow, not of its front.
-    speed = 0.05 * scenario.xi * fluid.speedsound
+    speed = usual_speed(scenario, fluid)
     eddies = (KARMAN / math.log1p(30 * max(height, ks / 30) / ks)) ** 2 * speed
     return fluid.nu / height > eddies

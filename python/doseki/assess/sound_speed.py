@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from ..record.reader import Run
+from ..scenario.materials import Material
+from ..scenario.model import Scenario
 
 POWERS = {"xi": 1.0, "speed_max": 1.0, "xi_height": 2.0}  # of the sound speed that it goes with
 DIGITS = 2
@@ -21,6 +23,11 @@ def sound_speed_from(run: Run) -> tuple[str, float]:
     given = run.summary.get("sound_speed_from") or {"xi": run.scenario.get("xi", 1.0)}
     key, value = next(iter(given.items()))
     return str(key), float(value)
+
+
+def usual_speed(scenario: Scenario, fluid: Material) -> float:
+    """Half of the speed that the sound speed is for, m/s: of most of a flow, not of its front."""
+    return 0.05 * scenario.xi * fluid.speedsound
 
 
 def rounded_up(value: float) -> float:

@@ -18,7 +18,7 @@ from ..util.finding import Finding, no_more_than
 from .estimates import State, flow_depths, gap, grain_spacings, mach_number
 from .open_sides import open_sides
 from .rheology import rheology_findings
-from .sound_speed import raised
+from .sound_speed import raised, usual_speed
 
 MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
 MIN_ACROSS_FLOW = 10  # particles over the depth; below, a film is too viscous
@@ -255,8 +255,7 @@ def _voellmy(scenario: Scenario, state: State, names: dict[int, str]) -> Iterato
             if fluid.rheology not in {"newtonian", "mu_i"}:
                 continue
             inside = fluid.of_laws["mu_s"] if fluid.rheology == "mu_i" else 0.0
-            # Half of the speed that the sound speed is for: of most of a flow, not of its front.
-            fast = 0.05 * scenario.xi * fluid.speedsound
+            fast = usual_speed(scenario, fluid)
             borne = 1 - fluid.of_laws["pore_pressure_ratio"]
             least = mu + (fast**2 / (xi * depth * borne) if xi else 0.0)
             if inside < least:

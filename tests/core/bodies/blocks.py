@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from doseki.validate.running import Running
+from doseki.solver.build import empty_simulation
+from doseki.solver.restoring import check_state
+from doseki.validate.running import FOREVER, Running
 
 HEAD = """
 dim = {dim}
@@ -70,3 +72,15 @@ def moving(run: Running, field: str) -> np.ndarray:
     """A field of the bodies that move, in the order of the scenario."""
     grains = run.grains()
     return np.array(grains[field][~grains["fixed"]])
+
+
+def assert_restored_with_the_same_bits(run: Running, moving_bodies: int, until: float) -> None:
+    """A 2-D run goes on as another one does that is restored from where it is."""
+    saved = run.simulation.checkpoint()
+    other = empty_simulation(run.scenario, run.body_names)
+    check_state(other, saved, moving_bodies, 2)
+    assert other.restore(saved)
+    for one in (run.simulation, other):
+        one.advance(limit=until, pause=until, max_steps=FOREVER)
+    for key, values in run.simulation.grains().items():
+        assert np.array_equal(values, other.grains()[key]), key

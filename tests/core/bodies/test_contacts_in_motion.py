@@ -10,11 +10,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from doseki.solver.build import empty_simulation
-from doseki.solver.restoring import check_state
-from doseki.validate.running import FOREVER
+from doseki.scene.lattices import rotation_matrix
 
-from .blocks import ball, box, head, moving, started
+from .blocks import assert_restored_with_the_same_bits, ball, box, head, moving, started
 
 RADIUS, WIDTH, DP = 0.08, 0.12, 0.02
 CHALK = """
@@ -33,14 +31,6 @@ SETTINGS = [(2, 0, "linear"), (2, 30, "linear"), (3, 0, "linear"), (3, 30, "hert
 settings = pytest.mark.parametrize(("dim", "degrees", "law"), SETTINGS)
 
 
-def upright(dim, degrees):
-    """Turns vectors along x and the last axis as a scenario turns a body; (dim, dim)."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    turn = np.eye(dim)
-    turn[np.ix_([0, -1], [0, -1])] = [[c, -s], [s, c]]
-    return turn
-
-
 class Frame:
     """A floor and what lies or falls on it, all of which goes with `speed` along the normal."""
 
@@ -49,7 +39,7 @@ class Frame:
     ):
         """The body comes with `fall` from `gap` above the floor; `values` go into its table."""
         dim, degrees, law = setting
-        turn = upright(dim, degrees)
+        turn = rotation_matrix(degrees, dim)
         self.up, self.speed = turn[:, -1], speed
         text = head((-gravity * self.up).tolist(), DP, speed=4, law=law, restitution=0.5)
         turned = {"rotate": degrees, "pivot": [0.0] * dim} if degrees else {}
@@ -169,11 +159,4 @@ def test_a_wall_that_turns_strikes_as_fast_as_it_comes(tmp_path):
 def test_a_restored_lift_goes_on_with_the_same_bits(tmp_path):
     frame = Frame(tmp_path, (2, 30, "linear"), 1.5, gravity=9.81, fall=0.1)
     frame.advance(0, 0.02)
-    saved, run = frame.run.simulation.checkpoint(), frame.run
-    other = empty_simulation(run.scenario, run.body_names)
-    check_state(other, saved, 1, 2)
-    assert other.restore(saved)
-    for one in (run.simulation, other):
-        one.advance(limit=0.04, pause=0.04, max_steps=FOREVER)
-    for key, values in run.simulation.grains().items():
-        assert np.array_equal(values, other.grains()[key]), key
+    assert_restored_with_the_same_bits(frame.run, moving_bodies=1, until=0.04)

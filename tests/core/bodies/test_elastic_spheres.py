@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from doseki.scenario.load import load_scenario
+from doseki.scene.lattices import rotation_matrix
 from doseki.solver.build import build_simulation
 
 RADIUS = 0.05
 SPEED = 0.5
-YOUNG = 1e7
 TOP = """
 schema = 1
 dim = 3
@@ -51,15 +51,12 @@ max = [0.15, 0.15, 0]
 """
 
 
-def turning(axis, angle):
-    """The matrix that turns about an axis by degrees."""
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    t = np.radians(angle)
-    return np.eye(3) + np.sin(t) * across + (1 - np.cos(t)) * across @ across
+TURNS = [((0, 0, 1), 0.0), ((1, 2, 3), 37.0), ((3, -1, 1), 70.0)]  # axis, degrees
 
 
-TURNS = [((0, 0, 1), 0.0), ((1, 2, 3), 37.0), ((3, -1, 1), 70.0)]
+def turning(turn):
+    axis, degrees = turn
+    return rotation_matrix(degrees, 3, np.array(axis, float))
 
 
 def sphere(name, place, velocity):
@@ -128,7 +125,7 @@ def kept(before, after):
 @pytest.mark.parametrize("turn", TURNS)
 def test_smooth_spheres_neither_turn_nor_swerve(run, turn):
     """As balls of bare points they swerved by 0.14 of their speed and turned by 0.34."""
-    matrix = turning(*turn)
+    matrix = turning(turn)
     before, after = run(meeting(matrix))
     velocity = matrix.T @ after["a"].velocity
     assert np.abs(velocity[:2]).max() < 0.005 * SPEED
@@ -141,7 +138,7 @@ def test_smooth_spheres_neither_turn_nor_swerve(run, turn):
 @pytest.mark.parametrize(("offset", "friction"), [(0.5, 0.0), (1.4, 0.1)])
 def test_spheres_that_slide_push_aside_by_friction_alone(run, turn, offset, friction):
     """Off their line of centres, which turns while they touch; of slow ones they would roll."""
-    matrix = turning(*turn)
+    matrix = turning(turn)
     motions = run(meeting(matrix, offset), friction=friction, times=np.arange(1, 131) * 1e-4)
     line = np.array([at["a"].centre - at["b"].centre for at in motions])
     line = line[1:] + line[:-1]
@@ -159,7 +156,7 @@ def test_spheres_that_slide_push_aside_by_friction_alone(run, turn, offset, fric
 
 @pytest.mark.parametrize("turn", TURNS)
 def test_a_sphere_goes_straight_back_from_a_plane(run, turn):
-    matrix = turning(*turn)
+    matrix = turning(turn)
     up = matrix @ [0, 0, 1]
     falling = sphere("a", (RADIUS + 2e-4) * up, -SPEED * up)
     after = run(floor(*turn) + falling, times=(0.0125,))[-1]["a"]

@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.solver.build import empty_simulation
-from doseki.solver.restoring import check_state
-from doseki.validate.running import FOREVER
-
-from .blocks import ball, head, moving, started
+from .blocks import assert_restored_with_the_same_bits, ball, head, moving, started
 
 RADIUS, PERIOD = 0.1, 0.399  # half a millimetre on each side of two in the middle
 CASES = [(2, "x"), (2, "y"), (3, "x"), (3, "z")]
@@ -88,11 +84,4 @@ def test_a_ball_that_turns_between_two_images_is_braked_on_both_sides(tmp_path):
 def test_contacts_on_both_sides_are_restored_with_the_same_bits(tmp_path):
     run = two(tmp_path, 2, "x", 0.1999, friction=0.5, spin=5.0)
     run.advance(0.01)
-    saved = run.simulation.checkpoint()
-    other = empty_simulation(run.scenario, run.body_names)
-    check_state(other, saved, 2, 2)
-    assert other.restore(saved)
-    for one in (run.simulation, other):
-        one.advance(limit=0.02, pause=0.02, max_steps=FOREVER)
-    for key, values in run.simulation.grains().items():
-        assert np.array_equal(values, other.grains()[key]), key
+    assert_restored_with_the_same_bits(run, moving_bodies=2, until=0.02)

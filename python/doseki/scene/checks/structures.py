@@ -104,17 +104,17 @@ def structure_findings(
     depth: np.ndarray,
 ) -> Iterator[Finding]:  # fmt: skip
     """A doubt about each fixed body whose load is read."""
+    faces = _Faces(particles, normal, depth < scenario.dp)
     for name, gauge in _metered_bodies(scenario).items():
         own = [names.index(each) for each in scenario.names_of_bodies(name)]
         of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
         if not of_it.any():
             continue
-        first_row = depth[of_it] < scenario.dp
+        first_row = faces.is_first[of_it]
         place = particles.position[of_it]
         lost = list(_in_walls(scenario, name, gauge, place))
         yield from lost
         if not lost and not scenario.is_dry:
-            faces = _Faces(particles, normal, depth < scenario.dp)
             yield from _ends_at_wall(scenario, name, gauge, faces, of_it, names)
         if scenario.bed is None:
             continue

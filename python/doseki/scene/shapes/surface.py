@@ -48,10 +48,10 @@ def on_triangles(corners: np.ndarray, dp: float) -> SurfaceVertices:
 def shared_among(
     particles: np.ndarray, vertices: SurfaceVertices
 ) -> tuple[SurfaceVertices, np.ndarray]:
-    """The vertices, and the particle (n,) nearest to each, with which it comes off.
+    """The vertices, and the particle (n,) nearest to each, around which it turns.
 
     One as near to several is as many, each with its part of the area: else it would depend on the
-    order of the particles with which of them it comes off.
+    order of the particles around which of them it turns.
     """
     tree = cKDTree(particles)
     reach = (1 + ROUNDING) * tree.query(vertices.place)[0]
