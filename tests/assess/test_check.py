@@ -12,10 +12,10 @@ import pytest
 
 import doseki
 from doseki.assess.preflight import brief_check, check_scenario
-from doseki.assess.sound_speed import rounded_up
 from doseki.assess.warnings import thorough_findings
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, filled_simulation
+from doseki.util.finding import rounded_up
 
 SCENARIO = """\
 schema = 1

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from ..record.reader import Run
 from ..scenario.materials import Material
 from ..scenario.model import Scenario
+from ..util.finding import rounded_up
 
 POWERS = {"xi": 1.0, "speed_max": 1.0, "xi_height": 2.0}  # of the sound speed that it goes with
-DIGITS = 2
 
 
 def raised(key: str, value: float, factor: float) -> str:
@@ -28,12 +26,3 @@ def sound_speed_from(run: Run) -> tuple[str, float]:
 def usual_speed(scenario: Scenario, fluid: Material) -> float:
     """Half of the speed that the sound speed is for, m/s: of most of a flow, not of its front."""
     return 0.05 * scenario.xi * fluid.speedsound
-
-
-def rounded_up(value: float) -> float:
-    """The next number of DIGITS digits that is not less; what is not finite stays."""
-    if not math.isfinite(value) or value <= 0:
-        return value
-    exponent = math.floor(math.log10(value)) + 1 - DIGITS
-    digits = math.ceil(value / 10.0**exponent * (1 - 1e-9))
-    return float(f"{digits}e{exponent}")

@@ -27,8 +27,16 @@ def no_more_than(most: float) -> str:
 
 def no_less_than(least: float) -> str:
     """The smallest number of three digits that is no smaller."""
-    unit = 10.0 ** (math.floor(math.log10(least)) - 2)
-    return f"{math.ceil(least / unit - 1e-9) * unit:.4g}"
+    return f"{rounded_up(least, digits=3):g}"
+
+
+def rounded_up(value: float, digits: int = 2) -> float:
+    """The next number of so many digits that is not less; what is not finite stays."""
+    if not math.isfinite(value) or value <= 0:
+        return value
+    exponent = math.floor(math.log10(value)) + 1 - digits
+    first = math.ceil(value / 10.0**exponent * (1 - 1e-9))
+    return float(f"{first}e{exponent}")
 
 
 def sentences(findings: Iterable[Finding]) -> list[str]:

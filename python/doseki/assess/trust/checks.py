@@ -9,7 +9,8 @@ import numpy as np
 from ...record.reader import Run
 from ...scenario.schemes import RESOLVED, UETA2022
 from ...scene.checks.particle_overlaps import TOO_NEAR
-from ..sound_speed import raised, rounded_up
+from ...util.finding import rounded_up
+from ..sound_speed import raised
 from ..warnings import MIN_ACROSS_FLOW, MIN_ACROSS_GRAIN
 from .snapshots import Seen, gravity_of
 from .verdicts import Check, judged, max_of, unknown
