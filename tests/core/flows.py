@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -110,6 +111,55 @@ material = "water"
 centre = {{ d2 = [0, 0], d3 = [0, 0, 0] }}
 radius = {{ d2 = 0.105, d3 = 0.055 }}
 """
+
+# A layer of four rows on a slope, periodic all around: `wall` says what the bed is, `rheology` how
+# the layer flows.
+LAYER = """\
+dim = {dim}
+scheme = "resolved"
+speed_max = 2
+dp = 0.05
+time_max = 10
+time_out = 1
+gravity = {{ d2 = ["= -s", "= -n"], d3 = ["= -s*cos(b)", "= -s*sin(b)", "= -n"] }}
+periodic = {{ d2 = ["x"], d3 = ["x", "y"] }}
+domain_min = {{ d2 = [0, -0.15], d3 = [0, 0, -0.15] }}
+domain_max = {{ d2 = [0.6, 1], d3 = [0.4, 0.4, 1] }}
+
+[parameters]
+angle = {angle}
+a = "= radians(angle)"
+b = {{ value = "= radians(40)", help = "3-D: which way is up the slope, in plan" }}
+s = "= 9.81*sin(a)"
+n = "= 9.81*cos(a)"
+rho = {rho}
+
+[material.fluid]
+based_on = "water"
+rho0 = "= rho"
+{rheology}
+[body.bed]
+shape = "box"
+material = "aluminium"
+fixed = true
+{wall}
+normal = {{ d2 = [0, 1], d3 = [0, 0, 1] }}
+min = {{ d2 = [0, -0.15], d3 = [0, 0, -0.15] }}
+max = {{ d2 = [0.6, 0], d3 = [0.4, 0.4, 0] }}
+
+[body.layer]
+shape = "box"
+material = "fluid"
+min = {{ d2 = [0, 0], d3 = [0, 0, 0] }}
+max = {{ d2 = [0.6, 0.2], d3 = [0.4, 0.4, 0.2] }}
+pressure = {{ d2 = "= rho*n*(0.2 - y)", d3 = "= rho*n*(0.2 - z)" }}
+"""
+
+
+def down_layer(dim: int) -> np.ndarray[Any, Any]:
+    """Unit vector down the slope of LAYER."""
+    b = math.radians(40)
+    return -np.array([1, 0] if dim == 2 else [math.cos(b), math.sin(b), 0])
 
 
 class Flows:
