@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -124,3 +126,24 @@ def test_the_remedy_is_one(told):
         both = disc("ball", [0.3, 0.5], radius) + box("block", (0.5, 1), (0.9, 1.4))
         (said,) = told(both, 1)
         assert told(both, float(said.split("at least ")[1].split()[0])) == []
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_bodies_that_overlap_across_the_end_of_a_period_are_refused(told, axis):
+    """A disc at one end and, at the other, a disc, a box or a wall."""
+
+    def at(along, across):
+        return [along, across] if axis == "x" else [across, along]
+
+    first = disc("first", at(0.05, 0.5), 0.12)
+    second = disc("second", at(0.85, 0.5), 0.12)
+    others = {
+        "second": second,
+        "block": box("block", at(0.7, 0.4), at(0.95, 0.6)),
+        "wall": box("wall", at(0.8, 0.3), at(0.95, 0.7), fixed="true"),
+    }
+    for name, other in others.items():
+        with pytest.raises(UserError, match=r"overlaps .* by 0\.0") as said:
+            told(first + other, 1, axis)
+        assert {"first", name} <= set(re.findall(r"\w+", str(said.value)))
+        assert not any("overlap" in text for text in told(first + other, 1.3, axis))

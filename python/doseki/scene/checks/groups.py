@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import NamedTuple
 
@@ -88,6 +88,7 @@ class _Mesh(NamedTuple):
 
 def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     """Raise UserError where a body that moves overlaps another by more than contacts may."""
+    groups = _with_images(scenario, groups)
     balls = [ball for group in groups for ball in _balls(group)]
     blocks = [block for group in groups for block in _blocks(group, scenario)]
     meshes = [mesh for group in groups for mesh in _meshes(group, scenario)]
@@ -106,6 +107,32 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
                 f"body.{name}: a body of it overlaps {whom} by {overlap:.3g} m at the start; "
                 f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m",
             )
+
+
+def _with_images(scenario: Scenario, groups: list[Group]) -> list[Group]:
+    """The groups, and for each what reaches over an end of the domain once more at the other."""
+    seen = list(groups)
+    for axis, period in enumerate(periods(scenario)):
+        low, high = scenario.ends_of(axis) if period > 0 else (-np.inf, np.inf)
+        for group in list(seen):
+            along, reach = group.centre[:, axis], 0.5 * _diameters(group)
+            step = np.zeros(group.centre.shape[1])
+            step[axis] = period
+            seen += [
+                _moved(group, which, sign * step)
+                for which, sign in ((along - reach < low, 1), (along + reach > high, -1))
+                if which.any()
+            ]
+    return seen
+
+
+def _moved(group: Group, which: np.ndarray, step: np.ndarray) -> Group:
+    return replace(
+        group,
+        shape=group.shape[which],
+        centre=group.centre[which] + step,
+        orientation=group.orientation[which],
+    )
 
 
 def period_findings(scenario: Scenario, groups: list[Group]) -> Iterator[Finding]:
