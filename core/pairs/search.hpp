@@ -45,17 +45,20 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
         Lanes([&](auto l) { return support[std::min<std::uint32_t>(first + l, last)]; });
 
     const std::span<const Vec<double, D>> shifts(this->image_shifts());
-    auto meets = [&](int lane, std::uint32_t j) {
-        const std::int32_t own = scratch.faces[std::min<std::uint32_t>(
-                               first + static_cast<std::uint32_t>(lane), last)],
-                           other = scratch.faces[j];
-        return Face::meet(own, other);
-    };
+    const auto face = Lanes([&](auto l) {
+        return scratch.faces.empty() ? Face::none
+                                     : scratch.faces[std::min<std::uint32_t>(first + l, last)];
+    });
     auto visit = [&](std::uint32_t key, std::uint32_t image) __attribute__((always_inline)) {
         const Vec<double, D>& shift = shifts[image];
         const std::uint32_t code = image << ListEntry::index_bits;
         const CellRange cell = grid.particles(key);
         for (std::uint32_t j = cell.first; j < cell.last; ++j) {
+            typename Lanes::mask_type near(true);
+            if (!scratch.faces.empty()) {
+                near = Face::meet(face, Lanes(scratch.faces[j]));
+                if (stdx::none_of(near)) continue;
+            }
             Lanes square = 0.0;
             for (int a = 0; a < D; ++a) {
                 const Lanes d = x[a] - (position[j][a] + shift[a]);
@@ -64,12 +67,8 @@ void Neighbours<D>::search(const Grid& grid, const Part& part, std::uint32_t fir
             Lanes limit = support[j];
             stdx::where(limit < reach, limit) = reach;
             limit += skin;
-            auto near = square < limit * limit;
+            near = near && square < limit * limit;
             if (stdx::none_of(near)) continue;
-            if (!scratch.faces.empty()) {
-                for (int lane = 0; lane < width; ++lane) near[lane] = near[lane] && meets(lane, j);
-                if (stdx::none_of(near)) continue;
-            }
             // Another part finds what is near its particles, too.
             const int lane = stdx::find_first_set(near);
             if (part.first <= lane && lane < part.last) scratch.list.push_back(j | code);

@@ -121,9 +121,11 @@ struct BedSpring {
 struct Face {
     static constexpr std::int32_t none = 0, fixed = 1, first_body = 2;
 
-    DOSEKI_DEVICE_FN static constexpr bool meet(std::int32_t a, std::int32_t b) {
-        const bool of_one_body = a == b || std::int64_t{a} + b == 0;
-        return a != none && b != none && !of_one_body && (a > none || b > none);
+    /// Whether there may be a film between them; of numbers, or of packs of them.
+    template <class T>
+    DOSEKI_DEVICE_FN static constexpr auto meet(const T& a, const T& b) {
+        const auto of_others = a != b && a + b != T(0);
+        return a != T(none) && b != T(none) && of_others && (a > T(none) || b > T(none));
     }
 };
 
