@@ -23,6 +23,7 @@ public:
     ClusterList without_fixed() const { return {begin_, moving_words_, 0}; }
 
     bool empty() const { return words() == 0; }
+    bool has_moving() const { return moving_words_ > 0; }
     std::size_t words() const { return std::size_t{moving_words_} + fixed_words_; }
 
     template <class F>
@@ -34,15 +35,31 @@ public:
         for_each(begin_ + moving_words_, fixed_words_, f);
     }
 
+    /// Whether f(entry) holds for a fixed neighbour.
+    template <class F>
+    bool any_fixed(F&& f) const {
+        return any(begin_ + moving_words_, fixed_words_, f);
+    }
+
 private:
     template <class F>
     [[gnu::always_inline]] static void for_each(const std::uint16_t* word, std::size_t words,
                                                 F& f) {
+        auto call = [&f](std::uint32_t entry) __attribute__((always_inline)) {
+            f(entry);
+            return false;
+        };
+        any(word, words, call);
+    }
+    template <class F>
+    [[gnu::always_inline]] static bool any(const std::uint16_t* word, std::size_t words, F& f) {
         for (const std::uint16_t* const end = word + words; word != end;) {
             const std::uint32_t upper = static_cast<std::uint32_t>(word[0]) << 16;
             const std::uint16_t* const run_end = word + 2 + word[1];
-            for (word += 2; word != run_end; ++word) f(upper | *word);
+            for (word += 2; word != run_end; ++word)
+                if (f(upper | *word)) return true;
         }
+        return false;
     }
 
     const std::uint16_t* begin_ = nullptr;

@@ -46,6 +46,17 @@ template <bool periodic, class Term>
     return sums;
 }
 
+/// Whether the sums of a cluster of `count` particles are zero, as they were.
+template <KnowsIdleParticles Epilogue>
+bool is_idle(const ClusterList& list, std::size_t first, std::size_t count,
+             const Epilogue& epilogue) {
+    if (list.has_moving()) return false;
+    for (std::size_t k = 0; k < count; ++k)
+        if (epilogue.needs_sums(first + k)) return false;
+    return !list.any_fixed(
+        [&](std::uint32_t entry) { return epilogue.acts(entry & ListEntry::index_mask); });
+}
+
 template <bool periodic, class Term, class Epilogue>
 void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const ClusterList> clusters,
                    std::span<const MotionRecord<typename Term::Real, Term::dim>> records,
@@ -67,6 +78,8 @@ void for_each_pair(const Neighbours<Term::dim>& neighbours, std::span<const Clus
         const auto number = static_cast<std::uint32_t>(options.first_cluster + c);
         const std::uint32_t first = number * width;
         const auto count = std::min<std::size_t>(width, neighbours.size() - first);
+        if constexpr (KnowsIdleParticles<Epilogue>)
+            if (is_idle(clusters[c], first, count, epilogue)) return;
         auto hand_on = [&](const auto& sums_of) {
             auto run_epilogue = [&] {
                 for (std::size_t k = 0; k < count; ++k) epilogue(first + k, sums_of(k));

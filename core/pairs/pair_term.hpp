@@ -104,6 +104,15 @@ concept EpilogueOf = requires(const Epilogue& epilogue, const AccumulatorsOf<Ter
     epilogue(std::size_t{}, sums);
 };
 
+/// An epilogue that says which sums are zero again and need not be taken: those of a cluster
+/// without moving neighbours, none of whose particles p `needs_sums(p)` and none of whose fixed
+/// neighbours j `acts(j)`. It is not called for such a cluster.
+template <class Epilogue>
+concept KnowsIdleParticles = requires(const Epilogue& epilogue) {
+    { epilogue.needs_sums(std::size_t{}) } -> std::same_as<bool>;
+    { epilogue.acts(std::size_t{}) } -> std::same_as<bool>;
+};
+
 /// Says what a type lacks to be a PairTerm, one thing at a time.
 template <class Term, class Epilogue>
 constexpr bool check_pair_term() {

@@ -52,6 +52,18 @@ public:
         wall.force[p] = force, wall.moment[p] = sums.moment;
     }
 
+    /// See KnowsIdleParticles: where neither fluid nor a film is, nor was a step before.
+    bool needs_sums(std::size_t p) const {
+        const WallState<D>& wall = state_.wall;
+        return p < first_wall_ || acts(p) || wall.film_change[p] != 0.0 ||
+               dot(wall.force[p], wall.force[p]) > 0.0;
+    }
+    bool acts(std::size_t p) const {
+        const WallRecord<real, D>& record = records_[p - first_wall_];
+        return record.pressure != 0 || record.film_density != 0 ||
+               dot(record.film_traction, record.film_traction) > 0;
+    }
+
 private:
     static constexpr double min_filled = 0.05;  // of the kernel, by fluid
     static constexpr double min_weight = 1e-9;  // the same; less presses with nothing
