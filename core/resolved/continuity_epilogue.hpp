@@ -36,8 +36,8 @@ public:
             set_density(at, indicator, strain);
             shift(at, strain);
         } else {
-            state_.density_rate[p] = 0.0, state_.shift[p] = {};
-            push_of_layer(at);
+            state_.shift[p] = {};
+            take_pressure(at), push_of_layer(at);
         }
         damp_sound(at);
         summary(p).power +=
@@ -127,6 +127,15 @@ private:
     DOSEKI_DEVICE_FN double power_of_corrections(const Summed& at, double density_rate) const {
         return at.fields.volume * pressure(at) / at.fields.rho * density_rate -
                state_.mass[at.p] * dot(model_.options.gravity, state_.shift[at.p]);
+    }
+
+    /// A driven particle has the pressure of the flow in front of it, by continuity alone: the
+    /// arrangement of its layers is given and says nothing. Layers do not pull.
+    DOSEKI_DEVICE_FN void take_pressure(const Summed& at) const {
+        const std::size_t p = at.p;
+        const double rho = at.fields.rho, least = rho0(p), rate = rho * at.sums.density_rate;
+        state_.density_rate[p] = rho + dt_ * rate < least ? 0.0 : rate;
+        state_.density[p] = std::max(least, rho + dt_ * rate);
     }
 
     /// A driven particle hands on the rate of density that it is kept up against.

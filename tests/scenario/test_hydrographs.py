@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from doseki.errors import UserError
 from doseki.scenario.hydrographs import keulegan_rate, normal_depth
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_bodies
@@ -125,6 +126,37 @@ def test_wrong_files(write, error_of, tmp_path, text, part):
 def test_a_section_on_a_wall_is_allowed(write):
     block = BLOCK.replace("[body.block]", "[body.block]\nfixed = true")
     assert section_of(write(tables=block + INFLOW.replace("[0, 2]", "[0.5, 0.5]"))).speed > 0
+
+
+STONE = """
+[body.stone]
+shape = "box"
+material = "basalt"
+kinematics = "rigid"
+min = [0, 0]
+max = [1, 0.5]
+"""
+
+
+@pytest.mark.parametrize(("tables", "name"), [(BLOCK, "block"), (STONE, "stone")])
+@pytest.mark.parametrize(
+    ("place", "direction", "clear"),
+    [
+        ("[0, 0.05]", "[1, 0]", True),
+        ("[1, 0.05]", "[-1, 0]", True),
+        ("[0, 0.05]", "[-1, 0]", False),
+        ("[0.3, 0.05]", "[1, 0]", False),
+        ("[1.05, 0.05]", "[1, 0]", False),
+    ],
+)
+def test_layers_do_not_begin_inside_what_moves(write, tables, name, place, direction, clear):
+    inflow = INFLOW.replace("[0, 2]", place).replace("[1, 0]\n", f"{direction}\n")
+    path = write('scheme = "resolved"\nspeed_max = 2', tables + inflow)
+    if clear:
+        assert section_of(path).speed > 0
+        return
+    with pytest.raises(UserError, match=rf"its layers begin inside {name}, at \[.*\] m; keep"):
+        section_of(path)
 
 
 NORMAL = """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from .lattices import ROUNDING
 
 INSTANTS = 2000  # at which the volume of a surge is looked at
 NEAREST = 0.4  # spacings between an inflow and a terrain
+NEAREST_WALL = 0.6  # between it and fixed particles
 MOST_ROWS_MORE = 8  # on top of those of the depth, for what banks take
 
 
@@ -78,12 +80,13 @@ def build_inflows(
 ) -> list[InflowSection]:
     """The inflow sections; `body_names` are those of `build_bodies`.
 
-    Raises UserError, also where a section lies inside a wall of the `particles` given.
+    Raises UserError, also where a section lies inside a wall of the `particles` given, or the
+    layers behind it inside what moves.
     """
     sections = [_section(scenario, name, body_names.index(name)) for name in scenario.inflow]
     if particles is not None:
         for section in sections:
-            _check_outside_walls(scenario, section, particles, body_names)
+            _check_clear(scenario, section, particles, body_names)
     return sections
 
 
@@ -226,28 +229,42 @@ def surge_volumes(scenario: Scenario, section: InflowSection) -> tuple[float, fl
     return float(np.trapezoid(area * speed, time)), float(np.trapezoid(layer * speed, time))
 
 
-def _check_outside_walls(
+def _check_clear(
     scenario: Scenario, section: InflowSection, particles: ParticleSet, body_names: list[str]
 ) -> None:
-    """Particles that entered within a wall would be flung out of it.
+    """Refuse a section or a buffer behind it where something is already.
 
-    On one lattice they are a spacing apart; a section half a spacing off it along the wall meets
-    bed particles at 0.7 spacings and is none the worse for it.
+    Particles that entered within a wall would be flung out of it, and the layers would push through
+    bodies and water.  On one lattice they are a spacing apart; a section half a spacing off it
+    along the wall meets bed particles at 0.7 spacings and is none the worse for it.
     """
-    near = 0.6 * scenario.dp
-    low, high = section.rows.min(axis=0) - near, section.rows.max(axis=0) + near
-    inside = ((particles.position > low) & (particles.position < high)).all(axis=1)
-    for p in np.flatnonzero(inside & (particles.motion == FIXED)):
-        apart = np.linalg.norm(section.rows - particles.position[p], axis=1)
-        if apart.min() < near:
-            row = np.round(section.rows[np.argmin(apart)], 9).tolist()
-            position = scenario.inflow[section.name].position.tolist()
-            raise scenario.where.error(
-                ("inflow", section.name, "position"),
-                f"inflow.{section.name}.position = {position}: the section lies inside the wall"
-                f" {body_names[particles.body[p]]}, at {row} m; keep it"
-                f" {near:g} m (0.6 dp) or more from fixed particles",
-            )
+    carried = np.isin(particles.body, [body_names.index(name) for name in scenario.carried])
+    behind = -(np.arange(section.buffer_layers) + 0.5)[:, None] * section.spacing
+    buffer = (section.rows[:, None] + behind * section.direction).reshape(-1, scenario.dim)
+    inside_lattice = 0.51 * math.sqrt(scenario.dim)  # no place in one is farther from a particle
+    for layers, met, what, spacings in (
+        (section.rows, particles.motion == FIXED, "the section lies inside the wall", NEAREST_WALL),
+        (buffer, (particles.motion != FIXED) & ~carried, "its layers begin inside", inside_lattice),
+    ):
+        near = spacings * scenario.dp
+        for p in np.flatnonzero(met & _within(particles.position, layers, near)):
+            apart = np.linalg.norm(layers - particles.position[p], axis=1)
+            if apart.min() < near:
+                place = np.round(layers[np.argmin(apart)], 9).tolist()
+                position = scenario.inflow[section.name].position.tolist()
+                raise scenario.where.error(
+                    ("inflow", section.name, "position"),
+                    f"inflow.{section.name}.position = {position}: {what} "
+                    f"{body_names[particles.body[p]]}, at {place} m; keep it {near:.3g} m "
+                    f"({spacings:.3g} dp) or more from "
+                    f"{'fixed particles' if layers is section.rows else 'what is there at first'}",
+                )
+
+
+def _within(position: np.ndarray, places: np.ndarray, margin: float) -> np.ndarray:
+    """Mask (N,) of the positions in a box around all places, wider by the margin, m."""
+    low, high = places.min(axis=0) - margin, places.max(axis=0) + margin
+    return ((position > low) & (position < high)).all(axis=1)
 
 
 def above_ground(scenario: Scenario, rows: np.ndarray, direction: np.ndarray) -> np.ndarray:
