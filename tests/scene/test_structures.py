@@ -209,3 +209,19 @@ def test_a_wall_that_ends_at_the_floor_is_told(tmp_path, turn, foot, end, fewer)
     found = findings(path, EndsAtWall)
     assert [(each.place, each.other) for each in found] == [("body.wall", "body.floor")] * fewer
     assert all("gauge.thrust does not read" in str(each) for each in found)
+
+
+def test_walls_of_a_tank_are_told_what_can_be_done_about_them(tmp_path):
+    """Nobody can make one side of a tank longer."""
+    floor, lake = CORNER.index("[body.floor]"), CORNER.index("[body.lake]")
+    tank = """[body.tank]
+shape = "tank"
+material = "basalt"
+min = [-1, 0]
+max = [0, 1]
+"""
+    text = CORNER[:floor] + tank + CORNER[lake:].replace('"wall"', '"tank.+x"')
+    path = tmp_path / "case.toml"
+    path.write_text(text.format(turn=0))
+    (found,) = findings(path, EndsAtWall)
+    assert "make the walls of body.tank boxes of their own, the sides 3 dp" in str(found)

@@ -283,8 +283,11 @@ def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
     for name, table in scenario.body.items():
         if scenario.dim == 2 and isinstance(table, Grains) and _closes_pores(table):
             yield ClosedPores(f"body.{name}.wetted")
+    counts = np.unique(grains, return_counts=True)[1]
+    if len(counts) < 2:
+        return
     # The smaller gap between three equal discs that touch.
-    count = np.unique(grains, return_counts=True)[1].min()
+    count = counts.min()
     diameter = 2 * (count / np.pi) ** 0.5 if scenario.dim == 2 else (6 * count / np.pi) ** (1 / 3)
     pore = (2 / 3**0.5 - 1) * diameter
     for name in liquids:

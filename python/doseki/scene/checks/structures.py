@@ -57,11 +57,23 @@ class EndsAtWall(Finding):
 
     def __str__(self) -> str:
         place = ", ".join(f"{x:.4g}" for x in self.at)
+        deep = f"{DEEP} dp = {DEEP * self.dp:.3g} m"
         return (
             f"{self.place}: ends at {self.other}, at ({place}) m, whose particles behind its face "
             f"carry the thrust on a quarter of dp there, which gauge.{self.gauge} does not read: "
-            f"let it go {DEEP} dp = {DEEP * self.dp:.3g} m on, and {self.other} end at its face"
+            + (
+                f"make the walls of {self._tank} boxes of their own, the sides {deep} deeper than "
+                "the floor between them"
+                if self._tank
+                else f"let it go {deep} on, and {self.other} end at its face"
+            )
         )
+
+    @property
+    def _tank(self) -> str:
+        """The tank that either of them is a wall of, "" for none."""
+        sides = (name.rpartition(".") for name in (self.other, self.place))
+        return next((tank for tank, _, side in sides if side[0] in "+-"), "")
 
 
 @dataclass(frozen=True)
