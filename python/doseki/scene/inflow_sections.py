@@ -232,39 +232,45 @@ def surge_volumes(scenario: Scenario, section: InflowSection) -> tuple[float, fl
 def _check_clear(
     scenario: Scenario, section: InflowSection, particles: ParticleSet, body_names: list[str]
 ) -> None:
-    """Refuse a section or a buffer behind it where something is already.
+    """Refuse a section in a wall, from which particles would be flung, and layers in what moves.
 
-    Particles that entered within a wall would be flung out of it, and the layers would push through
-    bodies and water.  On one lattice they are a spacing apart; a section half a spacing off it
-    along the wall meets bed particles at 0.7 spacings and is none the worse for it.
+    On one lattice particles are a spacing apart; a section half a spacing off it along the wall
+    meets bed particles at 0.7 spacings and is none the worse for it.  No place inside a lattice is
+    farther than half the diagonal of a cell from its particles.
     """
     carried = np.isin(particles.body, [body_names.index(name) for name in scenario.carried])
+    wall = particles.motion == FIXED
     behind = -(np.arange(section.buffer_layers) + 0.5)[:, None] * section.spacing
     buffer = (section.rows[:, None] + behind * section.direction).reshape(-1, scenario.dim)
-    inside_lattice = 0.51 * math.sqrt(scenario.dim)  # no place in one is farther from a particle
-    for layers, met, what, spacings in (
-        (section.rows, particles.motion == FIXED, "the section lies inside the wall", NEAREST_WALL),
-        (buffer, (particles.motion != FIXED) & ~carried, "its layers begin inside", inside_lattice),
+    half_diagonal = 0.51 * math.sqrt(scenario.dim)
+    for layers, which, spacings, what, whose in (
+        (section.rows, wall, NEAREST_WALL, "the section lies inside the wall", "fixed particles"),
+        (buffer, ~wall & ~carried, half_diagonal, "its layers begin inside", "what moves"),
     ):
         near = spacings * scenario.dp
-        for p in np.flatnonzero(met & _within(particles.position, layers, near)):
-            apart = np.linalg.norm(layers - particles.position[p], axis=1)
-            if apart.min() < near:
-                place = np.round(layers[np.argmin(apart)], 9).tolist()
-                position = scenario.inflow[section.name].position.tolist()
-                raise scenario.where.error(
-                    ("inflow", section.name, "position"),
-                    f"inflow.{section.name}.position = {position}: {what} "
-                    f"{body_names[particles.body[p]]}, at {place} m; keep it {near:.3g} m "
-                    f"({spacings:.3g} dp) or more from "
-                    f"{'fixed particles' if layers is section.rows else 'what is there at first'}",
-                )
+        met = np.flatnonzero(which)
+        p, place = _first_met(particles.position[met], layers, near)
+        if p is not None:
+            position = scenario.inflow[section.name].position.tolist()
+            raise scenario.where.error(
+                ("inflow", section.name, "position"),
+                f"inflow.{section.name}.position = {position}: {what} "
+                f"{body_names[particles.body[met[p]]]}, at {place} m; keep it {near:.3g} m "
+                f"({spacings:.3g} dp) or more from {whose}",
+            )
 
 
-def _within(position: np.ndarray, places: np.ndarray, margin: float) -> np.ndarray:
-    """Mask (N,) of the positions in a box around all places, wider by the margin, m."""
-    low, high = places.min(axis=0) - margin, places.max(axis=0) + margin
-    return ((position > low) & (position < high)).all(axis=1)
+def _first_met(
+    position: np.ndarray, places: np.ndarray, near: float
+) -> tuple[int | None, list[float]]:
+    """The first of the positions (N, dim) nearer than this to one of the places, and that place."""
+    from scipy.spatial import cKDTree
+
+    apart, nearest = cKDTree(places).query(position, distance_upper_bound=near)
+    met = np.flatnonzero(np.isfinite(apart))
+    if not len(met):
+        return None, []
+    return int(met[0]), np.round(places[nearest[met[0]]], 9).tolist()
 
 
 def above_ground(scenario: Scenario, rows: np.ndarray, direction: np.ndarray) -> np.ndarray:
