@@ -16,7 +16,7 @@ from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation
 
 DP, DEPTH, SHEAR = 0.02, 0.2, 3.0
-FREE, FIXED = 0, 1
+FREE, FIXED, BOUND = 0, 1, 3
 TOP = """\
 dim = {dim}
 dp = 0.02
@@ -151,6 +151,22 @@ def test_a_flow_that_hovers_above_the_bed_is_seen(read, dim):
     assert read(height(dim), low, dim)[0, 0] == pytest.approx(6 * DP, abs=0.05 * DP)
     high = frame(dim, lambda x: x[:, -1] > 4 * DP)
     assert read(height(dim), high, dim)[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("size", [1.5 * DP, 5 * DP])
+@pytest.mark.parametrize("middle", [0.0, 0.08, DEPTH])
+def test_a_body_that_passes_does_not_end_the_column_of_water(read, dim, size, middle):
+    """On the bed, under water, and half out of it, seen or not seen by the gauge."""
+    flow = frame(dim, lambda x: (x[:, -1] < DEPTH) | _is_near(x, middle, size))
+    body = _is_near(flow.fields["position"], middle, size) & (flow.fields["motion"] == FREE)
+    flow.fields["motion"][body], flow.fields["material"][body] = BOUND, 0
+    found = read(height(dim, more='material = "water"'), flow, dim)
+    assert found[0, 0] == pytest.approx(DEPTH, abs=0.25 * DP if middle < DEPTH else size)
+
+
+def _is_near(x, middle, size):
+    offset = x[:, [0, -1]] - np.array([0.2, middle])
+    return (offset**2).sum(axis=1) < size**2
 
 
 def test_height_is_measured_from_the_position(read, dim):

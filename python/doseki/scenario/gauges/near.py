@@ -6,12 +6,12 @@ from itertools import product
 
 import numpy as np
 
-from ...record.particles import FIXED
+from ...record.particles import BOUND, FIXED
 from .gauge import Sampled, Setting, State
 
 REACH = 3.0  # spacings; radius of the interpolation
 STEP = 0.5  # spacings; between two looks for the surface
-MIN_VOID = 0.25  # share of a neighbourhood that walls leave; below, nothing is told from it
+MIN_VOID = 0.25  # share of a neighbourhood that walls and bodies leave; below, nothing is told
 INSIDE = 0.5  # volume fraction from which on a point lies within the flow
 
 
@@ -41,7 +41,7 @@ def particles_in(run: Sampled, setting: Setting, low: np.ndarray, high: np.ndarr
 
 
 class Neighbourhood:
-    """The particles around a gauge: those that count, and walls."""
+    """The particles around a gauge: those that count, walls, and bodies of other materials."""
 
     def __init__(self, setting: Setting, material: str | None, state: State) -> None:
         self.dim, self.radius = setting.dim, REACH * setting.dp
@@ -52,17 +52,25 @@ class Neighbourhood:
         self.pressure = state["pressure"][counts]
         self.mass = state["mass"][counts]
         self.volume = self.mass / state["density"][counts]
-        self.wall_position = state["position"][walls]
-        self.wall_volume = (state["mass"] / state["density"])[walls]
+        bodies = (state["motion"] == BOUND) & ~counts
+        volume = state["mass"] / state["density"]
+        self.wall_position, self.wall_volume = state["position"][walls], volume[walls]
+        self.body_position, self.body_volume = state["position"][bodies], volume[bodies]
 
     def weights(self, x: np.ndarray, radius: float | None = None) -> np.ndarray:
         """Volume times kernel of each particle at a point."""
         return _weights(self.position, self.volume, x, radius or self.radius, self.dim)
 
     def fraction(self, x: np.ndarray) -> float:
-        """Share of the space that walls leave around a point which the particles fill."""
-        walls = _weights(self.wall_position, self.wall_volume, x, self.radius, self.dim)
-        return float(self.weights(x).sum() / max(1.0 - walls.sum(), MIN_VOID))
+        """Share of the space that walls and bodies leave around a point which particles fill."""
+        taken = sum(
+            float(_weights(position, volume, x, self.radius, self.dim).sum())
+            for position, volume in (
+                (self.wall_position, self.wall_volume),
+                (self.body_position, self.body_volume),
+            )
+        )
+        return float(self.weights(x).sum() / max(1.0 - taken, MIN_VOID))
 
 
 def _weights(
@@ -95,21 +103,26 @@ def column_height(around: Neighbourhood, foot: np.ndarray, up: np.ndarray, step:
     """Height, m, above `foot` at which the fraction first falls below one half, going up.
 
     Drops above a gap do not count; a gap right above the bed, where a flow hovers within the reach
-    of the kernel, does not end the column.  `step` is the distance between looks, m; within a step
-    the fraction is taken as linear.
+    of the kernel, does not end the column.  `step` is the distance between looks, m; from one to
+    the next, and within a body that leaves no room, the fraction is taken as linear.
     """
     radius, dim = around.radius, around.dim
     flow = Column(around.position, around.volume, foot, up)
     walls = Column(around.wall_position, around.wall_volume, foot, up)
-    top, before = float(flow.along.max(initial=-np.inf)) + radius, 0.0
+    bodies = Column(around.body_position, around.body_volume, foot, up)
+    top = max(float(column.along.max(initial=-np.inf)) for column in (flow, bodies)) + radius
+    before, seen = 0.0, 0
     for k in range(int(top / step) + 2 if top > 0 else 0):
-        void = max(1.0 - walls.filled(k * step, radius, dim), MIN_VOID)
-        now = flow.filled(k * step, radius, dim) / void
+        taken = bodies.filled(k * step, radius, dim)
+        void = 1.0 - walls.filled(k * step, radius, dim) - taken
+        if taken > 0 and void < MIN_VOID:
+            continue
+        now = flow.filled(k * step, radius, dim) / max(void, MIN_VOID)
         if now < INSIDE <= before:
-            return step * (k - 1 + (before - INSIDE) / (before - now))
+            return step * (seen + (k - seen) * (before - INSIDE) / (before - now))
         if now < INSIDE and k * step > radius:
             return 0.0
-        before = now
+        before, seen = now, k
     return 0.0
 
 
