@@ -18,7 +18,7 @@ time_out = 1
 gravity = {{ d2 = [0, -9.81], d3 = [0, 0, -9.81] }}
 periodic = {{ d2 = [], d3 = ["y"] }}
 domain_min = {{ d2 = [-1, -1], d3 = [-1, 0, -1] }}
-domain_max = {{ d2 = [1, 1], d3 = [1, 0.08, 1] }}
+domain_max = {{ d2 = [1, 1], d3 = [1, 0.07, 1] }}
 
 [body.bed]
 shape = "box"
@@ -27,20 +27,20 @@ fixed = true
 wall = "free_slip"
 normal = {{ d2 = [0, 1], d3 = [0, 0, 1] }}
 min = {{ d2 = [-0.44, -0.04], d3 = [-0.44, 0, -0.04] }}
-max = {{ d2 = [0.44, 0], d3 = [0.44, 0.08, 0] }}
+max = {{ d2 = [0.44, 0], d3 = [0.44, 0.07, 0] }}
 
 [body.water]
 shape = "box"
 material = "water"
 min = {{ d2 = [-0.4, 0], d3 = [-0.4, 0, 0] }}
-max = {{ d2 = [0.4, 0.1], d3 = [0.4, 0.08, 0.1] }}
+max = {{ d2 = [0.4, 0.1], d3 = [0.4, 0.07, 0.1] }}
 velocity = {{ d2 = [{speed}, 0], d3 = [{speed}, 0, 0] }}
 pressure = {{ d2 = "= 9810*(0.1 - y)", d3 = "= 9810*(0.1 - z)" }}
 
 [inflow.water]
 material = "water"
-rate = {{ d2 = 0.16, d3 = 0.0128 }}
-width = {{ d2 = 1, d3 = 0.08 }}
+rate = {{ d2 = 0.16, d3 = 0.0112 }}
+width = {{ d2 = 1, d3 = 0.07 }}
 position = {{ d2 = [{start}, 0], d3 = [{start}, 0, 0] }}
 direction = {{ d2 = [{sign}, 0], d3 = [{sign}, 0, 0] }}
 depth = 0.1
@@ -48,7 +48,7 @@ duration = 10
 
 [outflow.end]
 min = {{ d2 = [{low}, -1], d3 = [{low}, 0, -1] }}
-max = {{ d2 = [{high}, 1], d3 = [{high}, 0.08, 1] }}
+max = {{ d2 = [{high}, 1], d3 = [{high}, 0.07, 1] }}
 """
 
 
@@ -64,7 +64,7 @@ def depth(state, dim, sign):
     """Of the water between 0.1 and 0.4 m behind the section, from its mass, m."""
     along = sign * state["position"][:, 0] + 0.4
     near = (state["motion"] == 0) & (along > 0.1) & (along < 0.4)
-    return state["mass"][near].sum() / (1000 * 0.3 * (0.08 if dim == 3 else 1))
+    return state["mass"][near].sum() / (1000 * 0.3 * (0.07 if dim == 3 else 1))
 
 
 def excess(state, sign):
@@ -75,12 +75,12 @@ def excess(state, sign):
     return (state["pressure"] - at_rest)[next_one].mean()
 
 
-@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("dim", "sign"), [(2, 1), (2, -1), (3, 1)])
 def test_plug_flow_goes_on_as_it_enters(core, flows, dim, sign):
     """With no pressure behind it, water would slow down and rise by 2 % to regain it."""
     simulation = plug(flows, dim, sign)
     depths, pressures = [], []
-    for time in np.linspace(0.3, 0.5, 21):
+    for time in np.linspace(0.3, 0.4, 11):
         simulation.advance(limit=time, pause=time, max_steps=10**9)
         depths.append(depth(simulation.state(), dim, sign))
         pressures.append(excess(simulation.state(), sign))
