@@ -84,7 +84,8 @@ private:
         WallState<D>& wall = state_.wall;
         wall.film_density[p] = sums.weight > 0.0 ? sums.density / sums.weight : 0.0;
         wall.film_traction[p] = {};
-        wall.film_cover[p] = std::min(1.0, sums.cover / full_cover(p));
+        const bool dry = sums.weight == 0.0 && sums.film_density == 0.0 && before == 0.0;
+        wall.film_cover[p] = dry ? 0.0 : std::min(1.0, sums.cover / full_cover(p));
         if (sums.cover == 0.0) {
             wall.film_change[p] = 0.0;
             return {};
