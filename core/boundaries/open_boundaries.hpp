@@ -98,11 +98,17 @@ struct Inflow {
         return speed.distance_at(t) - (static_cast<double>(k) + 0.5) * spacing;
     }
     bool has_crossed(std::int64_t k, double t) const {
-        return advance(k, t) >= -rounding * spacing;
+        return advance(k, t) >= -2.0 * rounding * spacing;
+    }
+    /// Whether something happens at time t. Steps end at next_event(), to rounding.
+    bool is_due(double t) const {
+        if (closed || !open || t >= speed.stop()) return t >= next_event();
+        return has_crossed(released, t);
     }
 
     // Spacings. Of a layer that is due at the very time of a step, as steps and speeds of round
-    // numbers make it, rounding must not decide in which step it enters.
+    // numbers make it, rounding must not decide in which step it enters: steps end this much
+    // before it is due, and twice as much before it is due it enters.
     static constexpr double rounding = 1e-9;
 
 private:
@@ -287,7 +293,7 @@ void OpenBoundaries<D>::release(Particles<D>& particles, Inflow<D>& inflow, doub
         if (tag.motion != Motion::driven || tag.body != inflow.body) continue;
         const double beyond = dot(particles.position[p] - inflow.layer[0], inflow.direction);
         // Half the way to the next layer at most: a layer is set free as a whole.
-        if (beyond >= -(inflow.jitter + 2.0 * Inflow<D>::rounding) * inflow.spacing) {
+        if (beyond >= -(inflow.jitter + 3.0 * Inflow<D>::rounding) * inflow.spacing) {
             tag.motion = Motion::free;
             ledger.inflow.add(particles, p), planes.enters(particles, p);
         }
@@ -298,7 +304,7 @@ template <int D>
 bool OpenBoundaries<D>::inject(Particles<D>& particles, double t) {
     bool changed = false;
     for (Inflow<D>& inflow : inflows) {
-        if (t < inflow.next_event()) continue;
+        if (!inflow.is_due(t)) continue;
         changed = true;
         if (!inflow.open) {
             inflow.open = true;
