@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-DRIVEN = 2
+from .test_sources import DRIVEN
+
 # A layer of ten rows on a bed that nothing rubs on, with more of the same coming in at one end and
 # falling over an edge at the other.  It is faster than its waves, 1 m/s.
 PLUG = """\

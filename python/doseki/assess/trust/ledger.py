@@ -42,6 +42,10 @@ class Ledger:
         return np.array([self._column(f"{name}_{axis}") for axis in axes]).T
 
     @property
+    def _weight(self) -> np.ndarray:
+        return np.asarray(np.linalg.norm(gravity_of(self.run.scenario)) * self._values("mass"))
+
+    @property
     def largest(self) -> float:
         """The largest of the energies that took part."""
         moved = [self._column(name) for name in (*GIVEN, *TAKEN)]
@@ -73,8 +77,7 @@ class Ledger:
         name = "energy of corrections"
         work = float(np.max(np.abs(self._column("scheme_work"))))
         depth = float(np.median(seen.depth)) * self.run.scenario["dp"] if seen.depth else 0.0
-        weight = float(np.linalg.norm(gravity_of(self.run.scenario)) * self._values("mass").max())
-        largest = max(self.largest, LEVEL * weight * depth)
+        largest = max(self.largest, LEVEL * float(self._weight.max()) * depth)
         counted = "largest work of shifting and of the relaxation of density"
         remedy = "lower dp; shifting = false tells what shifting takes"
         value = work / largest if largest else work
@@ -89,9 +92,8 @@ class Ledger:
         given = self._vector("impulse") + carried
         residual = np.linalg.norm(self._vector("momentum") - given, axis=1)
         drift = float(residual.max())
-        weight = np.linalg.norm(gravity_of(self.run.scenario)) * history["mass"]
         moving = math.sqrt(2 * float(np.max(history["mass"]) * np.max(history["kinetic_energy"])))
-        scale = max(moving, float(np.sum(weight[1:] * np.diff(history["time"]))))
+        scale = max(moving, float(np.sum(self._weight[1:] * np.diff(history["time"]))))
         counted = "all rows of the history, less the impulses of gravity, walls, inflows and fixed"
         counted += " bodies, and what entered and left carried; over the impulse of the weight"
         value = drift / scale if scale else drift

@@ -47,13 +47,13 @@ class Neighbourhood:
         self.dim, self.radius = setting.dim, REACH * setting.dp
         walls = state["motion"] == FIXED
         counts = ~walls & setting.is_of_material(material, state)
+        bodies = (state["motion"] == BOUND) & ~counts
+        volume = state["mass"] / state["density"]
         self.position = state["position"][counts]
         self.velocity = state["velocity"][counts]
         self.pressure = state["pressure"][counts]
         self.mass = state["mass"][counts]
-        self.volume = self.mass / state["density"][counts]
-        bodies = (state["motion"] == BOUND) & ~counts
-        volume = state["mass"] / state["density"]
+        self.volume = volume[counts]
         self.wall_position, self.wall_volume = state["position"][walls], volume[walls]
         self.body_position, self.body_volume = state["position"][bodies], volume[bodies]
 
@@ -63,14 +63,10 @@ class Neighbourhood:
 
     def fraction(self, x: np.ndarray) -> float:
         """Share of the space that walls and bodies leave around a point which particles fill."""
-        taken = sum(
-            float(_weights(position, volume, x, self.radius, self.dim).sum())
-            for position, volume in (
-                (self.wall_position, self.wall_volume),
-                (self.body_position, self.body_volume),
-            )
-        )
-        return float(self.weights(x).sum() / max(1.0 - taken, MIN_VOID))
+        walls = _weights(self.wall_position, self.wall_volume, x, self.radius, self.dim)
+        bodies = _weights(self.body_position, self.body_volume, x, self.radius, self.dim)
+        void = 1.0 - walls.sum() - bodies.sum()
+        return float(self.weights(x).sum() / max(void, MIN_VOID))
 
 
 def _weights(

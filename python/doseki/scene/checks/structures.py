@@ -57,16 +57,20 @@ class EndsAtWall(Finding):
 
     def __str__(self) -> str:
         place = ", ".join(f"{x:.4g}" for x in self.at)
-        deep = f"{DEEP} dp = {DEEP * self.dp:.3g} m"
         return (
             f"{self.place}: ends at {self.other}, at ({place}) m, whose particles behind its face "
             f"carry the thrust on a quarter of dp there, which gauge.{self.gauge} does not read: "
-            + (
-                f"make the walls of {self._tank} boxes of their own, the sides {deep} deeper than "
-                "the floor between them"
-                if self._tank
-                else f"let it go {deep} on, and {self.other} end at its face"
-            )
+            f"{self._remedy}"
+        )
+
+    @property
+    def _remedy(self) -> str:
+        deep = f"{DEEP} dp = {DEEP * self.dp:.3g} m"
+        if not self._tank:
+            return f"let it go {deep} on, and {self.other} end at its face"
+        return (
+            f"make the walls of {self._tank} boxes of their own, the sides {deep} deeper than the "
+            "floor between them"
         )
 
     @property
