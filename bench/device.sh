@@ -3,7 +3,8 @@
 #
 #     bench/device.sh [FOLDER]
 #
-# Everything goes to the folder (device-results). What fails is in its log, and the rest goes on.
+# Everything goes to the folder (device-results). What fails is in its log, and the rest goes on, but
+# for the build. CUDAARCHS says for which cards (cmake's list), all of them if it does not.
 # Cases have two threads so that they are timed by the wall clock.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -19,15 +20,18 @@ step() {
 }
 
 step card nvidia-smi
+doseki=.venv/bin/doseki
 step build env DOSEKI_INSTRUCTION_SETS="host;device;cuda" ./doseki list
+.venv/bin/python -c "import doseki._core_cuda" 2>>"$out/build.txt" ||
+    { echo "no module for a card: see $out/build.txt" | tee -a "$out/steps.txt"; exit 1; }
 step requirements ./doseki test core -k nothing
 step tests .venv/bin/python -m pytest -q -n 0 -m "isa or not isa" tests/core/device/test_device_runs.py -k cuda
 step oracle .venv/bin/python -m pytest -q -n 0 -m "isa or not isa" tests/core/oracle -k cuda
 for scheme in ueta2022 resolved; do
-    step "bench-$scheme" ./doseki bench --scheme "$scheme" --isa cuda --sizes 1e5,1e6,4e6 --threads 2
+    step "bench-$scheme" $doseki bench --scheme "$scheme" --isa cuda --sizes 1e5,1e6,4e6 --threads 2
 done
 step profile nsys profile --stats=true --force-overwrite=true -o "$out/profile" \
-    ./doseki bench --scheme resolved --isa cuda --sizes 1e6 --dims 3 --precision double --threads 2
+    $doseki bench --scheme resolved --isa cuda --sizes 1e6 --dims 3 --precision double --threads 2
 step kernels ncu --set roofline --launch-skip 200 --launch-count 20 \
-    ./doseki bench --scheme resolved --isa cuda --sizes 1e6 --dims 3 --precision double --threads 2
+    $doseki bench --scheme resolved --isa cuda --sizes 1e6 --dims 3 --precision double --threads 2
 cat "$out/steps.txt"

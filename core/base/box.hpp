@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "base/vec.hpp"
 
@@ -30,6 +31,14 @@ struct Box {
             high[a] = std::max(high[a], other.high[a]);
         }
     }
+};
+
+/// The box around one of some places, for a reduction over them (base/bulk.hpp).
+template <int D>
+struct BoxAround {
+    std::span<const Vec<double, D>> position;
+
+    DOSEKI_DEVICE_FN Box<D> operator()(std::size_t p) const { return {position[p], position[p]}; }
 };
 
 }  // namespace doseki

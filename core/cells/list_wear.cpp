@@ -6,12 +6,6 @@
 namespace doseki {
 namespace {
 
-template <int D>
-struct PlaceOf {
-    std::span<const Vec<double, D>> position;
-    DOSEKI_DEVICE_FN Box<D> operator()(std::size_t p) const { return {position[p], position[p]}; }
-};
-
 /// Keeps where a particle is, and in which cell.
 template <int D>
 struct KeepPlace {
@@ -74,7 +68,7 @@ template <int D>
 void ListWear<D>::size_cells(std::span<const Vec<double, D>> position) {
     constexpr double max_cells = 1048576.0;
     const auto occupied =
-        bulk::reduce(position.size(), Box<D>::nowhere(), joined, PlaceOf<D>{position});
+        bulk::reduce(position.size(), Box<D>::nowhere(), joined, BoxAround<D>{position});
     for (int a = 0; a < D; ++a) {
         const double length = domain_.periodic[a] ? domain_.length(a) : occupied.size()[a];
         const double count =

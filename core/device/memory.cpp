@@ -13,13 +13,6 @@
 
 namespace doseki {
 
-std::string card_problem() {
-    int count = 0;
-    const cudaError_t error = cudaGetDeviceCount(&count);
-    if (error != cudaSuccess) return cudaGetErrorString(error);
-    return count > 0 ? "" : "there is none";
-}
-
 namespace {
 
 /// Of the card of this process.
@@ -31,6 +24,18 @@ cudaDeviceProp properties() {
 }
 
 }  // namespace
+
+std::string card_problem() {
+    constexpr int oldest = 8;  // compute capability that kernels are compiled for
+    int count = 0;
+    const cudaError_t error = cudaGetDeviceCount(&count);
+    if (error != cudaSuccess) return cudaGetErrorString(error);
+    if (count == 0) return "there is none";
+    const cudaDeviceProp card = properties();
+    if (card.major >= oldest) return "";
+    return std::string(card.name) + " has compute capability " + std::to_string(card.major) + "." +
+           std::to_string(card.minor) + ", and " + std::to_string(oldest) + ".0 or more is needed";
+}
 
 void use_card(int k) {
     int count = 0;

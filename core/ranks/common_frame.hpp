@@ -1,8 +1,9 @@
 #pragma once
 #include <array>
-#include <limits>
 #include <span>
 
+#include "base/box.hpp"
+#include "base/bulk.hpp"
 #include "pairs/records.hpp"
 #include "ranks/exchange.hpp"
 
@@ -13,10 +14,10 @@ template <class real, int D>
 CoordinateFrame<real, D> common_frame(std::span<const Vec<double, D>> position,
                                       const Ranks& ranks) {
     if constexpr (std::is_same_v<real, double>) return {};
+    const auto own =
+        bulk::reduce(position.size(), Box<D>::nowhere(), joined, BoxAround<D>{position});
     std::array<double, 2 * D> far;  // -low, high
-    far.fill(-std::numeric_limits<double>::max());
-    for (const auto& x : position)
-        for (int a = 0; a < D; ++a) far[a] = max(far[a], -x[a]), far[D + a] = max(far[D + a], x[a]);
+    for (int a = 0; a < D; ++a) far[a] = -own.low[a], far[D + a] = own.high[a];
     ranks.largest(far);
     Vec<double, D> low, high;
     for (int a = 0; a < D; ++a) low[a] = -far[a], high[a] = far[D + a];

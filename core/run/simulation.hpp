@@ -379,6 +379,7 @@ bool Simulation<Lists>::remove_outflow(double ahead) {
 template <class Lists>
 void Simulation<Lists>::drop_removed() {
     auto& removed = open_boundaries.removed;
+    if (std::ranges::find(removed, 1) == removed.end()) return removed.clear();
     removed.resize(particles.size(), 0);
     Array<std::uint32_t> kept;
     for (std::uint32_t p = 0; p < particles.size(); ++p)

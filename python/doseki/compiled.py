@@ -190,6 +190,8 @@ def load_core(isa: str | None = None) -> Core:
 
     available = available_instruction_sets()
     chosen = isa or os.environ.get("DOSEKI_ISA") or (available[0] if available else None)
+    if not os.environ.get("OMP_WAIT_POLICY"):
+        os.environ.setdefault("GOMP_SPINCOUNT", SPIN_COUNT)
     if chosen == "cuda":
         core = import_module("doseki._core_cuda")
         if problem := core.card_problem():
@@ -200,8 +202,6 @@ def load_core(isa: str | None = None) -> Core:
             f"instruction set {chosen!r} is not available on this {platform.machine()} processor;"
             f" built and usable here: {', '.join(available) or 'none (is the core built?)'}"
         )
-    if not os.environ.get("OMP_WAIT_POLICY"):
-        os.environ.setdefault("GOMP_SPINCOUNT", SPIN_COUNT)
     return cast(Core, import_module(f"doseki._core_{chosen}"))
 
 

@@ -122,6 +122,37 @@ def test_the_kernel_is_normalised(dim):
     assert np.trapezoid(kernel(r, 0.3, dim) * shell, r) == pytest.approx(1, rel=1e-6)
 
 
+@pytest.mark.parametrize("off", [-5.0, -2.9, -1.0, 0.4, 1.0])
+def test_columns_of_an_approach_begin_on_the_bed(read, dim, off):
+    """Wherever they are said to stand."""
+    gauge = f'kind = "approach"\nposition = {at(dim, 0.2, off * DP)}\ndirection = {at(dim, 1, 0)}\n'
+    ((depth, speed, density),) = read(gauge.replace("0.2, 0]\n", "0, 0]\n"), frame(dim), dim)
+    assert depth == pytest.approx(DEPTH, abs=0.45 * DP)
+    assert speed == pytest.approx(0.5 * SHEAR * DEPTH, rel=0.06)
+    assert density == pytest.approx(1000.0)
+
+
+def test_the_depth_of_a_valley_is_the_mean_across(read):
+    """Of water up to z = 0.2 over a bed that rises to both sides from the middle."""
+
+    def bed(x):
+        return 0.5 * np.abs(x[:, 1] - 0.2)
+
+    axes = [DP * (np.arange(20) + 0.5)] * 2 + [DP * (np.arange(-4, 10) + 0.5)]
+    x = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+    x = x[x[:, 2] > bed(x) - 3 * DP]
+    wall = x[:, 2] < bed(x)
+    rho = np.where(wall, 2700.0, 1000.0)
+    valley = StillFrame(
+        position=x, velocity=np.zeros_like(x), mass=rho * DP**3, density=rho, pressure=0 * rho,
+        material=np.where(wall, 0, 1).astype(np.int32),
+        motion=np.where(wall, FIXED, FREE).astype(np.int32),
+    )  # fmt: skip
+    gauge = 'kind = "approach"\nposition = [0.2, 0, 0]\ndirection = [1, 0, 0]\nwidth = 0.4\n'
+    ((depth, *_),) = read(gauge, valley, 3)
+    assert depth == pytest.approx(0.15, abs=0.3 * DP)
+
+
 @pytest.mark.parametrize("jitter", [0.0, 0.2])
 def test_height_of_still_water(read, dim, jitter):
     found = read(height(dim), frame(dim, jitter=jitter), dim)

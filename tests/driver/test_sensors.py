@@ -205,6 +205,19 @@ def test_a_sensor_goes_on_where_it_was():
     assert second.row() == straight.row()
 
 
+def test_a_sensor_of_a_run_that_starts_late_has_no_impulse_of_before():
+    class Reader:
+        name = "g"
+
+        def read(self, now):
+            return [[now.time, 2000.0]]
+
+    sensor = Sensor(Reader(), 5.0)
+    for time in (3.5, 3.6, 3.8):
+        sensor.follow(SimpleNamespace(time=time))
+    assert sensor.row()[-1] == pytest.approx(0.3 * 2000.0)
+
+
 def test_a_run_without_sensors_takes_no_single_steps(tmp_path):
     class Simulation:
         time = 0.0

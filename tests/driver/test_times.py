@@ -75,6 +75,14 @@ def test_a_run_without_simulated_interval_may_get_one_when_it_is_resumed():
     assert clock.is_due(simulated=3.5)
 
 
+def test_a_shorter_interval_counts_as_soon_as_a_run_is_resumed():
+    clock = CheckpointClock(1.0, 10.0, next_time=20.0, simulated=12.3)
+    assert not clock.is_due(simulated=12.9)
+    assert clock.is_due(simulated=13.0)
+    same = CheckpointClock(10.0, 10.0, next_time=20.0, simulated=12.3)
+    assert not same.is_due(simulated=19.9)
+
+
 @pytest.mark.parametrize(
     ("start", "intervals", "steps"),
     [

@@ -95,6 +95,19 @@ def test_map_coordinates_lose_nothing(blocks, kind):
     assert middle == pytest.approx(FAR + 0.5 * SIDE, abs=1e-5)
 
 
+@pytest.mark.parametrize("kind", ["ply", "stl"])
+def test_files_of_one_export_have_one_origin(blocks, kind):
+    """Or what falls would jump back by whole metres from one time to the next."""
+    run = blocks(at=FAR)
+    export_surface(run, SurfaceOptions(kind))
+    origins = set()
+    for file in (run.directory / "surface").glob(f"*.{kind}"):
+        start = file.read_bytes()[:2000].decode("latin-1")
+        origins.add(re.search(r"origin (-?\d+ -?\d+ -?\d+)", start).group(1))
+    assert len(run.times) > 1
+    assert len(origins) == 1
+
+
 def test_near_places_stay_as_they_are():
     assert not near_origin(np.array([[100.0, -3.0, 2.0]]), 0.01).any()
     assert near_origin(np.array([[200.5, -3.0, 2.0]]), 0.01).tolist() == [200.0, -3.0, 2.0]

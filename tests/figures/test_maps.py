@@ -199,10 +199,20 @@ def test_a_profile_along_a_path(slide, tmp_path, as_file):
     assert (slide / "maps/profile.png").is_file()
 
 
-@pytest.mark.parametrize("path", ["", "1,2", "1,2 3", "a,b c,d", "nan,1 2,3", "1,2,3 4,5,6"])
+@pytest.mark.parametrize(
+    "path", ["", "1,2", "1,2 3", "a,b c,d", "nan,1 2,3", "1,2,3 4,5,6", 99 * "1;2 "]
+)
 def test_a_path_that_is_none_is_refused(slide, path):
     with pytest.raises(UserError):
         write_pictures(slide, MapOptions(path=path))
+
+
+def test_a_path_has_as_many_points_as_are_given(slide):
+    """A text that is longer than names of files may be."""
+    points = [[WEST + 1 + x, SOUTH + 24.5] for x in np.linspace(0, 78, 40)]
+    path = " ".join(f"{x:.3f},{y:.3f}" for x, y in points)
+    said = write_pictures(slide, MapOptions(path=path))
+    assert "along the path: reached from 5 to 61 m, at 26.6 degrees" in said
 
 
 def test_a_file_of_several_lines_is_refused(slide, tmp_path):

@@ -162,6 +162,17 @@ def test_of_several_layers_one_is_chosen(tmp_path, geojson, refusal, gdal):
     assert len(read_features(target, "two").polygons) == 1
 
 
+def test_tables_of_styles_are_no_layers(tmp_path, geojson, gdal):
+    """As QGIS keeps them in the same file."""
+    pytest.importorskip("pyogrio", reason="pyogrio: pip install 'doseki[terrain]'")
+    source, target = geojson(collection(FRAME, crs=CRS)), tmp_path / "styled.gpkg"
+    (tmp_path / "style.csv").write_text("name,qml\nrelease,red\n")
+    subprocess.run(["ogr2ogr", str(target), str(source), "-nln", "release"], check=True)
+    styles = ["ogr2ogr", "-append", str(target), str(tmp_path / "style.csv")]
+    subprocess.run([*styles, "-nln", "layer_styles"], check=True)
+    assert len(read_features(target).polygons) == 1
+
+
 def test_without_pyogrio_one_sentence(tmp_path, refusal, monkeypatch):
     (tmp_path / "x.shp").write_bytes(b"\x00\x00\x27\x0a")
     monkeypatch.setitem(sys.modules, "pyogrio.raw", None)

@@ -89,6 +89,14 @@ def test_a_smoothed_plane_is_the_plane_at_edges_too(plane, length):
     assert np.nanmax(error(smooth)) < 1e-8
 
 
+@pytest.mark.parametrize("length", [2.0, 4.0, 30.0])
+def test_a_smoothed_slope_of_a_profile_is_straight_up_to_its_ends(length):
+    heights = 100 - 0.3 * np.arange(60.0)
+    for values in (heights[None, :], heights[:, None]):
+        smooth = Raster(values, 0.0, 0.0, 1.0).smoothed(length).values
+        np.testing.assert_allclose(smooth, values, atol=1e-9)
+
+
 def test_far_from_edges_smoothing_is_the_gaussian_mean():
     values = np.zeros((41, 41))
     values[20, 20] = 1.0

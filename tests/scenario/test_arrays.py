@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.assess.preflight import check_scenario
+from doseki.errors import UserError
 from doseki.record.particles import FIXED
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_bodies
@@ -26,6 +27,13 @@ centre = [0.1, 0.2]
 radius = 0.05
 velocity = [1, 2]
 spin = 3
+"""
+BALL = """
+[body.ball]
+shape = "sphere"
+material = "basalt"
+centre = [0.1, 0.2, 0]
+radius = 0.05
 """
 SHAPES = {
     "box": 'shape = "box"\nmin = [0.1, 0.2]\nmax = [0.3, 0.26]\nvelocity = [1, 2]\nspin = 2\n',
@@ -155,6 +163,18 @@ def test_copies_of_three_dimensions(load, axis):
         scenario = load(f"{part}array = {{ {array} }}\n", dim=3)
         (x, *_), (y, *_) = (particles(scenario, f"b.{k}") for k in (1, 2))
         np.testing.assert_allclose(in_order(x @ matrix.T), in_order(y), atol=1e-12)
+
+
+def test_a_section_with_a_width_has_no_mirrored_copy(load):
+    """Its width goes towards the positive axes, and so would that of the image."""
+    section = 'kind = "{kind}"\nposition = [0, 0.1, 0]\ndirection = [1, 0, 0]\n'
+    array = "array = { mirror = 'y', at = 0 }\n"
+    for kind in ("approach", "discharge"):
+        part = f"{BALL}[gauge.g]\n{section.format(kind=kind)}"
+        with pytest.raises(UserError, match="a section with a width of a 3-D run has no mirrored"):
+            load(f"{part}width = 0.3\n{array}", dim=3)
+    copies = load(f"{BALL}[gauge.g]\n{section.format(kind='approach')}{array}", dim=3).gauge
+    assert copies["g.2"].position.tolist() == [0, -0.1, 0]
 
 
 @pytest.mark.parametrize(

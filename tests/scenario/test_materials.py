@@ -8,6 +8,7 @@ import pytest
 
 from doseki.scenario.load import load_scenario
 from doseki.scenario.materials import SOILS
+from doseki.scenario.materials.presets import without_preset
 
 from ..small_scenarios import BLOCK
 
@@ -59,6 +60,14 @@ based_on = "basalt"
 cohesion = 10
 friction_angle = 35
 """
+
+
+def test_the_greatest_viscosity_of_mud_follows_its_yield_stress():
+    """Or what has a higher one would be a liquid of the old one's greatest viscosity."""
+    table = {"preset": "obrien_julien", "soil": "aspen_pit_1", "cv": 0.2}
+    mud = without_preset(table | {"yield_stress": 1000.0})
+    assert mud["viscosity_max"] == pytest.approx(10 * 1000, rel=1e-3)
+    assert without_preset(table | {"viscosity_max": 7.0})["viscosity_max"] == 7.0
 
 
 def block_of(name):

@@ -136,6 +136,24 @@ def test_areas_are_compared(mapped, tmp_path):
         AREA.misfit(mapped, {}, tmp_path)
 
 
+def test_an_area_is_in_the_system_of_the_map(mapped, tmp_path):
+    rasterio = pytest.importorskip("rasterio", reason="rasterio: pip install 'doseki[terrain]'")
+    system = rasterio.crs.CRS.from_epsg
+    for map_ in (mapped.directory / "maps").glob("*.asc"):
+        map_.with_suffix(".prj").write_text(system(6674).to_wkt())
+    for code, refused in ((6674, False), (30166, True)):
+        polygon(tmp_path, BOX)
+        table = json.loads((tmp_path / "area.geojson").read_text())
+        name = f"urn:ogc:def:crs:EPSG::{code}"
+        table["crs"] = {"type": "name", "properties": {"name": name}}
+        (tmp_path / "area.geojson").write_text(json.dumps(table))
+        if refused:
+            with pytest.raises(UserError, match="another coordinate reference system"):
+                AREA.misfit(mapped, {}, tmp_path)
+        else:
+            assert AREA.misfit(mapped, {}, tmp_path) == 0.0
+
+
 def test_maps_are_read(mapped):
     assert OfMap(kind="map", map="peak_depth").read(mapped) == 2.0
     assert OfMap(kind="map", map="peak_depth", take="mean").read(mapped) == 2.0

@@ -72,14 +72,20 @@ class CheckpointClock:
 
     FIRST = 60.0  # s of wall time
 
-    def __init__(self, every: float | None, minutes: float, next_time: float = 0.0) -> None:
-        """`every`: s of simulated time, or None; `next_time`: where a resumed run stood, s."""
+    def __init__(
+        self, every: float | None, minutes: float, next_time: float = 0.0, simulated: float = 0.0
+    ) -> None:
+        """`every`: s of simulated time, or None; `next_time`: when a resumed run, which stands at
+        `simulated`, was to write one, s.
+        """
         self.every = every
         self.seconds = 60.0 * minutes
         self._wait = min(self.FIRST, self.seconds)
         self.next_time = math.inf
         if every is not None:
             self.next_time = max(next_time, every) if math.isfinite(next_time) else every
+            if simulated > 0.0:  # with another interval the old date may be far off
+                self.next_time = min(self.next_time, self._after(simulated))
         self._written = time.monotonic()
 
     def is_due(self, simulated: float) -> bool:
@@ -90,7 +96,12 @@ class CheckpointClock:
         """A checkpoint is about to be written."""
         self._written, self._wait = time.monotonic(), self.seconds
         if self.every is not None:
-            self.next_time = (math.floor(simulated / self.every + 1e-9) + 1) * self.every
+            self.next_time = self._after(simulated)
+
+    def _after(self, simulated: float) -> float:
+        """The first date after a time, s."""
+        assert self.every is not None
+        return (math.floor(simulated / self.every + 1e-9) + 1) * self.every
 
 
 class StopRequests:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from ..scenario.gauges.gauge import Sampled
 from ..util.low_pass import LowPass
 from .gauges import GaugeReader
@@ -14,7 +16,7 @@ class Sensor:
         """`bandwidth` in Hz."""
         self.gauge = gauge
         self._filter = LowPass(bandwidth)
-        self._time = self._raw = 0.0
+        self._time = self._raw = math.nan  # of the look before
         self._impulse, self._peak = 0.0, -float("inf")
 
     @property
@@ -32,7 +34,8 @@ class Sensor:
     def follow(self, simulation: Sampled) -> None:
         """Look at the simulation as it is now; all ranks must take part."""
         ((time, raw),) = self.gauge.read(simulation)
-        self._impulse += 0.5 * (time - self._time) * (raw + self._raw)
+        if not math.isnan(self._time):
+            self._impulse += 0.5 * (time - self._time) * (raw + self._raw)
         self._time, self._raw = time, raw
         self._peak = max(self._peak, self._filter.add(time, raw))
 

@@ -46,7 +46,7 @@ def draw_speed_histogram(drawn: SpeedDraws, where: str) -> Figure:
 def draw_passed(census: Census, sections: Sequence[float], dim: int) -> Figure:
     """Mass that has crossed each section, over time."""
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Grains that have passed")
-    curves = {f"x = {section:g} m": census.passed(section) for section in sections}
+    curves = {f"x = {section:.12g} m": census.passed(section) for section in sections}
     draw_curves(grid[0, 0], census.times, curves)
     figure_legend(figure, grid.flat)
     unit = unit_in("kg", dim)

@@ -142,7 +142,7 @@ def speed_table(drawn: SpeedDraws) -> dict[str, np.ndarray]:
 
 def passed_table(census: Census, sections: Sequence[float]) -> dict[str, np.ndarray]:
     """Mass that has crossed each section, over time."""
-    passed = {f"x = {section:g}": census.passed(section) for section in sections}
+    passed = {f"x = {section:.12g}": census.passed(section) for section in sections}
     return {"time": census.times} | passed
 
 
@@ -162,9 +162,11 @@ def write_tables(folder: Path, tables: Mapping[str, Mapping[str, np.ndarray]]) -
 
 
 def _csv(table: Mapping[str, np.ndarray]) -> str:
-    """Seven digits are more than a census is worth."""
+    """All digits: seven are a metre on a map."""
     texts = [
-        np.char.mod("%.7g", values) if values.dtype.kind == "f" else values.astype(str)
+        np.array([repr(float(value)) for value in values])
+        if values.dtype.kind == "f"
+        else values.astype(str)
         for values in table.values()
     ]
     lines = [",".join(table), *(",".join(row) for row in zip(*texts, strict=True))]
@@ -211,7 +213,7 @@ def census_lines(
     for section in sections:
         count, share = census.passed_count(section), census.passed(section)[-1] / census.load_mass
         told = f"{count} grain{'' if count == 1 else 's'}, {_percent(share)} of the load"
-        lines.append(f"passed x = {section:g} m {way} at the end: {told}")
+        lines.append(f"passed x = {section:.12g} m {way} at the end: {told}")
     return lines
 
 

@@ -139,7 +139,8 @@ def _moment(values: np.ndarray, sigma: float, order: tuple[int, int]) -> np.ndar
 def _plane_at_centre(s: Moments, v: Moments) -> np.ndarray:
     """The weighted least-squares plane at distance 0, by Cramer's rule.
 
-    Where the cells around lie in a line, or are alone, it is their weighted mean.
+    Where the cells around lie in a line, as those of a profile, it is a straight line along them;
+    of one alone it is its value.
     """
     minor = [
         s[2, 0] * s[0, 2] - s[1, 1] ** 2,
@@ -148,6 +149,8 @@ def _plane_at_centre(s: Moments, v: Moments) -> np.ndarray:
     ]
     determinant = s[0, 0] * minor[0] - s[1, 0] * minor[1] + s[0, 1] * minor[2]
     plane = v[0, 0] * minor[0] - v[1, 0] * minor[1] + v[0, 1] * minor[2]
-    safe = determinant > 1e-9 * s[0, 0] ** 3
+    spread = s[0, 0] * (s[2, 0] + s[0, 2]) - s[1, 0] ** 2 - s[0, 1] ** 2
+    line = v[0, 0] * (s[2, 0] + s[0, 2]) - v[1, 0] * s[1, 0] - v[0, 1] * s[0, 1]
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(safe, plane / determinant, v[0, 0] / s[0, 0])
+        of_line = np.where(spread > 1e-9 * s[0, 0] ** 2, line / spread, v[0, 0] / s[0, 0])
+        return np.where(determinant > 1e-9 * s[0, 0] ** 3, plane / determinant, of_line)

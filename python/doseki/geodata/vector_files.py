@@ -62,12 +62,16 @@ def _layer(path: Path, layer: str | None) -> str:
     """The layer that is meant; raises GeodataError where that is not clear."""
     import pyogrio
 
-    names = [str(name) for name, *_ in pyogrio.list_layers(path)]
+    # Tables of styles and attributes that programs keep in the same file have no geometry.
+    names = [str(name) for name, geometry, *_ in pyogrio.list_layers(path) if geometry is not None]
     if layer is None and len(names) == 1:
         return names[0]
     if layer not in names:
         what = f'no layer "{layer}"' if layer else "has several layers"
-        raise GeodataError(f"{path}: {what}; choose one of {', '.join(names) or 'none'}")
+        raise GeodataError(
+            f"{path}: {what}; choose one of {', '.join(names) or 'none'} (in a file of its own: "
+            f"ogr2ogr NEW.gpkg {path.name} LAYER)"
+        )
     return str(layer)
 
 

@@ -32,12 +32,17 @@ GIT_SECONDS = 5.0
 MAX_BYTES = 4 * 2**20
 
 
+def core_name() -> str:
+    """The instruction set, or the device, of the core of this process."""
+    return load_core().__name__.rpartition("_core_")[2]
+
+
 def provenance_now(threads: int = 0, ranks: int = 1) -> dict[str, Any]:
     """Versions, machine and command of this process; the host's name is left out."""
     return {
         "doseki": version(),
         "commit": commit(),
-        "core": load_core().__name__.rpartition("_core_")[2],
+        "core": core_name(),
         "python": platform.python_version(),
         "libraries": _libraries(),
         "processor": _processor(),

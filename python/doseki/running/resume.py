@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from ..compiled import load_core
 from ..driver.active_run import ActiveRun
 from ..driver.checkpoint import Checkpoint, CheckpointFolder
 from ..driver.identity import CHANGEABLE, identity_of
@@ -24,6 +23,7 @@ from ..scene.build import body_names
 from ..util.files import write_whole_text
 from ..util.sealed import check_seal, sealed
 from ..util.toml_writer import to_toml
+from .provenance import core_name, read_provenance
 from .runner import RunOptions, carry_out, run_scenario
 
 Overrides: TypeAlias = Sequence[str | Change]
@@ -102,6 +102,15 @@ def _text(value: Any) -> str:
     return to_toml({"value": value}) if value is not None else ""
 
 
+def _is_core_of(directory: str | Path) -> bool:
+    """Whether the run in a folder went on with this build of the core last, as far as is known."""
+    try:
+        entries = read_provenance(RunFolder(Path(directory)))
+    except UserError:
+        return True
+    return not entries or entries[-1].get("core") in (None, core_name())
+
+
 def _restored(
     directory: str | Path,
     scenario: Scenario,
@@ -121,10 +130,10 @@ def _restored(
         raise UserError(f"{directory}: {error}") from None
     if ranks.count > 1 or checkpoint.is_of_many_ranks:
         notes.append("the run is, or was, spread over ranks: results agree to rounding only")
-    elif not same_bits:
+    elif not (same_bits and _is_core_of(directory)):
         notes.append(
             "the checkpoint was written with another instruction set: results agree to rounding"
-            f" only (DOSEKI_ISA chooses one; now {load_core().__name__.rpartition('_')[2]})"
+            f" only (DOSEKI_ISA chooses one; now {core_name()})"
         )
     position = checkpoint.position
     written = position.snapshots, position.rows, position.gauge_rows

@@ -183,14 +183,20 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
                     ),
                 )
             clock = CheckpointClock(
-                options.checkpoint_every, options.checkpoint_minutes, run.position.next_checkpoint
+                options.checkpoint_every,
+                options.checkpoint_minutes,
+                run.position.next_checkpoint,
+                run.simulation.time,
             )
             status = "done" if run.advance(clock, options.progress, stop) else "stopped"
             reason = _reason(options.watch, stop) if status == "stopped" else ""
     except core.ResourceFailure as failure:
         raise ResourceError(str(failure)) from failure
     except core.PhysicsFailure as failure:
-        explained = _explained(run, str(failure))
+        try:
+            explained = _explained(run, str(failure))
+        except ResourceError as full:
+            raise PhysicsError(f"{failure}. It could not be recorded: {full}") from failure
         run.recorder.close(_summary(run, "failed") | {"failure": str(failure)})
         raise PhysicsError(
             f"{failure}. {explained.advice} The record up to there is in {directory};"

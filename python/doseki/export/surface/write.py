@@ -74,11 +74,12 @@ def export_surface(run: Run, options: SurfaceOptions, out: Path | None = None) -
     _check(run, options)
     snapshots = _snapshots(run, options.times)
     names = chosen_materials(run, options.materials)
+    origin = _origin(snapshots, options.cell or run.scenario["dp"])
     folder = out if out is not None else run.directory / "surface"
     lines = []
     with whole_folder(folder) as unfinished:
         for name in names:
-            lines += _export_material(run, snapshots, name, options, unfinished)
+            lines += _export_material(run, snapshots, name, options, origin, unfinished)
     return [f"{folder}/{line}" for line in lines]
 
 
@@ -104,8 +105,23 @@ def _snapshots(run: Run, times: Sequence[float]) -> list[Snapshot]:
     return [found[stem] for stem in sorted(found)]
 
 
+def _origin(snapshots: Sequence[Snapshot], cell: float) -> np.ndarray:
+    """What is taken off places in files of few digits, (3,), m: one of all files, or surfaces of
+    two times would not lie where they do.
+    """
+    for snapshot in snapshots:
+        if len(position := snapshot["position"]):
+            return near_origin(in_space(position), cell)
+    return np.zeros(3)
+
+
 def _export_material(
-    run: Run, snapshots: Sequence[Snapshot], name: str, options: SurfaceOptions, folder: Path
+    run: Run,
+    snapshots: Sequence[Snapshot],
+    name: str,
+    options: SurfaceOptions,
+    origin: np.ndarray,
+    folder: Path,
 ) -> list[str]:
     cell = options.cell or 0.5 * spacing_of(run, name)
     grid = Grid(cell, options.level, kernel_of(run), tuple(run.periods()))
@@ -116,7 +132,7 @@ def _export_material(
         found = matter(snapshot, name, grid.kernel, flowing)
         made = surface_of(found, grid)
         file = folder / f"{stem}_{snapshot.path.stem}.{options.format}"
-        write_whole(file, partial(_write, made, snapshot, name, grid))
+        write_whole(file, partial(_write, made, snapshot, name, grid, origin))
         entries.append((snapshot.time, file.name))
         rows.append([snapshot.time, made.surface.area, made.surface.volume, made.particles])
         lost += found.lost
@@ -136,11 +152,12 @@ def surface_of(found: Matter, grid: Grid) -> Made:
     return Made(surface, fields, float(fluid.volume.sum()))
 
 
-def _write(made: Made, snapshot: Snapshot, name: str, grid: Grid, path: Path) -> None:
+def _write(
+    made: Made, snapshot: Snapshot, name: str, grid: Grid, origin: np.ndarray, path: Path
+) -> None:
     """The file `path` is to become, by the ending of its name."""
     surface, about = made.surface, f"surface of {name} at {snapshot.time!r} s"
     mesh = surface.points, surface.faces
-    origin = near_origin(surface.points, grid.cell)
     kind = path.name.removesuffix(".part").rpartition(".")[2]
     if kind == "stl":
         write_stl(path, mesh, origin, about)

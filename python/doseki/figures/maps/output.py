@@ -128,20 +128,23 @@ def _save(run: Run, name: str, figure: Figure) -> Path:
     return path
 
 
+LONGEST_NAME = 255  # of a file
+
+
 def _path(given: str, crs: str | None) -> np.ndarray:
     """Points (n, 2) of a path on the map of `crs`: of the line in a file, or as they are given."""
-    if not Path(given).exists():
-        try:
-            rows = [[float(number) for number in point.split(",")] for point in given.split()]
-            points = np.array(rows, dtype=np.float64)
-        except ValueError:
-            points = np.empty(0)
-        if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-            raise UserError(
-                f'--path {given[:80]}: neither a file nor points such as "460000,5200000 460100,'
-                '5200000"'
-            )
+    try:
+        rows = [[float(number) for number in point.split(",")] for point in given.split()]
+        points = np.array(rows, dtype=np.float64)
+    except ValueError:
+        points = np.empty(0)
+    if points.ndim == 2 and points.shape[1] == 2 and np.isfinite(points).all():
         return points
+    if len(given) > LONGEST_NAME or not Path(given).exists():
+        raise UserError(
+            f'--path {given[:80]}: neither a file nor points such as "460000,5200000 460100,'
+            '5200000"'
+        )
     found = read_features(given)
     if same_crs(found.crs, crs) is False:
         raise UserError(

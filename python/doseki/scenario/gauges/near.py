@@ -13,6 +13,7 @@ REACH = 3.0  # spacings; radius of the interpolation
 STEP = 0.5  # spacings; between two looks for the surface
 MIN_VOID = 0.25  # share of a neighbourhood that walls and bodies leave; below, nothing is told
 INSIDE = 0.5  # volume fraction from which on a point lies within the flow
+ON_BED = 0.5  # spacings; a column that begins nearer to the surface of a wall begins there
 
 
 def kernel(r: np.ndarray, radius: float, dim: int) -> np.ndarray:
@@ -120,6 +121,27 @@ def column_height(around: Neighbourhood, foot: np.ndarray, up: np.ndarray, step:
             return 0.0
         before, seen = now, k
     return 0.0
+
+
+def bed_height(around: Neighbourhood, foot: np.ndarray, up: np.ndarray, step: float) -> float:
+    """Height, m, above `foot` of the surface of walls nearest to it on the line upwards.
+
+    It is 0 where there is none, and where the foot stands on it within half a spacing, as far as
+    particles tell.
+    """
+    radius, dim = around.radius, around.dim
+    walls = Column(around.wall_position, around.wall_volume, foot, up)
+    if not len(walls.along):
+        return 0.0
+    first, last = np.round((walls.along[[0, -1]] + [-radius, radius]) / step)
+    heights = step * np.arange(first, last + 1)
+    filled = np.array([walls.filled(height, radius, dim) for height in heights])
+    ends = np.flatnonzero((filled[:-1] >= INSIDE) & (filled[1:] < INSIDE))
+    if not len(ends):
+        return 0.0
+    surfaces = heights[ends] + step * (filled[ends] - INSIDE) / (filled[ends] - filled[ends + 1])
+    nearest = float(surfaces[np.argmin(np.abs(surfaces))])
+    return nearest if abs(nearest) > ON_BED * radius / REACH else 0.0
 
 
 def tube(

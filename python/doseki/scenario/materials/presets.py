@@ -79,17 +79,16 @@ def mud(soil: str, cv: float) -> tuple[float, float]:
 def _obrien_julien(keys: Mapping[str, Any]) -> dict[str, Any]:
     cv, solid = keys["cv"], keys.get("solid_density", QUARTZ)
     stress, viscosity = mud(keys["soil"], cv)
+    law = {"yield_stress": stress, "consistency": viscosity, "regularisation": REST}
+    law |= {key: keys[key] for key in law if key in keys}
     return {
         "law": "fluid",
         "rho0": WATER + cv * (solid - WATER),
         "speedsound": 1400.0,
         "rheology": "herschel_bulkley",
-        "yield_stress": stress,
-        "consistency": viscosity,
         "flow_index": 1.0,
-        "regularisation": REST,
-        "viscosity_max": viscosity + REST * stress,
-    }
+        "viscosity_max": law["consistency"] + law["regularisation"] * law["yield_stress"],
+    } | law
 
 
 def _glass_beads(_: Mapping[str, Any]) -> dict[str, Any]:
@@ -218,8 +217,7 @@ def without_preset(table: Mapping[str, Any]) -> dict[str, Any]:
     for key in preset.needed:
         if key not in own:
             raise ValueError(f'preset = "{preset.name}" needs {key}')
-    left_open = {key: given[key] for key in preset.open if key in given}
-    return preset.values(own | left_open) | given
+    return preset.values(own | given) | given
 
 
 def _keys(preset: Preset) -> tuple[str, ...]:

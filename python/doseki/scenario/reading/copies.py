@@ -99,8 +99,9 @@ def _array(
         assert array.at is not None
         if "xyz".index(array.mirror) >= dim:
             raise ValueError(f'a {dim}-D run has no axis "{array.mirror}"')
-        if keys[0] == "inflow" and dim == 3:
-            raise ValueError("an inflow of a 3-D run has no mirrored copy")
+        if dim == 3 and (keys[0] == "inflow" or {"width", "direction"} <= set(plain)):
+            what = "an inflow" if keys[0] == "inflow" else "a section with a width"
+            raise ValueError(f"{what} of a 3-D run has no mirrored copy; write it out")
         copies = [plain, mirrored(plain, "xyz".index(array.mirror), array.at)]
     elif array.turns is not None:
         assert array.about is not None

@@ -18,6 +18,7 @@ from ...util.finding import Finding
 from ..ground import ground_of
 
 GAP = 3.0  # spacings between the foot of a column and what it begins with (near.column_height)
+OFF = 0.5  # spacings, from which on heights are told to begin elsewhere
 
 
 @dataclass(frozen=True)
@@ -32,16 +33,18 @@ class BesideMap(Finding):
 
 @dataclass(frozen=True)
 class OffBed(Finding):
-    """A gauge whose columns do not begin on the bed."""
+    """A gauge whose column does not begin on the bed."""
 
     above: float  # m; below 0: in the ground
     level: float  # z of the bed, m
+    misses: bool  # the flow
 
     def __str__(self) -> str:
         side = "above" if self.above > 0 else "below"
+        told = "it misses the flow" if self.misses else "its heights count from there"
         return (
-            f"{self.place}: its position is {abs(self.above):.3g} m {side} the bed, so that it "
-            f"misses the flow; the bed is at {self.level:.6g} m there"
+            f"{self.place}: its position is {abs(self.above):.3g} m {side} the bed, so that "
+            f"{told}; the bed is at {self.level:.6g} m there"
         )
 
 
@@ -102,13 +105,13 @@ def _feet(gauge: Gauge, scenario: Scenario) -> np.ndarray | None:
 
 
 def _findings(place: str, gauge: Gauge, feet: np.ndarray, bed: Bed, dp: float) -> Iterator[Finding]:
-    """What is wrong at all of its places; a column that stands in a bank may."""
+    """What is wrong at all of its places.  Columns of an approach find the bed."""
     across = bed.heights.ndim
     ground = ground_of(bed).field.at(np.ascontiguousarray(feet[:, :across]))
     if ground["unknown"].all():
         yield BesideMap(place)
-    elif not isinstance(gauge, Section):
-        above = feet[:, -1] - ground["height"]
-        if (above > GAP * dp).all() or (above < -GAP * dp).all():
-            nearest = int(np.argmin(abs(above)))
-            yield OffBed(place, float(above[nearest]), float(ground["height"][nearest]))
+    elif isinstance(gauge, SurfaceHeight):
+        level = float(ground["height"][0])
+        above = float(feet[0, -1]) - level
+        if abs(above) > OFF * dp:
+            yield OffBed(place, above, level, abs(above) > GAP * dp)

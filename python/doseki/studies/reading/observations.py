@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import Field
 
 from ...errors import UserError
+from ...geodata.crs import same_crs
 from ...geodata.errors import GeodataError
 from ...geodata.features import Polygon, read_features
 from ...record.reader import Run
@@ -211,9 +212,10 @@ class ObservedArea(Observation):
     def check(
         self, scenario: Scenario, results: Results, folder: Path, refuse: Refuse
     ) -> list[str]:
-        """There must be maps, and polygons."""
+        """There must be maps, and polygons in their coordinate reference system."""
         check_maps(scenario, refuse)
-        self._polygons(folder)
+        raster = scenario.bed.raster if scenario.bed is not None else None
+        self._polygons(folder, raster.crs if raster is not None else None)
         return []
 
     def misfit(self, run: Run, results: Mapping[str, float], folder: Path) -> float:
@@ -222,22 +224,28 @@ class ObservedArea(Observation):
         covered = np.nan_to_num(raster.values) > self.above
         x, y = np.meshgrid(raster.x, raster.y)
         seen = np.zeros(raster.shape, bool)
-        for polygon in self._polygons(folder):
+        for polygon in self._polygons(folder, raster.crs):
             seen |= polygon.contains(x, y)
         if not seen.any():
             raise UserError(f"{folder / self.file}: its polygons lie beside the map of the run")
         either = np.count_nonzero(covered | seen)
         return (1 - np.count_nonzero(covered & seen) / either) / self.error
 
-    def _polygons(self, folder: Path) -> Sequence[Polygon]:
+    def _polygons(self, folder: Path, crs: str | None) -> Sequence[Polygon]:
+        """On the map of `crs`."""
         path = folder / self.file
         try:
-            found = read_features(path).polygons
+            found = read_features(path)
         except GeodataError as error:
             raise UserError(str(error)) from None
-        if not found:
+        if same_crs(found.crs, crs) is False:
+            raise UserError(
+                f"{path}: is in another coordinate reference system than the terrain; convert it "
+                "with ogr2ogr -t_srs"
+            )
+        if not found.polygons:
             raise UserError(f"{path}: holds lines alone; an area needs polygons, which are closed")
-        return found
+        return found.polygons
 
 
 def total_score(observations: Mapping[str, Observation], misfits: Mapping[str, float]) -> float:

@@ -29,7 +29,7 @@ from .series import (
 MAPS = {quantity.name: quantity for quantity in QUANTITIES}
 MapName = Literal[
     "peak_depth", "peak_speed", "peak_pressure", "peak_total_pressure", "peak_momentum_flux",
-    "arrival_time", "deposit",
+    "peak_travel_angle", "arrival_time", "deposit",
 ]  # fmt: skip
 RUN_OUT = {
     "distance": "m", "angle": "degrees", "area": "m2", "deposit_area": "m2", "deposit_volume": "m3",

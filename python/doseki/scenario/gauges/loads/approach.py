@@ -11,7 +11,15 @@ from ...table import Only
 from ...values.directions import section_axes
 from ...values.types import Direction, Length
 from ..gauge import FlowGauge, Rows, Sampled, Setting
-from ..near import REACH, STEP, Neighbourhood, beside, column_height, particles_in
+from ..near import (
+    REACH,
+    STEP,
+    Neighbourhood,
+    bed_height,
+    beside,
+    column_height,
+    particles_in,
+)
 
 SLAB = 4.0  # spacings; length of the slab around the section
 APART = 4.0  # spacings between two columns across a section
@@ -39,6 +47,8 @@ class Approach(FlowGauge):
     def read(self, run: Sampled, setting: Setting) -> Rows:
         """The time, the mean depth of columns on the bed, and of what is in them the speed
         along the normal, a mean by mass, and the density; nan where there is none.
+
+        A column begins on the wall nearest to its foot: natural sections are not level.
         """
         normal = self.direction / np.linalg.norm(self.direction)
         length, reach = self.length or SLAB * setting.dp, REACH * setting.dp
@@ -46,18 +56,20 @@ class Approach(FlowGauge):
         feet = self._feet(across, setting)
         margin = max(length, reach)
         low, high = feet.min(axis=0) - margin, feet.max(axis=0) + margin
-        low, high = np.where(up < -1e-9, -np.inf, low), np.where(up > 1e-9, np.inf, high)
+        along = np.abs(up) > 1e-9
+        low, high = np.where(along, -np.inf, low), np.where(along, np.inf, high)
         state = particles_in(run, setting, low, high)
-        heights = []
+        step, bottoms, tops = STEP * setting.dp, [], []
         for foot in feet:
             near = Neighbourhood(setting, self.material, beside(state, foot, up, reach))
-            heights.append(column_height(near, foot, up, STEP * setting.dp))
-        depth = float(np.mean(heights))
+            bottom = bed_height(near, foot, up, step)
+            bottoms.append(bottom)
+            tops.append(bottom + column_height(near, foot + bottom * up, up, step))
+        depth = float(np.mean(np.subtract(tops, bottoms)))
         around = Neighbourhood(setting, self.material, state)
         away = around.position - self.position
         share = np.maximum(0.0, 1 - np.abs(away @ normal) / (0.5 * length))
-        level = max(heights, default=0.0)
-        share *= (away @ up >= 0) & (away @ up <= level)
+        share *= (away @ up >= min(bottoms)) & (away @ up <= max(tops))
         if across is not None:
             first, last = (0.0, self.width) if self.width else (-reach, reach)
             share *= (away @ across >= first) & (away @ across <= last)

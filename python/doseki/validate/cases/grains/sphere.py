@@ -30,12 +30,15 @@ class Oil:
     terminal: float  # m/s, the largest that was measured
 
 
-THIN = Oil(
-    "ten-cate-2002-re-31.9-speed.csv", "ten-cate-2002-re-31.9-height.csv", 960.0, 0.058, 0.1233
-)
-THICK = Oil(
-    "ten-cate-2002-re-1.5-speed.csv", "ten-cate-2002-re-1.5-height.csv", 970.0, 0.373, 0.0370
-)
+def _oil(reynolds: str, density: float, viscosity: float, terminal: float) -> Oil:
+    table = f"ten-cate-2002-re-{reynolds}-"
+    return Oil(f"{table}speed.csv", f"{table}height.csv", density, viscosity, terminal)
+
+
+THIN = _oil("31.9", 960.0, 0.058, 0.1233)
+THINNER = _oil("11.6", 962.0, 0.113, 0.0869)
+THICKER = _oil("4.1", 965.0, 0.212, 0.0577)
+THICK = _oil("1.5", 970.0, 0.373, 0.0370)
 
 
 def settle(oil: Oil, across: float, thicker: float = 1.0, *overrides: str) -> Outcome:
@@ -121,6 +124,18 @@ CASES = (
         "A sphere settles in oil, Re 31.9",
         THIN,
         "the layer at the sphere is thinner than the spacing: 1.3 mm against 3.7 mm at 4 across",
+    ),
+    in_oil(
+        "sphere-in-thinner-oil",
+        "A sphere settles in oil, Re 11.6",
+        THINNER,
+        "",
+    ),
+    in_oil(
+        "sphere-in-thicker-oil",
+        "A sphere settles in oil, Re 4.1",
+        THICKER,
+        "",
     ),
     in_oil(
         "sphere-in-thick-oil",
