@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shlex
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
+import nanobind
 import pytest
 
 CORE = Path(__file__).parents[3] / "core"
+BIN = Path(sys.executable).parent
 UNITS = {
     "resolved": '#include "resolved/evaluate.hpp"\ntemplate class doseki::Resolved<3, double>;\n',
     "ueta2022": '#include "ueta2022/evaluate.hpp"\n#include "ueta2022/pair_probe.hpp"\n'
@@ -68,3 +73,32 @@ def test_kernels_compile_without_spills(tmp_path, unit):
         assert int(function["stores"]) == int(function["loads"]) == 0, function["name"]
     kernels = [function for function in functions if function["registers"]]
     assert len(kernels) >= LEAST_KERNELS[unit]
+
+
+@pytest.mark.minutes
+def test_what_the_compiler_of_the_processor_compiles_of_the_module(tmp_path):
+    """By the commands of the build itself; they see what both compilers share."""
+    if shutil.which("nvcc") is None:
+        print("no nvcc on the path: the module for cards is not compiled")
+        pytest.skip("no nvcc on the path")
+    settings = {
+        "DOSEKI_INSTRUCTION_SETS": "cuda", "CMAKE_EXPORT_COMPILE_COMMANDS": "ON",
+        "CMAKE_CUDA_ARCHITECTURES": "90", "Python_EXECUTABLE": sys.executable,
+        "nanobind_DIR": nanobind.cmake_dir(), "CMAKE_MAKE_PROGRAM": BIN / "ninja",
+        "SKBUILD_STATE": "editable", "SKBUILD_PROJECT_NAME": "doseki",
+        "SKBUILD_PROJECT_VERSION": "0",
+    }  # fmt: skip
+    told = [f"-D{key}={value}" for key, value in settings.items()]
+    cmake = [BIN / "cmake", "-G", "Ninja", "-S", CORE.parent, "-B", tmp_path, *told]
+    subprocess.run(cmake, check=True, capture_output=True)
+    commands = json.loads((tmp_path / "compile_commands.json").read_text())
+    ours = [
+        entry
+        for entry in commands
+        if "_core_cuda_compute.dir" in entry["output"] and entry["file"].startswith(str(CORE))
+    ]
+    assert len(ours) > 5
+    for entry in ours:
+        command = [*shlex.split(entry["command"]), "-fsyntax-only"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
