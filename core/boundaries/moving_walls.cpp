@@ -56,6 +56,7 @@ struct VelocityOfWall {
         const WallMotion<D>* motion = motions.of(particles.tag[p]);
         if (!motion) return;
         particles.velocity[p] = motion->velocity_at(particles.position[p], t);
+        particles.acceleration[p] = motion->acceleration_at(particles.position[p], t);
         if (particles.wall.in_use) particles.wall.spin[p] = motion->turn_at(t);
     }
 };

@@ -41,6 +41,10 @@ struct WallMotion {
     DOSEKI_DEVICE_FN Vec<double, D> moving_velocity(const Vec<double, D>& x, double t) const {
         return velocity + cross_spin(x - pivot_at(t));
     }
+    /// Towards the axis about which the body turns.
+    DOSEKI_DEVICE_FN Vec<double, D> acceleration_at(const Vec<double, D>& x, double t) const {
+        return moves(t) ? cross_spin(cross_spin(x - pivot_at(t))) : Vec<double, D>{};
+    }
 
     /// Where a point that is at x at time t is after dt, within which the motion does not change.
     DOSEKI_DEVICE_FN Vec<double, D> moved(const Vec<double, D>& x, double t, double dt) const {
@@ -119,7 +123,8 @@ public:
     /// distance that a particle of theirs went.
     double move(Particles<D>& particles, double t, double dt) const;
 
-    /// Gives particles of moving walls their velocity at time t, zero outside the time they move.
+    /// Gives particles of moving walls their velocity and acceleration at time t, zero outside the
+    /// time they move.
     void set_velocities(Particles<D>& particles, double t) const;
 
     /// Marks in `removed` what vanishes after `before` and up to t; true if there is any.

@@ -47,6 +47,7 @@ public:
                                      std::span<const std::uint8_t> is_fixed);
 
     const Array<Vec<double, D>>& image_shifts() const { return image_shift_; }
+    const Domain<D>& domain() const { return domain_; }
     bool is_periodic() const { return domain_.any_periodic(); }
     std::size_t moving() const { return moving_; }
     /// Particles that have neighbours, ghosts left out.

@@ -9,11 +9,14 @@ template <int D>
 struct SchemeWork {
     Vec<double, D> layer_force{};  // on free particles, of the driven layers behind inflows [N]
     double layer_power = 0.0;      // of what drives those layers [W]
-    double power = 0.0;  // that shifting, the relaxation of density, walls and films make [W]
+    double power = 0.0;            // that shifting, walls and films make [W]
+    // By which the relaxation of density and surfaces that part change the energy of compression in
+    // the step, however short it is [J].
+    double energy = 0.0;
 
     DOSEKI_DEVICE_FN void add(const SchemeWork& other) {
         layer_force = layer_force + other.layer_force;
-        layer_power += other.layer_power, power += other.power;
+        layer_power += other.layer_power, power += other.power, energy += other.energy;
     }
 };
 

@@ -85,7 +85,7 @@ private:
     DOSEKI_DEVICE_FN void set_density(const Summed& at, const FreeSurfaceIndicator& indicator,
                                       double strain) const {
         const std::size_t p = at.p;
-        const double rho = at.fields.rho, c = model_.constants.c;
+        const double rho = at.fields.rho, c = model_.material(state_.tag[p]).c0;
         const double of_pairs = rho * at.sums.density_rate;
         double rate = of_pairs + rho * edge_rate(at.sums.sliding_rate, at.sums.sliding_size) +
                       dot(state_.pressure_gradient[p], state_.shift[p]) / (c * c);
@@ -94,7 +94,9 @@ private:
         const double in_film = state_.in_film[p] = share_in_film(at);
         if (in_film > 0.0) rate += in_film * (rate_towards_film(at) - rate);
         rate = with_least_density(at, rate);
-        summary(p).work.power += part_on_surface(at) + power_of_corrections(at, rate - of_pairs);
+        SchemeWork<D>& work = summary(p).work;
+        work.power -= state_.mass[p] * dot(model_.options.gravity, state_.shift[p]);
+        work.energy += part_on_surface(at) + dt_ * power_of_corrections(at, rate - of_pairs);
         state_.density_rate[p] = rate;
         state_.density[p] = rho + dt_ * rate;
     }
@@ -123,19 +125,19 @@ private:
                                             edge_rate(sums.sliding_rate, sums.sliding_size) != 0.0);
     }
 
-    /// What shifting and the relaxation of density give to energies of compression and height [W].
+    /// What a rate of density that is not that of the pairs gives to the energy of compression [W].
     DOSEKI_DEVICE_FN double power_of_corrections(const Summed& at, double density_rate) const {
-        return at.fields.volume * pressure(at) / at.fields.rho * density_rate -
-               state_.mass[at.p] * dot(model_.options.gravity, state_.shift[at.p]);
+        return at.fields.volume * pressure(at) / at.fields.rho * density_rate;
     }
 
     /// A driven particle has the pressure of the flow in front of it, by continuity alone: the
     /// arrangement of its layers is given and says nothing. Layers do not pull.
     DOSEKI_DEVICE_FN void take_pressure(const Summed& at) const {
         const std::size_t p = at.p;
-        const double rho = at.fields.rho, least = rho0(p), rate = rho * at.sums.density_rate;
-        state_.density_rate[p] = rho + dt_ * rate < least ? 0.0 : rate;
-        state_.density[p] = std::max(least, rho + dt_ * rate);
+        const double least = rho0(p), rate = at.fields.rho * at.sums.density_rate,
+                     rho = at.fields.rho + dt_ * rate;
+        state_.density_rate[p] = rho < least ? 0.0 : rate;
+        state_.density[p] = std::max(least, rho);
     }
 
     /// A driven particle hands on the rate of density that it is kept up against.
@@ -183,8 +185,8 @@ private:
     }
 
     /// Eq. (144): what is stretched on the surface is a void and has no tension, also where it
-    /// meets again, until it has closed. Returns the power of the tension that is lost, or there
-    /// again [W].
+    /// meets again, until it has closed. Returns the energy of the tension that is lost, or there
+    /// again [J].
     DOSEKI_DEVICE_FN double part_on_surface(const Summed& at) const {
         const std::size_t p = at.p;
         const auto now = thermodynamic_state(*model_.material(state_.tag[p]).laws, at.fields.rho);
@@ -194,7 +196,7 @@ private:
         state_.parted[p] = parts ? 1.0 : closed ? 0.0 : before;
         const bool had_tension = pressure(at) < 0.0, has_again = before > 0.0 && closed;
         if (dt_ <= 0.0 || !(now.pressure < 0.0)) return 0.0;
-        const double energy = state_.mass[p] * now.bulk_energy / dt_;
+        const double energy = state_.mass[p] * now.bulk_energy;
         return parts && had_tension ? -energy : has_again ? energy : 0.0;
     }
 

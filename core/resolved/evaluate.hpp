@@ -70,14 +70,8 @@ template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::set_mixing_lengths(State& state, const Lists& lists,
                                                     const Ranks& ranks) {
     const FlowOptions& flow = model_->options.flow;
-    Vec<double, D - 1> width;
-    for (int a = 0; a < D - 1; ++a) {
-        double period = 0.0;
-        for (const auto& shift : lists.image_shifts()) period = std::max(period, shift[a]);
-        const double columns = std::max(1.0, std::floor(period / (4.0 * flow.dp)));
-        width[a] = period > 0.0 ? period / columns : 4.0 * flow.dp;
-    }
-    const FlowDepth<D> depth(state, fluid_count_, width, ranks);
+    const FlowDepth<D> depth(state, fluid_count_, lists.domain(),
+                             Upwards<D>(model_->options.gravity), 4.0 * flow.dp, ranks);
     const double min_length = flow.smagorinsky * flow.dp;
     for_each_particle(fluid_count_, [&](std::size_t p) {
         state.mixing_length[p] = depth.mixing_length(state.position[p], min_length);

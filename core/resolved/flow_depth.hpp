@@ -5,27 +5,52 @@
 #include <map>
 
 #include "base/array.hpp"
+#include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "physics/viscosity.hpp"
 #include "ranks/exchange.hpp"
 
 namespace doseki {
 
-/// Height over the bed and depth of the flow at each fluid particle, along the last axis, as a
+/// The axis that is nearest to upwards, and whether it points there: the last one unless gravity is
+/// along it or nearly across it.
+template <int D>
+struct Upwards {
+    int axis = D - 1;
+    double sign = 1.0;
+
+    explicit Upwards(const Vec<double, D>& gravity) {
+        constexpr double across = 0.2;
+        const double size = std::sqrt(dot(gravity, gravity));
+        if (!(size > 0.0) || gravity[D - 1] < -across * size) return;
+        for (int a = 0; a < D; ++a)
+            if (std::abs(gravity[a]) > std::abs(gravity[axis])) axis = a;
+        sign = gravity[axis] > 0.0 ? -1.0 : 1.0;
+    }
+    double height(const Vec<double, D>& x) const { return sign * x[axis]; }
+};
+
+/// Height over the bed and depth of the flow at each fluid particle, along an axis upwards, as a
 /// mixing length needs them. The plan is cut into columns: the bed is the highest wall particle of
 /// a column below its fluid, the depth is that of the volume in it, so that spray counts for what
 /// it is.
 template <int D>
 class FlowDepth {
 public:
-    /// `width` of a column along each axis of the plan [m].
-    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Vec<double, D - 1>& width,
-              const Ranks& ranks)
-        : width_(width) {
+    /// `width` of a column [m]; somewhat more where whole ones are to fill a period.
+    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Domain<D>& domain,
+              const Upwards<D>& up, double width, const Ranks& ranks)
+        : domain_(domain), up_(up) {
+        for (int b = 0; b < D - 1; ++b) {
+            const int a = of_plan(b);
+            const double columns = std::max(1.0, std::floor(domain.length(a) / width));
+            width_[b] = domain.periodic[a] ? domain.length(a) / columns : width;
+            from_[b] = domain.periodic[a] ? domain.low[a] : 0.0;
+        }
         for (std::size_t p = 0; p < fluid; ++p) {
             Column& column = columns_[key(particles.position[p])];
             column.volume += particles.mass[p] / particles.density[p];
-            column.height += particles.position[p][D - 1];
+            column.height += up.height(particles.position[p]);
             column.count += 1.0;
         }
         merge(ranks, [](Column& column, const Column& part) {
@@ -34,10 +59,10 @@ public:
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
             if (found == columns_.end() || particles.is_bound(p) ||
-                particles.wall.normal[p][D - 1] < 0.5)
+                up.height(particles.wall.normal[p]) < 0.5)
                 continue;
             Column& column = found->second;
-            const double top = particles.position[p][D - 1] + particles.wall.depth[p];
+            const double top = up.height(particles.position[p]) + particles.wall.depth[p];
             if (top < column.height / column.count) column.bed = std::max(column.bed, top);
         }
         merge(ranks, [](Column& column, const Column& part) {
@@ -53,7 +78,7 @@ public:
         double area = 1.0;
         for (int a = 0; a < D - 1; ++a) area *= width_[a];
         const double depth = found->second.volume / area;
-        return doseki::mixing_length(x[D - 1] - found->second.bed, depth, min_length);
+        return doseki::mixing_length(up_.height(x) - found->second.bed, depth, min_length);
     }
 
 private:
@@ -86,13 +111,19 @@ private:
     }
 
     Key key(const Vec<double, D>& x) const {
+        const Vec<double, D> inside = wrapped(domain_, x);
         Key key;
-        for (int a = 0; a < D - 1; ++a)
-            key[a] = static_cast<std::int64_t>(std::floor(x[a] / width_[a]));
+        for (int b = 0; b < D - 1; ++b)
+            key[b] =
+                static_cast<std::int64_t>(std::floor((inside[of_plan(b)] - from_[b]) / width_[b]));
         return key;
     }
+    /// Axis b of the plan.
+    int of_plan(int b) const { return b < up_.axis ? b : b + 1; }
 
-    Vec<double, D - 1> width_;
+    Domain<D> domain_;
+    Upwards<D> up_;
+    Vec<double, D - 1> width_, from_;
     std::map<Key, Column> columns_;
 };
 

@@ -72,6 +72,8 @@ public:
     /// By the viscosity of fluid and scheme, of the particles of this rank [W], 2-D: [W/m].
     double dissipated_power() const { return power_; }
     SchemeWork<D> work() const { return work_; }
+    /// Where another rank has them.
+    void forget_power() { power_ = 0.0, work_ = {}; }
     PhaseTimer& phases() { return phases_; }
     const Fault& fault() const { return fault_; }
     std::int64_t limiting_particle() const { return limiting_; }

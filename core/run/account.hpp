@@ -36,7 +36,7 @@ struct Account {
     double gravity_work = 0.0;  // the potential that was released [J]
     double wall_work = 0.0;     // of walls that have a velocity and of those layers [J]
     double contact_work = 0.0;  // of contacts of bodies: less than nothing where they damp [J]
-    double scheme_work = 0.0;   // see SchemeWork::power [J]
+    double scheme_work = 0.0;   // see SchemeWork::power and energy [J]
     double parting_work = 0.0;  // that bodies lost when parts came off them [J]
 
     /// Half a step of the forces on walls and of `scheme`, before the step or after it.
@@ -45,6 +45,9 @@ struct Account {
         wall_work += half_dt * (scheme.layer_power - push.power);
         scheme_work += half_dt * scheme.power;
     }
+
+    /// What happened in a step that `scheme` has just evaluated.
+    void add_changes(const SchemeWork<D>& scheme) { scheme_work += scheme.energy; }
 
     /// A step of gravity on the free particles.
     void add_weight(const Weight<D>& weight, const Vec<double, D>& gravity, double dt) {

@@ -71,6 +71,8 @@ public:
     virtual ForceTerms<D> force_terms(const Lists& lists, Halo<D>& halo, std::int64_t p) = 0;
     virtual double timestep() const = 0;
     virtual double dissipated_power() const = 0;
+    /// What pairs dissipate and the scheme does is no longer that of this rank.
+    virtual void forget_power() = 0;
     virtual SchemeWork<D> work() const = 0;
     virtual const Fault& fault() const = 0;
     virtual std::int64_t limiting_particle() const = 0;

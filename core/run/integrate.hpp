@@ -15,7 +15,9 @@ struct Kick {
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
         if (state.is_bound(p)) return;
-        state.velocity[p] = state.velocity[p] + half_dt * state.acceleration[p];
+        // What moves walls says their velocity at every time.
+        if (!state.is_wall(p))
+            state.velocity[p] = state.velocity[p] + half_dt * state.acceleration[p];
         state.kick(p, half_dt);
     }
 };

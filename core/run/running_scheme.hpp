@@ -83,6 +83,7 @@ public:
     }
     double timestep() const override { return scheme_.timestep(); }
     double dissipated_power() const override { return scheme_.dissipated_power(); }
+    void forget_power() override { scheme_.forget_power(); }
     SchemeWork<D> work() const override { return scheme_.work(); }
     const Fault& fault() const override { return scheme_.fault(); }
     std::int64_t limiting_particle() const override { return scheme_.limiting_particle(); }

@@ -61,6 +61,7 @@ public:
         if (ranks().rank() == 0) return;
         resize(particles, 0);
         open_boundaries.forget(), account_ = {}, dissipation_ = 0.0, updates_ = 0;
+        scheme_->forget_power();
     }
 
     /// Sets the clock [s] of a run that goes on from another; after the inflows, before the start.
@@ -246,7 +247,9 @@ template <class Lists>
 void Simulation<Lists>::step(double limit) {
     const auto timing = ranks().clock.measure_step();
     constexpr double almost = 1.0 - 1e-12;  // a step that ends there would leave one of rounding
-    const double before = time_, end = min(limit, next_event()), longest = next_timestep(),
+    constexpr double at_once = 1e-6;        // steps; an event so near before the limit is at it
+    const double before = time_, longest = next_timestep(), event = next_event(),
+                 end = event < limit - at_once * longest ? event : limit,
                  dt = before + longest < almost * end ? longest : end - before,
                  power = scheme_->dissipated_power();
 
@@ -262,6 +265,7 @@ void Simulation<Lists>::step(double limit) {
     evaluate(0.5 * dt);
     bodies.loads.end_step(particles, ranks(), dt, time_);
     account_.add_forces(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
+    account_.add_changes(scheme_->work());
     kick(0.5 * dt);
     scheme_->end_step();
     timed(Phase::bodies, [&] { bodies.set_velocities(particles, 0.0); });

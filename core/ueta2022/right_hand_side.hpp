@@ -72,6 +72,7 @@ public:
     double timestep() const { return timestep_; }
     /// By artificial viscosity, of the particles of this rank [W], 2-D: [W/m].
     double dissipated_power() const { return av_power_; }
+    void forget_power() { av_power_ = 0.0; }
     /// Not known of this scheme.
     SchemeWork<D> work() const { return {}; }
     PhaseTimer& phases() { return phases_; }

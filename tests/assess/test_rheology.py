@@ -85,3 +85,12 @@ def test_grains_under_water(said):
     assert said(GRAINS) == []
     assert "material.fluid.rheology" in said(GRAINS, more=WATER_ABOVE)[0]
     assert said(MUD, more=WATER_ABOVE) == []
+
+
+def test_suction_of_another_liquid(said):
+    sucks = "air_entry_suction = 5000"
+    assert said(sucks) == []
+    (found,) = said(sucks, more=WATER_ABOVE)
+    assert found.startswith("material.water.air_entry_suction = 0 Pa")
+    assert "5000 Pa, the suction of fluid" in found
+    assert said(sucks, "material.water.air_entry_suction=5000", more=WATER_ABOVE) == []

@@ -172,16 +172,20 @@ def test_a_filtered_gauge_shows_what_the_filter_makes_of_every_step(tmp_path):
     assert pressure.max() > 1.1 * shown.max()  # else the filter would have nothing to do
 
 
-def test_a_face_reads_the_load_of_a_tank_at_rest(tmp_path):
-    """The mean over the height of the wall is half of that at its foot."""
-    scenario = load_scenario(str(tank_file(tmp_path, "position = [0.4, 0.15]\narea = 0.3")))
+@pytest.mark.parametrize(
+    ("place", "share", "error"),
+    [("[0.4, 0.15]\narea = 0.3", 0.5, 0.03), ("[0.2, 0]\narea = 0.1", 1.0, 0.015)],
+)
+def test_a_face_reads_the_load_of_a_tank_at_rest(tmp_path, place, share, error):
+    """On a wall over its height half of that at its foot, which is what the floor bears."""
+    scenario = load_scenario(str(tank_file(tmp_path, f"position = {place}")))
     simulation, names = build_simulation(scenario)
     (gauge,) = build_gauges(scenario, names)
     pressure = []
     for time in np.linspace(0.005, 0.6, 120):
         simulation.advance(limit=time, pause=time, max_steps=10**6)
         pressure.append(gauge.read(simulation)[0][1])
-    assert np.mean(pressure) == pytest.approx(0.5 * 9800 * 0.3, rel=0.03)
+    assert np.mean(pressure) == pytest.approx(share * 9800 * 0.3, rel=error)
 
 
 def test_a_sensor_goes_on_where_it_was():

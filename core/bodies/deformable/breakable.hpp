@@ -59,7 +59,7 @@ double TotalLagrangian<D>::take_out(std::size_t body) {
     rigid_[body] = left;
     choose_stepped();
     const ElasticEnergy after = elastic_energy();
-    bonds_.finish_step(points, before.opening - after.opening);
+    if (bonds_.any()) bonds_.finish_step(points, before.opening - after.opening);
     return before.sum() - after.sum();
 }
 

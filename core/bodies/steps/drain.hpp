@@ -7,11 +7,21 @@
 
 namespace doseki {
 
+/// A region for the centres of bodies, which go on past the ends of periods.
+template <class Region, int D>
+struct InAnyPeriod {
+    const Region& region;
+    const Domain<D>& domain;
+
+    bool contains(const Vec<double, D>& x) const { return region.contains(wrapped(domain, x)); }
+};
+
 template <int D>
 template <class Region>
-double Bodies<D>::drain(const Particles<D>& particles, const Region& region,
+double Bodies<D>::drain(const Particles<D>& particles, const Region& at,
                         Array<std::uint8_t>& removed) {
     if (!any_moves()) return 0.0;
+    const InAnyPeriod<Region, D> region{at, contacts_.domain()};
     const Array<std::uint8_t> leaves = rigid.remove_inside(region);
     if (std::find(leaves.begin(), leaves.end(), 1) != leaves.end()) moved_ = margin_;
     for (std::size_t p = 0; p < particles.size(); ++p) {

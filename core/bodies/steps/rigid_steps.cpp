@@ -54,9 +54,9 @@ struct EndStepOfBody {
                                     (1.0 / rigid.seen.bodies[k].mass) * state.flow_force;
         const double share = std::min(1.0, dt / memory);
         state.acceleration = state.acceleration + share * (mean - state.acceleration);
-        state.spin_rate =
-            state.spin_rate +
-            share * ((1.0 / dt) * (rigid.seen.spin(k) - before.spin[k]) - state.spin_rate);
+        const Vec3 turning = (1.0 / dt) * (rigid.seen.spin(k) - before.spin[k]) +
+                             rigid.seen.spin_of(k, state.flow_torque);
+        state.spin_rate = state.spin_rate + share * (turning - state.spin_rate);
     }
 };
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ..scenario.materials import Material
 from ..scenario.model import Scenario
+from ..scenario.schemes import RESOLVED
 from ..util.finding import Finding
 from .sound_speed import usual_speed
 
@@ -43,6 +44,22 @@ class GrainsUnderLiquid(Finding):
         )
 
 
+@dataclass(frozen=True)
+class SuctionOfAnother(Finding):
+    """A liquid that walls hold back with the suction of another one."""
+
+    own: float  # Pa
+    other: str
+    suction: float  # Pa
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place} = {self.own:g} Pa: where the liquid leaves a wall, that pulls with up "
+            f"to {self.suction:g} Pa, the suction of {self.other}, which is the largest of all "
+            "liquids; give all of them the same"
+        )
+
+
 def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
     """Fluids whose friction inside or at walls would be another one."""
     for name in scenario.liquids:
@@ -50,6 +67,7 @@ def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
         others = [other for other in scenario.liquids if other != name]
         if material.rheology == "mu_i" and others:
             yield GrainsUnderLiquid(f"material.{name}.rheology", others[0])
+    yield from _suction_findings(scenario)
     if scenario.turbulence == "none":
         return
     for keys, wall in scenario.walls.items():
@@ -58,6 +76,17 @@ def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
         for name in scenario.liquids:
             if _is_viscous(scenario, scenario.materials[name], wall.given("ks")):
                 yield EddiesOnly(f"{'.'.join(keys)}.wall", scenario.turbulence, name)
+
+
+def _suction_findings(scenario: Scenario) -> Iterator[Finding]:
+    """Walls have one suction, the largest."""
+    suction = {name: scenario.materials[name].air_entry_suction for name in scenario.liquids}
+    if not suction or scenario.scheme != RESOLVED:
+        return
+    most = max(suction, key=lambda name: suction[name])
+    for name, own in suction.items():
+        if own < suction[most]:
+            yield SuctionOfAnother(f"material.{name}.air_entry_suction", own, most, suction[most])
 
 
 def _is_viscous(scenario: Scenario, fluid: Material, ks: float) -> bool:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation
+
 from .blocks import assert_restored_with_the_same_bits, ball, head, moving, started
 
 RADIUS, PERIOD = 0.1, 0.399  # half a millimetre on each side of two in the middle
@@ -85,3 +88,61 @@ def test_contacts_on_both_sides_are_restored_with_the_same_bits(tmp_path):
     run = two(tmp_path, 2, "x", 0.1999, friction=0.5, spin=5.0)
     run.advance(0.01)
     assert_restored_with_the_same_bits(run, moving_bodies=2, until=0.02)
+
+
+CROSSING = """\
+dim = {dim}
+dp = 0.02
+scheme = "resolved"
+speed_max = 2
+time_max = 1
+time_out = 1
+gravity = {none}
+periodic = ["y"]
+domain_min = {low}
+domain_max = {high}
+
+[body.ball]
+shape = "{shape}"
+material = "basalt"
+centre = {centre}
+radius = 0.08
+velocity = {velocity}
+{kinematics}
+
+[body.other]
+shape = "{shape}"
+material = "basalt"
+centre = {other}
+radius = 0.08
+
+[outflow.end]
+min = {first}
+max = {last}
+"""
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("sideways", [0.6, -0.6])
+@pytest.mark.parametrize("kinematics", ["", 'kinematics = "elastic"'])
+def test_what_has_gone_across_a_period_leaves_all_the_same(tmp_path, dim, sideways, kinematics):
+    """An outflow that is as wide as the period takes out a body wherever its centre has gone."""
+
+    def point(x, y, z):
+        return [x, y] if dim == 2 else [x, y, z]
+
+    text = CROSSING.format(
+        dim=dim, none=[0.0] * dim, low=point(-1, 0, -1), high=point(3, 0.4, 1),
+        shape="disc" if dim == 2 else "sphere", centre=point(0.2, 0.2, 0),
+        velocity=point(2, sideways, 0), kinematics=kinematics,
+        other=point(-0.7, 0.2, 0), first=point(1, 0, -1),
+        last=point(3, 0.4, 1),
+    )  # fmt: skip
+    file = tmp_path / "crossing.toml"
+    file.write_text(text)
+    simulation, _ = build_simulation(load_scenario(file))
+    for time, gone in ((0.38, False), (0.43, True)):
+        simulation.advance(limit=time, pause=time, max_steps=10**7)
+        state = simulation.state()
+        assert gone == (not (state["body"] == 0).any())
+        assert (state["body"] == 1).any()

@@ -433,7 +433,7 @@ class FlowReference:
         rate += (self.V_w * self.fw.F * contact["v_dot_r"]).sum(axis=1)
         of_pairs = rate.copy()
         rate += self._edge_rate(contact)
-        self.density_rate = self.rho * rate + dot(self.pressure_gradient, self.shift) / self.c**2
+        self.density_rate = self.rho * rate + dot(self.pressure_gradient, self.shift) / self.c0**2
         self._relax_density()
         self._set_shift()
         self._correct_pressure()

@@ -7,11 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...record.particles import FIXED
+from ...record.particles import FIXED, FREE
 from .gauge import State
 
 FACING = 0.5  # least cosine between the normal of a wall particle and that of the face
 NEARNESS = 1e-3  # what a spacing away counts for beside one off the plane of the face
+
+
+def at_surface(state: State, gravity: np.ndarray) -> np.ndarray:
+    """Pressure (N,) at the surfaces of walls, Pa: their particles have that of their own depth."""
+    flow = state["motion"] == FREE
+    pressure = state["pressure"]
+    if not flow.any():
+        return pressure
+    rho = float(state["density"][flow].mean())
+    wet = (state["motion"] == FIXED) & (pressure != 0.0)
+    return pressure + wet * (rho * state["depth"] * (state["normal"] @ gravity))
 
 
 @dataclass(frozen=True)

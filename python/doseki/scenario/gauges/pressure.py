@@ -11,7 +11,7 @@ from pydantic import Field
 from ..schemes import RESOLVED
 from ..values.types import Direction, Length, Positive
 from ..values.units import AREA, FREQUENCY, LENGTH, Measured
-from .face import Face
+from .face import Face, at_surface
 from .gauge import FlowGauge, Rows, Sampled, Setting
 from .near import REACH, Neighbourhood, particles_in
 
@@ -82,7 +82,7 @@ class PressureGauge(FlowGauge):
         reach = face.reach if face else self.radius or REACH * setting.dp
         state = particles_in(run, setting, self.position - reach, self.position + reach)
         if face:
-            weights, pressure = face.weights(state), state["pressure"]
+            weights, pressure = face.weights(state), at_surface(state, setting.gravity)
         else:
             around = Neighbourhood(setting, self.material, state)
             weights, pressure = around.weights(self.position, reach), around.pressure

@@ -36,7 +36,9 @@ class Inflow(Part):
         description="[[t, thickness, velocity], ...] in s after `start`, m and m/s, or a CSV file "
         "with these columns; excludes rate, hydrograph and depth",
     )
-    width: Length = Field(description="of the section, m; a 2-D run enters rate/width")
+    width: Length = Field(
+        description="from position towards positive axes, m; 2-D: rate/width enters"
+    )
     position: Position = Field(description="bottom point of the section, m")
     direction: Direction = Field(description="direction of the flow")
     depth: Depth | None = Field(

@@ -129,13 +129,13 @@ CASES = (
         "sphere-in-thinner-oil",
         "A sphere settles in oil, Re 11.6",
         THINNER,
-        "",
+        "at 4 across its drag is a tenth too low, and it starts too fast",
     ),
     in_oil(
         "sphere-in-thicker-oil",
         "A sphere settles in oil, Re 4.1",
         THICKER,
-        "",
+        "at 4 across its drag is a sixth too low, and it starts too fast",
     ),
     in_oil(
         "sphere-in-thick-oil",

@@ -48,8 +48,8 @@ CASES = (
                 (at_most(0.08), at_most(0.028), at_most(0.01)),
                 "1 % at 40 particles across the gap, and order 1.5 from there to the coarser ones",
                 order=1.5,
-                short="a viscosity 0.2 % too low does not fall with the spacing: sums of the kernel "
-                "over what shear arranges",
+                short="0.2 % of too little viscosity, of the kernel's sums over particles that "
+                "shear has arranged, does not fall with the spacing",
             )
             for name in TIMES
         ),
