@@ -109,6 +109,15 @@ private:
                         {x.begin(), x.begin() + (failure.site.id < 0 ? 0 : dim_)}};
             throw;
         }
+#if defined(DOSEKI_CUDA)
+        catch (const ResourceFailure&) {
+            throw;
+        } catch (const std::runtime_error& error) {  // Thrust's, of the driver
+            throw ResourceFailure(std::string("the graphics card failed: ") + error.what() +
+                                  "; resume goes on from the last checkpoint, also with "
+                                  "--device cpu");
+        }
+#endif
     }
 
     static Failure no_failure() { return {"", -1, {}}; }
