@@ -46,8 +46,10 @@ struct Account {
         scheme_work += half_dt * scheme.power;
     }
 
-    /// What happened in a step that `scheme` has just evaluated.
-    void add_changes(const SchemeWork<D>& scheme) { scheme_work += scheme.energy; }
+    /// The second half of a step, and what happened at once in it.
+    void add_evaluated(const WallPush<D>& push, const SchemeWork<D>& scheme, double half_dt) {
+        add_forces(push, scheme, half_dt), scheme_work += scheme.energy;
+    }
 
     /// A step of gravity on the free particles.
     void add_weight(const Weight<D>& weight, const Vec<double, D>& gravity, double dt) {

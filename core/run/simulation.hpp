@@ -59,9 +59,8 @@ public:
     /// Leaves a state to rank 0; the next sort sends particles to their owners.
     void leave_to_first_rank() {
         if (ranks().rank() == 0) return;
-        resize(particles, 0);
+        resize(particles, 0), scheme_->forget_power();
         open_boundaries.forget(), account_ = {}, dissipation_ = 0.0, updates_ = 0;
-        scheme_->forget_power();
     }
 
     /// Sets the clock [s] of a run that goes on from another; after the inflows, before the start.
@@ -212,7 +211,7 @@ private:
     void kick(double half_dt);
     double drift(double dt);
     double drift_bodies(double dt);
-    double next_event() const;
+    double next_end(double limit, double longest) const;
     void update_lists(double before, double moved);
     void evaluate(double half_dt);
 
@@ -247,12 +246,9 @@ template <class Lists>
 void Simulation<Lists>::step(double limit) {
     const auto timing = ranks().clock.measure_step();
     constexpr double almost = 1.0 - 1e-12;  // a step that ends there would leave one of rounding
-    constexpr double at_once = 1e-6;        // steps; an event so near before the limit is at it
-    const double before = time_, longest = next_timestep(), event = next_event(),
-                 end = event < limit - at_once * longest ? event : limit,
+    const double before = time_, longest = next_timestep(), end = next_end(limit, longest),
                  dt = before + longest < almost * end ? longest : end - before,
                  power = scheme_->dissipated_power();
-
     bodies.loads.begin_step(particles, ranks());
     kick(0.5 * dt);
     account_.add_forces(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
@@ -264,8 +260,7 @@ void Simulation<Lists>::step(double limit) {
     update_lists(before, moved);
     evaluate(0.5 * dt);
     bodies.loads.end_step(particles, ranks(), dt, time_);
-    account_.add_forces(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
-    account_.add_changes(scheme_->work());
+    account_.add_evaluated(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_->end_step();
     timed(Phase::bodies, [&] { bodies.set_velocities(particles, 0.0); });
@@ -300,12 +295,13 @@ double Simulation<Lists>::drift_bodies(double dt) {
     return bodies.place(particles, dt);
 }
 
-/// The next time that a step must meet exactly.
+/// A step ends there at the latest: at an event, or at the limit, where one just before it is, too.
 template <class Lists>
-double Simulation<Lists>::next_event() const {
-    const double inflow = open_boundaries.next_event();
-    return min(moving_walls.next_event(time_),
-               inflow > time_ ? inflow : std::numeric_limits<double>::infinity());
+double Simulation<Lists>::next_end(double limit, double longest) const {
+    constexpr double at_once = 1e-6;  // steps
+    const double inflow = open_boundaries.next_event(),
+                 event = min(moving_walls.next_event(time_), inflow > time_ ? inflow : limit);
+    return event < limit - at_once * min(longest, limit - time_) ? event : limit;
 }
 
 template <class Lists>
