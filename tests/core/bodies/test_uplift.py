@@ -129,9 +129,13 @@ SCATTERS = "places scatter from 0.80 to 1.03 at 10 across, with a mean of 0.92"
     "across", [8, pytest.param(10, marks=pytest.mark.xfail(reason=SCATTERS, strict=False)), 16]
 )
 def test_a_block_that_has_fallen_on_a_tilted_bed_has_its_friction(across):
-    """The mean over places on the lattice of the water, once it lies on the bed."""
+    """The mean over places on the lattice of the water, once it lies on the bed.
+
+    The coarser the lattice, the more they scatter: at 8 across by 0.05, in the mean of 8 by 0.016.
+    """
     slides = "width=0.8", "fall=0.02", "time_max=1.0"
-    friction = [sliding(across, *slides, f"place={place}") for place in (0.146, 0.15, 0.154)]
+    places = np.linspace(0.142, 0.156, 8) if across < 16 else (0.146, 0.15, 0.154)
+    friction = [sliding(across, *slides, f"place={place:.3f}") for place in places]
     assert np.mean(friction) == pytest.approx(1, abs=0.06)
 
 

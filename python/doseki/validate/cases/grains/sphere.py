@@ -30,15 +30,18 @@ class Oil:
     terminal: float  # m/s, the largest that was measured
 
 
-def _oil(reynolds: str, density: float, viscosity: float, terminal: float) -> Oil:
-    table = f"ten-cate-2002-re-{reynolds}-"
-    return Oil(f"{table}speed.csv", f"{table}height.csv", density, viscosity, terminal)
-
-
-THIN = _oil("31.9", 960.0, 0.058, 0.1233)
-THINNER = _oil("11.6", 962.0, 0.113, 0.0869)
-THICKER = _oil("4.1", 965.0, 0.212, 0.0577)
-THICK = _oil("1.5", 970.0, 0.373, 0.0370)
+THIN = Oil(
+    "ten-cate-2002-re-31.9-speed.csv", "ten-cate-2002-re-31.9-height.csv", 960.0, 0.058, 0.1233
+)
+THINNER = Oil(
+    "ten-cate-2002-re-11.6-speed.csv", "ten-cate-2002-re-11.6-height.csv", 962.0, 0.113, 0.0869
+)
+THICKER = Oil(
+    "ten-cate-2002-re-4.1-speed.csv", "ten-cate-2002-re-4.1-height.csv", 965.0, 0.212, 0.0577
+)
+THICK = Oil(
+    "ten-cate-2002-re-1.5-speed.csv", "ten-cate-2002-re-1.5-height.csv", 970.0, 0.373, 0.0370
+)
 
 
 def settle(oil: Oil, across: float, thicker: float = 1.0, *overrides: str) -> Outcome:
