@@ -125,8 +125,9 @@ def test_the_kernel_is_normalised(dim):
 @pytest.mark.parametrize("off", [-5.0, -2.9, -1.0, 0.4, 1.0])
 def test_columns_of_an_approach_begin_on_the_bed(read, dim, off):
     """Wherever they are said to stand."""
-    gauge = f'kind = "approach"\nposition = {at(dim, 0.2, off * DP)}\ndirection = {at(dim, 1, 0)}\n'
-    ((depth, speed, density),) = read(gauge.replace("0.2, 0]\n", "0, 0]\n"), frame(dim), dim)
+    along = [1] + [0] * (dim - 1)
+    gauge = f'kind = "approach"\nposition = {at(dim, 0.2, off * DP)}\ndirection = {along}\n'
+    ((depth, speed, density),) = read(gauge, frame(dim), dim)
     assert depth == pytest.approx(DEPTH, abs=0.45 * DP)
     assert speed == pytest.approx(0.5 * SHEAR * DEPTH, rel=0.06)
     assert density == pytest.approx(1000.0)

@@ -90,7 +90,7 @@ def test_map_coordinates_lose_nothing(blocks, kind):
     start = file.read_bytes()[:2000].decode("latin-1")
     origin = np.array(re.search(r"origin (-?\d+) (-?\d+) (-?\d+)", start).groups(), float)
     mesh = trimesh.load_mesh(file)
-    assert np.abs(mesh.vertices).max() < 5.0
+    assert np.abs(mesh.vertices).max() < 2.0
     middle = mesh.bounds.mean(axis=0) + origin
     assert middle == pytest.approx(FAR + 0.5 * SIDE, abs=1e-5)
 

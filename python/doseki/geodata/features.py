@@ -9,12 +9,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..util.foreign import check_regular_file
+from .crs import same_crs
 from .errors import GeodataError
 from .geojson import read_geojson
 from .outlines import Features, Line, Polygon
 from .vector_files import read_vector_file
 
-__all__ = ["Features", "Line", "Polygon", "read_features"]
+__all__ = ["Features", "Line", "Polygon", "read_features", "read_on_map"]
 
 
 def read_features(path: Path | str, layer: str | None = None) -> Features:
@@ -39,4 +40,18 @@ def read_features(path: Path | str, layer: str | None = None) -> Features:
         raise GeodataError(f"{path}: features are read from .geojson, .shp or .gpkg")
     if not (found.polygons or found.lines):
         raise GeodataError(f"{path}: holds neither polygons nor lines")
+    return found
+
+
+def read_on_map(path: Path | str, crs: str | None) -> Features:
+    """The same of a file whose features lie on the map of a terrain in the system `crs`.
+
+    Raises GeodataError too where it is in another coordinate reference system, as far as is known.
+    """
+    found = read_features(path)
+    if same_crs(found.crs, crs) is False:
+        raise GeodataError(
+            f"{path}: is in another coordinate reference system than the terrain; convert it with "
+            "ogr2ogr -t_srs"
+        )
     return found

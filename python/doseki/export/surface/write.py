@@ -74,7 +74,7 @@ def export_surface(run: Run, options: SurfaceOptions, out: Path | None = None) -
     _check(run, options)
     snapshots = _snapshots(run, options.times)
     names = chosen_materials(run, options.materials)
-    origin = _origin(snapshots, options.cell or run.scenario["dp"])
+    origin = _origin(snapshots, names, options.cell or run.scenario["dp"])
     folder = out if out is not None else run.directory / "surface"
     lines = []
     with whole_folder(folder) as unfinished:
@@ -105,13 +105,14 @@ def _snapshots(run: Run, times: Sequence[float]) -> list[Snapshot]:
     return [found[stem] for stem in sorted(found)]
 
 
-def _origin(snapshots: Sequence[Snapshot], cell: float) -> np.ndarray:
+def _origin(snapshots: Sequence[Snapshot], materials: Sequence[str], cell: float) -> np.ndarray:
     """What is taken off places in files of few digits, (3,), m: one of all files, or surfaces of
     two times would not lie where they do.
     """
     for snapshot in snapshots:
-        if len(position := snapshot["position"]):
-            return near_origin(in_space(position), cell)
+        drawn = np.isin(snapshot["material"], materials)
+        if drawn.any():
+            return near_origin(in_space(snapshot["position"][drawn]), cell)
     return np.zeros(3)
 
 

@@ -13,8 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...errors import UserError
-from ...geodata.crs import same_crs
-from ...geodata.features import read_features
+from ...geodata.features import read_on_map
 from ...geodata.grid import Raster
 from ...measure.maps.files import read_maps, write_maps
 from ...measure.maps.grid import MapSettings, few_particles, map_grid
@@ -145,13 +144,7 @@ def _path(given: str, crs: str | None) -> np.ndarray:
             f'--path {given[:80]}: neither a file nor points such as "460000,5200000 460100,'
             '5200000"'
         )
-    found = read_features(given)
-    if same_crs(found.crs, crs) is False:
-        raise UserError(
-            f"{given}: is in another coordinate reference system than the terrain; convert it with "
-            "ogr2ogr -t_srs"
-        )
-    lines = found.lines
+    lines = read_on_map(given, crs).lines
     if len(lines) != 1:
         raise UserError(f"{given}: holds {len(lines)} lines; a profile goes along one")
     return lines[0].vertices

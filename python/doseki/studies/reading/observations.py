@@ -13,9 +13,8 @@ import numpy as np
 from pydantic import Field
 
 from ...errors import UserError
-from ...geodata.crs import same_crs
 from ...geodata.errors import GeodataError
-from ...geodata.features import Polygon, read_features
+from ...geodata.features import Polygon, read_on_map
 from ...record.reader import Run
 from ...scenario.model import Scenario
 from ...scenario.table import Table
@@ -235,17 +234,12 @@ class ObservedArea(Observation):
         """On the map of `crs`."""
         path = folder / self.file
         try:
-            found = read_features(path)
+            found = read_on_map(path, crs).polygons
         except GeodataError as error:
             raise UserError(str(error)) from None
-        if same_crs(found.crs, crs) is False:
-            raise UserError(
-                f"{path}: is in another coordinate reference system than the terrain; convert it "
-                "with ogr2ogr -t_srs"
-            )
-        if not found.polygons:
+        if not found:
             raise UserError(f"{path}: holds lines alone; an area needs polygons, which are closed")
-        return found.polygons
+        return found
 
 
 def total_score(observations: Mapping[str, Observation], misfits: Mapping[str, float]) -> float:
