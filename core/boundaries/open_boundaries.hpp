@@ -152,6 +152,7 @@ void drive(Particles<D>& particles, std::int32_t body, const Vec<double, D>& vel
 template <int D>
 struct Ledger {
     double initial = 0.0, requested = 0.0;
+    double requested_before = 0.0;  // of inflows, by the time at which the run begins
     Passed<D> inflow, outflow;
     double through_ground = 0.0;  // of what is in outflow
 };
@@ -176,19 +177,12 @@ public:
     /// Another rank keeps the account.
     void forget() { ledger = {}, planes.forget(); }
 
-    /// Goes on from time t in place of the start: what inflows have brought by then is taken for
-    /// entered, and not for what was there initially.
+    /// Goes on from time t in place of the start; the account begins there.
     void begin_at(double t) {
         for (Inflow<D>& inflow : inflows) {
             inflow.begin_at(t);
-            if (inflow.thickness.empty())
-                ledger.inflow.mass +=
-                    inflow.mass_per_layer() * static_cast<double>(inflow.released);
-            else
-                for (std::int64_t k = 0; k < inflow.released; ++k)
-                    ledger.inflow.mass += inflow.mass_of_layer(k);
+            ledger.requested_before += inflow.requested_mass(t);
         }
-        ledger.initial = -ledger.inflow.mass;
     }
 
     /// Carries out all events up to time t; true if particles came or changed their motion, so that
@@ -240,6 +234,7 @@ void OpenBoundaries<D>::serialise(Archive& archive) {
     archive("mass_initial", ledger.initial), archive("mass_asked", ledger.requested);
     archive("entered", ledger.inflow), archive("left", ledger.outflow);
     archive.optional("through_ground", ledger.through_ground);
+    archive.optional("mass_asked_before", ledger.requested_before);
     archive("next_id", next_id);
     planes.serialise(archive);
     for (std::size_t k = 0; k < inflows.size(); ++k)
@@ -321,7 +316,7 @@ bool OpenBoundaries<D>::inject(Particles<D>& particles, double t) {
                     removed[p] = 1;
         }
     }
-    ledger.requested = 0.0;
+    ledger.requested = -ledger.requested_before;
     for (Inflow<D>& inflow : inflows) ledger.requested += inflow.requested_mass(t);
     return changed;
 }
