@@ -23,6 +23,7 @@ struct Box {
 
     DOSEKI_DEVICE_FN bool is_empty() const { return low[0] > high[0]; }
     DOSEKI_DEVICE_FN Vec<double, D> size() const { return high - low; }
+    DOSEKI_DEVICE_FN Vec<double, D> middle() const { return 0.5 * (low + high); }
 
     DOSEKI_DEVICE_FN void add(const Vec<double, D>& x) { add(Box{x, x}); }
     DOSEKI_DEVICE_FN void add(const Box& other) {

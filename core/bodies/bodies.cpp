@@ -35,8 +35,10 @@ auto Bodies<D>::part(double time, double dt, const Course& course) -> Parted {
     for (std::size_t k = first; k < rigid.size(); ++k)
         rigid.push_by_flow(k, course.half - course.on_points);
     const BodySums<D> born = rigid.sums().less(before);
-    for (std::size_t k = first; k < rigid.size(); ++k)
+    for (std::size_t k = first; k < rigid.size(); ++k) {
         rigid.push_by_flow(k, course.on_rigid - course.half);
+        rigid.push_one(k, gravity_, course.on_rigid - course.on_points);
+    }
     prepare_contacts();
     if constexpr (D == 2) {
         shrink_dust(first);

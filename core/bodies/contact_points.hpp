@@ -10,6 +10,7 @@
 #include "bodies/shapes/contact_surface.hpp"
 #include "bodies/surface/in_space.hpp"
 #include "bodies/surface/surface.hpp"
+#include "model/domain.hpp"
 
 namespace doseki {
 
@@ -94,11 +95,19 @@ struct ContactSolid {
     double mass = 0.0, diameter = 0.0;
     Mat<double, 3> inverse_inertia{};  // in its own frame; zero of what is fixed
     bool fixed = false, removed = false;
+    Vec<double, D> middle{};  // in its own frame, of one that is fixed and may span a period
     Vec<double, D> centre{}, velocity{};
     Mat<double, 3> rotation{};
     Vec3 spin{};
     Vec<double, D> force{};  // on it
     Vec3 torque{};           // about its centre
+
+    /// Where x is, from its centre: by the image nearest to its middle, of which one that spans a
+    /// period has half a period on either side. The centre of mass may be elsewhere.
+    DOSEKI_DEVICE_FN Vec<double, D> place_of(const Vec<double, D>& x,
+                                             const Domain<D>& domain) const {
+        return image_near(domain, x - centre, rotated(rotation, middle));
+    }
 
     ContactSide side() const { return {material, 0.0, mass, diameter, fixed, false, true}; }
     /// What a push along n makes of its speed there, over the push: the inverse of the mass that

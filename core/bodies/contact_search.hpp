@@ -152,7 +152,7 @@ void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, d
             if (points.removed[c] || points.body[c] == solid.body ||
                 (points.fixed[c] && solid.fixed) || is_not_needed(bodies, c, solid))
                 continue;
-            const Vec<double, D> r = nearest_image(domain, points.position[c] - solid.centre);
+            const Vec<double, D> r = solid.place_of(points.position[c], domain);
             const double reach = points.radius[c] + margin,
                          around = solid.surface->radius() + reach;
             if (dot(r, r) > around * around) continue;

@@ -99,7 +99,7 @@ template <int D>
 DOSEKI_DEVICE_FN Overlaps<D> overlaps_of(const ContactBodySpans<D>& bodies, std::size_t a,
                                          const ContactSolid<D>& solid, const Domain<D>& domain) {
     const ContactPointSpans<D>& points = bodies.points;
-    const Vec<double, D> r = nearest_image(domain, points.position[a] - solid.centre);
+    const Vec<double, D> r = solid.place_of(points.position[a], domain);
     const double radius = points.radius[a], around = solid.surface->radius() + radius;
     Overlaps<D> overlaps;
     if (dot(r, r) >= around * around) return overlaps;

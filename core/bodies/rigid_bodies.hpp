@@ -85,6 +85,9 @@ public:
     Quaternion orientation(std::size_t k) const {
         return states_[k].orientation.turned(ball_turn_[k]);
     }
+    void push_one(std::size_t k, const Vec<double, D>& gravity, double dt) {
+        if (seen().is_free(k)) states_[k].velocity = states_[k].velocity + dt * gravity;
+    }
     void push_by_flow(std::size_t k, double dt) { moved().push_by_flow(k, dt); }
     /// Takes a body out, and puts it back in the middle of a step with this motion.
     void take_out(std::size_t k) { states_[k].removed = 1.0; }
@@ -239,6 +242,8 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         solid.mass = body.mass, solid.diameter = diameter;
         solid.surface = shape(k).surface.get();
         if (!body.fixed) solid.inverse_inertia = inverse_of_inertia(k);
+        const Mat<double, 3> turn = states_[k].orientation.matrix();
+        if (body.fixed) solid.middle = rotated_back(turn, shape(k).middle(turn));
         contact.solids.push_back(solid);
     }
 }

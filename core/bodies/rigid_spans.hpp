@@ -76,7 +76,9 @@ struct RigidBodiesMoved {
     std::span<RigidBodyState<D>> states;
     std::span<Vec<double, D>> contact_force;  // of the last contact step
     std::span<Vec3> contact_torque;
-    std::span<Vec3> ball_turn;  // within a step: contacts do not see how a ball is turned
+    // Within a step: neither contacts nor its spin see how a ball is turned that turns alike about
+    // all axes. Dust does not: it is a ball with the inertia of its points.
+    std::span<Vec3> ball_turn;
 
     /// Position and orientation; returns the largest distance that a point of the surface goes.
     DOSEKI_DEVICE_FN double drift(std::size_t k, double dt) const {
@@ -85,12 +87,13 @@ struct RigidBodiesMoved {
         const Vec3 turn = seen.free_turn(k, dt);
         const double distance = dt * norm(state.velocity);
         state.centre = state.centre + dt * state.velocity;
-        if (seen.shape(k).is_ball()) {
+        const bool is_ball = seen.shape(k).is_ball();
+        if (is_ball && seen.turns_alike[k]) {
             ball_turn[k] = ball_turn[k] + turn;
             return distance;
         }
         state.orientation = state.orientation.turned(turn);
-        return distance + seen.shape(k).radius * norm(turn);
+        return is_ball ? distance : distance + seen.shape(k).radius * norm(turn);
     }
     DOSEKI_DEVICE_FN void push_by_contacts(std::size_t k, double dt) const {
         RigidBodyState<D>& state = states[k];

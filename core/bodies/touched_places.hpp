@@ -12,7 +12,7 @@ DOSEKI_DEVICE_FN bool is_covered(const ContactBodySpans<D>& bodies, const Vec<do
                                  std::int32_t one, std::int32_t other, const Domain<D>& domain) {
     for (const ContactSolid<D>& solid : bodies.solids) {
         if (!solid.fixed || solid.removed || solid.body == one || solid.body == other) continue;
-        const Vec<double, D> r = nearest_image(domain, x - solid.centre);
+        const Vec<double, D> r = solid.place_of(x, domain);
         const double radius = solid.surface->radius();
         if (dot(r, r) < radius * radius && solid.surface->holds(rotated_back(solid.rotation, r)))
             return true;

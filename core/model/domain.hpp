@@ -20,12 +20,20 @@ struct Domain {
     }
 };
 
+/// Of the periodic images of r the one nearest to `place`.
+template <int D>
+DOSEKI_DEVICE_FN Vec<double, D> image_near(const Domain<D>& domain, Vec<double, D> r,
+                                           const Vec<double, D>& place) {
+    for (int c = 0; c < D; ++c)
+        if (domain.periodic[c])
+            r[c] -= domain.length(c) * std::round((r[c] - place[c]) / domain.length(c));
+    return r;
+}
+
 /// The shortest vector to any periodic image.
 template <int D>
-DOSEKI_DEVICE_FN Vec<double, D> nearest_image(const Domain<D>& domain, Vec<double, D> r) {
-    for (int c = 0; c < D; ++c)
-        if (domain.periodic[c]) r[c] -= domain.length(c) * std::round(r[c] / domain.length(c));
-    return r;
+DOSEKI_DEVICE_FN Vec<double, D> nearest_image(const Domain<D>& domain, const Vec<double, D>& r) {
+    return image_near(domain, r, {});
 }
 
 /// The image inside the domain.

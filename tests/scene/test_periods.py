@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
+from doseki.record.particles import FREE
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_scene
 
@@ -147,3 +148,28 @@ def test_bodies_that_overlap_across_the_end_of_a_period_are_refused(told, axis):
             told(first + other, 1, axis)
         assert {"first", name} <= set(re.findall(r"\w+", str(said.value)))
         assert not any("overlap" in text for text in told(first + other, 1.3, axis))
+
+
+WEDGE = """
+[body.sea]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [2, 2]
+
+[body.wedge]
+shape = "polygon"
+material = "basalt"
+fixed = true
+vertices = [[0, 0], [2, 0], [2, {right}], [0, {left}]]
+"""
+
+
+@pytest.mark.parametrize(("left", "right"), [(1.5, 0.1), (0.1, 1.5)])
+def test_water_makes_room_for_all_of_a_wedge_that_spans_the_period(write, left, right):
+    """Its centre of mass is 0.29 m from the middle of the period."""
+    path = write(TOP.format(length=2, axis="x"), WEDGE.format(left=left, right=right))
+    particles = build_scene(load_scenario(path, ["dp=0.05"])).particles
+    x, y = particles.position[particles.motion == FREE].T
+    assert len(x) > 500
+    assert (y > np.interp(x, [0, 2], [left, right])).all()

@@ -117,7 +117,7 @@ DOSEKI_WHOLE_DEVICE_FN double ContactRows<D>::gap(std::size_t k, double margin) 
         return std::max(0.0, norm(r) - radius - bodies.points.radius[pair.second()]);
     }
     const ContactSolid<D>& solid = bodies.solids[pair.shape()];
-    const Vec<double, D> r = nearest_image(domain, x - solid.centre);
+    const Vec<double, D> r = solid.place_of(x, domain);
     const auto places = solid.surface->touched_by(rotated_back(solid.rotation, r), radius + margin);
     return places.empty() ? margin : std::max(0.0, places[0].distance - radius);
 }

@@ -24,7 +24,8 @@ bool has_room(const TotalLagrangian<D>& solids, const Array<std::uint32_t>& poin
 
 /// A bond holds while it bears tension: it is intact and one of its points has a stress. Points of
 /// a part that the others of it do not span are none of its surface, and points of dust that would
-/// be a ball in the way of others none of one grain: they hold to nothing. In 2-D only those count
+/// be a ball in the way of others none of one grain: they hold to nothing. Bodies that do not fall
+/// apart keep theirs, such as the sharp corners that they begin with. In 2-D only those count
 /// to which a point holds, and well enough: outlines go with the points around a vertex, Eq. (121).
 template <int D>
 Division DeformableBodies<D>::division() const {
@@ -50,9 +51,12 @@ Division DeformableBodies<D>::division() const {
     for (;;) {
         Division found =
             divided(components(size(), for_each_bond), before, bodies(), fewest_points<D>);
+        auto falls_apart = [&](std::uint32_t p) {
+            return found.body[p] >= 0 && found.divides[static_cast<std::size_t>(before[p])];
+        };
         bool more = false;
-        for (std::uint32_t p = 0; found.any() && p < size(); ++p)
-            if (found.body[p] >= 0 && !is_spanned(p, found)) loose[p] = 1, more = true;
+        for (std::uint32_t p = 0; p < size(); ++p)
+            if (falls_apart(p) && !is_spanned(p, found)) loose[p] = 1, more = true;
         for (const Array<std::uint32_t>& points : found.dust)
             if (points.size() > 1 && !has_room(solids_, points)) {
                 for (const std::uint32_t p : points) loose[p] = 1;

@@ -11,7 +11,7 @@
 namespace doseki {
 
 /// A grain that a few points of a deformable body become, Eq. (123): a ball with their mass,
-/// momentum, angular momentum and force of the fluid.
+/// momentum, angular momentum and force of the fluid; fixed where one of them is clamped.
 template <int D>
 struct DustGrain {
     RigidBody<D> body;
@@ -29,6 +29,7 @@ DustGrain<D> dust_grain(const TotalLagrangian<D>& solids, std::span<const std::u
     double volume = 0.0;
     for (const std::uint32_t p : points) {
         const double m = solids.mass(p);
+        body.fixed |= solids.clamped(p);
         body.mass += m, volume += solids.volume(p);
         state.centre = state.centre + m * solids.x[p];
         state.velocity = state.velocity + m * solids.v[p];
@@ -47,6 +48,7 @@ DustGrain<D> dust_grain(const TotalLagrangian<D>& solids, std::span<const std::u
                 body.inertia(a, b) +=
                     m * ((a == b ? dot(r, r) + spacing * spacing / 6.0 : 0.0) - r[a] * r[b]);
     }
+    if (body.fixed) state.velocity = {}, state.angular_momentum = {};
     grain.largest =
         D == 2 ? std::sqrt(volume / std::numbers::pi) : std::cbrt(0.75 * volume / std::numbers::pi);
     return grain;

@@ -28,7 +28,7 @@ double room_for_dust(const ContactBodies<D>& bodies, std::int32_t body, std::int
     }
     for (const ContactSolid<D>& solid : bodies.solids) {
         if (solid.removed) continue;
-        const Vec<double, D> r = nearest_image(domain, centre - solid.centre);
+        const Vec<double, D> r = solid.place_of(centre, domain);
         const double around = solid.surface->radius() + largest;
         if (dot(r, r) >= around * around) continue;
         for (const auto& place :

@@ -93,7 +93,7 @@ private:
                   static_cast<std::uint32_t>(end - first)};
         Box<D> middles = Box<D>::nowhere();
         for (std::size_t k = first; k < end; ++k)
-            node.box.add(items[item_[k]]), middles.add(middle(items[item_[k]]));
+            node.box.add(items[item_[k]]), middles.add(items[item_[k]].middle());
         nodes_.push_back(node);
         if (end - first <= leaf) return;
         const Vec<double, D> size = middles.size();
@@ -103,7 +103,7 @@ private:
         const std::size_t half = first + (end - first) / 2;
         auto at = [&](std::size_t k) { return item_.begin() + static_cast<std::ptrdiff_t>(k); };
         std::nth_element(at(first), at(half), at(end), [&](std::uint32_t a, std::uint32_t b) {
-            const double x = middle(items[a])[axis], y = middle(items[b])[axis];
+            const double x = items[a].middle()[axis], y = items[b].middle()[axis];
             return x < y || (x == y && a < b);
         });
         divide(items, first, half);
@@ -111,7 +111,6 @@ private:
         nodes_[here].items = 0;
         divide(items, half, end);
     }
-    static Vec<double, D> middle(const Box<D>& box) { return 0.5 * (box.low + box.high); }
 
     Array<std::uint32_t> item_;
     Array<Node> nodes_;

@@ -31,6 +31,15 @@ struct Shape {
 
     DOSEKI_DEVICE_FN bool is_ball() const { return kind == ShapeKind::ball; }
 
+    /// Of the box around its facets along the axes as they are turned so; the origin without any.
+    Vec<double, D> middle(const Mat<double, 3>& rotation) const {
+        if (facets.empty()) return {};
+        Box<D> box = Box<D>::nowhere();
+        for (const Facet<D>& facet : facets)
+            for (const Vec<double, D>& corner : facet) box.add(rotated(rotation, corner));
+        return box.middle();
+    }
+
     /// Makes the surface; call once everything else is there. `ground` is that of the run.
     void enclose(const SharedSurface<D>& ground) {
         if (kind == ShapeKind::ground)

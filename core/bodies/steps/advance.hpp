@@ -228,8 +228,7 @@ template <int D>
 void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course) {
     const Fragments<D> before = deformable.as_they_are();
     for (const std::size_t n : struck) {
-        RigidBodyState<D>& state = rigid.state(breakable_[n].rigid);
-        state.velocity = state.velocity + (course.on_points - course.on_rigid) * gravity_;
+        rigid.push_one(breakable_[n].rigid, gravity_, course.on_points - course.on_rigid);
         rigid.push_by_flow(breakable_[n].rigid, course.half - course.on_rigid);
     }
     const BodySums<D> had = rigid.sums();

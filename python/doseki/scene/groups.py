@@ -10,7 +10,7 @@ import numpy as np
 from ..scenario.kinematics import BREAKABLE, ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
 from .periodic import nearest_image, periods, wrapped
-from .shapes import Edges, MeshShape, Particles, Shape
+from .shapes import Ball, Convex, Edges, MeshShape, Particles, Shape
 
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -137,6 +137,25 @@ def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
     return shape.elastic_particles(spacing) if group.deforms else shape.particles(spacing)
 
 
+def boxes(group: Group) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper ends (n, dim) along the axes of the bodies as they stand, from their centres.
+
+    In m.
+    """
+    dim = group.centre.shape[1]
+    turns = matrices(group.orientation, dim)
+    low, high = np.empty((2, len(group), dim))
+    for k, shape in enumerate(group.shapes):
+        which = group.shape == k
+        if isinstance(shape, Ball):
+            low[which], high[which] = -shape.radius, shape.radius
+            continue
+        corners = shape.vertices if isinstance(shape, Convex) else shape.mesh.vertices
+        placed = np.einsum("nab,pb->npa", turns[which], corners)
+        low[which], high[which] = placed.min(axis=1), placed.max(axis=1)
+    return low, high
+
+
 def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:
     """Whether each position (N, dim) lies inside a body of the group."""
     from scipy.spatial import cKDTree
@@ -148,11 +167,12 @@ def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.
     low = np.zeros(scenario.dim) if scenario.domain_min is None else scenario.domain_min
     origin = np.where(period > 0, low, 0.0)  # the tree's box begins at zero
     tree = cKDTree(wrapped(scenario, position) - origin, boxsize=period)
+    middle = 0.5 * np.add(*boxes(group))  # the centre of mass of what spans a period is elsewhere
     for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
         shape = group.shapes[group.shape[k]]
         near = np.array(
             tree.query_ball_point(group.centre[k] - origin, shape.reach), dtype=np.int64
         )
-        offset = nearest_image(position[near] - group.centre[k], period)
+        offset = nearest_image(position[near] - group.centre[k] - middle[k], period) + middle[k]
         inside[near[shape.contains(offset @ turned)]] = True
     return inside

@@ -318,3 +318,40 @@ def test_discs_that_shatter_keep_their_momenta_and_lose_energy(build, speed):
         assert after["energy"] < energy["energy"]
         energy = after
     assert len(simulation.fragments()["mass"]) > 2
+
+
+TRIANGLE = """
+[body.strong]
+shape = "polygon"
+material = "{material}"
+kinematics = "elastic"
+vertices = [[0.1, 0], [0.18, 0], [0.14, 0.0692820323]]
+
+[material.steel]
+law = "solid"
+rho0 = 1000
+speedsound = 90
+young_modulus = 1e7
+poisson_ratio = 0.3
+"""
+
+
+@pytest.mark.parametrize(("material", "parents"), [("rubber", [-1, -1, 0]), ("steel", [-1, 0])])
+def test_a_body_that_stays_whole_keeps_its_corners(build, material, parents):
+    """Those of an equilateral triangle have few neighbours; another body parts."""
+    simulation = build(BAR + TRIANGLE.replace("{material}", material))
+    cut(simulation, lambda x: (x[:, 0] > 0.001) & (x[:, 0] < 0.08))
+    assert simulation.fragments()["parent"].tolist() == parents
+    assert len(simulation.grains()["mass"]) == 0
+
+
+def test_dust_of_clamped_points_stays(build):
+    """Three points in the corner of a bar, one of them clamped."""
+    simulation = build(BAR + 'clamped = "= -0.0645 - x - y"\n', u=1.0)
+    cut(simulation, lambda x: x.sum(axis=1) > -0.059)
+    grains = simulation.grains()
+    assert grains["fixed"].tolist() == [True]
+    place = grains["centre"].copy()
+    steps(simulation, 300)
+    assert np.array_equal(simulation.grains()["centre"], place)
+    assert simulation.fragments()["velocity"][0, 0] > 0.5

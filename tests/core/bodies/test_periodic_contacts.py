@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation
 
-from .blocks import assert_restored_with_the_same_bits, ball, head, moving, started
+from .blocks import assert_restored_with_the_same_bits, ball, body, box, head, moving, started
 
 RADIUS, PERIOD = 0.1, 0.399  # half a millimetre on each side of two in the middle
 CASES = [(2, "x"), (2, "y"), (3, "x"), (3, "z")]
@@ -146,3 +147,47 @@ def test_what_has_gone_across_a_period_leaves_all_the_same(tmp_path, dim, sidewa
         state = simulation.state()
         assert gone == (not (state["body"] == 0).any())
         assert (state["body"] == 1).any()
+
+
+# Deep on one side: their centres of mass are 0.15 m from the middle of the period.
+DEPTHS = {"left": (0.6, 0.05), "right": (0.05, 0.6)}
+
+
+def wedge(folder, dim, deep):
+    """A fixed one between x = 0 and 1 with a level top."""
+    left, right = DEPTHS[deep]
+    corners = [[0, -left], [1, -right], [1, 0], [0, 0]]
+    if dim == 2:
+        return body("floor", "polygon", vertices=corners, fixed=True)
+    points = [[x, y, z] for x, z in corners for y in (-1, 1)]
+    trimesh.Trimesh(points).convex_hull.export(folder / "wedge.stl")
+    return body("floor", "stl", file='"wedge.stl"', fixed=True)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("deep", DEPTHS)
+@pytest.mark.parametrize("shape", ["ball", "block"])
+def test_a_floor_is_there_over_all_of_its_period(tmp_path, dim, deep, shape):
+    """Bodies cross its seam on a wedge as on a box, though its centre of mass is on one side."""
+    aside = [0.0] * (dim - 2)
+    low, high = [0, *[-1] * (dim - 1)], [1, *[1] * (dim - 1)]
+    period = f'periodic = ["x"]\ndomain_min = {low}\ndomain_max = {high}\n\n[contact]'
+    top = head([0.0, *aside, -9.8], 0.02, friction=0.2).replace("\n[contact]", period)
+    floors = {
+        "box": box("floor", [0, *[-1.0] * (dim - 2), -0.1], [1, *[1.0] * (dim - 2), 0], fixed=True),
+        "wedge": wedge(tmp_path, dim, deep),
+    }
+    motion = {"velocity": [1.0, *aside, 0.0]}
+    if shape == "ball":
+        slider = ball("mover", [0.85, *aside, 0.03], 0.03, **motion)
+    else:
+        slider = box(
+            "mover", [0.82, *[-0.03] * len(aside), 0], [0.88, *[0.03] * len(aside), 0.06], **motion
+        )
+    found = {}
+    for name, floor in floors.items():
+        run = started(tmp_path, top + floor + slider)
+        run.advance(0.3)
+        found[name] = [moving(run, "centre")[0], moving(run, "velocity")[0]]
+    assert found["box"][0][0] > 1.05
+    np.testing.assert_allclose(found["wedge"], found["box"], rtol=0, atol=2e-4)

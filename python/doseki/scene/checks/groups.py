@@ -13,7 +13,7 @@ from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding, no_less_than
 from ..ground import ground_of
-from ..groups import Group, matrices
+from ..groups import Group, boxes, matrices
 from ..periodic import periods
 from ..shapes import Ball, Convex, MeshShape
 
@@ -151,7 +151,8 @@ def _refuse_longer(scenario: Scenario, groups: list[Group], axis: int, period: f
     for group in groups:
         if group.fixed or group.name in scenario.carried:
             continue
-        length = _lengths(group, axis).max(initial=0.0)
+        low, high = boxes(group)
+        length = (high - low)[:, axis].max(initial=0.0)
         if length > period * (1 + SPANS):
             raise scenario.where.error(
                 ("body", group.name),
@@ -189,7 +190,8 @@ def _met_twice(groups: list[Group], axis: int, period: float) -> Iterator[Findin
 
 def _largest(group: Group, axis: int, period: float) -> tuple[Group, float, float]:
     """The largest extents of its balls and of its bodies of other shapes, m; 0: none."""
-    across = _lengths(group, axis) if group.fixed else _diameters(group)
+    low, high = boxes(group)
+    across = (high - low)[:, axis] if group.fixed else _diameters(group)
     across = np.where(group.fixed & (across > period * (1 - SPANS)), 0.0, across)
     is_ball = np.array([isinstance(shape, Ball) for shape in group.shapes])[group.shape]
     ball, other = (float(across[of].max(initial=0.0)) for of in (is_ball, ~is_ball))
@@ -199,20 +201,6 @@ def _largest(group: Group, axis: int, period: float) -> tuple[Group, float, floa
 def _diameters(group: Group) -> np.ndarray:
     """Of the balls (n,) around the bodies, m: their extent whichever way they turn."""
     return 2 * np.array([shape.reach for shape in group.shapes])[group.shape]
-
-
-def _lengths(group: Group, axis: int) -> np.ndarray:
-    """Extent (n,) of the bodies along an axis as they stand, m."""
-    along = matrices(group.orientation, group.centre.shape[1])[:, axis]
-    length = np.zeros(len(group))
-    for k, shape in enumerate(group.shapes):
-        which = group.shape == k
-        if isinstance(shape, Ball):
-            length[which] = 2 * shape.radius
-        else:
-            corners = shape.vertices if isinstance(shape, Convex) else shape.mesh.vertices
-            length[which] = np.ptp(corners @ along[which].T, axis=0)
-    return length
 
 
 def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
