@@ -75,6 +75,19 @@ public:
                 f(contacts_[k].body_a, contacts_[k].body_b, norm(pushes_[k].force),
                   pushes_[k].approach);
     }
+    /// Calls f(body, place, force) for each body of each pair that touched when a kind was last
+    /// applied: the force on it there, by the image that is near the first of the pair.
+    template <class F>
+    void for_each_force(const ContactBodies<D>& bodies, PairKind kind, F&& f) const {
+        for (const std::size_t k : of(kind).rows) {
+            const PairPush<D>& push = pushes_[k];
+            if (!push.touches) continue;
+            const Vec<double, D> place =
+                bodies.points.position[pairs_[k].first()] + push.overlap.lever_a;
+            f(contacts_[k].body_a, place, push.force);
+            f(contacts_[k].body_b, place, -1.0 * push.force);
+        }
+    }
     /// Largest overlap there ever was, over the diameter.
     double max_overlap() const { return max_overlap_; }
     /// Energy in the springs of all pairs when they were last applied [J], 2-D: [J/m].

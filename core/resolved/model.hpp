@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "base/array.hpp"
 #include "model/material.hpp"
@@ -51,6 +53,37 @@ struct MinDensity {
     }
 };
 
+/// What the liquids of a run ask for together, as any of them may meet.
+struct Liquids {
+    static constexpr double none = std::numeric_limits<double>::infinity();
+
+    double c = 0.0, suction = 0.0;           // the greatest
+    double lightest = none, stiffest = 0.0;  // density, and rho c^2 [Pa]
+    double thinnest = none, thickest = 0.0;  // viscosity without motion [Pa s]
+    PairViscosity viscosity{};               // of pairs, as laws ask for it
+
+    void add(const Material& liquid) {
+        const double rho = liquid.rho0, mu = doseki::viscosity(*liquid.laws, {0.0, 0.0, rho});
+        c = std::max(c, liquid.c0), suction = std::max(suction, liquid.air_entry_suction);
+        lightest = std::min(lightest, rho),
+        stiffest = std::max(stiffest, rho * liquid.c0 * liquid.c0);
+        thinnest = std::min(thinnest, mu), thickest = std::max(thickest, mu);
+        viscosity = std::max(viscosity, viscosity_of_pairs(*liquid.laws));
+    }
+    /// Stress is continuous between liquids of different viscosity, and the mean of the two is not
+    /// the viscosity of a layer of both.
+    PairViscosity of_pairs() const {
+        const bool differ = viscosity == PairViscosity::mean && thinnest < thickest;
+        return differ ? PairViscosity::harmonic : viscosity;
+    }
+    /// The greatest C_CFL with which a light particle among heavy ones does not swing ever more:
+    /// what pushes it back is as stiff as they are. On lattices 2.2 is stable yet, and 2.5 is not.
+    double greatest_cfl() const {
+        constexpr double stable = 2.0;
+        return stiffest > 0.0 ? stable * c * std::sqrt(lightest / stiffest) : none;
+    }
+};
+
 template <int D>
 struct ResolvedModel {
     Array<Material> materials;
@@ -65,15 +98,15 @@ struct ResolvedModel {
 
     ResolvedModel(Array<Material> given, const Options<D>& opts)
         : materials(std::move(given)), options(opts) {
+        Liquids liquids;
         for (const Material& material : materials) {
             const bool fluid = material.law == Law::fluid;
             min_density.push_back(fluid ? MinDensity::of(material) : MinDensity{});
-            if (fluid) {
-                constants.c = std::max(constants.c, material.c0);
-                constants.suction = std::max(constants.suction, material.air_entry_suction);
-            }
-            constants.viscosity = std::max(constants.viscosity, viscosity_of_pairs(*material.laws));
+            if (fluid) liquids.add(material);
         }
+        constants.c = liquids.c, constants.suction = liquids.suction;
+        constants.viscosity = liquids.of_pairs();
+        options.cflnumber = std::min(options.cflnumber, liquids.greatest_cfl());
         const FlowOptions& flow = options.flow;
         constants.dp = flow.dp;
         for (int k = 1; k <= D; ++k) spacing_power[k] = spacing_power[k - 1] * flow.dp;

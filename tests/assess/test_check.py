@@ -310,3 +310,10 @@ def test_estimates_are_within_30_percent(name, settings, tmp_path):
         print(f"{name:15s} {quantity:15s} {expected[quantity]:.4g} expected, {value:.4g} taken")
     for quantity in ("steps", "most_particles", "memory", "disk"):
         assert expected[quantity] == pytest.approx(taken[quantity], rel=0.3), quantity
+
+
+def test_bodies_alone_have_no_mach_number(doubts):
+    for scheme, told in (("resolved", False), ("ueta2022", True)):
+        said = doubts(xi=1e-4, replace=('"water"', '"basalt"'), scheme=scheme)
+        assert any("are Mach" in doubt for doubt in said) is told
+    assert any("are Mach" in doubt for doubt in doubts(xi=1e-4, scheme="resolved"))

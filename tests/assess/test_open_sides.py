@@ -153,6 +153,65 @@ def test_a_block_falls_beside_the_floor_alone(opened):
     assert opened(tank() + block.format(x=1.5, y=1.6) + BELOW.format(end='"inf"')) == []
 
 
+def box(name, low, high, *lines):
+    """A table of a box of stone; with `fixed = true` among the lines, a wall."""
+    head = f'[body.{name}]\nshape = "box"\nmaterial = "basalt"\nmin = {low}\nmax = {high}\n'
+    return head + "\n".join(lines) + "\n"
+
+
+def post(name, left, right):
+    return box(name, [left, -0.3], [right, 0], "fixed = true")
+
+
+BEAM = box("beam", [-0.5, 0], [0.5, 0.1])
+STONE = '[body.stone]\nshape = "disc"\nmaterial = "basalt"\ncentre = [0, 0.2]\nradius = 0.1\n'
+ENDS = post("left", -0.52, -0.44) + post("right", 0.44, 0.52)
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_a_beam_lies_on_its_two_ends_and_bears_what_lies_on_it(opened, kind):
+    settings = [f'body.beam.kinematics="{kind}"']
+    assert opened(ENDS + STONE + BEAM, settings=settings) == []
+    assert opened(ENDS + BEAM + STONE, settings=settings) == []
+
+
+def test_a_beam_does_not_lie_on_one_end(opened):
+    found = opened(post("left", -0.52, -0.44) + STONE + BEAM)
+    assert [text.split(":")[0] for text in found] == ["stone", "beam"]
+    assert "no wall is below it" in found[0]
+    assert "what is below it lies on one side of its centre of mass" in found[1]
+    assert opened(post("half", -0.52, -0.1) + BEAM) != []
+    assert opened(post("more", -0.52, 0.06) + BEAM) == []
+    assert opened(post("middle", -0.03, 0.03) + BEAM) == []
+
+
+def test_walls_beside_a_block_do_not_hold_it(opened):
+    shaft = box("left", [-0.4, -1], [-0.1, 1], "fixed = true")
+    shaft += box("right", [0.1, -1], [0.4, 1], "fixed = true")
+    block = box("block", [-0.1, 0], [0.1, 0.2])
+    assert "block: no wall is below it" in opened(shaft + block)[0]
+    assert opened(shaft + block + box("foot", [-0.1, -1], [0.1, -0.9], "fixed = true")) == []
+
+
+CORNERS = [(-0.2, -0.2), (0.14, 0.14), (-0.2, 0.14), (0.14, -0.2)]
+
+
+@pytest.mark.parametrize(("count", "lies"), [(4, True), (3, True), (2, True), (1, False)])
+@pytest.mark.parametrize("first", [0, 2])
+def test_a_slab_lies_on_posts_around_its_middle(opened, count, lies, first):
+    """In 3-D, on two that are opposite, or more; not on one."""
+    corners = (CORNERS[first:] + CORNERS[:first])[:count]
+    posts = [
+        box(f"post{k}", [x, y, -0.3], [x + 0.06, y + 0.06, 0], "fixed = true")
+        for k, (x, y) in enumerate(corners)
+    ]
+    slab = box("slab", [-0.2, -0.2, 0], [0.2, 0.2, 0.06])
+    found = opened("".join(posts) + slab, settings=["dim=3", "gravity=[0, 0, -9.8]"])
+    assert (found == []) is lies
+    beside = [posts[0], posts[-1]] if count == 3 else posts[:1]
+    assert opened("".join(beside) + slab, settings=["dim=3", "gravity=[0, 0, -9.8]"]) != []
+
+
 def test_grains_count_each(opened):
     grains = GRAINS
     assert opened(tank() + grains.format(x=0.5, y=0.9)) == []
@@ -177,3 +236,14 @@ def test_nor_does_one_to_start_from(tmp_path, dim, dry):
     path = tmp_path / "start.toml"
     path.write_text(start_text(dim, dry))
     assert told(str(path)) == []
+
+
+def test_a_surge_goes_as_high_as_its_fastest_row(opened):
+    surge = "surge = [[0, 0.1, 0.5], [1, 0.03, {fast}]]"
+    river = INFLOW.format(x=0.5).replace('rate = "20 L/s"', surge)
+    river = river.replace("depth = 0.1\nduration = 1\n", "")
+    assert opened(tank() + river.format(fast=1.0)) == []
+    assert (
+        "river: the scene is open at its side -x and +x;"
+        in opened(tank() + river.format(fast=4.0))[0]
+    )

@@ -13,6 +13,8 @@ from doseki.record.reader import load
 from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 
+from ..small_scenarios import CHALK
+
 DISCS = """
 schema = 1
 dim = 2
@@ -134,6 +136,47 @@ def test_contacts_as_stiff_as_a_material_are_not_judged_by_contact_speed(tmp_pat
     run_scenario(load_scenario(str(tmp_path / "ball.toml")), tmp_path / "run")
     record = load(tmp_path / "run")
     assert max(snapshot.overlaps().max() for snapshot in record) > 0.02
+    (check,) = (each for each in trust_checks(record) if each.name == "overlap of contacts")
+    assert check.verdict == found
+    if found == BAD:
+        assert "raise contact.speed" in check.remedy
+
+
+BREAKABLE_BALL = """\
+dim = 2
+dp = 0.01
+time_max = 0.008
+time_out = 0.001
+scheme = "resolved"
+speed_max = 5
+gravity = [0, 0]
+[contact]
+speed = 0.2
+[body.floor]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [-0.2, -0.05]
+max = [0.2, 0]
+[body.ball]
+shape = "disc"
+material = "chalk"
+kinematics = "breakable"
+velocity = [0, -2]
+centre = [0, 0.0501]
+radius = 0.05
+"""
+
+
+@pytest.mark.parametrize(("strength", "found"), [(1e9, BAD), (1e3, GOOD)])
+def test_breakable_bodies_count_while_they_are_rigid(tmp_path, strength, found):
+    """The strong one sinks into the floor as a rigid body does; the weak one deforms at once."""
+    text = BREAKABLE_BALL + CHALK
+    settings = [f"material.chalk.tensile_strength={strength}", "material.chalk.fracture_energy=1e9"]
+    (tmp_path / "ball.toml").write_text(text, encoding="utf-8")
+    run_scenario(load_scenario(str(tmp_path / "ball.toml"), settings), tmp_path / "run")
+    record = load(tmp_path / "run")
+    assert max(snapshot.overlaps().max() for snapshot in record) > 0.012
     (check,) = (each for each in trust_checks(record) if each.name == "overlap of contacts")
     assert check.verdict == found
     if found == BAD:

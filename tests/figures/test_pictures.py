@@ -10,7 +10,9 @@ from matplotlib import colors, image
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from PIL import Image
+from typer.testing import CliRunner
 
+from doseki.cli.app import app
 from doseki.errors import UserError
 from doseki.figures import movie, stage
 from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
@@ -288,3 +290,10 @@ def test_a_body_is_counted_once_and_drops_each():
     assert SpeedHistogram(apart, "rock").speeds(snapshot).tolist() == []
     between_its_particles = View(np.array([0.45, 0.0]), np.array([0.55, 1.0]))
     assert SpeedHistogram(between_its_particles, "rock").speeds(snapshot).tolist() == [2.0]
+
+
+def test_a_colour_without_a_movie_is_refused(flow_folder):
+    said = CliRunner().invoke(app, ["plot", str(flow_folder), "--colour", "speed"])
+    assert isinstance(said.exception, UserError)
+    assert "--colour speed is that of a movie: give --movie FILE" in str(said.exception)
+    assert not list(flow_folder.rglob("*.png"))

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from doseki.geodata.crs import check_map_coordinates, needs_rasterio, same_crs
+from doseki.geodata.crs import check_map_coordinates, epsg_code, needs_rasterio, same_crs
 
 UTM = 'PROJCS["zone",GEOGCS["g",UNIT["degree",0.0174]],UNIT["metre",1]{code}]'
 UTM32, UTM33 = (UTM.format(code=f',AUTHORITY["EPSG","{n}"]') for n in (32632, 32633))
@@ -81,3 +81,11 @@ def test_numbers_in_the_texts_are_compared_without_rasterio(monkeypatch, one, ot
     assert same_crs(one, other) is same
     assert same_crs(other, one) is same
     assert needs_rasterio(one, other) is (one == UNNAMED)
+
+
+def test_the_number_of_a_compound_system_is_that_of_its_map(without_rasterio):
+    heights = 'VERT_CS["h",UNIT["metre",1]]]'
+    for of_heights in (HEIGHTS, heights):
+        assert epsg_code(f'COMPD_CS["c",{UTM32},{of_heights}') == 32632
+    assert epsg_code("EPSG:31287+5778") == 31287
+    assert epsg_code(UTM33) == 32633

@@ -10,10 +10,12 @@ import pytest
 from typer.testing import CliRunner
 
 from doseki.cli.app import app
+from doseki.driver.gauges import outside_everything
 from doseki.errors import UserError
 from doseki.measure import design
 from doseki.measure.loads import body_loads, expected_loads
 from doseki.measure.overtopping import dam_balances
+from doseki.scene.build import build_bodies
 from doseki.solver.build import build_simulation
 
 from .scenes import RAIN, STREAM, run_of, scenario_of
@@ -166,3 +168,21 @@ def test_the_command_prints_and_writes_them(stream):
 def test_wrong_tables_are_refused(tmp_path, table, said):
     with pytest.raises(UserError, match=said):
         build_simulation(scenario_of(tmp_path, f"{STREAM}\n[gauge.bad]\n{table}\n"))
+
+
+@pytest.mark.parametrize(
+    ("position", "direction", "outside"),
+    [
+        ([50.0, 0.0], [1, 0], True),
+        ([-50.0, 0.0], [1, 0], True),
+        ([0.0, 50.0], [1, 4], True),
+        ([0.4, 50.0], [1, 0], False),  # the plane passes through all of the height
+        ([50.2, 50.0], [1, -1], False),
+    ],
+)
+def test_a_plane_beside_all_of_the_scene_is_named(tmp_path, position, direction, outside):
+    keys = (f"gauge.crest.position={position}", f"gauge.crest.direction={direction}")
+    scenario = scenario_of(tmp_path, STREAM, *keys)
+    state = vars(build_bodies(scenario)[0])
+    found = outside_everything(scenario, state)
+    assert ("crest" in found) is outside

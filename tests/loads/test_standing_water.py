@@ -183,3 +183,78 @@ def test_a_sphere_has_its_surface(tmp_path):
     surface = surface_of(simulation, scenario.setting(names), ["stone"], (-far, far))
     sizes = np.linalg.norm(surface.area, axis=1)
     assert sizes.sum() == pytest.approx(4 * np.pi * 0.14**2, rel=0.02)
+
+
+LAYERS = """\
+dim = 2
+dp = 0.01
+time_max = 1
+time_out = 1
+scheme = "resolved"
+speed_max = 3
+gravity = {gravity}
+[material.oil]
+based_on = "water"
+rho0 = {oil}
+[body.tank]
+shape = "tank"
+material = "aluminium"
+min = [0, 0]
+max = [0.6, 0.6]
+[body.low]
+shape = "box"
+material = "water"
+min = {low[0]}
+max = {low[1]}
+[body.high]
+shape = "box"
+material = "oil"
+min = {high[0]}
+max = {high[1]}
+[gauge.side]
+kind = "load"
+bodies = ["tank.{side}"]
+about = {about}
+"""
+# How heights above the floor and distances from a side lie in the tank, and what is that side.
+WAYS = {
+    "down": (lambda s, z: [s, z], [0, -G], "-x"),
+    "up": (lambda s, z: [s, 0.6 - z], [0, G], "-x"),
+    "left": (lambda s, z: [z, s], [-G, 0], "-y"),
+    "right": (lambda s, z: [0.6 - z, s], [G, 0], "-y"),
+}
+
+
+def thrust_of_layers(folder, way, oil):
+    """Of 0.2 m of a liquid over 0.2 m of water: thrust on a side, and its arm above the floor."""
+    place, gravity, side = WAYS[way]
+    corners = {
+        name: np.sort([place(0, low), place(0.6, low + 0.2)], axis=0).tolist()
+        for name, low in (("low", 0.0), ("high", 0.2))
+    }
+    about = place(0, 0)
+    text = LAYERS.format(gravity=gravity, oil=oil, side=side, about=about, **corners)
+    scenario = scenario_of(folder, text)
+    simulation, names = build_simulation(scenario)
+    (reader,) = build_gauges(scenario, names)
+    far = np.full(2, np.inf)
+    force = reader.gauge.static(simulation, reader.setting, (-far, far))
+    thrust = float(np.abs(force[:2]).max())
+    return thrust, abs(force[2]) / thrust
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_layers_press_with_what_lies_above_each_height(tmp_path, way):
+    """The mean density of the column times the depth would be 19 % too much."""
+    thrust, arm = thrust_of_layers(tmp_path, way, oil=500)
+    upper, middle, lower = 500 * G * 0.2**2 / 2, 500 * G * 0.2**2, 1000 * G * 0.2**2 / 2
+    total = upper + middle + lower
+    assert thrust == pytest.approx(total, rel=0.005)
+    expected = (upper * (0.2 + 0.2 / 3) + middle * 0.1 + lower * 0.2 / 3) / total
+    assert arm == pytest.approx(expected, rel=0.01)
+
+
+def test_layers_of_one_density_are_one_liquid(tmp_path):
+    thrust, arm = thrust_of_layers(tmp_path, "down", oil=1000)
+    assert thrust == pytest.approx(1000 * G * 0.4**2 / 2, rel=0.005)
+    assert arm == pytest.approx(0.4 / 3, rel=0.01)

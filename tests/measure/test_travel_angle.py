@@ -32,8 +32,8 @@ def state(place, numbers=None, motion=0):
     }  # fmt: skip
 
 
-def angles(*states, min_depth=1e-3):
-    peaks = Peaks(grid(), min_depth, 9.8)
+def angles(*states, min_depth=1e-3, periods=()):
+    peaks = Peaks(grid(), min_depth, 9.8, periods)
     for k, each in enumerate(states):
         peaks.look(float(k), each)
     return peaks
@@ -54,6 +54,22 @@ def test_a_slide_down_a_plane_has_the_angle_of_the_plane(turn):
     peaks = angles(*slide(np.arange(0, 9.0), 0.4, turn))
     place = np.array([5.5, 5.5]) + 8.0 * np.array([np.cos(turn), np.sin(turn)])
     assert angle_at(peaks, *place) == pytest.approx(np.degrees(np.arctan(0.4)))
+
+
+@pytest.mark.parametrize(("axis", "sign"), [(0, 1), (0, -1), (1, 1)])
+def test_along_a_periodic_axis_the_way_is_that_to_the_nearest_image(axis, sign):
+    """Out at one side of the map and in at the other."""
+    low = (WEST, SOUTH)[axis]
+    length = (40.0, 20.0)[axis]
+    states = []
+    for s in np.arange(0, 9.0):
+        place = np.array([5.5, 5.5, 100 - 0.4 * s])
+        place[axis] = ((length - 3.5 if sign > 0 else 3.5) + sign * s) % length
+        states.append(state([place]))
+    end = states[-1]["position"][0, :2] - (WEST, SOUTH)
+    peaks = angles(*states, periods=[(axis, low, low + length), (2, 0.0, 200.0)])
+    assert angle_at(peaks, *end) == pytest.approx(np.degrees(np.arctan(0.4)))
+    assert angle_at(angles(*states), *end) < 10  # the control
 
 
 def test_the_way_counts_and_not_the_distance():

@@ -103,6 +103,15 @@ def test_what_never_comes_is_late(table, maps):
     assert np.isnan(low[1, 2])
 
 
+def test_what_never_comes_counts_as_late(table, maps):
+    band = MapBand(kind="map", map="arrival_time", exceed=5.5)
+    share = bands.map_percentiles(band, table).exceeded.values
+    # Runs 6 to 10 are late; 0, and 11 to 20, never come.
+    assert share[1, 0] == pytest.approx((5 + 11) / 21)
+    assert share[1, 2] == 1.0
+    assert np.isnan(share[0, 3])  # no ground
+
+
 def test_maps_on_other_cells_are_refused(table, maps, tmp_path):
     odd = RunPlace(tmp_path / "0099-000000000000")
     odd.path.mkdir()

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
-from doseki.studies.plan.axes import Axis
+from doseki.scenario.reading.overrides import changes_of
+from doseki.studies.plan.axes import Axis, written
 from doseki.studies.plan.file import read_plan
 from doseki.studies.plan.sampling import points, remarks
 from doseki.studies.plan.tables import Sample
 
-from .small_study import STUDY, write_study
+from .small_study import SCENARIO, STUDY, write_study
 
 RANGE = 'min = "5 m/s2"\nmax = 20'
 OBSERVED = '[observation.a]\nkind = "value"\nresult = "speed"\nvalue = 1\nerror = 0.1\n'
@@ -41,6 +42,12 @@ REFUSED = {
     "a count of a grid": (('"grid"', '"grid"\ncount = 5'), "sample.count", "does not go"),
     "no count": (('"grid"', '"sobol"'), "sample.count", "is missing"),
     "nothing to read": ((STUDY[STUDY.index("[result") :], ""), "nothing is read", "result"),
+    "a name that no file has": (("[sample]", '[bands."a/b"]\nkind = "series"\ngauge = "centre"\n'
+                                'column = "y"\n[sample]'), '"a/b" cannot be a name', "bands"),
+    "a result of such a name": (("result.speed", 'result."../x"'), "cannot be a name", "result"),
+    "a table of tables": (
+        ("[sample]", "[set]\nmaps = { cell = 1 }\n[sample]"), "line 6: set: --set maps"
+    ),
     "what is set and varies": (("[sample]", "[set]\npull = 3\n[sample]"), "set.pull", "varies"),
     "a time without at": (('"velocity_y"', '"velocity_y"\nat = 3'), "speed.at", "goes with"),
     "no [maps]": (('kind = "gauge"\ngauge = "centre"\ncolumn = "velocity_y"',
@@ -74,6 +81,41 @@ def test_a_path_may_stand_in_quotes_or_not(path, tmp_path):
     plan = read_plan(write_study(tmp_path, text))
     assert [axis.name for axis in plan.axes] == ["body.block.jitter"]
     assert plan.settings_of((0.1,)) == ["body.block.jitter=0.1"]
+
+
+ARRAY = "\narray = { count = [2, 1], step = [1, 0] }\n"
+TURNS = "array = { turns = 3, about = [0, -1] }"
+GIVEN = {
+    f"body.block.{TURNS}": "body.block.array",
+    TURNS.replace("array", '"body.block.array"'): "body.block.array",
+    f'[set."body.block"]\n{TURNS}': "body.block.array",
+    "body.block.array.count = [3, 1]": "body.block.array.count",
+    "[set.body.block.array]\ncount = [3, 1]": "body.block.array.count",
+}
+
+
+@pytest.mark.parametrize("given", GIVEN)
+def test_what_is_set_acts_as_on_the_command_line(given, tmp_path):
+    """A table in braces takes the place of the one that was there; a path changes a key of it."""
+    scenario = SCENARIO.replace("max = [0.6, 0.3]", f"max = [0.6, 0.3]{ARRAY}")
+    study = STUDY.replace("[sample]", f"[set]\n{given}\n[sample]")
+    plan = read_plan(write_study(tmp_path, study, scenario))
+    assert [text.partition("=")[0] for text in plan.settings] == [GIVEN[given]]
+    assert len(plan.scenario.body) == 3
+
+
+def test_a_choice_that_is_set_is_one_value(tmp_path):
+    study = STUDY.replace("[sample]", "[set]\ntime_max = { d2 = 0.01, d3 = 0.02 }\n[sample]")
+    assert read_plan(write_study(tmp_path, study)).scenario.time_max == 0.01
+
+
+VALUES = [{"a": 1, "b": ["x", {"c": 'a"b'}]}, [1, [2.5, True]], "a = [1]", {}, []]
+
+
+@pytest.mark.parametrize("value", VALUES)
+def test_what_is_written_is_read_by_set(value):
+    (change,) = changes_of([f"key={written(value)}"])
+    assert change.value == value
 
 
 def test_units_go_to_the_scenario(tmp_path):

@@ -23,9 +23,19 @@ from doseki.studies.reading.observed_files import read_series
 from doseki.studies.reading.results import FrontTime, OfFront, OfHistory, OfMap
 from doseki.studies.reading.series import Reduced, Series
 
-from .small_study import STUDY, write_study
+from .small_study import SCENARIO, STUDY, write_study
 
 # The front of `flow_folder` is at 3 - t m, from 0 to 3 s.
+
+
+@pytest.mark.parametrize("gravity", ["[-1.0, -9.0]", "[0.0, -9.0]"])
+def test_on_level_ground_the_front_is_where_the_flow_goes(flow_folder, gravity):
+    text = flow_folder / "scenario.toml"
+    assert "[-1.0, -9.0]" in text.read_text()
+    text.write_text(text.read_text().replace("[-1.0, -9.0]", gravity))
+    run = load(flow_folder)
+    assert OfFront(kind="front", take="at", at=1.6).read(run) == pytest.approx(1.4)
+    assert FrontTime(kind="front_time", x=1.9).read(run) == pytest.approx(1.1)
 
 
 def test_front_and_history_are_read(flow_folder):
@@ -159,6 +169,71 @@ def test_maps_are_read(mapped):
     assert OfMap(kind="map", map="peak_depth", take="mean").read(mapped) == 2.0
     place = OfMap(kind="map", map="peak_depth", take="at", position=[104.0, 202.0])
     assert place.read(mapped) == pytest.approx(2.0)
+    # Beside the flow it is what the cell holds, not what lines between cells say.
+    for x, depth in ((101.9, 0.0), (102.1, 2.0)):
+        place = OfMap(kind="map", map="peak_depth", take="at", position=[x, 201.1])
+        assert place.read(mapped) == depth
+
+
+def test_a_cell_that_is_reached_at_once_counts(mapped, tmp_path):
+    times = np.full((4, 10), -9999.0)
+    times[1:3, 2:6] = [0.0, 0.0, 1.0, 3.0]
+    rows = "\n".join(" ".join(str(v) for v in row) for row in times)
+    (mapped.directory / "maps" / "arrival_time.asc").write_text(MAP + rows + "\n")
+    polygon(tmp_path, BOX)
+    area = ObservedArea(kind="area", file="area.geojson", map="arrival_time")
+    assert area.misfit(mapped, {}, tmp_path) == 0.0
+    later = area.model_copy(update={"above": 1.0})
+    assert later.misfit(mapped, {}, tmp_path) == pytest.approx(0.5)
+    assert OfMap(kind="map", map="arrival_time", take="mean").read(mapped) == pytest.approx(1.0)
+
+
+ON_A_MAP = """
+dim = 3
+dp = 0.1
+time_max = 0.02
+time_out = 0.01
+gravity = [0, 0, "= -pull"]
+scheme = "resolved"
+speed_max = 1
+
+[parameters]
+pull = { value = 9.81, unit = "m/s2" }
+
+[body.block]
+shape = "box"
+material = "water"
+min = [0, 0, 0]
+max = [0.6, 0.3, 0.3]
+
+[maps]
+cell = 0.2
+extent = [10, 20, 11.1, 21]
+"""
+AT = (
+    STUDY.partition("[result")[0]
+    + """
+[result.depth]
+kind = "map"
+map = "peak_depth"
+take = "at"
+position = {place}
+"""
+)
+
+
+@pytest.mark.parametrize("place", ["[10, 21]", "[11.15, 20.1]", "[10.5, 20.5]"])
+def test_a_place_on_the_cells_of_the_map_is_read(place, tmp_path):
+    assert read_plan(write_study(tmp_path, AT.format(place=place), ON_A_MAP)).results
+
+
+@pytest.mark.parametrize("place", ["[9.99, 20.5]", "[11.25, 20.5]", "[10.5, 21.01]", "[10, 19]"])
+def test_a_place_off_the_map_is_refused(place, tmp_path):
+    path = write_study(tmp_path, AT.format(place=place), ON_A_MAP)
+    with pytest.raises(
+        UserError, match=r"result.depth.position: = .* lies off the map, .*11.2, 21"
+    ):
+        read_plan(path)
 
 
 HOSTILE = {
@@ -204,6 +279,78 @@ def test_an_error_stands_once(tmp_path):
     found = read_series(tmp_path / "o.csv", "y", "m")
     assert found["time"] == pytest.approx([0.001, 0.002])
     assert found["value"] == pytest.approx([0.1, 0.099])
+
+
+WALL = """
+[body.wall]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [0, -0.4]
+max = [0.6, 0]
+
+[gauge.wall]
+kind = "{kind}"
+bodies = ["wall"]
+interval = 0.005
+"""
+FACE = """
+origin = [0, 0]
+edges = [[0.6, 0]]
+panels = [3]
+direction = [0, 1]
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "column"),
+    [("load", "force_y"), ("load", "static_force_y"), ("load", "peak_force_y"),
+     ("force", "contact_force_y")],
+)  # fmt: skip
+def test_no_observation_is_before_the_first_mean(kind, column, tmp_path):
+    text = STUDY + OBSERVATION.replace('"centre"', '"wall"').replace('"y"', f'"{column}"')
+    path = write_study(tmp_path, text, SCENARIO + WALL.format(kind=kind))
+    (tmp_path / "o.csv").write_text(f"time,{column},error\n0.005,1,1\n0.01,1,1\n")
+    assert not read_plan(path).remarks
+    (tmp_path / "o.csv").write_text(f"time,{column},error\n0.004,1,1\n0.01,1,1\n")
+    with pytest.raises(UserError, match=r"time = 0.004 s is before 0.005 s, when gauge wall has"):
+        read_plan(path)
+
+
+def test_what_a_gauge_reads_at_once_may_be_observed_at_the_start(tmp_path):
+    text = STUDY + OBSERVATION.replace('"centre"', '"wall"').replace('"y"', '"force_y"')
+    path = write_study(tmp_path, text, SCENARIO + WALL.format(kind="force"))
+    (tmp_path / "o.csv").write_text("time,force_y,error\n0,1,1\n")
+    assert not read_plan(path).remarks
+
+
+def test_a_time_within_rounding_of_a_sample_is_that_sample():
+    series = Series(np.array([0.1, 0.3, 0.5]), np.array([np.nan, 1.0, 2.0]), "N")
+    found = series.at(np.array([0.1 + 0.2 - 1e-16, 0.4, 0.2, 0.5 + 1e-16]))
+    assert found == pytest.approx([1.0, 1.5, np.nan, 2.0], nan_ok=True)
+
+
+SERIES_OF_PANELS = '[bands.b]\nkind = "series"\ngauge = "wall"\ncolumn = "flow_pressure"\n'
+
+
+@pytest.mark.parametrize(
+    ("read", "refused"),
+    [(SERIES_OF_PANELS, True)]
+    + [
+        (SERIES_OF_PANELS.replace("bands", "result").replace("series", "gauge") + take, refused)
+        for take, refused in (
+            ("", True), ('take = "first"', True), ('take = "at"\nat = 0.01', True),
+            ('take = "max"', False),
+        )
+    ],
+)  # fmt: skip
+def test_several_rows_for_a_time_are_no_series(read, refused, tmp_path):
+    path = write_study(tmp_path, STUDY + read, SCENARIO + WALL.format(kind="panels") + FACE)
+    if not refused:
+        assert read_plan(path)
+        return
+    with pytest.raises(UserError, match=r"\.gauge: a gauge of kind panels has several rows"):
+        read_plan(path)
 
 
 def test_a_huge_or_odd_file_is_not_read(tmp_path, monkeypatch):

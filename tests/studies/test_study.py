@@ -9,12 +9,15 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import psutil
 import pytest
 
 from doseki.cli.main import main
 from doseki.errors import UserError
+from doseki.studies.plan.file import read_plan
+from doseki.studies.runs.folder import StudyFolder, StudyRuns
 from doseki.studies.runs.row import DONE, FAILED, LOST, Row, read_row, write_row
 from doseki.studies.study import check_study, run_study
 
@@ -163,6 +166,23 @@ def test_runs_of_another_study_are_not_mixed(old, new, words, tmp_path, monkeypa
         run(path, out)
     assert words in str(caught.value)
     assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == before
+
+
+@pytest.mark.parametrize("shift", ["elsewhere", "absolute", "moved"])
+def test_a_study_goes_on_from_another_folder(shift, tmp_path, monkeypatch):
+    home, out = tmp_path / "home", tmp_path / "out"
+    home.mkdir()
+    write_study(home)
+    monkeypatch.chdir(home)
+    assert make_rows(Path("study.toml"), out, monkeypatch).made == 3
+    monkeypatch.chdir(tmp_path)
+    path = {"elsewhere": Path("home/study.toml"), "absolute": home / "study.toml"}.get(shift)
+    if path is None:
+        home.rename(tmp_path / "away")
+        path = Path("away/study.toml")
+    runs = StudyRuns(StudyFolder(out), read_plan(path))
+    assert all(runs.row(runs.place(point)) for point in runs.plan.points())
+    assert len(runs) == 3
 
 
 def make_rows(path, out, monkeypatch, status=DONE):

@@ -7,7 +7,7 @@ import pytest
 
 from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
-from doseki.geodata.ground import read_ground
+from doseki.geodata.ground import read_ground, write_ground
 from doseki.geodata.raster import Raster, write_raster
 from doseki.record.reader import load
 from doseki.running.runner import run_scenario
@@ -84,6 +84,26 @@ def test_cells_without_data_are_filled_and_said(path, tmp_path):
     assert np.isfinite(bed.heights).all()
     assert bed.unknown.sum() == 14 * 14
     assert bed.unknown_share == pytest.approx(196 / 2400)
+
+
+@pytest.mark.parametrize("driver", ["AAIGrid", "GTiff"])
+def test_the_ground_may_have_the_number_for_no_data_of_its_file(tmp_path, driver):
+    """Of cells with 0 and 2 m the mean is the 1 m that means no data in the file."""
+    if driver == "GTiff":
+        pytest.importorskip("rasterio", reason="pip install 'doseki[terrain]'")
+    values = np.tile([[0.0, 2.0], [2.0, 0.0]], (10, 15))
+    values[:4, :4] = np.nan
+    raster = Raster(values, 0.0, 0.0, 0.1, None, driver, 1.0)
+    file = f"terrain{raster.suffix}"
+    write_raster(tmp_path / file, raster)
+    path = tmp_path / "case.toml"
+    more = BLOCK.format(place=PLACE[3])
+    path.write_text(text(3, more=more).replace("terrain.asc", file))
+    ground = load_scenario(path, ["terrain.resample=0.2"]).bed.ground
+    assert (ground.values[2:] == 1.0).all()
+    (tmp_path / "run").mkdir()
+    write_ground(tmp_path / "run", ground)
+    np.testing.assert_array_equal(read_ground(tmp_path / "run").values, ground.values)
 
 
 @pytest.mark.parametrize(

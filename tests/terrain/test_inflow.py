@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.assess.estimates import mach_number
 from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
@@ -12,7 +13,7 @@ from doseki.scene.checks.terrain import terrain_findings
 from doseki.scene.inflow_sections import build_inflows, surge_volumes
 from doseki.solver.build import filled_simulation
 
-from .scenes import fluid, grid, text
+from .scenes import fluid, grid, profile, text
 
 INFLOW = """
 [inflow.flood]
@@ -49,6 +50,18 @@ def test_the_section_is_cut_by_the_channel(path):
     _, _, warnings = filled_simulation(load_scenario(path))
     (said,) = [str(each) for each in warnings if each.place == "inflow.flood"]
     assert f"{len(section.rows)} of 360 particles of a layer lie above the ground" in said
+
+
+def test_the_largest_speed_is_that_through_what_the_channel_leaves(path):
+    squares = []
+    for factor in (10, 20):
+        rows = f"inflow.flood.hydrograph=[[0, 0.2], [0.5, {factor}], [2, {factor}]]"
+        scenario = load_scenario(path, [rows])
+        simulation, names, _ = filled_simulation(scenario)
+        section = build_inflows(scenario, names)[0]
+        squares.append((mach_number(scenario, simulation.state())[0] ** 2, section.speed**2))
+    expected, entering = np.diff(squares, axis=0)[0]
+    assert expected == pytest.approx(entering)
 
 
 def test_the_discharge_enters_and_stays_on_the_ground(path):
@@ -127,6 +140,14 @@ def test_a_surge_has_its_volume_whatever_the_spacing(path, dp):
     assert not [each for each in terrain_findings(scenario, {}) if each.place == "inflow.flood"]
 
 
+def test_a_thin_fast_row_of_a_surge_is_its_largest_speed(path):
+    thin = SURGE.replace("[0.8, 0.4, 1.0]]", "[0.8, 0.1, 40.0]]")
+    path.write_text(text(3, dp=0.1, speed=5.0, more=thin))
+    scenario = load_scenario(path)
+    state = filled_simulation(scenario)[0].state()
+    assert mach_number(scenario, state)[0] >= 40
+
+
 def test_a_surge_fills_its_section_from_below_and_alike_on_both_sides(path):
     grid(path.parent / "terrain.asc", channel, cell=0.02)
     path.write_text(text(3, dp=0.1, speed=5.0, more=SURGE))
@@ -144,7 +165,18 @@ def test_a_surge_of_less_than_particles_is_warned_about(path):
     thin = SURGE.replace(rows, "[0, 0.02, 1], [1, 0.04, 1]")
     path.write_text(text(3, dp=0.1, speed=5.0, more=thin))
     said = [str(each) for each in terrain_findings(load_scenario(path), {})]
-    assert any("its layers have" in each for each in said)
+    assert any("its layers have" in each and "m3" in each for each in said)
+
+
+def test_in_2d_the_volume_of_a_surge_is_an_area(tmp_path):
+    profile(tmp_path / "terrain.csv", lambda x: 1 - 0.2 * x)
+    thin = SURGE.replace("[0.4, 0.8, 2.0], [0.8, 0.4, 1.0]", "[1, 0.06, 1]")
+    thin = thin.replace("[0, 0.2, 1.0]", "[0, 0.01, 1]").replace("[1.0, 0.5, 1.2]", "[1.0, 0.8]")
+    path = tmp_path / "case.toml"
+    path.write_text(text(2, dp=0.1, more=thin.replace("[1, 0, -0.2]", "[1, -0.2]")))
+    (said,) = [str(f) for f in terrain_findings(load_scenario(path), {}) if "layers" in str(f)]
+    assert "m2, and thickness and speed above the ground are" in said
+    assert "m3" not in said
 
 
 def test_a_surge_from_a_file_of_time_thickness_and_velocity(path, tmp_path):

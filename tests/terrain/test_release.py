@@ -114,6 +114,20 @@ def test_files_of_polygons_and_rasters_say_the_same(case, tmp_path):
     write_raster(tmp_path / "depth.asc", Raster(depth, 0.0, 0.0, 0.1))
     from_raster = volume_of(load_scenario(case('file = "depth.asc"')))
     assert from_raster == pytest.approx(exact, rel=0.03)
+    for name in ("depth.grd", "depth.txt", "depth"):  # a raster is known by what it holds
+        (tmp_path / name).write_bytes((tmp_path / "depth.asc").read_bytes())
+        assert volume_of(load_scenario(case(f'file = "{name}"'))) == from_raster
+
+
+@pytest.mark.parametrize("name", ["none.geojson", "none.gpkg", "none.asc", "none.tif", "none.grd"])
+def test_a_file_that_is_missing_is_named_with_its_key(case, name):
+    keys = f'file = "{name}"'
+    with pytest.raises(
+        UserError, match=rf"case.toml, line \d+: body.slide.file: .*{name}: no such"
+    ):
+        load_scenario(case(keys))
+    with pytest.raises(UserError, match=rf"body.slide.digest: .*{name}: no such"):
+        load_scenario(case(f'{keys}\ndigest = "{"0" * 32}"'))
 
 
 def test_it_lies_on_the_ground_in_layers(case):

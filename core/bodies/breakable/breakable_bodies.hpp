@@ -6,6 +6,7 @@
 
 #include "base/array.hpp"
 #include "base/error.hpp"
+#include "bodies/breakable/sections.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -36,6 +37,8 @@ struct BreakableBody {
     double strength = 0.0;                   // tension at which the first crack begins [Pa]
     double bears = 0.0;                      // the same with the cracks that it has
     double impedance = 0.0, diameter = 0.0;  // see Touch
+    Vec<double, D> middle{};                 // of its points at rest
+    Sections sections{};                     // about it
 
     bool has_rigid() const { return rigid != none; }
     /// Whether it is deformable now, and not all dust.
@@ -116,9 +119,9 @@ public:
     /// cause more tension than they bear. Dust, is_dust(body), is as small as the points of a body:
     /// what it does beside its contact is that of its force.
     template <class IsDust>
-    Array<std::size_t> struck(const Contacts<D>& contacts, PairKind kind,
-                              const DeformableBodies<D>& deformable, std::size_t rigid_bodies,
-                              const IsDust& is_dust) const;
+    Array<std::size_t> struck(const Contacts<D>& contacts, const ContactBodies<D>& touching,
+                              PairKind kind, const DeformableBodies<D>& deformable,
+                              const RigidBodies<D>& rigid, const IsDust& is_dust) const;
 
     void serialise(Archive& archive);
     /// Throws std::invalid_argument unless restored ones are those of these bodies.
@@ -140,6 +143,10 @@ public:
 
 private:
     void measure(BreakableBody<D>& body, const DeformableBodies<D>& deformable) const;
+    /// Adds the tension of bending to that of others, where it may be more than bodies bear.
+    void bend(const Contacts<D>& contacts, const ContactBodies<D>& touching, PairKind kind,
+              const RigidBodies<D>& rigid, const Array<double>& force,
+              Array<double>& tension) const;
 
     Array<BreakableBody<D>> bodies_;
     Array<std::int32_t> of_rigid_, deformable_point_;
@@ -157,7 +164,56 @@ void BreakableBodies<D>::measure(BreakableBody<D>& body,
                                  const DeformableBodies<D>& deformable) const {
     const DeformableBody& material = deformable.solids().material(body.deformable);
     body.impedance = material.rho0 * material.wave_speed();
-    body.diameter = diameter_of<D>(material, deformable.solids().points_of(body.deformable).size());
+    const Array<std::uint32_t> points = deformable.solids().points_of(body.deformable);
+    body.diameter = diameter_of<D>(material, points.size());
+    Array<double> mass;
+    double sum = 0.0;
+    body.middle = {};
+    for (const std::uint32_t p : points) {
+        mass.push_back(deformable.solids().mass(p)), sum += mass.back();
+        body.middle = body.middle + mass.back() * deformable.solids().rest_position(p);
+    }
+    if (!(sum > 0.0)) return;
+    body.middle = (1.0 / sum) * body.middle;
+    Array<Vec3> place;
+    for (const std::uint32_t p : points)
+        place.push_back(in_space(deformable.solids().rest_position(p) - body.middle));
+    body.sections = Sections(place, mass, material.spacing, D, body.orientation.matrix());
+}
+
+template <int D>
+void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
+                              PairKind kind, const RigidBodies<D>& rigid,
+                              const Array<double>& force, Array<double>& tension) const {
+    Array<std::uint8_t> may_bend(size(), 0);
+    bool any = false;
+    for (std::size_t n = 0; n < size(); ++n) {
+        const BreakableBody<D>& body = bodies_[n];
+        if (!body.sections.any() || !(force[n] > 0.0)) continue;
+        may_bend[n] = bent_tension(body.sections.most_tension(2.0 * force[n])) >= body.bears;
+        any |= may_bend[n] != 0;
+    }
+    if (!any) return;
+    Array<Array<PlacedForce>> forces(size());
+    contacts.for_each_force(
+        touching, kind,
+        [&](std::int32_t k, const Vec<double, D>& place, const Vec<double, D>& push) {
+            const auto here = static_cast<std::size_t>(k);
+            const BreakableBody<D>* body = of_rigid(here);
+            if (!body) return;
+            const auto n = static_cast<std::size_t>(body - bodies_.data());
+            if (!may_bend[n]) return;
+            const Mat<double, 3> turn =
+                rigid.orientation(here).matrix() * transposed(body->orientation.matrix());
+            const Vec<double, D> r =
+                nearest_image(contacts.domain(), place - rigid.state(here).centre);
+            forces[n].push_back(
+                {rotated_back(turn, in_space(r)) + in_space(body->centre - body->middle),
+                 rotated_back(turn, in_space(push))});
+        });
+    for (std::size_t n = 0; n < size(); ++n)
+        if (may_bend[n])
+            tension[n] = std::max(tension[n], bent_tension(bodies_[n].sections.tension(forces[n])));
 }
 
 template <int D>
@@ -189,9 +245,10 @@ void BreakableBodies<D>::index(std::size_t rigid_bodies, const DeformableBodies<
 
 template <int D>
 template <class IsDust>
-Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairKind kind,
+Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
+                                              const ContactBodies<D>& touching, PairKind kind,
                                               const DeformableBodies<D>& deformable,
-                                              std::size_t rigid_bodies,
+                                              const RigidBodies<D>& rigid,
                                               const IsDust& is_dust) const {
     auto waits = [&](std::int32_t k) -> const BreakableBody<D>* {
         const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
@@ -199,8 +256,8 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairK
     };
     auto impedance = [&](std::int32_t k) {
         const auto other = static_cast<std::size_t>(k);
-        if (other >= rigid_bodies) {
-            const DeformableBody& body = deformable.solids().material(other - rigid_bodies);
+        if (other >= rigid.size()) {
+            const DeformableBody& body = deformable.solids().material(other - rigid.size());
             return body.rho0 * body.wave_speed();
         }
         const BreakableBody<D>* body = of_rigid(other);
@@ -221,6 +278,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts, PairK
                             [&](std::int32_t a, std::int32_t b, double push, double approach) {
                                 feel(a, b, push, approach), feel(b, a, push, approach);
                             });
+    bend(contacts, touching, kind, rigid, force, tension);
     Array<std::size_t> found;
     for (std::size_t n = 0; n < size(); ++n)
         if (tension[n] >= bodies_[n].bears) found.push_back(n);

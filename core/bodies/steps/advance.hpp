@@ -213,7 +213,7 @@ void Bodies<D>::touch(PairKind kind, double dt, Course& course) {
         return body < rigid.size() && is_dust(body);
     };
     const Array<std::size_t> struck =
-        breakable_.struck(contacts_, kind, deformable, rigid.size(), of_dust);
+        breakable_.struck(contacts_, contact_, kind, deformable, rigid, of_dust);
     if (!struck.empty()) {
         contacts_.revert(kind);
         make_deformable(struck, course);
@@ -319,16 +319,21 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     const RigidMotion<D> motion = rigid_motion<D>(solids, points);
     double vibration = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
                        0.5 * dot(motion.spin, motion.angular_momentum);
+    const Mat<double, 3> turn = motion.orientation.matrix();
     double force = 0.0;
+    Array<PlacedForce> forces;
     for (const std::uint32_t p : points) {
         vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
         force += 0.5 * norm(solids.load[p]);
+        forces.push_back({in_space(solids.rest_position(p) - body.middle),
+                          rotated_back(turn, in_space(solids.load[p]))});
     }
     body.deforms_for += dt;
     body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
-    const bool pressed = pressed_tension<D>(force, body.diameter) > share * body.bears;
+    const bool pressed = std::max(pressed_tension<D>(force, body.diameter),
+                                  bent_tension(body.sections.tension(forces))) > share * body.bears;
     return !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
            body.loudness <= enough;
 }

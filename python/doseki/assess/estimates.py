@@ -10,6 +10,7 @@ import numpy as np
 from ..record.particles import BOUND, FIXED, FREE
 from ..scenario.model import Scenario
 from ..scene.ground import ground_of
+from ..scene.inflow_sections import build_inflows
 
 State = Mapping[str, np.ndarray]
 
@@ -55,8 +56,8 @@ def mach_number(scenario: Scenario, state: State) -> tuple[float, float]:
 
 def _given_speeds(scenario: Scenario) -> Iterator[float]:
     yield 0.0
-    for inflow in scenario.inflow.values():
-        yield inflow.peak_rate / (inflow.height * inflow.width)
+    for section in build_inflows(scenario, list(scenario.inflow)):
+        yield section.speed
     for body in scenario.body.values():
         motion = body.prescribed_motion
         if motion is not None and motion.velocity is not None:

@@ -1,7 +1,8 @@
 """Where a scene is open: what flows or falls out of it there falls for ever.
 
 A flow is poured into a grid of cells, of which fixed particles fill some: it goes wherever its
-energy takes it and no wall is in the way.  Solids, and fluids that can stand still, only fall.
+energy takes it and no wall is in the way.  Solids, and fluids that can stand still, only fall;
+bodies that move as a whole lie on what is below them on each side of their centre of mass.
 """
 
 from __future__ import annotations
@@ -15,13 +16,14 @@ from ..record.particles import BOUND, DRIVEN, FIXED, FREE
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Grains
 from ..scenario.values.directions import section_axes
+from ..scene.inflow_sections import build_inflows
 from ..util.finding import Finding
 from .estimates import State
 from .pouring import Cells, Exits, Fall
+from .support import falling, holds, supports
 
 MOST_OF_IT = 0.5  # of a body: it falls with it
 SOME_GRAINS = 0.02  # of a packing
-MAX_RAYS = 2000
 REMEDY = "or an [outflow.NAME] in its way, which removes it"
 
 
@@ -45,9 +47,14 @@ class OpenSide(Finding):
 
 @dataclass(frozen=True)
 class NothingBelow(Finding):
-    """A body over nothing."""
+    """A body over nothing, or whose centre of mass is."""
+
+    beside: bool = False  # whether there is something below a part of it
 
     def __str__(self) -> str:
+        if self.beside:
+            said = "what is below it lies on one side of its centre of mass"
+            return f"{self.place}: {said}, and it falls for ever: add a wall, {REMEDY}"
         return f"{self.place}: no wall is below it and it falls for ever: add one, {REMEDY}"
 
 
@@ -58,6 +65,7 @@ class _Source:
     name: str
     points: np.ndarray  # (n, dim), m
     speed: float  # m/s
+    is_whole: bool = False  # a rigid or deformable body
 
 
 def open_sides(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
@@ -76,12 +84,34 @@ def open_sides(scenario: Scenario, state: State, names: dict[int, str]) -> Itera
         exits = exits.within_reach(source.points, source.speed, fall)
         if exits:
             yield _open_side(source, exits, fall)
-    for source in others:
-        rays = source.points[:: len(source.points) // MAX_RAYS + 1]
-        table = scenario.body.get(source.name)
-        allowed = SOME_GRAINS if isinstance(table, Grains) else MOST_OF_IT
-        if np.mean(cells.lets_fall(rays, source.speed, fall)) > allowed:
-            yield NothingBelow(source.name)
+    yield from _falling(scenario, others, cells, fall)
+
+
+def _falling(
+    scenario: Scenario, sources: list[_Source], cells: Cells, fall: Fall
+) -> Iterator[NothingBelow]:
+    """A finding for each that neither walls hold nor others that are held."""
+    while True:
+        found = [(source, _fall_of(scenario, source, cells, fall)) for source in sources]
+        held = [source.points for source, finding in found if source.is_whole and not finding]
+        sources = [source for source, finding in found if finding]
+        if not held or not sources:
+            break
+        cells = cells.filled(np.concatenate(held))
+    yield from (finding for _, finding in found if finding)
+
+
+def _fall_of(scenario: Scenario, source: _Source, cells: Cells, fall: Fall) -> NothingBelow | None:
+    """What is found of a body that walls in the cells do not hold."""
+    is_grains = isinstance(scenario.body.get(source.name), Grains)
+    if is_grains or not source.is_whole:
+        share = falling(cells, source.points, source.speed, fall)
+        falls = share > (SOME_GRAINS if is_grains else MOST_OF_IT)
+        return NothingBelow(source.name) if falls else None
+    met = supports(cells, source.points, source.speed, fall)
+    if holds(cells, source.points, met, fall):
+        return None
+    return NothingBelow(source.name, bool(met.any()))
 
 
 def _open_side(source: _Source, exits: Exits, fall: Fall) -> OpenSide:
@@ -121,21 +151,21 @@ def _sources(state: State, names: dict[int, str], mask: np.ndarray) -> list[_Sou
         of_it = mask & (state["body"] == body)
         if of_it.any():
             speed = np.linalg.norm(state["velocity"][of_it], axis=1).max()
-            found.append(_Source(name, state["position"][of_it], float(speed)))
+            is_whole = bool(np.all(state["motion"][of_it] == BOUND))
+            found.append(_Source(name, state["position"][of_it], float(speed), is_whole))
     return found
 
 
 def _inflows(scenario: Scenario) -> Iterator[_Source]:
     """Points of each section, half a spacing apart."""
-    for name, inflow in scenario.inflow.items():
-        direction = inflow.along
+    for section in build_inflows(scenario, list(scenario.inflow)):
+        inflow, direction = scenario.inflow[section.name], section.direction
         up, across = section_axes(direction, scenario.gravity)
         points = inflow.position + np.arange(0, inflow.height, 0.5 * scenario.dp)[:, None] * up
         if across is not None:
             beside = np.arange(0, inflow.width, 0.5 * scenario.dp)[:, None] * across
             points = (points[:, None] + beside[None]).reshape(-1, scenario.dim)
-        speed = inflow.peak_rate / (inflow.height * inflow.width)
-        yield _Source(name, points + 2 * scenario.dp * direction, speed)
+        yield _Source(section.name, points + 2 * scenario.dp * direction, section.speed)
 
 
 def _walls(

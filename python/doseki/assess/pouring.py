@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -151,10 +151,23 @@ class Cells:
         for axis in wraps:
             count[axis] = max(1, int((high[axis] - low[axis]) / cell))
             size[axis] = (high[axis] - low[axis]) / count[axis]
-        cells = cls(low, size, np.zeros(count, bool), wraps)
-        if len(walls):
-            cells.wall[cells._index(walls)] = True
-        return cells
+        return cls(low, size, np.zeros(count, bool), wraps).filled(walls)
+
+    def filled(self, points: np.ndarray) -> Cells:
+        """These cells with walls at points (n, dim) as well."""
+        wall = self.wall.copy()
+        if len(points):
+            wall[self._index(points)] = True
+        return replace(self, wall=wall)
+
+    def is_wall(self, x: np.ndarray) -> np.ndarray:
+        """Mask (n,) of the positions in cells that walls fill."""
+        return np.asarray(self.wall[self._index(x)])
+
+    @property
+    def cell(self) -> float:
+        """The longest side of a cell, m."""
+        return float(self.size.max())
 
     def _index(self, x: np.ndarray) -> tuple[np.ndarray, ...]:
         """The cells of positions; what is outside is in the nearest."""
@@ -217,7 +230,7 @@ class Cells:
         extent = float(np.linalg.norm(self.size * self.wall.shape))
         x = x.copy()
         for _ in range(int(extent / float(np.linalg.norm(step))) + 1):
-            falls &= ~self.wall[self._index(x)]
+            falls &= ~self.is_wall(x)
             x += step
             if not falls.any():
                 break

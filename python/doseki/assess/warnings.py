@@ -19,6 +19,7 @@ from .estimates import State, flow_depths, gap, grain_spacings, mach_number
 from .open_sides import open_sides
 from .rheology import rheology_findings
 from .sound_speed import raised, usual_speed
+from .without_effect import keys_without_effect
 
 MIN_ACROSS_GRAIN = 6  # particles; below, a grain is not resolved
 MIN_ACROSS_FLOW = 10  # particles over the depth; below, a film is too viscous
@@ -192,7 +193,7 @@ def findings(
     found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, state, names)]
     found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
     found += [*_voellmy(scenario, state, names), *_gauges(scenario, state), *_mach(scenario, state)]
-    found += open_sides(scenario, state, names)
+    found += [*open_sides(scenario, state, names), *keys_without_effect(scenario, state, names)]
     found += [*_films(scenario, state), *rheology_findings(scenario)]
     return list(dict.fromkeys(found))
 
@@ -218,8 +219,8 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
-    if scenario.scheme == RESOLVED and scenario.is_dry:
-        return  # bodies meet the shapes of walls, not their particles
+    if _has_bodies_alone(scenario):
+        return  # which meet the shapes of walls, not their particles
     needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
     for body, name in names.items():
         table = scenario.body.get(name)
@@ -267,7 +268,14 @@ def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:
         yield GaugeOutside(f"gauge.{name}.position", tuple(place.tolist()))
 
 
+def _has_bodies_alone(scenario: Scenario) -> bool:
+    """Whether all that moves are rigid and deformable bodies: no particle has an equation of state."""
+    return scenario.scheme == RESOLVED and scenario.is_dry
+
+
 def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
+    if _has_bodies_alone(scenario):
+        return
     speed, mach = mach_number(scenario, state)
     if mach > MAX_MACH * 1.05:
         yield HighMach("", speed, mach, *scenario.sound_speed_key)

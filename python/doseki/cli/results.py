@@ -22,21 +22,24 @@ def plot(
         typer.Option(metavar="FILE", help="Also make a movie: FILE.gif, FILE.webp or FILE.mp4."),
     ] = None,
     colour: Annotated[
-        str, typer.Option(help="Colour of the movie: material, velocity_x ...")
-    ] = "material",
+        str | None,
+        typer.Option(help="Colour of the movie: material, velocity_x ...", show_default="material"),
+    ] = None,
 ) -> None:
     """Draw the figures of a run (and a movie on request)."""
     from ..figures.movie import make_movie
     from ..figures.plot import draw_run
     from ..record.reader import load
 
+    if colour is not None and movie is None:
+        raise UserError(f"--colour {colour} is that of a movie: give --movie FILE, too")
     drawn = draw_run(directory)
     for picture in drawn.pictures:
         typer.echo(str(picture))
     for note in drawn.notes:
         typer.echo(note)
     if movie:
-        typer.echo(str(make_movie(load(directory), movie, colour=colour)))
+        typer.echo(str(make_movie(load(directory), movie, colour=colour or "material")))
     for remark in drawn.remarks:
         typer.echo(f"warning: {remark}", err=True)
     if drawn.failures:

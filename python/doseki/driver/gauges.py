@@ -126,9 +126,8 @@ def outside_everything(scenario: Scenario, state: State) -> dict[str, np.ndarray
         points.append(np.array(scenario.bed.corners))
     everything = np.concatenate(points)
     low, high = everything.min(axis=0) - scenario.dp, everything.max(axis=0) + scenario.dp
-    places = {name: gauge.place for name, gauge in scenario.gauge.items()}
     return {
-        name: place
-        for name, place in places.items()
-        if place is not None and (np.any(place < low) or np.any(place > high))
+        name: gauge.place
+        for name, gauge in scenario.gauge.items()
+        if gauge.place is not None and gauge.is_outside(low, high)
     }

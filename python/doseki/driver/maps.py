@@ -49,12 +49,12 @@ class RunningMaps:
         self._folder, self._ranks = folder, ranks
         self._peaks: Peaks | None = None
         self.runout: dict[str, Any] | None = None  # as written last, on rank 0
-        gravity = gravity_of(scenario.gravity)
-        self._warning = ranks.on_root(lambda: self._begin(gravity))
+        self._warning = ranks.on_root(lambda: self._begin(scenario))
 
-    def _begin(self, gravity: float) -> str | None:
+    def _begin(self, scenario: Scenario) -> str | None:
         grid = map_grid(self._folder, self.settings)
-        self._peaks = Peaks(grid, self.settings.dry_below, gravity)
+        gravity, periods = gravity_of(scenario.gravity), scenario.setting().periods()
+        self._peaks = Peaks(grid, self.settings.dry_below, gravity, periods)
         return few_particles(grid, self.settings.dp)
 
     @property

@@ -110,14 +110,14 @@ def _code_in(crs: str) -> int | None:
 
 
 def epsg_code(crs: str | None) -> int | None:
-    """The number of a system (WKT, or a name such as "EPSG:32633") with EPSG.
+    """The number of a system (WKT, or a name such as "EPSG:32633") with EPSG, of the map alone.
 
     None where it has none, or where only rasterio could find it and is not installed.
     """
     if not crs:
         return None
-    if found := LAST_CODE.search(crs):
-        return int(found[1])
+    if (found := _code_in(crs)) is not None:
+        return found
     try:
         from rasterio import Env
         from rasterio.crs import CRS
@@ -126,7 +126,8 @@ def epsg_code(crs: str | None) -> int | None:
         return None
     try:
         with Env():
-            code = CRS.from_user_input(crs).to_epsg(confidence_threshold=MIN_CONFIDENCE)
+            of_map = CRS.from_user_input(_horizontal(crs))
+            code = of_map.to_epsg(confidence_threshold=MIN_CONFIDENCE)
     except CRSError:
         return None
     return None if code is None else int(code)

@@ -203,6 +203,20 @@ class Raster:
             return self
         return self.with_values(locally_linear(self.values, length / self.cell))
 
+    def cells_at(
+        self, x: np.ndarray | float, y: np.ndarray | float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Row and column of the cell in which each point (n,) of the map lies, m, and a mask.
+
+        The mask says which points lie on the raster; row and column are 0 where one does not.
+        """
+        row = np.floor((self.north - np.asarray(y, np.float64)) / self.cell)
+        column = np.floor((np.asarray(x, np.float64) - self.west) / self.cell)
+        rows, columns = self.shape
+        there = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        row, column = (np.where(there, each, 0).astype(np.int64) for each in (row, column))
+        return row, column, there
+
     def sampled(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Bilinear values at points of the map, m; arrays that broadcast.
 

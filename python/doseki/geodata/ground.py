@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +36,8 @@ def write_ground(folder: Path, ground: Raster | Profile) -> None:
     for file in ground_files(folder):
         file.unlink()
     if isinstance(ground, Raster):
-        write_raster(folder / f"terrain{ground.suffix}", ground)
+        # The number for no data in the file that it came from may be a height of this one.
+        write_raster(folder / f"terrain{ground.suffix}", replace(ground, nodata=None))
         return
     rows = [HEADER, *zip(ground.x.tolist(), ground.z.tolist(), strict=True)]
     write_whole_text(folder / "terrain.csv", "".join(f"{x},{z}\n" for x, z in rows))

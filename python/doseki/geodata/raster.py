@@ -14,9 +14,10 @@ from .geotiff import is_tiff, read_geotiff, write_geotiff
 from .grid import Raster, means_no_data
 from .shapes import LARGEST
 
-__all__ = ["Raster", "read_raster", "write_raster"]
+__all__ = ["Raster", "holds_raster", "read_raster", "write_raster"]
 
 ASCII_SUFFIXES = (".asc", ".txt", ".grd")
+RASTER_SUFFIXES = (".asc", ".tif", ".tiff")  # of files that hold nothing else
 TIFF_SUFFIXES = (".tif", ".tiff", ".geotiff")
 START = 64  # bytes that tell what a file is
 
@@ -34,8 +35,7 @@ def read_raster(path: Path | str) -> Raster:
 
     """
     path = Path(path)
-    with open_regular(path) as (file, _):
-        start = file.read(START)
+    start = _start(path)
     if is_tiff(start):
         raster = read_geotiff(path)
     elif is_ascii_grid(start):
@@ -52,6 +52,17 @@ def read_raster(path: Path | str) -> Raster:
             f"{LARGEST:g} m"
         )
     return raster
+
+
+def holds_raster(path: Path) -> bool:
+    """Whether a file begins like a raster, or has the name of one; raises UserError."""
+    start = _start(path)
+    return is_tiff(start) or is_ascii_grid(start) or path.suffix.lower() in RASTER_SUFFIXES
+
+
+def _start(path: Path) -> bytes:
+    with open_regular(path) as (file, _):
+        return bytes(file.read(START))
 
 
 def write_raster(path: Path | str, raster: Raster, tags: Mapping[str, str] | None = None) -> None:

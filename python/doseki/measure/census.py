@@ -19,7 +19,7 @@ from ..record.particles import FIXED, FREE
 from ..record.reader import Run, Snapshot
 from ..scenario.kinematics import DEFORM
 from . import numbers as measure
-from .views import View, flow_direction, fluid_names
+from .views import View, flow_direction, fluid_names, way_of_flow
 
 CLASSES = ("waiting", "preceding", "carried", "floating", "rolling", "deposited")
 WAITING, PRECEDING, CARRIED, FLOATING, ROLLING, DEPOSITED = range(len(CLASSES))
@@ -251,7 +251,7 @@ class Census:
 
 def take_census(run: Run) -> Census:
     """The census of all snapshots; raises UserError for a run without grains or snapshots."""
-    fluids, direction = fluid_names(run), flow_direction(run)
+    fluids, way = fluid_names(run), way_of_flow(run) or 1
     first: dict[int, np.ndarray] = {}
     parts: list[dict[str, np.ndarray]] = []
     fronts: list[float] = []
@@ -266,13 +266,13 @@ def take_census(run: Run) -> Census:
             ]
         ).reshape(-1, snapshot.dim)
         around = surroundings_of(snapshot, fluids)
-        kinds, front = classify(grains, start, around, direction or 1)
+        kinds, front = classify(grains, start, around, way)
         parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | {"kind": kinds})
         fronts.append(front)
     if not first:
         raise UserError(f"{run.directory}: the run has no grains to take a census of")
     table = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    return Census(times, np.array(fronts), table, direction)
+    return Census(times, np.array(fronts), table, flow_direction(run))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,15 @@ import numpy as np
 from ..record.reader import Run, Snapshot
 from . import numbers as measure
 from .census import Grains, grains_of
-from .views import View, flow_direction, fluid_names, select, whole_space, windows
+from .views import (
+    View,
+    flow_direction,
+    fluid_names,
+    select,
+    way_of_flow,
+    whole_space,
+    windows,
+)
 
 
 @dataclass
@@ -49,13 +57,13 @@ def measure_flow(run: Run) -> Flow | None:
     """
     fluids = fluid_names(run)
     everywhere = whole_space(run.scenario["dim"])
-    direction = flow_direction(run)
+    direction, way = flow_direction(run), way_of_flow(run) or 1
     seen = {name: WindowFlow(view) for name, view in windows(run).items()}
     passed = {name: _section(entry.view, direction) for name, entry in seen.items()}
     front = []
     for snapshot in run:
         is_fluid = select(snapshot, everywhere, fluids)
-        front.append(measure.front(snapshot["position"][is_fluid, 0], direction or 1))
+        front.append(measure.front(snapshot["position"][is_fluid, 0], way))
         grains = grains_of(snapshot, fluids)
         for name, entry in seen.items():
             _look(entry, snapshot, is_fluid, grains)

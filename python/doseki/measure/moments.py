@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..record.reader import Run, Snapshot
-from .views import View, flow_direction, fluid_names, select
+from .views import View, select, way_of_flow, what_flows
 
 ARRIVED = 0.95  # of the way that the front ever goes
 AHEAD = 99  # per cent of what flows is behind the front; the rest may be spray
@@ -27,7 +27,6 @@ class _Look:
     """What a snapshot shows in a view."""
 
     energy: float  # kinetic, of what moves, J (2-D: J/m)
-    momentum: float  # along the first axis
     count: int  # of what flows
     ends: tuple[float, float]  # along the first axis, of what flows, m
 
@@ -40,8 +39,8 @@ def moments(run: Run, view: View) -> list[Moment]:
     peak the kinetic energy in the view is greatest; where it was greatest at the start, the least
     is shown: bodies meet.
     """
-    fluids = fluid_names(run) & set(run[0].material_names) or None
-    looks = [_look(snapshot, view, fluids) for snapshot in run]
+    materials = what_flows(run)
+    looks = [_look(snapshot, view, materials) for snapshot in run]
     found = {0: ["start"]}
     energies = np.array([look.energy for look in looks])
     arrival, peak = _arrival(run, view, looks), int(np.argmax(energies))
@@ -55,21 +54,21 @@ def moments(run: Run, view: View) -> list[Moment]:
     return [Moment(index, ", ".join(found[index])) for index in sorted(found)]
 
 
-def _look(snapshot: Snapshot, view: View, fluids: set[str] | None) -> _Look:
+def _look(snapshot: Snapshot, view: View, materials: set[str] | None) -> _Look:
     moving = select(snapshot, view)
     mass, velocity = snapshot["mass"][moving], snapshot["velocity"][moving]
-    flows = select(snapshot, view, fluids)
+    flows = select(snapshot, view, materials)
     along = snapshot["position"][flows][:, 0]
     ends = np.percentile(along, (100 - AHEAD, AHEAD)) if len(along) else (math.nan, math.nan)
     energy = 0.5 * float(mass @ (velocity**2).sum(axis=1))
-    return _Look(energy, float(mass @ velocity[:, 0]), len(along), (ends[0], ends[1]))
+    return _Look(energy, len(along), (ends[0], ends[1]))
 
 
 def _arrival(run: Run, view: View, looks: list[_Look]) -> int | None:
     if np.isfinite([view.lower[0], view.upper[0]]).all():
         there = np.flatnonzero([look.count for look in looks])
         return int(there[0]) if len(there) else None
-    way = flow_direction(run) or np.sign(max(looks, key=lambda look: look.energy).momentum)
+    way = way_of_flow(run)
     fronts = np.array([way * look.ends[1 if way > 0 else 0] for look in looks])
     if way == 0 or not np.isfinite(fronts).any():
         return None

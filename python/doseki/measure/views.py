@@ -25,7 +25,7 @@ from . import numbers as measure
 T = TypeVar("T", bound=Table)
 P = TypeVar("P", bound=Part)
 
-LEVEL = 1e-9  # slope, or balance of inflows, that rounding makes
+LEVEL = 1e-9  # slope, or balance of inflows or of momenta, that rounding makes
 FLOW_SHARE = 0.5  # of the most fluid that a window ever holds
 
 
@@ -136,6 +136,33 @@ def flow_direction(run: Run) -> int:
     along = [t.peak_rate * t.direction[0] / np.linalg.norm(t.direction) for t in inflows]
     fluxes = np.abs(along).sum()
     return int(np.sign(sum(along))) if abs(sum(along)) > LEVEL * fluxes else 0
+
+
+def what_flows(run: Run) -> set[str] | None:
+    """The fluids of a run; None, for all that moves, where it has none."""
+    return fluid_names(run) & set(run[0].material_names) or None
+
+
+def way_of_flow(run: Run) -> int:
+    """+1 or -1: the way along the first axis that a flow takes; 0 where nothing goes along it.
+
+    Where the scenario does not say it, as on a terrain, the momentum of what flows does, in the
+    snapshot in which its kinetic energy is largest.
+    """
+    direction = flow_direction(run)
+    if direction or not len(run):
+        return direction
+    everywhere, materials = whole_space(run.scenario["dim"]), what_flows(run)
+    looks = [_motion(snapshot, select(snapshot, everywhere, materials)) for snapshot in run]
+    _, momentum, most = max(looks, key=lambda look: look[0])
+    return int(np.sign(momentum)) if abs(momentum) > LEVEL * most else 0
+
+
+def _motion(snapshot: Snapshot, chosen: np.ndarray) -> tuple[float, float, float]:
+    """Twice the kinetic energy, J; momentum along the first axis, kg m/s, and its largest size."""
+    mass, velocity = snapshot["mass"][chosen], snapshot["velocity"][chosen]
+    energy = float(mass @ (velocity**2).sum(axis=1))
+    return energy, float(mass @ velocity[:, 0]), float((mass.sum() * energy) ** 0.5)
 
 
 def select(snapshot: Snapshot, view: View, materials: set[str] | None = None) -> np.ndarray:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from ..errors import UserError
 from ..util.finding import Finding
 from ..util.input_file import digest_of
 from .bed import Bed, read_bed
@@ -139,7 +140,11 @@ def _check_digests(tables: ScenarioTable, where: Where) -> None:
 
 
 def _check_digest(keys: tuple[str, ...], path: Path, expected: str, where: Where) -> None:
-    if (found := digest_of(path)) != expected:
+    try:
+        found = digest_of(path)
+    except UserError as error:
+        raise where.error(keys, f"{'.'.join(keys)}: {error}") from None
+    if found != expected:
         raise where.error(
             keys,
             f"{'.'.join(keys)}: {path} is not the file that was meant: its digest is {found},"

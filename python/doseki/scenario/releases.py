@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import UserError
 from ..geodata.crs import needs_rasterio, same_crs
-from ..geodata.errors import GeodataError
 from ..geodata.features import Features, Polygon, read_features
 from ..geodata.inside import crossing_of
+from ..geodata.raster import holds_raster
 from ..util.finding import Finding
 from ..util.spelling import suggestion
 from .tables.terrain.release import THICKEST, Release
 from .values.toml_source import Where
 
-RASTERS = (".tif", ".tiff", ".asc")
 FIELD = "thickness"
 OVERLAP = 0.01  # of the smaller of two areas; edges of drawn ones do not meet exactly
 
@@ -35,11 +35,6 @@ class NotCompared(Finding):
         )
 
 
-def is_raster(file: str | None) -> bool:
-    """Whether a release is a raster of thickness."""
-    return file is not None and Path(file).suffix.lower() in RASTERS
-
-
 def completed_release(
     name: str, release: Release, path: Path | None, crs: str | None, where: Where
 ) -> tuple[Release, list[Finding]]:
@@ -48,8 +43,9 @@ def completed_release(
     `path` is its file, `crs` the coordinate reference system of the terrain.  Raises UserError.
     """
     doubts: list[Finding] = []
-    if release.between is not None or is_raster(release.file):
-        if is_raster(release.file) and release.thickness is not None:
+    is_raster = path is not None and _is_raster(name, path, where)
+    if release.between is not None or is_raster:
+        if is_raster and release.thickness is not None:
             raise where.error(
                 ("body", name, "thickness"),
                 f"body.{name}.thickness: the raster says how thick it is; give one of the two",
@@ -124,12 +120,20 @@ def _wrong_ring(area: Polygon, name: str) -> str | None:
     return None
 
 
+def _is_raster(name: str, path: Path, where: Where) -> bool:
+    """Whether the file of a release holds a raster of thickness."""
+    try:
+        return holds_raster(path)
+    except UserError as error:
+        raise where.error(("body", name, "file"), f"body.{name}.file: {error}") from None
+
+
 def _read(name: str, path: Path, where: Where, crs: str | None) -> Features:
     """What the file of a release holds, which must be polygons in the system of the terrain."""
     keys, place = ("body", name, "file"), f"body.{name}.file"
     try:
         features = read_features(path)
-    except GeodataError as error:
+    except UserError as error:
         raise where.error(keys, f"{place}: {error}") from None
     if same_crs(features.crs, crs) is False:
         raise where.error(

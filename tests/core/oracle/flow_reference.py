@@ -170,7 +170,15 @@ class FlowReference:
         self.rho, self.mass = particles.density[self.fluid], particles.mass[self.fluid]
         of = [materials[k] for k in particles.material[self.fluid]]
         self.materials = of
-        self.rheologies = {m.get("rheology") for m in materials}
+        liquids = [m for m in materials if m["law"] == "fluid"]
+        self.rheologies = {m.get("rheology") for m in liquids}
+        viscosities = {m["rho0"] * m["nu"] for m in liquids}
+        self.liquids_differ = self.rheologies <= {None, "newtonian"} and len(viscosities) > 1
+        stiffest = max(m["rho0"] * m["speedsound"] ** 2 for m in liquids)
+        self.cfl = min(
+            self.options.cflnumber,
+            2 * self.c * np.sqrt(min(m["rho0"] for m in liquids) / stiffest),
+        )
         self.mean_pressure = np.zeros(len(self.x))
         self.rho0, self.c0, self.nu = (
             np.array([m[key] for m in of]) for key in ("rho0", "speedsound", "nu")
@@ -489,7 +497,7 @@ class FlowReference:
 
     def _pair_viscosity(self) -> np.ndarray:
         mean = self._mean(self.mu)
-        if "herschel_bulkley" in self.rheologies:
+        if "herschel_bulkley" in self.rheologies or self.liquids_differ:
             return self.mu[:, None] * self.mu[None] / mean
         if "mu_i" in self.rheologies:
             rate = self._strain_rate() + 1e-12
@@ -587,7 +595,7 @@ class FlowReference:
         self.shift = np.zeros((len(self.x), self.dim))
         if not self.options.shifting:
             return
-        most = SHIFT_RATE * self.c / (self.options.cflnumber * self.h)
+        most = SHIFT_RATE * self.c / (self.cfl * self.h)
         rate = np.minimum(np.sqrt((self.L**2).sum(axis=(1, 2))), most)
         slope = np.linalg.norm(self.concentration_gradient, axis=1)
         speed = np.minimum(SHIFT_STRENGTH * self.h * slope, SHIFT_MOST) * self.h * rate
@@ -627,7 +635,7 @@ class FlowReference:
         speed = np.minimum(np.linalg.norm(self.v, axis=1), reach * gradient)
         force = np.linalg.norm(self.acceleration, axis=1)
         limits = [
-            self.options.cflnumber * self.h / (self.c + speed),
+            self.cfl * self.h / (self.c + speed),
             self.options.cfl_force * np.sqrt(self.h / force),
             STABLE / np.maximum(self.viscous_rate, 1e-300),
         ]

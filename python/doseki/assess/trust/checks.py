@@ -80,11 +80,12 @@ def overlap_check(run: Run, seen: Seen) -> Check:
     allowed = float(contact.get("overlap", 0.01))
     limits = (allowed, 5 * allowed)
     if not seen.overlap:
-        why = "all bodies deform or touch one that does: contacts are as stiff as its material"
+        why = "no snapshot has a rigid body that touches neither one that deforms nor dust;"
+        why += " contacts with what deforms are as stiff as its material"
         return unknown(name, limits, why)
     value = max_of(seen.overlap)
     counted = f"rigid bodies that move in {len(seen.overlap)} snapshots, over the diameter, without"
-    counted += " those that touch a body that deforms"
+    counted += " those that touch a body that deforms, or dust"
     remedy = f"raise contact.speed {max(rounded_up(value / allowed), 1.1):g} times"
     if contact.get("stiffness") == "material":
         remedy = "contacts are as stiff as the material: see young_modulus and speeds of impact"

@@ -62,10 +62,12 @@ def map_grid(folder: RunFolder, settings: MapSettings) -> Raster:
     path = folder.terrain
     try:
         _check_extent(settings)
-        if path is None:
-            grid = _own_grid(folder, settings)
-        else:
-            grid = read_raster(path).for_maps(settings.cell, settings.extent)
+        if path is None and (settings.cell is None or settings.extent is None):
+            raise GeodataError(
+                f"{folder.path} has no terrain; give maps.extent = [west, south, east, north] and "
+                f"maps.cell, m"
+            )
+        grid = cells_of(None if path is None else read_raster(path), settings)
     except GeodataError as error:
         raise UserError(f"maps: {error}") from None
     if grid.cell < settings.dp * (1 - TOLERANCE):
@@ -84,12 +86,17 @@ def _check_extent(settings: MapSettings) -> None:
         raise GeodataError("the extent must be west, south, east, north with west < east and so on")
 
 
-def _own_grid(folder: RunFolder, settings: MapSettings) -> Raster:
-    if settings.cell is None or settings.extent is None:
-        raise GeodataError(
-            f"{folder.path} has no terrain; give maps.extent = [west, south, east, north] and "
-            f"maps.cell, m"
-        )
+def cells_of(ground: Raster | None, settings: MapSettings) -> Raster:
+    """The cells to map; without a ground the settings must have both cell and extent.
+
+    Raises:
+        GeodataError: they do not fit those of the ground, or are too many.
+
+    """
+    if ground is not None:
+        return ground.for_maps(settings.cell, settings.extent)
+    assert settings.cell is not None
+    assert settings.extent is not None
     west, south, east, north = settings.extent
     shape = [
         int(np.ceil(min(length / settings.cell - TOLERANCE, 1e12)))

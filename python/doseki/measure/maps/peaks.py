@@ -20,7 +20,7 @@ from .quantities import (
     REMEMBERED,
 )
 from .travel import KEYS as TRAVEL
-from .travel import Travel
+from .travel import Periods, Travel
 
 CELLS, OUTSIDE = "cells", "outside"  # of a state, beside the quantities
 
@@ -33,15 +33,17 @@ class Peaks:
     vertical depth h on an infinite slope. Cells below `min_depth` do not count.
     """
 
-    def __init__(self, grid: Raster, min_depth: float, gravity: float) -> None:
-        """`min_depth` in m; `gravity` in m/s2."""
+    def __init__(
+        self, grid: Raster, min_depth: float, gravity: float, periods: Periods = ()
+    ) -> None:
+        """`min_depth` in m; `gravity` in m/s2; `periods` as Travel takes them."""
         self.grid, self.min_depth, self._gravity = grid, min_depth, gravity
         self._cos2 = cos2_of_slope(grid).ravel()
         size = grid.values.size
         self.values = {quantity.name: np.zeros(size) for quantity in REMEMBERED}
         self.values[ARRIVAL_TIME.name].fill(np.nan)
         self.outside = 0.0  # largest share of the volume that was beside the map
-        self._travel = Travel(grid)
+        self._travel = Travel(grid, periods)
 
     def look(self, time: float, state: Mapping[str, np.ndarray]) -> None:
         """Take in the particles at a time, s."""

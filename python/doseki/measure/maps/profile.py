@@ -30,9 +30,7 @@ def along_path(maps: Mapping[str, Raster], bed: Raster, path: np.ndarray) -> dic
     between = np.arange(bed.cell / 2, at_vertex[-1], bed.cell)
     distance = np.unique(np.concatenate([between, at_vertex]))
     x, y = (np.interp(distance, at_vertex, path[:, axis]) for axis in (0, 1))
-    column = np.floor((x - bed.west) / bed.cell).astype(np.int64)
-    row = np.floor((bed.north - y) / bed.cell).astype(np.int64)
-    inside = (column >= 0) & (column < bed.shape[1]) & (row >= 0) & (row < bed.shape[0])
+    row, column, inside = bed.cells_at(x, y)
     if not inside.any():
         raise UserError("the path of the profile lies beside the map")
     found = {"distance": distance, "x": x, "y": y, "bed": bed.sampled(x, y)}

@@ -29,7 +29,7 @@ def maps_from_snapshots(run: Run, grid: Raster, settings: MapSettings) -> dict[s
     if not len(run):
         raise UserError(f"{run.directory}: the run has no snapshot yet")
     gravity = gravity_of(np.array(run.scenario.get("gravity", [0.0])))
-    peaks = Peaks(grid, settings.dry_below, gravity)
+    peaks = Peaks(grid, settings.dry_below, gravity, run.periods())
     tables = run.scenario.get("body", {})
     state: Mapping[str, np.ndarray] = {}
     for snapshot in run:

@@ -2,28 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from ...geodata.grid import Raster
 from ...record.particles import BOUND, FREE
+from ...scene.periodic import nearest_image
 
 # Of a state: rows of particles, in the order of their numbers.
 ID, START, PLACE, LENGTH = "travel_id", "travel_start", "travel_place", "travel_length"
 KEYS = (ID, START, PLACE, LENGTH)
+Periods = Iterable[tuple[int, float, float]]
 
 
 class Travel:
     """The way of every particle in plan, as straight lines between looks.
+
+    Along a periodic axis a line is that to the nearest image.
 
     The travel angle of a particle is that of tan = (z0 - z) / s with the height z0 where it was
     first seen and the length s of its way on the map, as in AvaFrame (com1DFA). It counts from a
     way of one cell on: what has only just begun to fall has any angle.
     """
 
-    def __init__(self, grid: Raster) -> None:
+    def __init__(self, grid: Raster, periods: Periods = ()) -> None:
+        """`periods`: each periodic axis with the ends of the domain, m."""
         self._grid = grid
+        self._period = np.zeros(2)
+        for axis, low, high in periods:
+            if axis < 2:
+                self._period[axis] = high - low
         self._id = np.zeros(0, np.int64)
         self._start = np.zeros(0)  # z0, m
         self._place = np.zeros((0, 2))  # where it was seen last, m
@@ -40,11 +49,9 @@ class Travel:
         far = self._length >= self._grid.cell
         fallen = self._start - position[:, 2]
         angle = np.degrees(np.arctan2(fallen[far], self._length[far]))
-        row = np.floor((self._grid.north - position[far, 1]) / self._grid.cell)
-        column = np.floor((position[far, 0] - self._grid.west) / self._grid.cell)
-        rows, columns = self._grid.shape
-        on_map = (row >= 0) & (row < rows) & (column >= 0) & (column < columns) & (angle > 0)
-        cell = (row * columns + column)[on_map].astype(np.int64)
+        row, column, on_map = self._grid.cells_at(*position[far, :2].T)
+        on_map &= angle > 0
+        cell = (row * self._grid.shape[1] + column)[on_map]
         cells, which = np.unique(cell, return_inverse=True)
         largest = np.zeros(len(cells))
         np.maximum.at(largest, which, angle[on_map])
@@ -59,8 +66,8 @@ class Travel:
         known[known] = self._id[at[known]] == numbers[known]
         before = at[known]
         start[known] = self._start[before]
-        step = np.hypot(*(place[known] - self._place[before]).T)
-        length[known] = self._length[before] + step
+        step = nearest_image(place[known] - self._place[before], self._period)
+        length[known] = self._length[before] + np.hypot(*step.T)
         self._id, self._start, self._place, self._length = numbers, start, place, length
 
     @property

@@ -22,12 +22,17 @@ def check_names(tables: ScenarioTable, where: Where) -> None:
     """
     for section in SECTIONS:
         for name in getattr(tables, section):
-            if not re.fullmatch(r"\w[\w .+-]{0,59}", name):
-                raise where.error(
-                    (section, name),
-                    f'"{name}" cannot be a name in [{section}]; names begin with a letter or digit'
-                    " and have at most 60 letters, digits, spaces, _, -, + or dots",
-                )
+            check_name(section, name, where)
+
+
+def check_name(section: str, name: str, where: Where) -> None:
+    """Raise UserError for a name of a table [SECTION.NAME] that no file or column could have."""
+    if not re.fullmatch(r"\w[\w .+-]{0,59}", name):
+        raise where.error(
+            (section, name),
+            f'"{name}" cannot be a name in [{section}]; names begin with a letter or digit and have'
+            " at most 60 letters, digits, spaces, _, -, + or dots",
+        )
 
 
 def check_references(

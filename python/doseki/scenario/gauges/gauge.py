@@ -96,6 +96,11 @@ class Gauge(Part):
         """The point (dim,) at which it looks, if it is a point."""
         return None
 
+    def is_outside(self, low: np.ndarray, high: np.ndarray) -> bool:
+        """Whether it looks at nothing within a box, by its corners (dim,), m."""
+        place = self.place
+        return place is not None and bool(np.any(place < low) or np.any(place > high))
+
     @property
     def bandwidth(self) -> float | None:
         """Of the low-pass, Hz, that its reading goes through at each step; None: it has none."""
@@ -105,6 +110,11 @@ class Gauge(Part):
     def series(self) -> str | None:
         """The column by which several rows of one time are told apart; None: a row each time."""
         return None
+
+    @property
+    def has_one_row(self) -> bool:
+        """Whether a sample is one row."""
+        return self.series is None and not self.is_profile
 
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
@@ -123,6 +133,10 @@ class Gauge(Part):
         `read` gives their integrals over time, since the start.
         """
         return []
+
+    def since_before(self, dim: int) -> list[str]:
+        """The columns that tell of the time since the sample before, so that the first has none."""
+        return self.means(dim)
 
     def curves(self, dim: int) -> list[str]:
         """The columns that a figure draws where none are named."""

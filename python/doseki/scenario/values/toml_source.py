@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -56,16 +56,27 @@ class TomlSource:
         """The line (from 1) where `keys` is set, or the nearest table that would hold it."""
         wanted = [str(key) for key in keys]
         best_line, best_depth = None, 0
+        for number, here, _ in self._named():
+            if len(here) > best_depth and here == wanted[: len(here)]:
+                best_line, best_depth = number, len(here)
+        return best_line
+
+    def assigns(self, keys: KeyPath) -> bool:
+        """Whether a line gives `keys` a value, rather than some of what would be in it."""
+        wanted = dotted(keys).split(".")
+        return any(is_value and here == wanted for _, here, is_value in self._named())
+
+    def _named(self) -> Iterator[tuple[int, list[str], bool]]:
+        """Each line that names keys: its number, their full path, and whether it gives a value."""
         header: list[str] = []
         for number, line in enumerate(self.text.splitlines(), start=1):
             here = _keys_of_line(line, header)
             if here is None:
                 continue
-            if line.lstrip().startswith("["):
+            is_header = line.lstrip().startswith("[")
+            if is_header:
                 header = here
-            if len(here) > best_depth and here == wanted[: len(here)]:
-                best_line, best_depth = number, len(here)
-        return best_line
+            yield number, here, not is_header
 
 
 Source: TypeAlias = TableSource | TomlSource

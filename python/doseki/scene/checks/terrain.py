@@ -116,13 +116,15 @@ class HangingInflow(Finding):
 class CoarseSurge(Finding):
     """A surge of which the particles of a layer are not what its thickness asks for."""
 
-    asked: float  # m3
+    asked: float
     volume: float
+    unit: str
 
     def __str__(self) -> str:
+        terms = "thickness, width and speed" if self.unit == "m3" else "thickness and speed"
         return (
-            f"{self.place}: its layers have {self.volume:.3g} m3, and thickness, width and speed "
-            f"above the ground are {self.asked:.3g} m3: decrease dp"
+            f"{self.place}: its layers have {self.volume:.3g} {self.unit}, and {terms} above the "
+            f"ground are {self.asked:.3g} {self.unit}: decrease dp"
         )
 
 
@@ -158,10 +160,14 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         if not isinstance(body, ReleaseBody):
             continue
         if abs(body.volume - body.asked) > VOLUME * body.asked:
-            unit = "m3" if scenario.dim == 3 else "m2"
-            yield WrongVolume(name, body.asked, body.volume, unit)
+            yield WrongVolume(name, body.asked, body.volume, _unit(scenario))
         if body.layers < FEW_LAYERS:
             yield ThinRelease(name, body.layers, scenario.dp * body.layers / 4)
+
+
+def _unit(scenario: Scenario) -> str:
+    """Of a volume, which in 2-D is an area."""
+    return "m3" if scenario.dim == 3 else "m2"
 
 
 def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Finding]:
@@ -177,4 +183,4 @@ def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Fin
         return
     asked, volume = surge_volumes(scenario, section)
     if abs(volume - asked) > SURGE * asked:
-        yield CoarseSurge(place, asked, volume)
+        yield CoarseSurge(place, asked, volume, _unit(scenario))

@@ -11,12 +11,11 @@ import numpy as np
 
 from ...errors import UserError
 from ...geodata.crs import needs_rasterio, same_crs
-from ...geodata.errors import GeodataError
 from ...geodata.features import Polygon
 from ...geodata.raster import Raster, read_raster
 from ...record.particles import FREE, ParticleSet, check_size
 from ...scenario.model import Scenario, file_of
-from ...scenario.releases import NotCompared, is_raster
+from ...scenario.releases import NotCompared
 from ...scenario.tables.terrain.release import THICKEST, Release
 from ...util.finding import Finding
 from ..ground import Ground, beyond_text, ground_of
@@ -104,7 +103,7 @@ class ReleaseBody(Shaped[Release]):
         table = self.table
         if table.between is not None:
             return [self._strip(*table.between)]
-        if is_raster(table.file):
+        if self._is_raster:
             return [self._raster()]
         assert isinstance(table.thickness, list)
         polygons = table.polygons or []
@@ -196,6 +195,11 @@ class ReleaseBody(Shaped[Release]):
         near = outside < dp
         return _lowest(parcels.chosen(near), outside[near], asked), asked
 
+    @property
+    def _is_raster(self) -> bool:
+        """Of another file the table has the polygons."""
+        return self.table.file is not None
+
     @cached_property
     def _file(self) -> Path:
         return file_of(self.scenario.where, self.name, self.table.file or "")
@@ -205,7 +209,7 @@ class ReleaseBody(Shaped[Release]):
         """Its raster of thickness, in the coordinate reference system of the terrain."""
         try:
             raster = read_raster(self._file)
-        except GeodataError as error:
+        except UserError as error:
             raise self.error(f".file: {error}", "file") from None
         if same_crs(raster.crs, self._terrain_crs) is False:
             raise self.error(
@@ -223,7 +227,7 @@ class ReleaseBody(Shaped[Release]):
 
     def findings(self) -> list[Finding]:
         """See Body."""
-        if is_raster(self.table.file) and needs_rasterio(self._map.crs, self._terrain_crs):
+        if self._is_raster and needs_rasterio(self._map.crs, self._terrain_crs):
             return [NotCompared(f"body.{self.name}.file", self._file)]
         return []
 

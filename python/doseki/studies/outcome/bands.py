@@ -14,8 +14,8 @@ from ...figures.maps.structures import Structures
 from ...geodata.grid import Raster
 from ...geodata.raster import write_raster
 from ...measure.maps.files import NODATA
-from ...measure.maps.quantities import ARRIVAL_TIME
-from ...record.reader import load
+from ...measure.maps.quantities import ARRIVAL_TIME, PEAK_DEPTH
+from ...record.reader import Run, load
 from ...util.files import clear_errors, write_whole_text
 from ...util.foreign import read_text
 from ..reading.bands import Band, CurveBand, MapBand, read_curve
@@ -102,14 +102,20 @@ def map_percentiles(band: MapBand, table: Table) -> MapPercentiles:
     found = np.where(np.isfinite(found) & ~outside, found, np.nan)
     exceeded = None
     if band.exceed is not None:
-        share = np.mean(np.isfinite(stack) & (stack > band.exceed), axis=0)
-        exceeded = _with(first, np.where(outside, np.nan, share))
+        share = np.mean(stack > band.exceed, axis=0)
+        exceeded = _with(first, np.where(outside | _beside(band, runs), np.nan, share))
     ground = runs[0].ground
     bed = ground if isinstance(ground, Raster) else _with(first, np.full(first.shape, np.nan))
     if not bed.same_grid(first):
         bed = _resampled(bed, first)
     percent = [_with(first, each) for each in found]
     return MapPercentiles(percent, exceeded, bed, Structures.of_all(runs))
+
+
+def _beside(band: MapBand, runs: Sequence[Run]) -> np.ndarray:
+    """Mask (rows, cols) of cells without a terrain, which arrival times do not tell."""
+    depth = band.model_copy(update={"map": PEAK_DEPTH.name})
+    return np.asarray(np.isnan([depth.raster(run).values for run in runs]).all(axis=0))
 
 
 def write_curve(path: Path, found: CurvePercentiles, band: Band) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -91,5 +92,10 @@ class Axis:
 
 
 def written(value: Any) -> str:
-    """A value of a TOML file, as --set takes it."""
+    """A value of a TOML file, as --set takes it: on one line, tables in braces."""
+    if isinstance(value, dict):
+        inner = (f"{json.dumps(name)} = {written(each)}" for name, each in value.items())
+        return f"{{ {', '.join(inner)} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(written, value))}]"
     return tomli_w.dumps({"value": value}).partition("=")[2].strip()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from ...errors import UserError
+from ...scenario.checks.references import check_name
 from ...scenario.load import load_scenario
 from ...scenario.model import Scenario
 from ...scenario.reading.messages import to_user_error
@@ -99,8 +100,9 @@ def read_plan(path: Path, folder: Path | None = None) -> Plan:
     named = top.scenario
     is_file = "/" in named or named.endswith(".toml")
     scenario_name = str(home / named) if is_file else named
-    settings = [f"{name}={written(value)}" for name, value in _flat(top.set).items()]
-    reader.check_settings(_flat(top.set), axes)
+    given = reader.settings(top)
+    settings = [f"{name}={written(value)}" for name, value in given.items()]
+    reader.check_settings(given, axes)
     scenario = _middle(scenario_name, settings, axes, reader.where)
     warnings = _checked_parts(parts, scenario, home, reader)
     return Plan(
@@ -115,7 +117,7 @@ class _Reader:
     """Turns the tables of one file into objects, and says where in it something is wrong."""
 
     def __init__(self, source: TomlSource, where: Where) -> None:
-        self._table, self.where = source.table, where
+        self._source, self._table, self.where = source, source.table, where
 
     def top(self) -> StudyTable:
         return self._validated(StudyTable, self._table, ())
@@ -133,6 +135,7 @@ class _Reader:
         found = {}
         for name, given in self._table.get(section, {}).items():
             keys = (section, name)
+            check_name(section, name, self.where)
             table = self._as_table(given, keys)
             found[name] = self._validated(self._kind(table, keys), table, keys)
             if objection := objection_of(found[name]):
@@ -141,8 +144,13 @@ class _Reader:
 
     def axes(self) -> list[Axis]:
         """What differs between runs; a path may stand in quotes or not."""
-        given = _flat(self._table.get("vary", {}), Vary)
+        fields = set(Vary.model_fields)
+        given = _flat(self._table.get("vary", {}), lambda _, table: bool(fields & set(table)))
         return [self._axis(name, table) for name, table in given.items()]
+
+    def settings(self, top: StudyTable) -> dict[str, Any]:
+        """What all runs have, by paths as --set takes them; a table { ... } is one value."""
+        return _flat(top.set, lambda path, _: self._source.assigns(("set", path)))
 
     def refuse(self, keys: KeyPath) -> Refuse:
         """What makes an error about a key of the table at `keys`."""
@@ -272,19 +280,21 @@ def _number(given: Any, key: str, refuse: Refuse) -> tuple[float, Unit | None]:
     return found
 
 
-def _flat(table: dict[str, Any], leaf: type[Table] | None = None) -> dict[str, Any]:
+def _flat(
+    table: dict[str, Any], is_value: Callable[[str, dict[str, Any]], bool], above: str = ""
+) -> dict[str, Any]:
     """Tables inside tables as one, by dotted paths, as far down as they are no values.
 
-    Values are choices such as { d2 = 1, d3 = 2 }, and tables with keys of `leaf`.
+    Values are choices such as { d2 = 1, d3 = 2 }, and tables that `is_value` says are, by path.
     """
-    own = set() if leaf is None else set(leaf.model_fields)
     found: dict[str, Any] = {}
     for name, value in table.items():
-        inner = isinstance(value, dict) and value and not own & set(value)
+        path = f"{above}{name}"
+        inner = isinstance(value, dict) and value and not is_value(path, value)
         if not inner or any(set(value) <= keys for keys in CHOICES.values()):
-            found[name] = value
-            continue
-        found |= {f"{name}.{key}": deeper for key, deeper in _flat(value, leaf).items()}
+            found[path] = value
+        else:
+            found |= _flat(value, is_value, f"{path}.")
     return found
 
 
@@ -306,14 +316,20 @@ def _middle(name: str, settings: list[str], axes: list[Axis], where: Where) -> S
 
 def _culprit(name: str, settings: list[str], middle: Mapping[str, str]) -> KeyPath:
     """The key of the study file for which the scenario cannot be read."""
-    alone: dict[KeyPath, list[str]] = {("scenario",): []}
-    alone |= {("vary", key): [setting] for key, setting in middle.items()}
-    for keys, added in alone.items():
-        try:
-            load_scenario(name, [*settings, *added])
-        except UserError:
-            return keys
+    if _is_refused(name, settings):
+        return ("scenario",) if _is_refused(name, []) else ("set",)
+    for key, setting in middle.items():
+        if _is_refused(name, [*settings, setting]):
+            return ("vary", key)
     return ("vary",)
+
+
+def _is_refused(name: str, settings: list[str]) -> bool:
+    try:
+        load_scenario(name, settings)
+    except UserError:
+        return True
+    return False
 
 
 def _loaded(name: str, settings: list[str], keys: KeyPath, where: Where) -> Scenario:

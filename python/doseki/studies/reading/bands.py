@@ -14,7 +14,7 @@ from ...measure.views import fluid_names, select, whole_space
 from ...record.reader import Run
 from ...scenario.model import Scenario
 from ...scenario.table import Table
-from .kinds import Refuse, check_fluid, check_gauge, check_maps
+from .kinds import Refuse, check_fluid, check_gauge, check_maps, check_one_row
 from .results import MapName, map_of
 from .series import gauge_series
 
@@ -69,8 +69,9 @@ class SeriesBand(CurveBand):
     column: str = Field(description="of what the gauge reads")
 
     def check(self, scenario: Scenario, refuse: Refuse) -> None:
-        """The gauge and its column must be there."""
+        """The gauge and its column must be there, with one row for each time."""
         check_gauge(scenario, self.gauge, self.column, refuse)
+        check_one_row(scenario, self.gauge, refuse)
 
     def curve(self, run: Run) -> Curve:
         """The series."""

@@ -27,6 +27,13 @@ def check_gauge(scenario: Scenario, gauge: str, column: str | None, refuse: Refu
         raise refuse("column", f'gauge {gauge} has no column "{column}"{suggestion(column, known)}')
 
 
+def check_one_row(scenario: Scenario, gauge: str, refuse: Refuse) -> None:
+    """Raise where a gauge has several rows for a time, which make no series."""
+    found = scenario.gauge[gauge]
+    if not found.has_one_row:
+        raise refuse("gauge", f"a gauge of kind {found.kind} has several rows for each time")
+
+
 def check_history(scenario: Scenario, column: str, refuse: Refuse) -> None:
     """Raise where the history of a run has no such column."""
     known = history_columns(scenario.dim, scenario.material_names)

@@ -20,10 +20,10 @@ from ...scenario.model import Scenario
 from ...scenario.table import Table
 from ...util.input_file import digest_of
 from ...util.spelling import suggestion
-from .kinds import Refuse, check_fluid, check_gauge, check_maps
+from .kinds import Refuse, check_fluid, check_gauge, check_maps, check_one_row
 from .observed_files import check_errors, read_series, read_table, read_words
-from .results import MapName, Result, map_of
-from .series import Series, front_series, gauge_series
+from .results import MapName, Result, covered, map_of
+from .series import ROUNDING, Series, front_series, gauge_series
 
 Results = Mapping[str, Result]
 
@@ -161,10 +161,26 @@ class ObservedSeries(OverTime):
     ) -> list[str]:
         """The gauge must be there, with one row for each time."""
         check_gauge(scenario, self.gauge, self.column, refuse)
-        kind = getattr(scenario.gauge[self.gauge], "kind", "")
-        if kind in ("velocity_profile", "panels", "motion"):
-            raise refuse("gauge", f"a gauge of kind {kind} has several rows for each time")
-        return super().check(scenario, results, folder, refuse)
+        check_one_row(scenario, self.gauge, refuse)
+        said = super().check(scenario, results, folder, refuse)
+        self._check_begun(scenario, folder, refuse)
+        return said
+
+    def _check_begun(self, scenario: Scenario, folder: Path, refuse: Refuse) -> None:
+        """A column of means since the sample before has none at the first."""
+        gauge = scenario.gauge[self.gauge]
+        if self.column not in gauge.since_before(scenario.dim):
+            return
+        path = folder / self.file
+        time = read_series(path, *self.column_and_unit(scenario))["time"]
+        first = scenario.begins_at + scenario.interval_of(gauge)
+        early = time[(time >= scenario.begins_at) & (time < first * (1 - ROUNDING))]
+        if len(early):
+            raise refuse(
+                "file",
+                f"{path}: time = {early[0]:g} s is before {first:g} s, when gauge {self.gauge} has "
+                f"its first {self.column}, of the time since the sample before; leave it out",
+            )
 
     def column_and_unit(self, scenario: Scenario) -> tuple[str, str]:
         """Those of the gauge."""
@@ -220,15 +236,15 @@ class ObservedArea(Observation):
     def misfit(self, run: Run, results: Mapping[str, float], folder: Path) -> float:
         """Jaccard's distance over the error; raises UserError for polygons beside the map."""
         raster = map_of(run, self.map)
-        covered = np.nan_to_num(raster.values) > self.above
+        mapped = covered(raster, self.map, self.above)
         x, y = np.meshgrid(raster.x, raster.y)
         seen = np.zeros(raster.shape, bool)
         for polygon in self._polygons(folder, raster.crs):
             seen |= polygon.contains(x, y)
         if not seen.any():
             raise UserError(f"{folder / self.file}: its polygons lie beside the map of the run")
-        either = np.count_nonzero(covered | seen)
-        return (1 - np.count_nonzero(covered & seen) / either) / self.error
+        either = np.count_nonzero(mapped | seen)
+        return (1 - np.count_nonzero(mapped & seen) / either) / self.error
 
     def _polygons(self, folder: Path, crs: str | None) -> Sequence[Polygon]:
         """On the map of `crs`."""

@@ -8,17 +8,20 @@ import numpy as np
 from pydantic import Field
 
 from ...errors import UserError
+from ...geodata.errors import GeodataError
 from ...geodata.grid import Raster
 from ...measure.loads import WINDOWS, body_loads
-from ...measure.maps.files import read_maps
-from ...measure.maps.quantities import QUANTITIES
+from ...measure.maps.files import reached, read_maps
+from ...measure.maps.grid import MapSettings, cells_of
+from ...measure.maps.quantities import ARRIVAL_TIME, QUANTITIES
 from ...record.history import history_unit
 from ...record.reader import Run
 from ...scenario.gauges.loads.load import Load
 from ...scenario.model import Scenario
 from ...scenario.table import Table
-from .kinds import Refuse, check_fluid, check_gauge, check_history, check_maps
+from .kinds import Refuse, check_fluid, check_gauge, check_history, check_maps, check_one_row
 from .series import (
+    REDUCTIONS,
     Reduced,
     front_series,
     gauge_series,
@@ -71,7 +74,10 @@ class OfHistory(Result, Reduced):
 
 
 class OfGauge(Result, Reduced):
-    """A number of a column of a gauge; where it has several rows for a time, each counts."""
+    """A number of a column of a gauge.
+
+    Where it has several rows for a time each counts, for the least, the largest or the mean.
+    """
 
     kind: Literal["gauge"]
     gauge: str = Field(description="[gauge.NAME] of the scenario")
@@ -80,6 +86,8 @@ class OfGauge(Result, Reduced):
     def check(self, scenario: Scenario, refuse: Refuse) -> None:
         """The gauge and its column must be there."""
         check_gauge(scenario, self.gauge, self.column, refuse)
+        if self.take not in REDUCTIONS:
+            check_one_row(scenario, self.gauge, refuse)
 
     def unit(self, scenario: Scenario) -> str:
         """That of the column."""
@@ -157,7 +165,7 @@ class OfMap(Result):
     kind: Literal["map"]
     map: MapName = Field(description="a raster that the run keeps")
     take: Literal["max", "mean", "at"] = Field(
-        "max", description="of all cells, of those that are not 0, or of a place"
+        "max", description="of all cells, of those that a flow reached, or of the cell of a place"
     )
     position: list[float] | None = Field(
         None, min_length=2, max_length=2, description='x, y, m; with take = "at"'
@@ -170,8 +178,17 @@ class OfMap(Result):
         return None
 
     def check(self, scenario: Scenario, refuse: Refuse) -> None:
-        """There must be maps."""
+        """There must be maps, and the place must lie on them."""
         check_maps(scenario, refuse)
+        if self.position is None:
+            return
+        cells = _cells(scenario, refuse)
+        if not cells.cells_at(*self.position)[2]:
+            edges = ", ".join(f"{edge:.10g}" for edge in cells.extent)
+            raise refuse(
+                "position",
+                f"= {self.position} lies off the map, [west, south, east, north] = [{edges}] m",
+            )
 
     def unit(self, scenario: Scenario) -> str:
         """That of the map."""
@@ -181,9 +198,10 @@ class OfMap(Result):
         """The number; nan where the map has no data there."""
         raster = map_of(run, self.map)
         if self.position is not None:
-            return float(raster.sampled(*(np.array(x) for x in self.position)))
-        values = raster.values[np.isfinite(raster.values)]
-        values = values[values > 0] if self.take == "mean" else values
+            row, column, there = raster.cells_at(*self.position)
+            return float(raster.values[row, column]) if there else float("nan")
+        counts = covered(raster, self.map) if self.take == "mean" else np.isfinite(raster.values)
+        values = raster.values[counts]
         if not len(values):
             return float("nan")
         return float(values.max() if self.take == "max" else values.mean())
@@ -221,6 +239,26 @@ class OfLoad(Result):
         if self.value == "impulse":
             return total.impulse
         return total.means[WINDOWS[0] if self.value == "mean_10ms" else WINDOWS[1]].value
+
+
+def covered(raster: Raster, name: MapName, above: float = 0.0) -> np.ndarray:
+    """Mask (rows, cols) of where a map is greater than `above`.
+
+    An arrival time may be 0: it counts from `above` on, where a flow came at all.
+    """
+    if name == ARRIVAL_TIME.name:
+        return np.asarray(reached({name: raster}) & (raster.values >= above))
+    return np.asarray(np.nan_to_num(raster.values) > above)
+
+
+def _cells(scenario: Scenario, refuse: Refuse) -> Raster:
+    """The cells of the maps of a scenario."""
+    assert scenario.maps is not None
+    settings = MapSettings.of(scenario.maps.model_dump(exclude_none=True), scenario.dp)
+    try:
+        return cells_of(None if scenario.bed is None else scenario.bed.raster, settings)
+    except GeodataError as error:
+        raise refuse("map", str(error)) from None
 
 
 def map_of(run: Run, name: str) -> Raster:

@@ -12,7 +12,7 @@ from pydantic import Field
 from ...errors import UserError
 from ...measure import numbers as measure
 from ...measure.series import first_above
-from ...measure.views import flow_direction, fluid_names, select, whole_space
+from ...measure.views import fluid_names, select, way_of_flow, whole_space
 from ...record.reader import Run
 from ...scenario.table import Table
 
@@ -21,6 +21,7 @@ REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
     "max": np.max,
     "mean": np.mean,
 }
+ROUNDING = 1e-9  # of a time, within which it is that of a sample
 Taken = Literal["last", "first", "min", "max", "mean", "at"]
 
 
@@ -73,7 +74,12 @@ class Series:
         """Values at times (m,), s, linear between samples; nan outside, and beside a gap."""
         if not len(self.time):
             return np.full(len(times), np.nan)
-        return np.interp(times, self.time, self.value, left=np.nan, right=np.nan)
+        after = np.minimum(np.searchsorted(self.time, times), len(self.time) - 1)
+        before = np.maximum(after - 1, 0)
+        near = np.where(times - self.time[before] < self.time[after] - times, before, after)
+        known = np.isclose(times, self.time[near], rtol=ROUNDING, atol=0.0)
+        between = np.interp(times, self.time, self.value, left=np.nan, right=np.nan)
+        return np.where(known, self.value[near], between)
 
 
 def gauge_series(run: Run, gauge: str, column: str) -> Series:
@@ -93,8 +99,12 @@ def history_series(run: Run, column: str) -> Series:
 
 def front_series(run: Run) -> Series:
     """Where the foremost fluid is along x, m, in each snapshot; nan where there is none."""
+    return _front_along(run, way_of_flow(run) or 1)
+
+
+def _front_along(run: Run, direction: int) -> Series:
+    """The same of a flow along +x or -x: `direction` is 1 or -1."""
     fluids, everywhere = fluid_names(run), whole_space(run.scenario["dim"])
-    direction = flow_direction(run) or 1
     front = []
     for snapshot in run:
         there = select(snapshot, everywhere, fluids)
@@ -104,7 +114,8 @@ def front_series(run: Run) -> Series:
 
 def time_of_front(run: Run, x: float) -> float:
     """When the front comes to x, s, linear between snapshots; nan if it never does."""
-    series, direction = front_series(run), flow_direction(run) or 1
+    direction = way_of_flow(run) or 1
+    series = _front_along(run, direction)
     known = np.isfinite(series.value)
     if not known.any():
         return float("nan")

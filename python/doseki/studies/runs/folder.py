@@ -137,7 +137,7 @@ class StudyRuns:
     def __init__(self, folder: StudyFolder, plan: Plan) -> None:
         """Look at what is there; raises UserError where it is of another study."""
         self.folder, self.plan = folder, plan
-        self._of_scenario = digest([plan.scenario_name, _stamp(plan)])
+        self._of_scenario = digest([plan.top.scenario, _stamp(plan)])
         self.reading = reading_digest(plan)
         with clear_errors(folder.path):
             self._check_same()

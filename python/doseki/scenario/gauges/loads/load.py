@@ -33,10 +33,12 @@ class Load(ForceMeter):
 
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
-        named = {"time": "s"}
-        for part in ("", *(f"{part}_" for part in PARTS), "peak_"):
-            named |= force_columns(part, dim)
-        return named | {"peak_time": "s", "hit_speed": "m/s", "hit_radius": "m"}
+        peaks = {"peak_time": "s", "hit_speed": "m/s", "hit_radius": "m"}
+        return {"time": "s"} | _forces(dim) | peaks
+
+    def since_before(self, dim: int) -> list[str]:
+        """Means and peaks since the sample before."""
+        return list(_forces(dim))
 
     def curves(self, dim: int) -> list[str]:
         """The columns that a figure draws where none are named."""
@@ -69,3 +71,11 @@ class Load(ForceMeter):
         last = [*peak, seen] if seen >= 0 else [np.nan] * (len(peak) + 1)
         hit = [float(row["hit_speed"]), float(row["hit_radius"])]
         return [[time, *np.concatenate(parts).tolist(), *map(float, last), *hit]]
+
+
+def _forces(dim: int) -> dict[str, str]:
+    """Columns of the whole, of its parts and of its peak, with their units."""
+    named: dict[str, str] = {}
+    for part in ("", *(f"{part}_" for part in PARTS), "peak_"):
+        named |= force_columns(part, dim)
+    return named

@@ -20,6 +20,16 @@ class Overtopping(Gauge):
     position: Position = Field(description="a point of the plane, as on the crest, m")
     direction: Direction = Field(description="normal of the plane, downstream")
 
+    @property
+    def place(self) -> np.ndarray:
+        """The point (dim,) of the plane that is given."""
+        return self.position
+
+    def is_outside(self, low: np.ndarray, high: np.ndarray) -> bool:
+        """Whether its plane passes beside a box; where on it the point lies does not matter."""
+        across = (np.array([low, high]) - self.position) * self.normal
+        return bool(across.min(axis=0).sum() > 0 or across.max(axis=0).sum() < 0)
+
     def columns(self, dim: int) -> dict[str, str]:
         """Name and unit of each column of its file."""
         mass, volume = unit_in("kg", dim), unit_in("m3", dim)

@@ -82,20 +82,21 @@ def _depths(
 ) -> np.ndarray:
     """Density times depth (n,) of the water above each element, kg/m2.
 
-    Points `probe` (n, dim) are in front of them.  Where a body hangs over one, the level is that of
+    Points `probe` (n, dim) are in front of them.  Where a body hangs over one, the water is that of
     the nearest column that none caps.
     """
     n = len(elements.place)
     height, probed = elements.place @ up, probe @ up
-    level, density, wet = np.full(n, np.nan), np.zeros(n), np.zeros(n, bool)
+    level, wet, weight = np.full(n, np.nan), np.zeros(n, bool), np.zeros(n)
     if not n:
-        return level
+        return weight
     lines = _Lines.through(probe, up, CELL * setting.dp)
-    for k, profile in enumerate(_profiles(lines.plan, around, setting, up, probed.min())):
+    profiles = list(_profiles(lines.plan, around, setting, up, probed.min()))
+    for k, profile in enumerate(profiles):
         mine = np.flatnonzero(lines.of == k)
         wet[mine] = profile.is_wet(probed[mine])
         level[mine] = np.where(wet[mine], profile.level(probed[mine]), np.nan)
-        density[mine] = profile.density
+    column = lines.of.copy()
     known = np.flatnonzero(np.isfinite(level))
     lost = np.flatnonzero(wet & np.isnan(level))
     if len(known) and len(lost):
@@ -103,9 +104,12 @@ def _depths(
 
         plan = lines.plan[lines.of]
         nearest = known[cKDTree(plan[known]).query(plan[lost])[1]]
-        level[lost], density[lost] = level[nearest], density[nearest]
-    depth = np.where(np.isfinite(level), level - height, 0.0)
-    return density * np.maximum(0.0, depth)
+        level[lost], column[lost] = level[nearest], column[nearest]
+    below = level > height
+    for k, profile in enumerate(profiles):
+        mine = np.flatnonzero(below & (column == k))
+        weight[mine] = profile.weight(height[mine], level[mine])
+    return weight
 
 
 def _outside_of_walls(elements: Elements, around: State, dp: float) -> tuple[Elements, np.ndarray]:
@@ -126,7 +130,19 @@ class _Profile:
     height: np.ndarray  # (m,) m
     filled: np.ndarray  # (m,) by what moves, of the space that walls leave
     wall: np.ndarray  # (m,)
-    density: float  # of the water, kg/m3
+    density: np.ndarray  # (m,) of the water there, kg/m3
+
+    def weight(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Integral (n,) of the density between heights, kg/m2; beyond the ends it stays."""
+        mean, x = 0.5 * (self.density[1:] + self.density[:-1]), self.height
+        sums = np.append(0.0, np.cumsum(mean * np.diff(x)))
+        below, above = (
+            self.density[0] * np.minimum(0.0, end - x[0])
+            + np.interp(end, x, sums)
+            + self.density[-1] * np.maximum(0.0, end - x[-1])
+            for end in (low, high)
+        )
+        return np.asarray(above - below)
 
     def is_wet(self, height: np.ndarray) -> np.ndarray:
         """Whether there is a flow at heights (n,)."""
@@ -175,7 +191,28 @@ def _profiles(
         height = step * np.arange(int(top / step) + 2)
         wall = np.array([solid.filled(s, radius, setting.dim) for s in height])
         filled = np.array([flow.filled(s, radius, setting.dim) for s in height])
-        of_water = near[water[near]]
-        mass = float(around["mass"][of_water].sum())
-        density = mass / float(volume[of_water].sum()) if len(of_water) else 0.0
+        of_water = {name: values[near[water[near]]] for name, values in around.items()}
+        density = _densities(of_water, start + height[:, None] * up, up, setting)
         yield _Profile(lowest + height, filled / np.maximum(1.0 - wall, MIN_VOID), wall, density)
+
+
+def _densities(water: State, x: np.ndarray, up: np.ndarray, setting: Setting) -> np.ndarray:
+    """Density (m,) of the water at places (m, dim) from below upwards along a line, kg/m3.
+
+    Each liquid has its mean along the line, so that one alone has the same everywhere; where there
+    is none, the density goes from that below to that above.
+    """
+    if not len(water["mass"]):
+        return np.zeros(len(x))
+    volume = water["mass"] / water["density"]
+    _, of = np.unique(water["material"], return_inverse=True)
+    mean = np.bincount(of, water["mass"]) / np.bincount(of, volume)
+    if len(mean) == 1:
+        return np.full(len(x), mean[0])
+    height, radius = (x - x[0]) @ up, REACH * setting.dp
+    space, mass = (
+        np.array([column.filled(s, radius, setting.dim) for s in height])
+        for column in (Column(water["position"], v, x[0], up) for v in (volume, volume * mean[of]))
+    )
+    some = space > 0
+    return np.interp(height, height[some], mass[some] / space[some])
