@@ -190,7 +190,7 @@ void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D
     for (std::size_t n = 0; n < size(); ++n) {
         const BreakableBody<D>& body = bodies_[n];
         if (!body.sections.any() || !(force[n] > 0.0)) continue;
-        may_bend[n] = bent_tension(body.sections.most_tension(2.0 * force[n])) >= body.bears;
+        may_bend[n] = body.sections.most_tension(2.0 * force[n]) >= body.bears;
         any |= may_bend[n] != 0;
     }
     if (!any) return;
@@ -212,8 +212,7 @@ void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D
                  rotated_back(turn, in_space(push))});
         });
     for (std::size_t n = 0; n < size(); ++n)
-        if (may_bend[n])
-            tension[n] = std::max(tension[n], bent_tension(bodies_[n].sections.tension(forces[n])));
+        if (may_bend[n]) tension[n] = std::max(tension[n], bodies_[n].sections.tension(forces[n]));
 }
 
 template <int D>

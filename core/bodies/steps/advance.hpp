@@ -333,7 +333,7 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
     const bool pressed = std::max(pressed_tension<D>(force, body.diameter),
-                                  bent_tension(body.sections.tension(forces))) > share * body.bears;
+                                  body.sections.tension(forces)) > share * body.bears;
     return !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
            body.loudness <= enough;
 }

@@ -29,10 +29,6 @@ double pressed_tension(double force, double diameter) {
     return 2.8 * force / (std::numbers::pi * diameter * diameter);
 }
 
-/// Of a body that bends as a beam under a tension that is constant, Eq. (139c): a load that comes
-/// at once bends it twice as far.
-inline double bent_tension(double constant) { return 2.0 * constant; }
-
 /// Eq. (139a) and (139b): the tension that is to be expected at most in a compact body.
 template <int D>
 double expected_tension(const Touch& touch) {
