@@ -46,7 +46,6 @@ PACKING = """
 shape = "disc"
 material = "stone"
 d = 0.06
-packing = 0.5
 count = 5
 min = [-0.4, 0.2]
 max = [0.4, 0.4]

@@ -269,7 +269,7 @@ def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:
 
 
 def _has_bodies_alone(scenario: Scenario) -> bool:
-    """Whether all that moves are rigid and deformable bodies: no particle has an equation of state."""
+    """Whether all that moves are bodies as a whole: no particle has an equation of state."""
     return scenario.scheme == RESOLVED and scenario.is_dry
 
 

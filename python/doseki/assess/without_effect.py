@@ -62,7 +62,7 @@ def keys_without_effect(
     for body in bodies:
         if soft and body.material not in told:
             others = rigid - (1 if body.count else 0)
-            if not body.deforms and sum(b.count for b in soft) > others:
+            if not body.deforms and sum(b.count for b in soft) >= others:
                 told[body.material] = soft[0]
     for key, missing in MISSING.items():
         places = {_given_in(scenario, name, key): body for name, body in reversed(told.items())}
