@@ -9,6 +9,7 @@ import numpy as np
 
 from ..record.particles import BOUND, FIXED, FREE
 from ..scenario.model import Scenario
+from ..scenario.schemes import RESOLVED
 from ..scene.ground import ground_of
 from ..scene.inflow_sections import build_inflows
 
@@ -40,18 +41,25 @@ def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict
     return depths
 
 
-def mach_number(scenario: Scenario, state: State) -> tuple[float, float]:
+def has_bodies_alone(scenario: Scenario) -> bool:
+    """Whether all that moves are bodies as a whole: no particle has an equation of state."""
+    return scenario.scheme == RESOLVED and scenario.is_dry
+
+
+def mach_number(scenario: Scenario, state: State) -> tuple[float, float] | None:
     """Largest speed to expect, m/s, and what it is in sound speeds of the slowest material.
 
     The speed is that of the start, of an inflow or of a wall that goes (not: turns), or of a free
-    fall through all of the scene.
+    fall through all of the scene. In the resolved scheme bodies have no such sound: None where
+    there is nothing else.
     """
+    if has_bodies_alone(scenario):
+        return None
     free = state["motion"] != FIXED
     speeds = np.linalg.norm(state["velocity"][free], axis=1)
     given = max(float(speeds.max(initial=0.0)), *(_given_speeds(scenario)), 0.0)
     expected = math.sqrt(given**2 + 2 * _fall(scenario, state))
-    slowest = min(scenario.materials[name].speedsound for name in scenario.material_names)
-    return expected, expected / (slowest * scenario.xi)
+    return expected, expected / (scenario.min_sound_speed * scenario.xi)
 
 
 def _given_speeds(scenario: Scenario) -> Iterator[float]:

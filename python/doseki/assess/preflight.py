@@ -187,8 +187,9 @@ def _resolution(
         yield _line("per grain", f"{across:.3g} particles across")
     for name, depth in flow_depths(scenario, state, dict(enumerate(names))).items():
         yield _line(f"depth of {name}"[: WIDTH - 1], f"{depth:.3g} particles")
-    speed, mach = mach_number(scenario, state)
-    yield _line("Mach number", f"{mach:.2g} at up to {speed:.3g} m/s, xi = {scenario.xi:.4g}")
+    if (found := mach_number(scenario, state)) is not None:
+        speed, mach = found
+        yield _line("Mach number", f"{mach:.2g} at up to {speed:.3g} m/s, xi = {scenario.xi:.4g}")
 
 
 def _size(size: float) -> str:

@@ -11,11 +11,18 @@ import numpy as np
 from ..driver.gauges import outside_everything
 from ..record.particles import BOUND, DRIVEN, FIXED, FREE
 from ..scenario.model import Scenario
-from ..scenario.schemes import RESOLVED, UETA2022
+from ..scenario.schemes import UETA2022
 from ..scenario.tables.bodies import Grains
 from ..scene.ground import ground_of
 from ..util.finding import Finding, no_more_than
-from .estimates import State, flow_depths, gap, grain_spacings, mach_number
+from .estimates import (
+    State,
+    flow_depths,
+    gap,
+    grain_spacings,
+    has_bodies_alone,
+    mach_number,
+)
 from .open_sides import open_sides
 from .rheology import rheology_findings
 from .sound_speed import raised, usual_speed
@@ -219,7 +226,7 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
-    if _has_bodies_alone(scenario):
+    if has_bodies_alone(scenario):
         return  # which meet the shapes of walls, not their particles
     needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
     for body, name in names.items():
@@ -268,17 +275,10 @@ def _gauges(scenario: Scenario, state: State) -> Iterator[Finding]:
         yield GaugeOutside(f"gauge.{name}.position", tuple(place.tolist()))
 
 
-def _has_bodies_alone(scenario: Scenario) -> bool:
-    """Whether all that moves are bodies as a whole: no particle has an equation of state."""
-    return scenario.scheme == RESOLVED and scenario.is_dry
-
-
 def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
-    if _has_bodies_alone(scenario):
-        return
-    speed, mach = mach_number(scenario, state)
-    if mach > MAX_MACH * 1.05:
-        yield HighMach("", speed, mach, *scenario.sound_speed_key)
+    found = mach_number(scenario, state)
+    if found is not None and found[1] > MAX_MACH * 1.05:
+        yield HighMach("", *found, *scenario.sound_speed_key)
 
 
 def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
