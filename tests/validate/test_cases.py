@@ -11,9 +11,9 @@ from doseki.validate.running import CASES
 # Cases that the default tier runs.
 CANARIES = (
     "artificial-viscosity", "bingham", "couette-disc", "dam-front", "elastic-oblique",
-    "elastic-plate", "elliptical-drop-disturbed", "grains-drag", "grains-incline", "grains-stream",
-    "grains-under-water", "hydrostatic", "nusselt-film", "poiseuille", "shear-decay", "sound-wave",
-    "still-water", "taylor-green-100-lattice", "voellmy-slab",
+    "elastic-plate", "elliptical-drop-disturbed", "grains-drag", "grains-incline",
+    "grains-stream", "grains-under-water", "hydrostatic", "layers", "nusselt-film", "poiseuille",
+    "shear-decay", "sound-wave", "still-water", "taylor-green-100-lattice", "voellmy-slab",
 )  # fmt: skip
 # One case each of the families that take minutes at their coarsest: the tier validate has them.
 SLOW = ("channel-plane", "hydrostatic-plate", "sphere-in-oil")
