@@ -47,11 +47,11 @@ CASES = (
         criteria=(
             Criterion(
                 PROFILE,
-                (at_most(0.03), at_most(0.02), at_most(0.015)),
-                "1.5 % at 80 particles across the gap; with the mean viscosity of both in pairs"
+                (at_most(0.02), at_most(0.008), at_most(0.004)),
+                "0.4 % at 80 particles across the gap; with the mean viscosity of both in pairs"
                 " 6.7 % at 20",
             ),
-            Criterion(FASTEST, (within(0.03), within(0.02), within(0.015)), "1.5 % at 80"),
+            Criterion(FASTEST, (within(0.01), within(0.005), within(0.004)), "0.4 % at 80"),
         ),
         axes=("u (m/s)", "y (m)"),
         controls=(Control("one viscosity", PROFILE, lambda n: flow(n, "ratio=1")),),
