@@ -75,11 +75,13 @@ public:
                 f(contacts_[k].body_a, contacts_[k].body_b, norm(pushes_[k].force),
                   pushes_[k].approach);
     }
-    /// Calls f(body, place, force) for each body of each pair that touched when a kind was last
+    /// Until a kind is applied again no pair of it has touched.
+    void forget_forces() { pushes_.assign(pairs_.size(), {}); }
+    /// Calls f(body, place, force) for each body of each pair that touched when its kind was last
     /// applied: the force on it there, by the image that is near the first of the pair.
     template <class F>
-    void for_each_force(const ContactBodies<D>& bodies, PairKind kind, F&& f) const {
-        for (const std::size_t k : of(kind).rows) {
+    void for_each_force(const ContactBodies<D>& bodies, F&& f) const {
+        for (std::size_t k = 0; k < pairs_.size(); ++k) {
             const PairPush<D>& push = pushes_[k];
             if (!push.touches) continue;
             const Vec<double, D> place =

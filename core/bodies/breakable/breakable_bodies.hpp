@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <numbers>
@@ -143,9 +144,15 @@ public:
 
 private:
     void measure(BreakableBody<D>& body, const DeformableBodies<D>& deformable) const;
-    /// Adds the tension of bending to that of others, where it may be more than bodies bear.
-    void bend(const Contacts<D>& contacts, const ContactBodies<D>& touching, PairKind kind,
-              const RigidBodies<D>& rigid, const Array<double>& force,
+    /// The rigid body k as one that may break; none where it may not, or is deformable now.
+    const BreakableBody<D>* waiting(std::int32_t k, const DeformableBodies<D>& deformable) const {
+        const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
+        return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
+    }
+    /// Adds the tension of bending by all contacts to that of others, where it may be more than
+    /// bodies bear.
+    void bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
+              const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
               Array<double>& tension) const;
 
     Array<BreakableBody<D>> bodies_;
@@ -183,36 +190,39 @@ void BreakableBodies<D>::measure(BreakableBody<D>& body,
 
 template <int D>
 void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
-                              PairKind kind, const RigidBodies<D>& rigid,
-                              const Array<double>& force, Array<double>& tension) const {
-    Array<std::uint8_t> may_bend(size(), 0);
-    bool any = false;
-    for (std::size_t n = 0; n < size(); ++n) {
-        const BreakableBody<D>& body = bodies_[n];
-        if (!body.sections.any() || !(force[n] > 0.0)) continue;
-        may_bend[n] = body.sections.most_tension(2.0 * force[n]) >= body.bears;
-        any |= may_bend[n] != 0;
-    }
-    if (!any) return;
-    Array<Array<PlacedForce>> forces(size());
-    contacts.for_each_force(
-        touching, kind,
-        [&](std::int32_t k, const Vec<double, D>& place, const Vec<double, D>& push) {
-            const auto here = static_cast<std::size_t>(k);
-            const BreakableBody<D>* body = of_rigid(here);
-            if (!body) return;
-            const auto n = static_cast<std::size_t>(body - bodies_.data());
-            if (!may_bend[n]) return;
-            const Mat<double, 3> turn =
-                rigid.orientation(here).matrix() * transposed(body->orientation.matrix());
-            const Vec<double, D> r =
-                nearest_image(contacts.domain(), place - rigid.state(here).centre);
-            forces[n].push_back(
-                {rotated_back(turn, in_space(r)) + in_space(body->centre - body->middle),
-                 rotated_back(turn, in_space(push))});
+                              const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
+                              Array<double>& tension) const {
+    auto is_slender = [](const BreakableBody<D>& body) { return body.sections.any(); };
+    if (std::ranges::none_of(bodies_, is_slender)) return;
+    auto for_each_force = [&](auto&& f) {
+        contacts.for_each_force(touching, [&](std::int32_t k, const Vec<double, D>& place,
+                                              const Vec<double, D>& force) {
+            const BreakableBody<D>* body = waiting(k, deformable);
+            if (body && is_slender(*body))
+                f(static_cast<std::size_t>(body - bodies_.data()), place, force);
         });
+    };
+    Array<double> sum(size(), 0.0);
+    for_each_force([&](std::size_t n, const Vec<double, D>&, const Vec<double, D>& force) {
+        sum[n] += norm(force);
+    });
+    Array<std::uint8_t> may_bend;
     for (std::size_t n = 0; n < size(); ++n)
-        if (may_bend[n]) tension[n] = std::max(tension[n], bodies_[n].sections.tension(forces[n]));
+        may_bend.push_back(sum[n] > 0.0 &&
+                           bodies_[n].sections.most_tension(sum[n]) >= bodies_[n].bears);
+    Array<Array<PlacedForce>> forces(size());
+    for_each_force([&](std::size_t n, const Vec<double, D>& place, const Vec<double, D>& force) {
+        if (!may_bend[n]) return;
+        const BreakableBody<D>& body = bodies_[n];
+        const Mat<double, 3> turn =
+            rigid.orientation(body.rigid).matrix() * transposed(body.orientation.matrix());
+        const Vec<double, D> r =
+            nearest_image(contacts.domain(), place - rigid.state(body.rigid).centre);
+        forces[n].push_back({rotated_back(turn, in_space(r)) + in_space(body.centre - body.middle),
+                             rotated_back(turn, in_space(force))});
+    });
+    for (std::size_t n = 0; n < size(); ++n)
+        tension[n] = std::max(tension[n], bodies_[n].sections.tension(forces[n]));
 }
 
 template <int D>
@@ -249,10 +259,6 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
                                               const DeformableBodies<D>& deformable,
                                               const RigidBodies<D>& rigid,
                                               const IsDust& is_dust) const {
-    auto waits = [&](std::int32_t k) -> const BreakableBody<D>* {
-        const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
-        return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
-    };
     auto impedance = [&](std::int32_t k) {
         const auto other = static_cast<std::size_t>(k);
         if (other >= rigid.size()) {
@@ -264,7 +270,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
     };
     Array<double> force(size(), 0.0), tension(size(), 0.0);
     auto feel = [&](std::int32_t k, std::int32_t other, double push, double approach) {
-        const BreakableBody<D>* body = waits(k);
+        const BreakableBody<D>* body = waiting(k, deformable);
         if (!body) return;
         const auto n = static_cast<std::size_t>(body - bodies_.data());
         force[n] += 0.5 * push;
@@ -277,7 +283,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
                             [&](std::int32_t a, std::int32_t b, double push, double approach) {
                                 feel(a, b, push, approach), feel(b, a, push, approach);
                             });
-    bend(contacts, touching, kind, rigid, force, tension);
+    bend(contacts, touching, deformable, rigid, tension);
     Array<std::size_t> found;
     for (std::size_t n = 0; n < size(); ++n)
         if (tension[n] >= bodies_[n].bears) found.push_back(n);

@@ -16,7 +16,7 @@ BodyStep<D> Bodies<D>::advance(const MovingWalls<D>& walls, double t, double dt)
     deformable_step_ = deformable.timestep();
     wall_speed_ = rigid.speed_of_walls(walls, t);
     if (breakable_.any())
-        advance_apart(walls, t, dt, course);
+        contacts_.forget_forces(), advance_apart(walls, t, dt, course);  // a checkpoint has none
     else
         advance_together(walls, t, dt, course);
     deformable.end_step(dt, memory_);

@@ -42,6 +42,12 @@ class Ledger:
         return np.array([self._column(f"{name}_{axis}") for axis in axes]).T
 
     @property
+    def deforms(self) -> bool:
+        """Whether there are deformable bodies."""
+        bodies = self.run.scenario.get("body", {}).values()
+        return any(b.get("enabled", True) and b.get("kinematics") in DEFORM for b in bodies)
+
+    @property
     def _weight(self) -> np.ndarray:
         return np.asarray(np.linalg.norm(gravity_of(self.run.scenario)) * self._values("mass"))
 
@@ -69,6 +75,9 @@ class Ledger:
         remedy = "lower dp: walls, bodies of few particles and bodies that shatter at once make or"
         remedy += " take energy; raise speed_max; lower cflnumber (now "
         remedy += f"{self.run.scenario.get('cflnumber', 0.1):g}) by half"
+        if self.deforms:
+            remedy += ", and again: what water strikes rings with too much stress until the gap is"
+            remedy += " closed"
         value = residual / largest if largest else residual
         return judged(name, value, limits, counted, remedy, residual=residual, **details)
 
@@ -105,9 +114,6 @@ def ledger_of(run: Run) -> Ledger | None:
     history, scenario = run.history, run.scenario
     if not is_resolved(scenario) or "gravity_work" not in history or len(history["time"]) < 2:
         return None
-    bodies = [body for body in scenario.get("body", {}).values() if body.get("enabled", True)]
-    deforms = any(body.get("kinematics") in DEFORM for body in bodies)
-    if deforms and OF_BODIES not in history:
-        return None
     why = "the work of the attraction is not recorded" if scenario.get("attraction", 0.0) else ""
-    return Ledger(run, why)
+    ledger = Ledger(run, why)
+    return None if ledger.deforms and OF_BODIES not in history else ledger
