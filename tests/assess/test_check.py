@@ -12,8 +12,9 @@ import pytest
 
 import doseki
 from doseki.assess.preflight import brief_check, check_scenario
-from doseki.assess.warnings import thorough_findings
+from doseki.assess.warnings import ShallowFlow, thorough_findings
 from doseki.scenario.load import load_scenario
+from doseki.scene.checks.terrain import ThinRelease
 from doseki.solver.build import build_simulation, filled_simulation
 from doseki.util.finding import rounded_up
 
@@ -317,3 +318,10 @@ def test_bodies_alone_have_no_mach_number(doubts):
         said = doubts(xi=1e-4, replace=('"water"', '"basalt"'), scheme=scheme)
         assert any("are Mach" in doubt for doubt in said) is told
     assert any("are Mach" in doubt for doubt in doubts(xi=1e-4, scheme="resolved"))
+
+
+def test_thickness_and_depth_of_a_release_are_told_apart():
+    """One is normal to the slope and a mean, the other upright and the largest."""
+    thin, shallow = ThinRelease("slide", 2.0, 0.62), ShallowFlow("slide", 4.0, 1.25, on_slope=True)
+    assert "slide: 2 particles over its mean thickness, normal to the slope" in str(thin)
+    assert "slide: 4 particles over its largest depth, upright; below 10 it flows" in str(shallow)

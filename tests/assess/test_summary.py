@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+import pytest
+
 from doseki.assess.summary import duration_text, summary_text
 from doseki.record.reader import load
 
@@ -32,6 +35,37 @@ def test_summary_of_a_flow(flow_folder):
     assert "front             x = 0 m" in text
     assert "warning           thin" in text
     assert len(text.splitlines()) <= 25
+
+
+SECTION = """
+[gauge.down]
+kind = "section"
+left = [0.0, 1.0]
+right = [0.0, 0.0]
+interval = 1.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("width", "rate", "said"),
+    [
+        (0.0, 0.0, "nothing yet"),
+        (0.0, 3.2, "peak 3.2 m3/s at 1 s, 3.2 m3 passed, nowhere as deep as half a particle (0.05"),
+        (2.0, 3.2, "flow from 1 s on, peak 3.2 m3/s at 1 s, 3.2 m3 passed, depth up to 0.5 m"),
+    ],
+)
+def test_what_passed_a_section(tmp_path, record_run, width, rate, said):
+    """A film thinner than half of dp, which has discharge and no width, too."""
+    recorder, _ = record_run(tmp_path / "run", dim=3, tables=SECTION)
+    deep = 0.5 if width else np.nan
+    for time, now in ((0.0, 0.0), (1.0, 1.0), (2.0, 0.0)):
+        row = {"time": time, "discharge": now * rate, "mass_rate": 0.0, "area": 0.0}
+        row |= {"width": now * width, "depth": deep if now else np.nan, "speed": deep}
+        recorder.gauge("down", [f"{name} [1]" for name in row], [list(row.values())])
+    recorder.close({"status": "done"})
+    text = summary_text(load(tmp_path / "run"))
+    (line,) = (each for each in text.splitlines() if each.startswith("section down"))
+    assert line[18:].startswith(said)
 
 
 def test_summary_without_snapshots_or_history(tmp_path, record_run):

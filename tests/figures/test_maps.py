@@ -13,7 +13,7 @@ from doseki.cli.app import app
 from doseki.errors import UserError
 from doseki.figures.maps.drawing import draw_map, draw_profile
 from doseki.figures.maps.output import MapOptions, map_makers, write_pictures
-from doseki.figures.maps.structures import COLOUR, Structures
+from doseki.figures.maps.structures import COLOUR, OVER, Structures
 from doseki.figures.nothing import NothingToDrawError
 from doseki.geodata.grid import Raster
 from doseki.geodata.raster import read_raster, write_raster
@@ -106,7 +106,9 @@ def dammed(tmp_path, record_run):
 
 
 def grey_of(figure, points):
-    """Whether a figure has the colour of structures at points (n, 2) of its map."""
+    """Whether a figure has the colour of structures at points (n, 2) of its map, below numbers."""
+    for number in figure.axes[0].texts:
+        number.set_visible(False)
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3] / 255
     at = figure.axes[0].transData.transform(points).astype(int)
@@ -134,6 +136,16 @@ def test_a_map_shows_the_dam_that_stands_on_it(dammed, angle):
         assert box.y1 <= scale.y0
         assert box.y0 >= 0
         assert box.x1 <= figure.bbox.x1
+
+
+def test_a_dam_does_not_cut_the_numbers_of_contours(dammed):
+    path = dammed(37)
+    scenario = path / "scenario.toml"
+    write_pictures(path, MapOptions())
+    scenario.write_text(scenario.read_text() + "\n[maps]\n")
+    axes = dict(map_makers(load(path)))["peak_depth"]().axes[0]
+    assert len(axes.texts) > 2
+    assert min(text.get_zorder() for text in axes.texts) > OVER
 
 
 def test_runs_with_other_dams_share_none(dammed):
@@ -224,6 +236,10 @@ def test_a_file_of_several_lines_is_refused(slide, tmp_path):
         write_pictures(slide, MapOptions(path=str(tmp_path / "two.geojson")))
 
 
+def warnings_of(said, words):
+    return [line for line in said if line.startswith("warning: ") and words in line]
+
+
 def test_a_path_on_another_map_is_refused(slide, tmp_path):
     pytest.importorskip("rasterio", reason="rasterio: pip install 'doseki[terrain]'")
     write_raster(slide / "terrain.tif", replace(hill(), crs="EPSG:32633", driver="GTiff"))
@@ -234,9 +250,13 @@ def test_a_path_on_another_map_is_refused(slide, tmp_path):
     path.write_text(json.dumps({"type": "Feature", "geometry": geometry, "crs": crs}))
     with pytest.raises(UserError, match="another coordinate reference system"):
         write_pictures(slide, MapOptions(path=str(path)))
+    (slide / "terrain.tif").rename(tmp_path / "known.tif")
+    assert warnings_of(write_pictures(slide, MapOptions(path=str(path))), "not compared")
+    (tmp_path / "known.tif").rename(slide / "terrain.tif")
     path.write_text(path.read_text().replace("31287", "32633"))
     said = write_pictures(slide, MapOptions(path=str(path)))
     assert any(line.startswith("along the path") for line in said)
+    assert not warnings_of(said, "not compared")
     assert read_raster(slide / "maps/peak_depth.tif").crs is not None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +18,7 @@ from doseki.errors import UserError
 from doseki.figures import movie, stage
 from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
 from doseki.figures.dots import dots, extent_of
+from doseki.figures.flow import draw_flow
 from doseki.figures.kinds.histogram import SpeedHistogram, draw_speed_row
 from doseki.figures.kinds.panels import Panels
 from doseki.figures.kinds.snapshot import draw_panels
@@ -297,3 +299,14 @@ def test_a_colour_without_a_movie_is_refused(flow_folder):
     assert isinstance(said.exception, UserError)
     assert "--colour speed is that of a movie: give --movie FILE" in str(said.exception)
     assert not list(flow_folder.rglob("*.png"))
+
+
+def test_coordinates_of_a_map_are_drawn_in_full(flow_folder):
+    """Without an offset or an exponent, which a reader would have to add."""
+    times = [0.0, 1.0, 2.0]
+    flow = SimpleNamespace(times=times, front=[5211020.0, 5211030.0, 5211040.0], windows={})
+    figure = draw_flow(load(flow_folder), flow)
+    figure.canvas.draw()
+    axis = figure.axes[0].yaxis
+    assert axis.get_offset_text().get_text() == ""
+    assert "5211030" in {label.get_text() for label in axis.get_ticklabels()}

@@ -6,7 +6,13 @@ import sys
 
 import pytest
 
-from doseki.geodata.crs import check_map_coordinates, epsg_code, needs_rasterio, same_crs
+from doseki.geodata.crs import (
+    check_map_coordinates,
+    epsg_code,
+    needs_rasterio,
+    same_crs,
+    why_not_compared,
+)
 
 UTM = 'PROJCS["zone",GEOGCS["g",UNIT["degree",0.0174]],UNIT["metre",1]{code}]'
 UTM32, UTM33 = (UTM.format(code=f',AUTHORITY["EPSG","{n}"]') for n in (32632, 32633))
@@ -81,6 +87,23 @@ def test_numbers_in_the_texts_are_compared_without_rasterio(monkeypatch, one, ot
     assert same_crs(one, other) is same
     assert same_crs(other, one) is same
     assert needs_rasterio(one, other) is (one == UNNAMED)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "why"),
+    [
+        (UTM32, UTM32, None),
+        (UTM32, UTM33, None),
+        (None, UTM32, None),
+        (UTM32, None, "that of the terrain is not known"),
+        (UNNAMED, UTM32, "needs rasterio"),
+        ("EPSG:32632", None, "needs rasterio"),  # which knows if it is in metres
+    ],
+)
+def test_a_system_that_was_not_compared_is_told(monkeypatch, one, other, why):
+    monkeypatch.setitem(sys.modules, "rasterio", None)
+    said = why_not_compared(one, other)
+    assert said is None if why is None else why in said
 
 
 def test_the_number_of_a_compound_system_is_that_of_its_map(without_rasterio):

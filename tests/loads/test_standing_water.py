@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from doseki.driver.gauges import build_gauges
+from doseki.record.particles import FIXED, FREE
+from doseki.scenario.gauges.loads import profiles as looks
 from doseki.scenario.gauges.loads.standing_water import standing_water, surface_of
+from doseki.scenario.gauges.near import MIN_VOID, REACH, Column, kernel
 from doseki.solver.build import build_simulation
 
 from .scenes import scenario_of
 
 G = 9.81
+DOWN = "[0, -9.81]"
 # A body within a tank of still water.
 POOL = """\
 dim = {dim}
@@ -258,3 +264,56 @@ def test_layers_of_one_density_are_one_liquid(tmp_path):
     thrust, arm = thrust_of_layers(tmp_path, "down", oil=1000)
     assert thrust == pytest.approx(1000 * G * 0.4**2 / 2, rel=0.005)
     assert arm == pytest.approx(0.4 / 3, rel=0.01)
+
+
+def test_where_nothing_is_near_no_surface_is_looked_at(tmp_path):
+    """Water that is far below the stone: one look around it is all."""
+    stone = 'shape = "box"\nmin = [0.3, 0.5]\nmax = [0.5, 0.6]'
+    scenario = scenario_of(tmp_path, POOL.format(dim=2, stone=stone, level=0.1, gravity=DOWN))
+    simulation, names = build_simulation(scenario)
+    (reader,) = build_gauges(scenario, names)
+    counted = Counted(simulation)
+    box = np.array([0.28, 0.48]), np.array([0.52, 0.62])
+    assert not reader.gauge.static(counted, reader.setting, box).any()
+    assert counted.looks == 1
+
+
+class Counted:
+    """A run that counts the looks at it."""
+
+    def __init__(self, run):
+        self.run, self.looks = run, 0
+
+    def sample(self, low, high):
+        self.looks += 1
+        return self.run.sample(low, high)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_lines_are_looked_at_together_and_as_one_by_one(dim, monkeypatch):
+    random, dp, lowest, n = np.random.default_rng(4), 0.1, 0.3, 400
+    up = np.eye(dim)[-1]
+    position = random.uniform(0, 1, (n, dim)) + 5e6 * (1 - up)
+    around = {
+        "position": position, "mass": np.full(n, 900.0 * dp**dim), "density": np.full(n, 1000.0),
+        "motion": np.where(random.uniform(size=n) < 0.3, FIXED, FREE), "material": np.zeros(n, int),
+    }  # fmt: skip
+    plan = random.uniform(0, 1, (40, dim)) * (1 - up) + 5e6 * (1 - up)
+    calls = []
+    monkeypatch.setattr(looks, "kernel", lambda *given: (calls.append(1), kernel(*given))[1])
+    setting = SimpleNamespace(dp=dp, dim=dim)
+    found = looks.profiles(plan, around, setting, up, lowest)
+    assert len(calls) == 2  # of walls, and of what flows
+    for k, foot in enumerate(plan):
+        away = position - foot
+        near = np.linalg.norm(away - np.outer(away @ up, up), axis=1) < REACH * dp
+        shares = []
+        for chosen in (near & (around["motion"] == FIXED), near & (around["motion"] == FREE)):
+            volume = np.full(chosen.sum(), 0.9 * dp**dim)
+            column = Column(position[chosen], volume, foot + lowest * up, up)
+            heights = found.height - lowest
+            shares.append(np.array([column.filled(s, REACH * dp, dim) for s in heights]))
+        filled = shares[1] / np.maximum(1 - shares[0], MIN_VOID)
+        below = heights <= column.along.max() + REACH * dp
+        assert found.wall[k, below] == pytest.approx(shares[0][below], abs=1e-6)
+        assert found.filled[k] == pytest.approx(filled, abs=1e-6)

@@ -94,6 +94,15 @@ def test_sections_come_in_order_and_only_where_there_is_something(drawn_flow, ma
     assert "gorge" in page.by_id("sections")
 
 
+def test_what_has_no_number_says_why(flow_folder, page_of):
+    rows = "body,part,quantity,value\ndam,total,mean over 10 ms,nan\ndam,total,impulse,3.5\n"
+    (flow_folder / "loads.csv").write_text(rows)
+    said = page_of(flow_folder).by_id("loads")
+    assert "nan" not in said
+    assert "mean over 10 ms-" in said
+    assert "-: no mean over less than the interval of its gauge" in said
+
+
 def test_gauges_are_drawn(tmp_path, page_of):
     text = SCENARIO.format(dim=2, zeros="") + (
         '\n[gauge.p1]\nkind = "surface_height"\nposition = [0.5, 0.0]\n'

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import pytest
 
 from doseki.cli.simulate import resume
@@ -186,9 +188,37 @@ def test_resume_further(channel_file, tmp_path):
     assert (sorted(run.history["time"]) == run.history["time"]).all()
 
 
+def test_a_run_has_its_summary_for_people(uninterrupted):
+    text = (uninterrupted / "summary.txt").read_text()
+    assert "status            done" in text
+    assert "trust" in text
+
+
+@pytest.mark.parametrize("missing", [("summary.txt",), ("summary.txt", "trust.json")])
+def test_reports_that_an_ended_run_did_not_come_to_are_written(uninterrupted, tmp_path, missing):
+    folder = tmp_path / "run"
+    shutil.copytree(uninterrupted, folder)
+    for name in missing:
+        (folder / name).unlink()
+    before = record(folder)
+    summary, _ = resume_run(folder)
+    assert summary["status"] == "done"
+    assert record(folder) == before
+    for name in missing:
+        assert (folder / name).read_text() == (uninterrupted / name).read_text()
+    with pytest.raises(UserError, match=r"reached time_max"):
+        resume_run(folder)
+
+
+def test_a_stop_at_the_last_step_is_no_stop(channel_file, uninterrupted, tmp_path):
+    progress = stop_at(tmp_path / "run", 0.06)
+    assert run_channel(channel_file, tmp_path / "run", progress=progress)["status"] == "done"
+    assert_same_record(tmp_path / "run", uninterrupted)
+
+
 def test_a_finished_run_says_how_to_go_further(uninterrupted):
     before = record(uninterrupted)
-    with pytest.raises(UserError, match=r"reached time_max.*--set time_max"):
+    with pytest.raises(UserError, match=r"reached time_max.*--set time_max.*doseki plot"):
         resume_run(uninterrupted)
     assert record(uninterrupted) == before
 

@@ -87,6 +87,7 @@ def test_the_effective_scenario_no_longer_needs_the_file(write, tmp_path):
         ("start", 'rate = "3 L/s"\nstart', ["inflow.i.rate and inflow.i.hydrograph exclude"]),
         ("start", "duration = 1\nstart", ["inflow.i.duration and inflow.i.hydrograph exclude"]),
         (f"hydrograph = {LIST}", "duration = 1", ["inflow.i.rate is missing, or a hydrograph"]),
+        (f"hydrograph = {LIST}", "rate = 1", ["inflow.i.duration is missing, which goes with"]),
         ("depth = 0.4", 'depth = "normal"', ["goes with a constant rate"]),
         ("depth = 0.4", 'depth = "deep"', ["inflow.i.depth", '"deep"', '"normal"']),
         ("depth = 0.4", "depth = 0", ["inflow.i.depth", "must be a length in m"]),
@@ -100,6 +101,13 @@ def test_wrong_hydrographs(write, error_of, old, new, parts):
     assert "case.toml" in message
     for part in parts:
         assert part in message
+
+
+@pytest.mark.parametrize("setting", ["rate=3", "duration=3"])
+def test_a_setting_that_takes_the_place_of_the_hydrograph_says_so(write, setting):
+    with pytest.raises(UserError, match=r"missing.* exclude") as caught:
+        load_scenario(write(tables=INFLOW), [f"inflow.i.{setting}"])
+    assert "hydrograph" in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -164,6 +164,13 @@ def test_a_mesh_that_goes_into_other_walls_is_told(tmp_path, ends, told):
         assert "let these walls end at its faces" in str(found[0])
 
 
+def test_places_on_a_map_are_told_to_a_decimetre():
+    at = (512445.625, 5211038.02, 431.14)
+    for found in (InWalls("dam", "load", 2, 9, at), Shallow("dam", "load", 0.6, at, 1.25)):
+        assert "at (512445.6, 5211038.0, 431.1) m" in str(found)
+    assert "at (0.013, 0.5) m" in str(Shallow("dam", "load", 0.01, (0.0130001, 0.5), 0.01))
+
+
 CORNER = """
 dim = 2
 scheme = "resolved"

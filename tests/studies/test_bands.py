@@ -146,3 +146,12 @@ def test_what_cannot_be_drawn_says_why():
     ):
         with pytest.raises(NothingToDrawError):
             draw()
+
+
+def test_panels_of_a_column_have_the_same_values():
+    """Where some runs have no result of one kind, too."""
+    arrival = Column("arrival [s]", np.where(X.values > 0.05, np.nan, 2.0))
+    figure = responses([X], [Z, arrival], "title")
+    above, below = figure.axes
+    assert above.get_xlim() == below.get_xlim()
+    assert above.get_xlim()[1] > 0.1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -125,6 +126,13 @@ def polygon(folder, corners, kind="Polygon"):
     (folder / "area.geojson").write_text(json.dumps(table))
 
 
+def in_system(folder, code):
+    table = json.loads((folder / "area.geojson").read_text())
+    name = f"urn:ogc:def:crs:EPSG::{code}"
+    table["crs"] = {"type": "name", "properties": {"name": name}}
+    (folder / "area.geojson").write_text(json.dumps(table))
+
+
 AREA = ObservedArea(kind="area", file="area.geojson")
 BOX = [(102, 201), (106, 201), (106, 203), (102, 203), (102, 201)]
 
@@ -153,15 +161,21 @@ def test_an_area_is_in_the_system_of_the_map(mapped, tmp_path):
         map_.with_suffix(".prj").write_text(system(6674).to_wkt())
     for code, refused in ((6674, False), (30166, True)):
         polygon(tmp_path, BOX)
-        table = json.loads((tmp_path / "area.geojson").read_text())
-        name = f"urn:ogc:def:crs:EPSG::{code}"
-        table["crs"] = {"type": "name", "properties": {"name": name}}
-        (tmp_path / "area.geojson").write_text(json.dumps(table))
+        in_system(tmp_path, code)
         if refused:
             with pytest.raises(UserError, match="another coordinate reference system"):
                 AREA.misfit(mapped, {}, tmp_path)
         else:
             assert AREA.misfit(mapped, {}, tmp_path) == 0.0
+
+
+def test_an_area_that_cannot_be_compared_with_the_map_is_warned_about(tmp_path):
+    scenario = SimpleNamespace(maps=True, bed=SimpleNamespace(raster=SimpleNamespace(crs=None)))
+    polygon(tmp_path, BOX)
+    assert AREA.check(scenario, {}, tmp_path, UserError) == []
+    in_system(tmp_path, 6674)
+    (said,) = AREA.check(scenario, {}, tmp_path, UserError)
+    assert "area.geojson has the coordinate reference system of the terrain was not" in said
 
 
 def test_maps_are_read(mapped):

@@ -70,6 +70,14 @@ def test_beside_the_map(said, gauge):
     assert "lies beyond the terrain" in doubt
 
 
+@pytest.mark.parametrize(("bank", "others"), [("left", "right"), ("right", "left")])
+def test_a_bank_beside_the_map(said, bank, others):
+    keys = f'\n[gauge.one]\nkind = "section"\n{bank} = [3000, 3]\n{others} = [{{x}}, 1.0]\n'
+    (doubt,) = said(keys, 3, 0)
+    assert doubt.startswith(f"gauge.one: its {bank} bank [3000, 3] lies beyond the terrain")
+    assert said(SECTION, 3, 0) == []
+
+
 def test_a_gauge_off_the_bed(said):
     assert said(HEIGHT, 3, 1.4) == []
     assert said(HEIGHT, 3, 1.36) == []

@@ -81,6 +81,17 @@ def test_the_volume_is_area_of_the_ground_times_thickness(case, dp):
     assert volume_of(load_scenario(case(dp=dp))) == pytest.approx(exact, rel=0.01)
 
 
+@pytest.mark.parametrize("low", [1.02, 1.1, 1.16])
+def test_the_volume_asked_for_does_not_depend_on_dp(case, low):
+    """A strip two particles wide, wherever it lies between them."""
+    high = low + 0.4
+    keys = f"polygon = [[1, {low}], [4, {low}], [4, {high}], [1, {high}]]\nthickness = 0.5"
+    exact = 0.5 * area_of(lambda x, y: x == x, (1, low), (4, high))
+    body = body_of(load_scenario(case(keys, dp=0.2)), "slide")
+    assert body.asked == pytest.approx(exact, rel=1e-4)
+    assert body.volume == pytest.approx(exact, rel=0.015)
+
+
 def test_holes_and_several_polygons_count(case):
     polygons = (
         "polygons = [[[[1, 1], [3, 1], [3, 3], [1, 3]], [[1.5, 1.5], [2.5, 1.5], [2.5, 2.5], "
@@ -247,6 +258,24 @@ def test_without_rasterio_systems_without_numbers_are_warned_about(
     (tmp_path / "depth.prj").write_text('PROJCS["n",UNIT["m",1],AUTHORITY["EPSG","32633"]]')
     with pytest.raises(UserError, match="different coordinate reference systems"):
         doubts_of(path)
+
+
+@pytest.mark.parametrize("name", ["area.geojson", "depth.asc"])
+def test_a_system_is_not_compared_with_that_of_a_map_that_has_none(case, tmp_path, name):
+    from rasterio.crs import CRS
+
+    path = case(f'file = "{name}"' + ("" if name == "depth.asc" else "\nthickness = 0.5"))
+    ring = [[1, 1], [4, 1], [4, 3], [1, 3], [1, 1]]
+    crs = {"type": "name", "properties": {"name": "EPSG:32633"}}
+    table = {"type": "Polygon", "coordinates": [ring], "crs": crs}
+    (tmp_path / "area.geojson").write_text(json.dumps(table))
+    wkt = CRS.from_epsg(32633).to_wkt()
+    write_raster(tmp_path / "depth.asc", Raster(np.full((20, 30), 0.5), 1.0, 1.0, 0.1, wkt))
+    (said,) = (str(each) for each in doubts_of(path) if isinstance(each, NotCompared))
+    assert said.startswith(f"body.slide.file: whether {tmp_path / name} has the coordinate")
+    assert "that of the terrain is not known" in said
+    (tmp_path / "terrain.prj").write_text(wkt)
+    assert not [each for each in doubts_of(path) if isinstance(each, NotCompared)]
 
 
 def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):

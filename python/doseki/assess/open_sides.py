@@ -17,7 +17,7 @@ from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Grains
 from ..scenario.values.directions import section_axes
 from ..scene.inflow_sections import build_inflows
-from ..util.finding import Finding
+from ..util.finding import Finding, place_text
 from .estimates import State
 from .pouring import Cells, Exits, Fall
 from .support import falling, holds, supports
@@ -38,7 +38,7 @@ class OpenSide(Finding):
     def __str__(self) -> str:
         sides = f"at its side {' and '.join(self.sides)}" if self.sides else ""
         where = " and ".join([*filter(None, [sides]), *(["below"] if self.below else [])])
-        x = ", ".join(f"{value:.3g}" for value in self.first)
+        x = place_text(self.first)
         return (
             f"{self.place}: the scene is open {where}; what gets out there, first near [{x}] m,"
             f" falls for ever: add a wall, {REMEDY}"

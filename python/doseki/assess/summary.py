@@ -8,13 +8,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..measure.flow import Flow, WindowFlow, measure_flow
-from ..measure.hydrographs import passage
+from ..measure.hydrographs import Passage, passage
 from ..measure.maps.runout import Runout, runout_lines
 from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
 from ..record.units import unit_in
+from ..scenario.gauges.section import DRY
 from ..scene.kinds.release import volume_text
+from ..util.files import write_whole_text
 from .lakes import filled_text
 from .loads import load_lines, loads_of
 from .trust.report import trust_lines
@@ -27,6 +29,11 @@ def summary_text(run: Run) -> str:
     """What was run, how it went and the key results: about 20 lines."""
     rows = [*key_rows(run), *_warnings(run), *_trust(run)]
     return "\n".join([title_of(run), "", *(f"{name:<{WIDTH}}{text}" for name, text in rows)])
+
+
+def write_summary(run: Run) -> None:
+    """Write that text into the folder of the run."""
+    write_whole_text(run.folder.summary_text, summary_text(run) + "\n")
 
 
 def title_of(run: Run) -> str:
@@ -164,15 +171,20 @@ def _sections(run: Run) -> Iterator[Row]:
         record = run.gauges.get(name)
         if table.get("kind") != "section" or record is None or not len(record["time"]):
             continue
-        found = passage(record)
-        text = "nothing yet"
-        if found.arrival is not None:
-            text = (
-                f"flow from {found.arrival:.3g} s on, peak {found.peak:.3g} m3/s at"
-                f" {found.peak_time:.3g} s, {found.volume:.3g} m3 passed, depth up to"
-                f" {found.depth:.3g} m, speed up to {found.speed:.3g} m/s"
-            )
-        yield _line(f"section {name}", text)
+        yield _line(f"section {name}", _passed(passage(record), DRY * run.scenario["dp"]))
+
+
+def _passed(found: Passage, film: float) -> str:
+    """What passed a section, of which strips less deep than `film`, m, count as dry."""
+    if not found.peak:
+        return "nothing yet"
+    passed = f"peak {found.peak:.3g} m3/s at {found.peak_time:.3g} s, {found.volume:.3g} m3 passed"
+    if found.arrival is None:
+        return f"{passed}, nowhere as deep as half a particle ({film:.3g} m)"
+    return (
+        f"flow from {found.arrival:.3g} s on, {passed}, depth up to {found.depth:.3g} m, "
+        f"speed up to {found.speed:.3g} m/s"
+    )
 
 
 def _runout(run: Run) -> Iterator[Row]:

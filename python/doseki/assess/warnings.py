@@ -56,12 +56,14 @@ class ShallowFlow(Finding):
 
     across: float  # particles
     dp: float  # m
+    on_slope: bool = False  # `across` is that of the highest particle above a map
 
     def __str__(self) -> str:
         enough = self.across * self.dp / MIN_ACROSS_FLOW
+        depth = "largest depth, upright" if self.on_slope else "depth"
         return (
-            f"{self.place}: {self.across:.2g} particles over its depth; below {MIN_ACROSS_FLOW} it"
-            f" flows too slowly: dp = {no_more_than(enough)} would do"
+            f"{self.place}: {self.across:.2g} particles over its {depth}; below {MIN_ACROSS_FLOW}"
+            f" it flows too slowly: dp = {no_more_than(enough)} would do"
         )
 
 
@@ -222,7 +224,8 @@ def _grains(scenario: Scenario) -> Iterator[Finding]:
 def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     for name, across in flow_depths(scenario, state, names).items():
         if across < MIN_ACROSS_FLOW - 1e-6:
-            yield ShallowFlow(name, across, scenario.dp)
+            on_slope = scenario.bed is not None and name not in scenario.inflow
+            yield ShallowFlow(name, across, scenario.dp, on_slope)
 
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:

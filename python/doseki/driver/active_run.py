@@ -227,11 +227,12 @@ class ActiveRun:
             progress(simulation.time, simulation.timestep, simulation.steps)
             stopped = self._is_watched_enough() or self.ranks.agree(bool(stop))
         self.write_checkpoint(clock)
-        if stopped:
+        is_over = simulation.time >= self.scenario.time_max
+        if not is_over:
             self.record_snapshot()
             self.record_history()
         self.write_maps()
-        return not stopped
+        return is_over
 
     def _is_watched_enough(self) -> bool:
         """Let who watches look, if it is time; whether that ends the run."""

@@ -9,7 +9,7 @@ from ..measure.flow import Flow
 from ..record.reader import Run
 from ..record.units import unit_in
 from .kinds.series import draw_curves
-from .layout import chart_grid, figure_legend
+from .layout import chart_grid, figure_legend, lengths_in_full
 
 MEASURES = (  # attribute of WindowFlow, what it is, its unit in 3-D
     ("fluid_velocity", "mean velocity x of the fluid", "m/s"),
@@ -26,6 +26,7 @@ def draw_flow(run: Run, flow: Flow) -> Figure:
     for axes, (label, curves) in zip(grid[:, 0], panels.items(), strict=True):
         draw_curves(axes, flow.times, curves)
         axes.set_ylabel(label, fontsize="small")
+    lengths_in_full(grid[0, 0], "y")
     grid[-1, 0].set_xlabel("time (s)")
     figure_legend(figure, grid.flat)
     return figure

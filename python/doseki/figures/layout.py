@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,6 +22,7 @@ GAP, KEY_SLOT = 0.25, 1.6  # inches to the right of a panel
 VIEWS_WIDTH, VIEW_GAP = 11.0, 0.8  # inches for views in space, and below each of them
 VIEW_TOP = 0.25  # inches of the gap that are above a view
 FLAT_VIEWS = 9.0  # views that are longer than so many heights stand below each other
+FULL = (-5, 9)  # powers of ten between which lengths, m, have no exponent
 BAR_SHARE = 0.2  # of the width: a scale bar is no longer
 
 SMALL: dict[str, Any] = {"fontsize": "small", "loc": "left"}  # titles of panels
@@ -53,6 +54,7 @@ class PanelGrid:
         left = LEFT + column * self._panel_width + sum(self._right_of[:column])
         bottom = BOTTOM + (self._rows - 1 - row) * (self._panel_height + ABOVE)
         axes = self._add(left, bottom, self._panel_width)
+        lengths_in_full(axes)
         axes.xaxis.set_major_locator(MaxNLocator(max(3, int(1.3 * self._panel_width))))
         axes.yaxis.set_major_locator(MaxNLocator(max(3, int(2.5 * self._panel_height))))
         axes.tick_params(labelbottom=row == self._rows - 1, labelleft=column == 0)
@@ -104,6 +106,7 @@ class ViewRows:
             else:
                 left += width + LEFT
         for axes, (width, height) in zip(found, self._sizes, strict=True):
+            lengths_in_full(axes)
             axes.xaxis.set_major_locator(MaxNLocator(max(2, int(1.3 * width))))
             axes.yaxis.set_major_locator(MaxNLocator(max(2, int(2.0 * height))))
         return found
@@ -134,6 +137,11 @@ def nice_length(longest: float) -> float:
     return max(power * step for step in (1.0, 2.0, 5.0) if power * step <= longest * (1 + 1e-9))
 
 
+def lengths_in_full(axes: Axes, axis: Literal["both", "x", "y"] = "both") -> None:
+    """Numbers at axes as they are, with no offset: coordinates of maps have seven digits."""
+    axes.ticklabel_format(axis=axis, useOffset=False, style="sci", scilimits=FULL)
+
+
 def name_axes(axes: Axes, dim: int, rotate: float) -> None:
     """Name the axes of a panel where they have numbers; a prime marks turned axes."""
     prime = "'" if rotate else ""
@@ -144,9 +152,16 @@ def name_axes(axes: Axes, dim: int, rotate: float) -> None:
 
 
 def chart_grid(
-    rows: int, columns: int, panel: tuple[float, float], title: str, sharex: bool = True
+    rows: int,
+    columns: int,
+    panel: tuple[float, float],
+    title: str,
+    sharex: bool | Literal["col"] = True,
 ) -> tuple[Figure, np.ndarray]:
-    """A figure of rows x columns charts of `panel` = (width, height) inches: (figure, axes)."""
+    """A figure of rows x columns charts of `panel` = (width, height) inches: (figure, axes).
+
+    `sharex` says whether all have the same x axis, or those of each column.
+    """
     figure = _figure(columns * panel[0] + 1.5, rows * panel[1] + 0.6)
     figure.set_layout_engine("constrained")
     figure.suptitle(title, fontsize="medium", wrap=True)

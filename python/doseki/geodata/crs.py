@@ -239,6 +239,30 @@ def needs_rasterio(one: str | None, other: str | None) -> bool:
     return same_crs(one, other) is None and find_spec("rasterio") is None
 
 
+def why_not_compared(one: str | None, other: str | None) -> str | None:
+    """Why it is not known whether `one`, the system of a file, is `other`, that of the terrain.
+
+    None where it is known, or where `one` is None: then coordinates are those of the terrain.
+    """
+    if one is None or same_crs(one, other) is not None:
+        return None
+    if needs_rasterio(one, other):
+        return "which needs rasterio: pip install 'doseki[terrain]'"
+    if other is None:
+        return (
+            "as that of the terrain is not known: make sure that they are the same, and say so in "
+            "a .prj file beside its map, or with gdal_edit.py -a_srs EPSG:CODE"
+        )
+    return "as one of the two is not known to rasterio: make sure that they are the same"
+
+
+def not_compared_text(file: object, why: str) -> str:
+    """What is said of a file whose system was not compared."""
+    return (
+        f"whether {file} has the coordinate reference system of the terrain was not compared, {why}"
+    )
+
+
 def _horizontal(wkt: str) -> str:
     """A system without the heights that a compound one adds to it."""
     start = MAP_PART.search(wkt)

@@ -13,7 +13,8 @@ class Passage:
     """A flow that crosses a section.
 
     Attributes:
-        arrival: time at which the section is first seen wet, s; None where it stays dry.
+        arrival: time at which the section is first seen wet, s; None where it stays dry, as below
+            a film, which has discharge and no depth.
         peak: largest discharge, m3/s.
         peak_time: of that, s.
         depth, speed: largest means over the wet section, m and m/s.

@@ -24,7 +24,7 @@ from ..util.files import write_whole_text
 from ..util.sealed import check_seal, sealed
 from ..util.toml_writer import to_toml
 from .provenance import core_name, read_provenance
-from .runner import RunOptions, carry_out, run_scenario
+from .runner import RunOptions, carry_out, run_scenario, write_reports
 
 Overrides: TypeAlias = Sequence[str | Change]
 NOTHING_YET = "no checkpoint was written yet; the run began anew"
@@ -56,10 +56,8 @@ def resume_run(
             options.ranks.on_root(lambda: _check_identity(folder, checkpoint))
         scenario = _scenario(folder.scenario, overrides)
         if checkpoint.time >= scenario.time_max and folder.summary.is_file():
-            raise UserError(
-                f"{directory}: the run has reached time_max = {scenario.time_max:g} s;"
-                " go further with --set time_max=..."
-            )
+            options.ranks.on_root(lambda: _check_unfinished(folder, scenario.time_max))
+            return _told(folder, options.ranks), notes
         run = _restored(directory, scenario, checkpoint, notes, options.ranks)
         if overrides:
             # The last snapshot may have been made early, at the time_max of then.
@@ -68,6 +66,24 @@ def resume_run(
             options.ranks.on_root(lambda: write_whole_text(folder.scenario, text))
             run.identity = options.ranks.on_root(lambda: identity_of(folder.scenario))
         return carry_out(run, options, fresh=False), notes
+
+
+def _check_unfinished(folder: RunFolder, time_max: float) -> None:
+    """Raise UserError for a run that has come to its end and has told all of it."""
+    if folder.trust.is_file() and folder.summary_text.is_file():
+        raise UserError(
+            f"{folder.path}: the run has reached time_max = {time_max:g} s; go further with "
+            f"--set time_max=..., or draw its figures with doseki plot {folder.path}"
+        )
+
+
+def _told(folder: RunFolder, ranks: OneRank) -> dict[str, Any]:
+    """The summary of a run that ended before it could write its reports, which are written."""
+    remark = ranks.on_root(lambda: write_reports(folder.path))
+    summary = dict(load(folder.path).summary)
+    if remark:
+        summary["warnings"] = [*summary.get("warnings", ()), remark]
+    return summary
 
 
 def _check_identity(folder: RunFolder, checkpoint: Checkpoint) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ..assess.failure.failure import Failure, explain_failure
 from ..assess.lakes import filled_volumes
 from ..assess.loads import write_loads
+from ..assess.summary import write_summary
 from ..assess.trust.report import write_trust
 from ..driver.active_run import ActiveRun, Progress
 from ..driver.live import Watch
@@ -20,7 +22,7 @@ from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError, UserError
 from ..geodata.ground import write_ground
 from ..record.beginning import check_free
-from ..record.reader import load
+from ..record.reader import Run, load
 from ..record.writer import Recorder
 from ..scenario.model import Scenario
 from ..scene.kinds.release import released_volumes
@@ -211,9 +213,10 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         core.set_threads(before)
     summary = _summary(run, status) | ({"stopped_by": reason} if reason else {})
     run.recorder.close(summary)
-    if remark := run.ranks.on_root(lambda: _judge(directory)):
-        summary["warnings"].append(remark)
-        run.recorder.close(summary)
+    for reports in (JUDGEMENTS, TEXT):
+        if remark := run.ranks.on_root(partial(write_reports, directory, reports)):
+            summary["warnings"].append(remark)
+            run.recorder.close(summary)
     return summary
 
 
@@ -224,12 +227,15 @@ def _reason(watch: Watch | None, stop: StopRequests) -> str:
     return "the callback" if watch is not None and watch.stopped else stop.reason
 
 
-def _judge(directory: Path) -> str:
-    """Say how far to trust a finished run, and what loads it had; it stays one where that fails,
-    which is told.
-    """
+Report = tuple[str, Callable[[Run], object]]  # what, and what writes it
+JUDGEMENTS: tuple[Report, ...] = (("trust report", write_trust), ("table of loads", write_loads))
+TEXT: tuple[Report, ...] = (("summary.txt", write_summary),)  # what it says begins with the others
+
+
+def write_reports(directory: str | Path, reports: Sequence[Report] = JUDGEMENTS + TEXT) -> str:
+    """Say what a finished run came to; it stays one where that fails, which is returned."""
     remarks = []
-    for what, write in (("trust report", write_trust), ("table of loads", write_loads)):
+    for what, write in reports:
         try:
             write(load(directory))
         except (Exception, Interrupted) as error:

@@ -59,10 +59,17 @@ def _check_rate(where: Where, name: str, inflow: Inflow) -> None:
     if inflow.depth is None:
         raise where.error(("inflow", name), f"{table}.depth is missing")
     if inflow.hydrograph is None:
-        for key in ("rate", "duration"):
-            if getattr(inflow, key) is None:
-                also = "" if key == "duration" else ", or a hydrograph"
-                raise where.error(("inflow", name), f"{table}.{key} is missing{also}")
+        if inflow.rate is None:
+            raise where.error(
+                ("inflow", name),
+                f"{table}.rate is missing, or a hydrograph, which rate and duration exclude",
+            )
+        if inflow.duration is None:
+            raise where.error(
+                ("inflow", name),
+                f"{table}.duration is missing, which goes with rate; a hydrograph has its own, and "
+                f"{table}.rate and {table}.hydrograph exclude each other",
+            )
         return
     for key in ("rate", "duration"):
         if getattr(inflow, key) is not None:

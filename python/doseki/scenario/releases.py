@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
-from ..geodata.crs import needs_rasterio, same_crs
+from ..geodata.crs import not_compared_text, same_crs, why_not_compared
 from ..geodata.features import Features, Polygon, read_features
 from ..geodata.inside import crossing_of
 from ..geodata.raster import holds_raster
@@ -24,15 +24,13 @@ OVERLAP = 0.01  # of the smaller of two areas; edges of drawn ones do not meet e
 
 @dataclass(frozen=True)
 class NotCompared(Finding):
-    """A file whose coordinate reference system could not be looked up."""
+    """A file whose coordinate reference system could not be compared with that of the terrain."""
 
     file: Path
+    why: str
 
     def __str__(self) -> str:
-        return (
-            f"{self.place}: whether {self.file} has the coordinate reference system of the terrain "
-            "was not compared, which needs rasterio: pip install 'doseki[terrain]'"
-        )
+        return f"{self.place}: {not_compared_text(self.file, self.why)}"
 
 
 def completed_release(
@@ -54,8 +52,8 @@ def completed_release(
     found: dict[str, Any] = {"file": None, "digest": None, "polygon": None}
     if path is not None:
         features = _read(name, path, where, crs)
-        if needs_rasterio(features.crs, crs):
-            doubts.append(NotCompared(f"body.{name}.file", path))
+        if why := why_not_compared(features.crs, crs):
+            doubts.append(NotCompared(f"body.{name}.file", path, why))
         found["polygons"], thickness = _from_file(name, release, path, where, features)
     else:
         given = release.polygon

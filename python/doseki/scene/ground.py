@@ -7,6 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ..compiled import HeightField, load_core
+from ..geodata.outlines import Polygon
 from ..scenario.bed import TILE_COLUMNS, Bed
 
 
@@ -62,6 +63,12 @@ class Ground:
             )
             sum_of -= (ahead - behind) / step
         return sum_of
+
+    def area_in(self, polygon: Polygon) -> float:
+        """The area of the surface over a polygon, m2: that in plan times the mean steepness."""
+        place, area = polygon.quadrature()
+        steepness = self.field.at(np.ascontiguousarray(place))["area"]
+        return polygon.area * float(np.average(steepness, weights=area))
 
     def height_above(self, points: np.ndarray) -> np.ndarray:
         """Distance (N,) of points (N, dim) from the surface, m; below 0 in the ground."""

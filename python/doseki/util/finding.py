@@ -7,6 +7,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+MAP = 1e3  # m; coordinates beyond are those of maps
+
 
 @dataclass(frozen=True)
 class Finding(ABC):
@@ -17,6 +19,11 @@ class Finding(ABC):
     @abstractmethod
     def __str__(self) -> str:
         """One sentence, with the remedy where there is one."""
+
+
+def place_text(place: Iterable[float]) -> str:
+    """Coordinates, m, in four digits; those of a map to a decimetre."""
+    return ", ".join(f"{x:.4g}" if abs(x) < MAP else f"{x:.1f}" for x in place)
 
 
 def no_more_than(most: float) -> str:

@@ -16,6 +16,7 @@ from ...record.reader import load
 from ...record.writer import jsonable
 from ...solver.protocol import ForceTerms
 from ...util.files import write_whole_text
+from ...util.finding import place_text
 from .neighbours import neighbours_of
 from .remedy import remedy
 
@@ -178,7 +179,7 @@ def paragraph(report: dict[str, Any]) -> str:
 
 
 def _particle_sentence(report: dict[str, Any], good: dict[str, Any], bad: dict[str, Any]) -> str:
-    place = ", ".join(f"{x:.4g}" for x in good["position"])
+    place = place_text(good["position"])
     return (
         f"Particle {good['id']} ({good['material']}, body {good['body']}) at ({place}) m:"
         f" {report['meaning']}. Its speed went from {_text(good['speed'])} to"

@@ -14,7 +14,7 @@ from ...record.reader import GaugeRecord, Run
 from ...scenario.gauges.gauge import Gauge
 from ...scenario.tables.figure import GaugeFigure
 from ...util.spelling import suggestion
-from ..layout import chart_grid, figure_legend
+from ..layout import chart_grid, figure_legend, lengths_in_full
 from .series import draw_curves
 
 PROFILES = 4  # drawn, where no times are given
@@ -40,9 +40,12 @@ def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
         if gauge.is_profile:
             _draw_profiles(axes, record, column, table.times)
             axes.set_xlabel(label)
+            lengths_in_full(axes, "y")
         else:
             _draw_over_time(axes, record, column, gauge.series)
             axes.set_ylabel(label)
+            if record.units[column] == "m":
+                lengths_in_full(axes, "y")
     if not gauge.is_profile:
         grid[-1, 0].set_xlabel("time (s)")
     figure_legend(figure, grid[:1, 0])

@@ -123,4 +123,3 @@ def _name_plan(panels: Sequence[Axes], view: View, time: str) -> None:
     scale_bar(panels[0])
     panels[1].set_title("plan", **SMALL)
     panels[1].set(xlabel=f"x{prime} (m)", ylabel="y (m)")
-    panels[1].ticklabel_format(useOffset=False, style="plain")

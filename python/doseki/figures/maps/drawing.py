@@ -8,14 +8,15 @@ from textwrap import fill
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from ...geodata.grid import Raster
 from ...measure.maps.quantities import ARRIVAL_TIME, DEPOSIT, PEAK_DEPTH, PEAK_SPEED, MapQuantity
-from ..layout import chart_grid
+from ..layout import chart_grid, lengths_in_full
 from ..nothing import NothingToDrawError
 from ..space.ground import hillshade
-from .structures import Structures, draw_structures
+from .structures import OVER, Structures, draw_structures
 
 LONGEST = 7.0  # inches of the longer side of a map
 SHORTEST = 2.5  # inches of the shorter one
@@ -25,6 +26,7 @@ BELOW, LINE = 0.6, 0.22  # inches below a map, and of a line of its title
 AROUND = 0.15  # of the extent of the flow, shown around it
 LEAST_AROUND = 5.0  # cells
 DARKEST = -1.2  # of the grey that stands for no light, below white's 1
+HALO = (1.0, 1.0, 1.0, 0.6)  # around numbers, which may lie on structures
 CONTOURS = 14  # lines at most
 COLOURS = {ARRIVAL_TIME.name: "viridis_r", DEPOSIT.name: "YlOrBr"}
 OTHERS = "plasma_r"
@@ -100,7 +102,7 @@ def _map_axes(wide: float, high: float, lines: int) -> tuple[Figure, Axes]:
     figure, panels = chart_grid(1, 1, (width + SIDE - 1.5, height + BELOW + LINE * lines), "")
     axes = panels[0, 0]
     axes.set_aspect("equal")
-    axes.ticklabel_format(useOffset=False, style="plain")
+    lengths_in_full(axes)
     axes.xaxis.set_major_locator(MaxNLocator(max(2, int(width)), steps=[1, 2, 5, 10]))
     axes.yaxis.set_major_locator(MaxNLocator(max(2, int(1.5 * height)), steps=[1, 2, 5, 10]))
     axes.tick_params(labelsize="small")
@@ -135,8 +137,9 @@ def _draw_bed(axes: Axes, bed: Raster, extent: tuple[float, float, float, float]
         bed.x, bed.y, bed.values, levels=levels, colors="0.25", linewidths=0.5, zorder=3
     )
     lines.set_in_layout(False)
-    for label in axes.clabel(lines, fontsize="x-small", fmt="%g"):
+    for label in axes.clabel(lines, fontsize="x-small", fmt="%g", zorder=OVER + 1):
         label.set_in_layout(False)  # it lies in the map, and would push it aside
+        label.set_path_effects([withStroke(linewidth=1.5, foreground=HALO)])
 
 
 def draw_profile(profile: Mapping[str, np.ndarray], title: str) -> Figure:

@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...errors import UserError
+from ...geodata.crs import not_compared_text, why_not_compared
 from ...geodata.features import read_on_map
 from ...geodata.grid import Raster
 from ...measure.maps.files import read_maps, write_maps
@@ -52,7 +53,11 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
     run = load(directory)
     refuse_links(run.folder)
     maps, bed, said = _maps(run, options)
-    profile = None if options.path is None else along_path(maps, bed, _path(options.path, bed.crs))
+    profile = None
+    if options.path is not None:
+        path, doubts = _path(options.path, bed.crs)
+        profile = along_path(maps, bed, path)
+        said += doubts
     with plain_text() as complaints:
         files = list(_draw(run, maps, bed))
         if profile is not None:
@@ -130,24 +135,28 @@ def _save(run: Run, name: str, figure: Figure) -> Path:
 LONGEST_NAME = 255  # of a file
 
 
-def _path(given: str, crs: str | None) -> np.ndarray:
-    """Points (n, 2) of a path on the map of `crs`: of the line in a file, or as they are given."""
+def _path(given: str, crs: str | None) -> tuple[np.ndarray, list[str]]:
+    """Points (n, 2) of a path on the map of `crs`: of the line in a file, or as they are given.
+
+    And what is doubtful about the file.
+    """
     try:
         rows = [[float(number) for number in point.split(",")] for point in given.split()]
         points = np.array(rows, dtype=np.float64)
     except ValueError:
         points = np.empty(0)
     if points.ndim == 2 and points.shape[1] == 2 and np.isfinite(points).all():
-        return points
+        return points, []
     if len(given) > LONGEST_NAME or not Path(given).exists():
         raise UserError(
             f'--path {given[:80]}: neither a file nor points such as "460000,5200000 460100,'
             '5200000"'
         )
-    lines = read_on_map(given, crs).lines
+    found = read_on_map(given, crs)
+    lines, why = found.lines, why_not_compared(found.crs, crs)
     if len(lines) != 1:
         raise UserError(f"{given}: holds {len(lines)} lines; a profile goes along one")
-    return lines[0].vertices
+    return lines[0].vertices, [f"warning: {not_compared_text(given, why)}"] if why else []
 
 
 def _profile(run: Run, profile: Mapping[str, np.ndarray]) -> Iterator[Path]:

@@ -77,7 +77,7 @@ def responses(inputs: Sequence[Column], outputs: Sequence[Column], title: str) -
     if not outputs or not len(outputs[0].values):
         raise NothingToDrawError("no result of any run")
     inputs, outputs = inputs[:MOST_PANELS], outputs[:MOST_PANELS]
-    figure, panels = chart_grid(len(outputs), len(inputs), PANEL, title, sharex=False)
+    figure, panels = chart_grid(len(outputs), len(inputs), PANEL, title, sharex="col")
     for row, output in enumerate(outputs):
         for column, each in enumerate(inputs):
             _response(panels[row, column], each, output)

@@ -32,6 +32,20 @@ class BesideMap(Finding):
 
 
 @dataclass(frozen=True)
+class BankBesideMap(Finding):
+    """A section that goes beyond the map."""
+
+    bank: str  # left or right
+    at: tuple[float, float]  # m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: its {self.bank} bank [{self.at[0]:.10g}, {self.at[1]:.10g}] lies "
+            "beyond the terrain, or where it has no data: nothing passes there"
+        )
+
+
+@dataclass(frozen=True)
 class OffBed(Finding):
     """A gauge whose column does not begin on the bed."""
 
@@ -110,6 +124,10 @@ def _findings(place: str, gauge: Gauge, feet: np.ndarray, bed: Bed, dp: float) -
     ground = ground_of(bed).field.at(np.ascontiguousarray(feet[:, :across]))
     if ground["unknown"].all():
         yield BesideMap(place)
+    elif isinstance(gauge, Section):
+        for bank, k in (("left", 0), ("right", -1)):
+            if ground["unknown"][k]:
+                yield BankBesideMap(place, bank, (float(feet[k, 0]), float(feet[k, 1])))
     elif isinstance(gauge, SurfaceHeight):
         level = float(ground["height"][0])
         above = float(feet[0, -1]) - level

@@ -14,7 +14,7 @@ from ...scenario.gauges.loads.metered import Metered
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box
 from ...scenario.tables.mesh import Mesh
-from ...util.finding import Finding
+from ...util.finding import Finding, place_text
 from ..ground import ground_of
 from ..kinds.box_walls import SLAB
 from ..kinds.mesh import MeshBody
@@ -38,7 +38,7 @@ class Shallow(Finding):
     dp: float
 
     def __str__(self) -> str:
-        place = ", ".join(f"{x:.1f}" for x in self.at)
+        place = place_text(self.at)
         return (
             f"{self.place}: reaches {self.reach:.2g} m into the ground at ({place}) m; what "
             f"gauge.{self.gauge} reads of water beside it is up to 8 % low: let it go {DEEP} dp = "
@@ -56,7 +56,7 @@ class EndsAtWall(Finding):
     dp: float
 
     def __str__(self) -> str:
-        place = ", ".join(f"{x:.4g}" for x in self.at)
+        place = place_text(self.at)
         return (
             f"{self.place}: ends at {self.other}, at ({place}) m, whose particles behind its face "
             f"carry the thrust on a quarter of dp there, which gauge.{self.gauge} does not read: "
@@ -90,7 +90,7 @@ class InWalls(Finding):
     at: tuple[float, ...]  # m
 
     def __str__(self) -> str:
-        place = ", ".join(f"{x:.4g}" for x in self.at)
+        place = place_text(self.at)
         return (
             f"{self.place}: {self.count:,} of its {self.all:,} particles lie in other walls and "
             f"are left out, one at ({place}) m; what gauge.{self.gauge} reads of water beside them "

@@ -137,8 +137,8 @@ class ThinRelease(Finding):
 
     def __str__(self) -> str:
         return (
-            f"{self.place}: {self.layers:.2g} particles thick, which is a few for a flow: dp = "
-            f"{self.dp:.2g} would make four"
+            f"{self.place}: {self.layers:.2g} particles over its mean thickness, normal to the "
+            f"slope, which is few for a flow: dp = {self.dp:.2g} would make four"
         )
 
 

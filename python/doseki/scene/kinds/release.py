@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...errors import UserError
-from ...geodata.crs import needs_rasterio, same_crs
+from ...geodata.crs import same_crs, why_not_compared
 from ...geodata.features import Polygon
 from ...geodata.raster import Raster, read_raster
 from ...record.particles import FREE, ParticleSet, check_size
@@ -179,15 +179,11 @@ class ReleaseBody(Shaped[Release]):
         def layer(height: float) -> tuple[np.ndarray, np.ndarray]:
             return self.ground.layer(low, high, dp, height)
 
-        place, area = layer(0.0)
-        inside = polygon.contains(place[:, 0], place[:, 1])
-        if not inside.any():
+        place, _ = layer(0.0)
+        asked = self.ground.area_in(polygon) * thickness
+        if not polygon.contains(place[:, 0], place[:, 1]).any():
             none = np.zeros(0)
-            return Parcels(place[:0], none, none), polygon.area * thickness
-        # Parts are of equal area on the slope, and so of less in plan where it is steep.
-        steepness = self.ground.field.at(np.ascontiguousarray(place[inside]))["area"]
-        in_plan = area[inside] / steepness
-        asked = float(polygon.area * area[inside].sum() / in_plan.sum()) * thickness
+            return Parcels(place[:0], none, none), asked
         self._check_size(asked)
         parcels = self._stacked(layer, _everywhere(thickness), self._spacing(thickness))
         within = polygon.contains(parcels.place[:, 0], parcels.place[:, 1])
@@ -227,9 +223,8 @@ class ReleaseBody(Shaped[Release]):
 
     def findings(self) -> list[Finding]:
         """See Body."""
-        if self._is_raster and needs_rasterio(self._map.crs, self._terrain_crs):
-            return [NotCompared(f"body.{self.name}.file", self._file)]
-        return []
+        why = why_not_compared(self._map.crs, self._terrain_crs) if self._is_raster else None
+        return [NotCompared(f"body.{self.name}.file", self._file, why)] if why else []
 
     def _raster(self) -> tuple[Parcels, float]:
         """Where a raster of thickness has half a particle or more."""

@@ -5,7 +5,7 @@ A misfit is a difference in units of the error of the observation: 1 is as near 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal
 
@@ -13,8 +13,9 @@ import numpy as np
 from pydantic import Field
 
 from ...errors import UserError
+from ...geodata.crs import not_compared_text, why_not_compared
 from ...geodata.errors import GeodataError
-from ...geodata.features import Polygon, read_on_map
+from ...geodata.features import Features, read_on_map
 from ...record.reader import Run
 from ...scenario.model import Scenario
 from ...scenario.table import Table
@@ -230,8 +231,10 @@ class ObservedArea(Observation):
         """There must be maps, and polygons in their coordinate reference system."""
         check_maps(scenario, refuse)
         raster = scenario.bed.raster if scenario.bed is not None else None
-        self._polygons(folder, raster.crs if raster is not None else None)
-        return []
+        crs = raster.crs if raster is not None else None
+        found = self._features(folder, crs)
+        why = why_not_compared(found.crs, crs) if raster is not None else None
+        return [not_compared_text(folder / self.file, why)] if why else []
 
     def misfit(self, run: Run, results: Mapping[str, float], folder: Path) -> float:
         """Jaccard's distance over the error; raises UserError for polygons beside the map."""
@@ -239,21 +242,20 @@ class ObservedArea(Observation):
         mapped = covered(raster, self.map, self.above)
         x, y = np.meshgrid(raster.x, raster.y)
         seen = np.zeros(raster.shape, bool)
-        for polygon in self._polygons(folder, raster.crs):
-            seen |= polygon.contains(x, y)
+        seen |= self._features(folder, raster.crs).contains(x, y)
         if not seen.any():
             raise UserError(f"{folder / self.file}: its polygons lie beside the map of the run")
         either = np.count_nonzero(mapped | seen)
         return (1 - np.count_nonzero(mapped & seen) / either) / self.error
 
-    def _polygons(self, folder: Path, crs: str | None) -> Sequence[Polygon]:
-        """On the map of `crs`."""
+    def _features(self, folder: Path, crs: str | None) -> Features:
+        """With its polygons, on the map of `crs`."""
         path = folder / self.file
         try:
-            found = read_on_map(path, crs).polygons
+            found = read_on_map(path, crs)
         except GeodataError as error:
             raise UserError(str(error)) from None
-        if not found:
+        if not found.polygons:
             raise UserError(f"{path}: holds lines alone; an area needs polygons, which are closed")
         return found
 

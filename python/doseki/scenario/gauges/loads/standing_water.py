@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ....record.particles import BOUND, FIXED
+from ....record.particles import FIXED
 from ..gauge import Sampled, Setting, State
-from ..near import INSIDE, MIN_VOID, REACH, Column, particles_in
-from .outside_walls import clear_of_walls, left_by_walls
+from ..near import REACH, particles_in
+from .outside_walls import CLEAR, DEEPEST, clear_of_walls, left_by_walls
+from .profiles import STEP, Profiles, profiles
 from .surface import Box, Elements, surface_of
 
 OFF = 1.5  # spacings in front of the surface: where the water is looked at
-STEP = 0.5  # spacings between two looks along a column
 CELL = 1.0  # spacings; surface elements whose columns are this near share one
 ASIDE = 0.27  # cells; keeps their edges off lattices, which rounding would put on either side
-CAPPED = 0.75  # share of walls around a point from which on a column ends there
-WITHIN = 0.5  # share of walls at their surface; beyond it no flow ends by itself
-UNDER = 2  # looks below such a point, in which none does either
+FAR = OFF + CLEAR + DEEPEST + CELL + REACH + STEP  # spacings; what is farther off changes nothing
 
 
 def standing_water(
@@ -30,7 +28,9 @@ def standing_water(
     It stands in front of each piece of the surface as high as the flow does now, without a gap;
     its pressure is that of its depth.  The bodies lie within `box`.
     """
-    g = float(np.linalg.norm(setting.gravity))
+    dim, g = setting.dim, float(np.linalg.norm(setting.gravity))
+    if not _is_anything_near(run, setting, box):
+        return np.zeros(dim), np.zeros(1 if dim == 2 else 3)
     elements = surface_of(run, setting, bodies, box)
     force = np.zeros_like(elements.place)
     if g > 0 and len(force):
@@ -46,6 +46,13 @@ def moment_of(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
     if force.shape[1] == 2:
         return np.array([np.sum(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])])
     return np.asarray(np.cross(arm, force).sum(axis=0))
+
+
+def _is_anything_near(run: Sampled, setting: Setting, box: Box) -> bool:
+    """Whether anything that moves is so near to a box that it could press on a body there."""
+    reach = FAR * setting.dp
+    near = particles_in(run, setting, box[0] - reach, box[1] + reach)
+    return bool((near["motion"] != FIXED).any())
 
 
 def _around(run: Sampled, setting: Setting, elements: Elements, up: np.ndarray) -> State:
@@ -85,30 +92,55 @@ def _depths(
     Points `probe` (n, dim) are in front of them.  Where a body hangs over one, the water is that of
     the nearest column that none caps.
     """
-    n = len(elements.place)
-    height, probed = elements.place @ up, probe @ up
-    level, wet, weight = np.full(n, np.nan), np.zeros(n, bool), np.zeros(n)
-    if not n:
+    weight = np.zeros(len(elements.place))
+    if not len(weight):
         return weight
     lines = _Lines.through(probe, up, CELL * setting.dp)
-    profiles = list(_profiles(lines.plan, around, setting, up, probed.min()))
-    for k, profile in enumerate(profiles):
-        mine = np.flatnonzero(lines.of == k)
-        wet[mine] = profile.is_wet(probed[mine])
-        level[mine] = np.where(wet[mine], profile.level(probed[mine]), np.nan)
-    column = lines.of.copy()
-    known = np.flatnonzero(np.isfinite(level))
-    lost = np.flatnonzero(wet & np.isnan(level))
+    some, of = _lines_in_flow(lines, probe @ up, around, setting, up)
+    if not len(some):
+        return weight
+    along = profiles(lines.plan[of], around, setting, up, (probe @ up).min())
+    number = np.searchsorted(of, lines.of[some])
+    weight[some] = _weights(
+        along, number, lines.plan[lines.of[some]], (elements.place @ up)[some], (probe @ up)[some]
+    )
+    return weight
+
+
+def _lines_in_flow(
+    lines: _Lines, probed: np.ndarray, around: State, setting: Setting, up: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which probes have a line that anything that moves is near at their height, and these lines.
+
+    The others are dry.
+    """
+    from scipy.spatial import cKDTree
+
+    moving = around["position"][around["motion"] != FIXED]
+    if not len(moving):
+        return np.array([], int), np.array([], int)
+    point = lines.plan[lines.of] + np.outer(probed, up)
+    reach = (REACH + STEP) * setting.dp * (1 + 1e-6)
+    near = np.isfinite(cKDTree(moving).query(point, distance_upper_bound=reach)[0])
+    return np.flatnonzero(near), np.unique(lines.of[near])
+
+
+def _weights(
+    along: Profiles, line: np.ndarray, plan: np.ndarray, height: np.ndarray, probed: np.ndarray
+) -> np.ndarray:
+    """Density times depth (n,) above heights of elements, whose probes are on lines, kg/m2."""
+    wet = along.is_wet(line, probed)
+    level = np.where(wet, along.level(line, probed), np.nan)
+    known, lost = np.flatnonzero(np.isfinite(level)), np.flatnonzero(wet & np.isnan(level))
     if len(known) and len(lost):
         from scipy.spatial import cKDTree
 
-        plan = lines.plan[lines.of]
         nearest = known[cKDTree(plan[known]).query(plan[lost])[1]]
-        level[lost], column[lost] = level[nearest], column[nearest]
+        line = line.copy()
+        level[lost], line[lost] = level[nearest], line[nearest]
     below = level > height
-    for k, profile in enumerate(profiles):
-        mine = np.flatnonzero(below & (column == k))
-        weight[mine] = profile.weight(height[mine], level[mine])
+    weight = np.zeros(len(height))
+    weight[below] = along.weight(line[below], height[below], level[below])
     return weight
 
 
@@ -121,98 +153,3 @@ def _outside_of_walls(elements: Elements, around: State, dp: float) -> tuple[Ele
     left = Elements(middle[some], area, elements.parts[some], body)
     probe = left.place + OFF * dp * normal[some]
     return left, clear_of_walls(probe, body, around, dp)
-
-
-@dataclass(frozen=True)
-class _Profile:
-    """What is along one line: shares of the space at heights, from below upwards."""
-
-    height: np.ndarray  # (m,) m
-    filled: np.ndarray  # (m,) by what moves, of the space that walls leave
-    wall: np.ndarray  # (m,)
-    density: np.ndarray  # (m,) of the water there, kg/m3
-
-    def weight(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Integral (n,) of the density between heights, kg/m2; beyond the ends it stays."""
-        mean, x = 0.5 * (self.density[1:] + self.density[:-1]), self.height
-        sums = np.append(0.0, np.cumsum(mean * np.diff(x)))
-        below, above = (
-            self.density[0] * np.minimum(0.0, end - x[0])
-            + np.interp(end, x, sums)
-            + self.density[-1] * np.maximum(0.0, end - x[-1])
-            for end in (low, high)
-        )
-        return np.asarray(above - below)
-
-    def is_wet(self, height: np.ndarray) -> np.ndarray:
-        """Whether there is a flow at heights (n,)."""
-        return np.interp(height, self.height, self.filled, right=0.0) >= INSIDE
-
-    def level(self, height: np.ndarray) -> np.ndarray:
-        """Where the flow that is at heights (n,) ends above them; nan below something that caps."""
-        gone, capped = self.filled < INSIDE, self.wall > CAPPED
-        capped |= gone & (self.wall > WITHIN)
-        for above in range(1, UNDER + 1):  # flows end before walls do
-            capped[:-above] |= gone[:-above] & (self.wall[above:] > CAPPED)
-        ends = np.flatnonzero(gone | capped)
-        found = np.searchsorted(self.height[ends], height, side="right")
-        levels = np.full(len(height), np.nan)
-        for k, first in enumerate(found):
-            if first < len(ends) and not capped[ends[first]]:
-                levels[k] = max(height[k], self._crossing(int(ends[first])))
-        return levels
-
-    def _crossing(self, k: int) -> float:
-        if k == 0:
-            return float(self.height[0])
-        before, now = self.filled[k - 1], self.filled[k]
-        share = (before - INSIDE) / (before - now) if before > INSIDE else 0.0
-        return float(self.height[k - 1] + share * (self.height[k] - self.height[k - 1]))
-
-
-def _profiles(
-    plan: np.ndarray, around: State, setting: Setting, up: np.ndarray, lowest: float
-) -> Iterator[_Profile]:
-    """Along each line of `plan` from `lowest` to above all that moves near it."""
-    from scipy.spatial import cKDTree
-
-    walls = around["motion"] == FIXED
-    water = ~walls & (around["motion"] != BOUND)
-    position, volume = around["position"], around["mass"] / around["density"]
-    tree = cKDTree(position - np.outer(position @ up, up))
-    radius, step = REACH * setting.dp, STEP * setting.dp
-    for foot in plan:
-        near = np.sort(np.array(tree.query_ball_point(foot, radius), dtype=np.int64))
-        start = foot + lowest * up
-        wet, rigid = near[~walls[near]], near[walls[near]]
-        flow = Column(position[wet], volume[wet], start, up)
-        solid = Column(position[rigid], volume[rigid], start, up)
-        top = float(flow.along.max(initial=0.0)) + radius
-        height = step * np.arange(int(top / step) + 2)
-        wall = np.array([solid.filled(s, radius, setting.dim) for s in height])
-        filled = np.array([flow.filled(s, radius, setting.dim) for s in height])
-        of_water = {name: values[near[water[near]]] for name, values in around.items()}
-        density = _densities(of_water, start + height[:, None] * up, up, setting)
-        yield _Profile(lowest + height, filled / np.maximum(1.0 - wall, MIN_VOID), wall, density)
-
-
-def _densities(water: State, x: np.ndarray, up: np.ndarray, setting: Setting) -> np.ndarray:
-    """Density (m,) of the water at places (m, dim) from below upwards along a line, kg/m3.
-
-    Each liquid has its mean along the line, so that one alone has the same everywhere; where there
-    is none, the density goes from that below to that above.
-    """
-    if not len(water["mass"]):
-        return np.zeros(len(x))
-    volume = water["mass"] / water["density"]
-    _, of = np.unique(water["material"], return_inverse=True)
-    mean = np.bincount(of, water["mass"]) / np.bincount(of, volume)
-    if len(mean) == 1:
-        return np.full(len(x), mean[0])
-    height, radius = (x - x[0]) @ up, REACH * setting.dp
-    space, mass = (
-        np.array([column.filled(s, radius, setting.dim) for s in height])
-        for column in (Column(water["position"], v, x[0], up) for v in (volume, volume * mean[of]))
-    )
-    some = space > 0
-    return np.interp(height, height[some], mass[some] / space[some])
