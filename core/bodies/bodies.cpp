@@ -37,7 +37,7 @@ auto Bodies<D>::part(double time, double dt, const Course& course) -> Parted {
     const BodySums<D> born = rigid.sums().less(before);
     for (std::size_t k = first; k < rigid.size(); ++k) {
         rigid.push_by_flow(k, course.on_rigid - course.half);
-        rigid.push_one(k, gravity_, course.on_rigid - course.on_points);
+        rigid.push_by_gravity(k, gravity_, course.on_rigid - course.on_points);
     }
     prepare_contacts();
     if constexpr (D == 2) {

@@ -85,8 +85,8 @@ public:
     Quaternion orientation(std::size_t k) const {
         return states_[k].orientation.turned(ball_turn_[k]);
     }
-    void push_one(std::size_t k, const Vec<double, D>& gravity, double dt) {
-        if (seen().is_free(k)) states_[k].velocity = states_[k].velocity + dt * gravity;
+    void push_by_gravity(std::size_t k, const Vec<double, D>& gravity, double dt) {
+        moved().push_by_gravity(k, gravity, dt);
     }
     void push_by_flow(std::size_t k, double dt) { moved().push_by_flow(k, dt); }
     /// Takes a body out, and puts it back in the middle of a step with this motion.

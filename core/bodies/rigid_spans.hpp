@@ -102,6 +102,10 @@ struct RigidBodiesMoved {
         state.velocity = state.velocity + (dt / seen.bodies[k].mass) * contact_force[k];
         state.angular_momentum = state.angular_momentum + dt * contact_torque[k];
     }
+    DOSEKI_DEVICE_FN void push_by_gravity(std::size_t k, const Vec<double, D>& gravity,
+                                          double dt) const {
+        if (seen.is_free(k)) states[k].velocity = states[k].velocity + dt * gravity;
+    }
     /// By the forces that the fluid had when it was evaluated.
     DOSEKI_DEVICE_FN void push_by_flow(std::size_t k, double dt) const {
         if (!seen.is_free(k)) return;

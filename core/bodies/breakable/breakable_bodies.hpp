@@ -10,6 +10,7 @@
 #include "bodies/breakable/sections.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/fragments/rigid_motion.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "physics/fracture/impact.hpp"
 
@@ -49,6 +50,16 @@ struct BreakableBody {
     /// Time in which a wave goes through it once [s].
     double crossing(const DeformableBodies<D>& bodies) const {
         return diameter / bodies.solids().material(deformable).wave_speed();
+    }
+    /// Tension of bending by what loads its points; `motion` is theirs.
+    double bent(const TotalLagrangian<D>& solids, const RigidMotion<D>& motion) const {
+        if (!sections.any()) return 0.0;
+        const Mat<double, 3> turn = motion.orientation.matrix();
+        Array<PlacedForce> forces;
+        for (const std::uint32_t p : solids.points_of(deformable))
+            forces.push_back({in_space(solids.rest_position(p) - middle),
+                              rotated_back(turn, in_space(solids.load[p]))});
+        return sections.tension(forces);
     }
     /// Time for which it remembers how it vibrated [s].
     double lately(const DeformableBodies<D>& bodies) const { return 5.0 * crossing(bodies); }
@@ -173,19 +184,14 @@ void BreakableBodies<D>::measure(BreakableBody<D>& body,
     body.impedance = material.rho0 * material.wave_speed();
     const Array<std::uint32_t> points = deformable.solids().points_of(body.deformable);
     body.diameter = diameter_of<D>(material, points.size());
+    body.middle = rigid_motion<D>(deformable.solids(), points).rest_centre;
     Array<double> mass;
-    double sum = 0.0;
-    body.middle = {};
-    for (const std::uint32_t p : points) {
-        mass.push_back(deformable.solids().mass(p)), sum += mass.back();
-        body.middle = body.middle + mass.back() * deformable.solids().rest_position(p);
-    }
-    if (!(sum > 0.0)) return;
-    body.middle = (1.0 / sum) * body.middle;
     Array<Vec3> place;
-    for (const std::uint32_t p : points)
+    for (const std::uint32_t p : points) {
+        mass.push_back(deformable.solids().mass(p));
         place.push_back(in_space(deformable.solids().rest_position(p) - body.middle));
-    body.sections = Sections(place, mass, material.spacing, D, body.orientation.matrix());
+    }
+    body.sections = Sections({place, mass, material.spacing, D}, body.orientation.matrix());
 }
 
 template <int D>

@@ -46,7 +46,6 @@ struct Section {
     std::array<Vec3, 2> across;
     std::array<double, 2> fibre;
     MassMoments beyond;
-    double longest_arm;  // of forces on the shorter side [m]
 
     /// Largest tension, as in a beam, of a body with the acceleration and the rate of spin that
     /// forces on it make.
@@ -66,10 +65,14 @@ struct Section {
         for (int a = 0; a < 2; ++a) tension += fibre[a] * std::abs(dot(bent, across[a]));
         return tension;
     }
-    /// A bound on it, for forces of which the sizes have this sum.
-    double most_tension(double force) const {
-        return 2.0 * force * (1.0 / area + longest_arm * std::max(fibre[0], fibre[1]));
-    }
+};
+
+/// Points of a body from its centre, with their masses, each of which fills a cube.
+struct MassPoints {
+    std::span<const Vec3> place;
+    std::span<const double> mass;
+    double spacing;  // [m]
+    int dim;
 };
 
 /// The cuts across the long axes of a body, a spacing apart; none through a compact one.
@@ -77,29 +80,23 @@ class Sections {
 public:
     Sections() = default;
 
-    /// Of points with these places from their centre and these masses, each of which fills a cube
-    /// of this spacing. The frame of the body, in columns, chooses where several axes would do.
-    Sections(std::span<const Vec3> place, std::span<const double> mass, double spacing, int dim,
-             const Mat<double, 3>& frame)
-        : spacing_(spacing), dim_(dim) {
+    /// The frame of the body, in columns, chooses where several axes would do.
+    Sections(const MassPoints& points, const Mat<double, 3>& frame) {
         constexpr double slender = 1.5;  // length over thickness
-        for (std::size_t k = 0; k < place.size(); ++k) all_.add(mass[k], place[k]);
+        for (std::size_t k = 0; k < points.place.size(); ++k)
+            all_.add(points.mass[k], points.place[k]);
         if (!(all_.mass > 0.0)) return;
         const std::array<Vec3, 3> axes = principal_axes(frame);
         auto square = [&](const Vec3& axis) { return dot(axis, all_.second * axis); };
-        const double least = square(axes[dim - 1]);
-        for (int a = 0; a + 1 < dim; ++a)
+        const double least = square(axes[points.dim - 1]);
+        for (int a = 0; a + 1 < points.dim; ++a)
             if (square(axes[a]) > slender * slender * least)
-                cut(place, mass, axes[a], {axes[(a + 1) % 3], axes[(a + 2) % 3]});
+                cut(points, axes[a], {axes[(a + 1) % 3], axes[(a + 2) % 3]});
     }
 
     bool any() const { return !sections_.empty(); }
     /// A bound on tension(), for forces of which the sizes have this sum.
-    double most_tension(double force) const {
-        double most = 0.0;
-        for (const Section& section : sections_) most = std::max(most, section.most_tension(force));
-        return most;
-    }
+    double most_tension(double force) const { return most_per_force_ * force; }
     /// The largest tension of bending and of pulling.
     double tension(std::span<const PlacedForce> forces) const {
         if (!any()) return 0.0;
@@ -129,53 +126,54 @@ private:
         const Vec3 middle = largest_principal(second, next).direction;
         return {longest.direction, middle, cross(longest.direction, middle)};
     }
-    void cut(std::span<const Vec3> place, std::span<const double> mass, const Vec3& axis,
-             const std::array<Vec3, 2>& across) {
+    void cut(const MassPoints& points, const Vec3& axis, const std::array<Vec3, 2>& across) {
         constexpr double end = 1.5;  // spacings from an end, within which nothing bends
         double low = 0.0, high = 0.0;
-        for (const Vec3& r : place)
+        for (const Vec3& r : points.place)
             low = std::min(low, dot(r, axis)), high = std::max(high, dot(r, axis));
-        low -= 0.5 * spacing_, high += 0.5 * spacing_;
-        for (double at = low + end * spacing_; at <= high - end * spacing_; at += spacing_) {
-            Section section{axis, at, {}, 0.0, across, {}, {}, std::min(at - low, high - at)};
-            measure(section, place, mass);
-            if (section.area > 0.0) sections_.push_back(section);
+        low -= 0.5 * points.spacing, high += 0.5 * points.spacing;
+        for (double at = low + end * points.spacing; at <= high - end * points.spacing;
+             at += points.spacing) {
+            Section section{axis, at, {}, 0.0, across, {}, {}};
+            const double outermost = measure(section, points);
+            if (!(section.area > 0.0)) continue;
+            sections_.push_back(section);
+            const double arm = std::max(std::min(at - low, high - at), outermost),
+                         fibre = std::max(section.fibre[0], section.fibre[1]);
+            most_per_force_ = std::max(most_per_force_, 2.0 * (1.0 / section.area + arm * fibre));
         }
     }
-    void measure(Section& section, std::span<const Vec3> place,
-                 std::span<const double> mass) const {
-        const double each = dim_ == 2 ? spacing_ : spacing_ * spacing_;
-        std::array<double, 2> low{}, high{};
+    /// Returns how far from its middle the cut reaches, along the axes across [m].
+    static double measure(Section& section, const MassPoints& points) {
+        const double spacing = points.spacing, each = points.dim == 2 ? spacing : spacing * spacing;
         auto is_cut = [&](const Vec3& r) {
-            return std::abs(dot(r, section.axis) - section.at) < 0.5 * spacing_;
+            return std::abs(dot(r, section.axis) - section.at) < 0.5 * spacing;
         };
-        for (std::size_t k = 0; k < place.size(); ++k) {
-            if (dot(place[k], section.axis) > section.at) section.beyond.add(mass[k], place[k]);
-            if (!is_cut(place[k])) continue;
-            section.area += each, section.middle = section.middle + each * place[k];
+        for (std::size_t k = 0; k < points.place.size(); ++k) {
+            const Vec3& r = points.place[k];
+            if (dot(r, section.axis) > section.at) section.beyond.add(points.mass[k], r);
+            if (is_cut(r)) section.area += each, section.middle = section.middle + each * r;
         }
-        if (!(section.area > 0.0)) return;
+        if (!(section.area > 0.0)) return 0.0;
         section.middle = (1.0 / section.area) * section.middle;
-        std::array<double, 2> moment{};
-        for (const Vec3& r : place) {
-            if (!is_cut(r)) continue;
-            for (int a = 0; a + 1 < dim_; ++a) {
+        double farthest = 0.0;
+        for (int a = 0; a + 1 < points.dim; ++a) {
+            double moment = 0.0, outermost = 0.0;
+            for (const Vec3& r : points.place) {
+                if (!is_cut(r)) continue;
                 const double y = dot(r - section.middle, section.across[a]);
-                moment[a] += each * (y * y + spacing_ * spacing_ / 12.0);
-                low[a] = std::min(low[a], y), high[a] = std::max(high[a], y);
+                moment += each * (y * y + spacing * spacing / 12.0);
+                outermost = std::max(outermost, std::abs(y));
             }
+            outermost += 0.5 * spacing;
+            section.fibre[a] = outermost / moment, farthest = std::max(farthest, outermost);
         }
-        for (int a = 0; a + 1 < dim_; ++a) {
-            const double outermost = std::max(-low[a], high[a]) + 0.5 * spacing_;
-            section.fibre[a] = outermost / moment[a];
-            section.longest_arm = std::max(section.longest_arm, outermost);
-        }
+        return farthest;
     }
 
-    double spacing_ = 0.0;
-    int dim_ = 0;
     MassMoments all_;
     Array<Section> sections_;
+    double most_per_force_ = 0.0;  // [1/m^2], 2-D: [1/m]
 };
 
 }  // namespace doseki

@@ -228,7 +228,7 @@ template <int D>
 void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course) {
     const Fragments<D> before = deformable.as_they_are();
     for (const std::size_t n : struck) {
-        rigid.push_one(breakable_[n].rigid, gravity_, course.on_points - course.on_rigid);
+        rigid.push_by_gravity(breakable_[n].rigid, gravity_, course.on_points - course.on_rigid);
         rigid.push_by_flow(breakable_[n].rigid, course.half - course.on_rigid);
     }
     const BodySums<D> had = rigid.sums();
@@ -319,23 +319,19 @@ bool Bodies<D>::becomes_still(BreakableBody<D>& body, double dt) {
     const RigidMotion<D> motion = rigid_motion<D>(solids, points);
     double vibration = -0.5 * motion.mass * dot(motion.velocity, motion.velocity) -
                        0.5 * dot(motion.spin, motion.angular_momentum);
-    const Mat<double, 3> turn = motion.orientation.matrix();
     double force = 0.0;
-    Array<PlacedForce> forces;
     for (const std::uint32_t p : points) {
         vibration += 0.5 * solids.mass(p) * dot(solids.v[p], solids.v[p]);
         force += 0.5 * norm(solids.load[p]);
-        forces.push_back({in_space(solids.rest_position(p) - body.middle),
-                          rotated_back(turn, in_space(solids.load[p]))});
     }
     body.deforms_for += dt;
     body.loudness = std::max(vibration, body.loudness * std::exp(-dt / body.lately(deformable)));
     const double stress = share * body.strength, volume = motion.mass / material.rho0,
                  enough = volume * stress * stress / (2.0 * material.young_modulus());
-    const bool pressed = std::max(pressed_tension<D>(force, body.diameter),
-                                  body.sections.tension(forces)) > share * body.bears;
-    return !pressed && body.deforms_for > crossings * body.crossing(deformable) &&
-           body.loudness <= enough;
+    if (!(body.deforms_for > crossings * body.crossing(deformable) && body.loudness <= enough))
+        return false;
+    const double most = share * body.bears;
+    return !(pressed_tension<D>(force, body.diameter) > most || body.bent(solids, motion) > most);
 }
 
 /// Contacts of bodies that have changed begin with the overlaps that they have at rest, Eq. (115).

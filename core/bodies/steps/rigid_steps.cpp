@@ -85,8 +85,7 @@ struct PushBody {
 
     DOSEKI_DEVICE_FN void operator()(std::size_t k) const {
         rigid.push_by_contacts(k, dt);
-        if (!rigid.seen.is_free(k)) return;
-        rigid.states[k].velocity = rigid.states[k].velocity + dt * gravity;
+        rigid.push_by_gravity(k, gravity, dt);
         rigid.push_by_flow(k, dt);
     }
 };

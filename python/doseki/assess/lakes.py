@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..record.particles import FREE
+from ..record.units import unit_in
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
 from ..scene.build import LEAST_HEIGHT
@@ -49,5 +50,5 @@ def filled_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
 
 def filled_text(asked: float, volume: float, dim: int) -> str:
     """One line about such a box."""
-    unit = "m3" if dim == 3 else "m2"
+    unit = unit_in("m3", dim)
     return f"{volume:.5g} {unit} in particles; above the ground it has {asked:.5g} {unit}"

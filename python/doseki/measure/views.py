@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -143,6 +144,7 @@ def what_flows(run: Run) -> set[str] | None:
     return fluid_names(run) & set(run[0].material_names) or None
 
 
+@lru_cache(maxsize=4)
 def way_of_flow(run: Run) -> int:
     """+1 or -1: the way along the first axis that a flow takes; 0 where nothing goes along it.
 

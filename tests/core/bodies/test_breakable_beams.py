@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.scenario.load import load_scenario
-from doseki.solver.build import build_simulation
+from .blocks import box, listed, started
 
 STRENGTH, SPAN, HEIGHT = 1e6, 0.28, 0.08  # Pa, m, m
 TEXT = """
@@ -36,45 +35,31 @@ fracture_energy = 100
 based_on = "basalt"
 rho0 = {density}
 """
-BOX = """
-[body.{name}]
-shape = "box"
-material = "{material}"
-min = {low}
-max = {high}
-rotate = {turn}
-{pivot}
-{more}
-"""
-BREAKABLE = 'kinematics = "breakable"'
-
-
-def box(name, material, x, y, width, turn, more=""):
-    """From x[0] to x[1] and y[0] to y[1], in 3-D as wide as this, all turned about the origin."""
-    aside = [] if width is None else [(-width / 2, width / 2)]
-    low, high = zip(x, *aside, y, strict=True)
-    pivot = f"pivot = {[0.0] * len(low)}"
-    low, high = map(list, (low, high))
-    return BOX.format(**locals())
 
 
 def beam(folder, dim, share, turn):
     """A load at mid-span that bends a beam on two supports by this share of its strength."""
-    width = None if dim == 2 else HEIGHT
-    modulus = HEIGHT**2 / 6 * (width or 1.0)
+    width = [] if dim == 2 else [HEIGHT]
+    modulus = HEIGHT**2 / 6 * np.prod(width)
     weight = share * STRENGTH * modulus * 4 / SPAN
-    density = weight / 9.8 / (0.1**2 * (width or 1.0))
+    density = weight / 9.8 / (0.1**2 * np.prod(width))
     angle = np.radians(turn)
     gravity = [9.8 * np.sin(angle), *[0.0] * (dim - 2), -9.8 * np.cos(angle)]
-    text = TEXT.format(dim=dim, gravity=[float(g) for g in gravity], density=density)
+    text = TEXT.format(dim=dim, gravity=listed(gravity), density=density)
+
+    def part(name, material, x, y, **values):
+        """From x[0] to x[1] and y[0] to y[1], all turned about the origin."""
+        low, high = zip(x, *[(-w / 2, w / 2) for w in width], y, strict=True)
+        turned = {"rotate": turn, "pivot": [0.0] * dim}
+        return box(name, low, high, material=f'"{material}"', **turned, **values)
+
     end = SPAN / 2
-    text += box("left", "basalt", (-end - 0.03, -end), (-0.05, 0), width, turn, "fixed = true")
-    text += box("right", "basalt", (end, end + 0.03), (-0.05, 0), width, turn, "fixed = true")
-    text += box("beam", "chalk", (-end - 0.03, end + 0.03), (0, HEIGHT), width, turn, BREAKABLE)
-    text += box("load", "heavy", (-0.05, 0.05), (HEIGHT, HEIGHT + 0.1), width, turn)
-    path = folder / "beam.toml"
-    path.write_text(text)
-    return build_simulation(load_scenario(path))[0]
+    text += part("left", "basalt", (-end - 0.03, -end), (-0.05, 0), fixed=True)
+    text += part("right", "basalt", (end, end + 0.03), (-0.05, 0), fixed=True)
+    ends = (-end - 0.03, end + 0.03)
+    text += part("beam", "chalk", ends, (0, HEIGHT), kinematics='"breakable"')
+    text += part("load", "heavy", (-0.05, 0.05), (HEIGHT, HEIGHT + 0.1))
+    return started(folder, text).simulation
 
 
 @pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.minutes)])

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from doseki.record.particles import FREE
-from doseki.validate.running import Running
+from doseki.validate.cases.streams import layers as reference
+
+from ..bodies.blocks import box, listed, started
 
 TOP = """
 schema = 1
@@ -52,13 +54,6 @@ pressure = "= 1000*({work}) + 8000"
 """
 
 
-def started(folder, text):
-    """A run of this scenario."""
-    path = folder / "case.toml"
-    path.write_text(text)
-    return Running(str(path))
-
-
 def drop(folder, rho, down, dp):
     """A drop of this density in the middle of a closed tank of water."""
     dim, axes = len(down), "xyz"[: len(down)]
@@ -95,14 +90,6 @@ def test_a_lighter_liquid_shortens_steps_and_one_nearly_as_heavy_does_not(tmp_pa
     assert abs(steps[40] - 2 * steps[1000]) <= 2
 
 
-LAYER = """
-[body.{name}]
-shape = "box"
-material = "{material}"
-min = {low}
-max = {high}
-{more}
-"""
 DEPTH, LENGTH, PULL, NU = 0.05, 0.1, 0.05, (0.01, 0.001)  # m, m, m/s2, m2/s
 
 
@@ -113,36 +100,31 @@ def layers(folder, axis, thick_below):
     low[axis], high[axis] = 0, LENGTH
     gravity = [PULL * float(a == axis) for a in range(2)]
     text = TOP.format(dim=2, dp=dp, gravity=gravity, speed=0.3)
-    text += (
-        f'periodic = ["{"xy"[axis]}"]\ndomain_min = {low.tolist()}\ndomain_max = {high.tolist()}\n'
-    )
+    text += f'periodic = ["{"xy"[axis]}"]\n'
+    text += f"domain_min = {listed(low)}\ndomain_max = {listed(high)}\n"
     for name, nu in zip(("thick", "thin"), NU, strict=True):
         text += LIQUID.format(name=name, rho=1000, nu=nu)
 
-    def layer(name, material, bottom, top, more):
+    def layer(name, material, bottom, top, **values):
         ends = np.array([[0.0, 0.0], [LENGTH, LENGTH]])
         ends[:, across] = bottom, top
-        low, high = ends.tolist()
-        return LAYER.format(name=name, material=material, low=low, high=high, more=more)
+        return box(name, *ends, material=f'"{material}"', **values)
 
-    def normal(sign):
-        return f"fixed = true\nnormal = {[sign * (a == across) for a in range(2)]}"
+    def plate(name, bottom, sign):
+        normal = [sign * (a == across) for a in range(2)]
+        return layer(name, "aluminium", bottom, bottom + 4 * dp, fixed=True, normal=normal)
 
-    first, second = ("thick", "thin") if thick_below else ("thin", "thick")
-    text += layer("below", "aluminium", -4 * dp, 0.0, normal(1))
-    text += layer("above", "aluminium", 2 * DEPTH, 2 * DEPTH + 4 * dp, normal(-1))
-    text += layer("first", first, 0.0, DEPTH, "jitter = 0.1\npressure = 20")
-    text += layer("second", second, DEPTH, 2 * DEPTH, "jitter = 0.1\npressure = 20")
+    text += plate("below", -4 * dp, 1) + plate("above", 2 * DEPTH, -1)
+    order = ("thick", "thin") if thick_below else ("thin", "thick")
+    for k, material in enumerate(order):
+        text += layer(material, material, k * DEPTH, (k + 1) * DEPTH, jitter=0.1, pressure=20)
     return started(folder, text)
 
 
 def exact(y):
-    """Speed of two parabolas with one stress and one speed where they meet; thick below, m/s."""
-    thick, thin = NU
-    rise = PULL / 2 * np.array([1 / thick, -1 / thin]).sum() * DEPTH**2
-    a, b = np.linalg.solve([[DEPTH, -DEPTH], [thick, thin]], [rise, 2 * PULL * DEPTH])
-    z = 2 * DEPTH - y
-    return np.where(y < DEPTH, a * y - PULL / 2 / thick * y**2, b * z - PULL / 2 / thin * z**2)
+    """Speed at a height above the plate of the thick liquid, m/s."""
+    unit = PULL * (2 * DEPTH) ** 2 / NU[0]
+    return unit / (reference.PULL / reference.THICK) * reference.exact_speed(y / (2 * DEPTH))
 
 
 @pytest.mark.parametrize(("axis", "thick_below"), [(0, True), (0, False), (1, True)])

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ...record.units import unit_in
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding
@@ -160,14 +161,9 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         if not isinstance(body, ReleaseBody):
             continue
         if abs(body.volume - body.asked) > VOLUME * body.asked:
-            yield WrongVolume(name, body.asked, body.volume, _unit(scenario))
+            yield WrongVolume(name, body.asked, body.volume, unit_in("m3", scenario.dim))
         if body.layers < FEW_LAYERS:
             yield ThinRelease(name, body.layers, scenario.dp * body.layers / 4)
-
-
-def _unit(scenario: Scenario) -> str:
-    """Of a volume, which in 2-D is an area."""
-    return "m3" if scenario.dim == 3 else "m2"
 
 
 def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Finding]:
@@ -183,4 +179,4 @@ def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Fin
         return
     asked, volume = surge_volumes(scenario, section)
     if abs(volume - asked) > SURGE * asked:
-        yield CoarseSurge(place, asked, volume, _unit(scenario))
+        yield CoarseSurge(place, asked, volume, unit_in("m3", scenario.dim))

@@ -14,6 +14,7 @@ from ...geodata.crs import same_crs, why_not_compared
 from ...geodata.features import Polygon
 from ...geodata.raster import Raster, read_raster
 from ...record.particles import FREE, ParticleSet, check_size
+from ...record.units import unit_in
 from ...scenario.model import Scenario, file_of
 from ...scenario.releases import NotCompared
 from ...scenario.tables.terrain.release import THICKEST, Release
@@ -193,7 +194,7 @@ class ReleaseBody(Shaped[Release]):
 
     @property
     def _is_raster(self) -> bool:
-        """Of another file the table has the polygons."""
+        """Whether its file is a raster: the polygons of another one are in the table already."""
         return self.table.file is not None
 
     @cached_property
@@ -321,5 +322,5 @@ def released_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
 
 def volume_text(asked: float, volume: float, dim: int) -> str:
     """One line about a release."""
-    unit = "m3" if dim == 3 else "m2"
+    unit = unit_in("m3", dim)
     return f"{volume:.5g} {unit} released; area times thickness is {asked:.5g} {unit}"

@@ -103,7 +103,8 @@ def map_percentiles(band: MapBand, table: Table) -> MapPercentiles:
     exceeded = None
     if band.exceed is not None:
         share = np.mean(stack > band.exceed, axis=0)
-        exceeded = _with(first, np.where(outside | _beside(band, runs), np.nan, share))
+        unknown = _beside(band, runs) if of_times else outside
+        exceeded = _with(first, np.where(unknown, np.nan, share))
     ground = runs[0].ground
     bed = ground if isinstance(ground, Raster) else _with(first, np.full(first.shape, np.nan))
     if not bed.same_grid(first):
