@@ -28,7 +28,7 @@ time_out = 0.5
 scheme = "resolved"
 gravity = [0, 0, -9.81]
 speed_max = 2.0
-relax = 1.0
+relax = 3.0
 [terrain]
 file = "terrain.asc"
 material = "basalt"
@@ -154,7 +154,7 @@ time_out = 0.25
 scheme = "resolved"
 gravity = [0, 0, -9.81]
 speed_max = 2.0
-relax = 1.0
+relax = 2.0
 [parameters]
 particles = {{ value = {particles} }}
 [terrain]
@@ -162,19 +162,19 @@ file = "terrain.asc"
 material = "basalt"
 wall = "free_slip"
 [body.back]
-{wall}normal = [{out}, 0]
+{wall}normal = [1, 0, 0]
 min = ["= 0.4 - 4*dp", "= 1 - 4*dp", "= -5*dp"]
 max = [0.4, "= 1.4 + 4*dp", "= 0.4 + 3*dp"]
 [body.right]
-{wall}normal = [{left}, 0]
+{wall}normal = [0, 1, 0]
 min = [0.4, "= 1 - 4*dp", "= -5*dp"]
 max = [1.0, 1.0, "= 0.4 + 3*dp"]
 [body.left]
-{wall}normal = [{right}, 0]
+{wall}normal = [0, -1, 0]
 min = [0.4, 1.4, "= -5*dp"]
 max = [1.0, "= 1.4 + 4*dp", "= 0.4 + 3*dp"]
 [body.dam]
-{wall}normal = [{back}, 0]
+{wall}normal = [-1, 0, 0]
 min = [1.0, "= 1 - 4*dp", "= -5*dp"]
 max = ["= 1 + 4*dp", "= 1.4 + 4*dp", "= 0.4 + 3*dp"]
 [body.lake]
@@ -221,12 +221,10 @@ def in_a_basin(folder, angle, slope, particles):
         return slope * np.maximum(-((x - 1) * c + (y - 1.2) * s), 0.0)
 
     grid(folder / "terrain.asc", bed, (2.4, 2.4), 0.05)
-    sides = {"out": (c, s), "left": (-s, c), "right": (s, -c), "back": (-c, -s)}
-    places = sides | {"middle": (1 - 0.3 * c, 1.2 - 0.3 * s)}
-    text = {name: f"{x}, {y}" for name, (x, y) in places.items()}
+    middle = f"{1 - 0.3 * c}, {1.2 - 0.3 * s}"
     wall = WALL.format(angle=angle)
     path = folder / "case.toml"
-    path.write_text(BASIN.format(angle=angle, particles=particles, wall=wall, **text))
+    path.write_text(BASIN.format(angle=angle, particles=particles, wall=wall, middle=middle))
     run_scenario(load_scenario(path), folder / "run", RunOptions(threads=1))
     gauges = load(folder / "run").gauges
     level = 0.1 + float(gauges["level"]["height"][1:].mean())

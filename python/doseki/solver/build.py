@@ -80,9 +80,11 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
 
 
 def _viscous_form(scenario: Scenario) -> str:
-    """Heaps of mu(I) that keep their shape are braked too much by beds with the stress."""
+    """What keeps its shape while it slides is braked too much by Voellmy's beds with the stress."""
     laws = {scenario.materials[name].rheology for name in scenario.liquids}
-    return "morris" if "mu_i" in laws else "stress"
+    beds = {wall.given("wall") for wall in scenario.walls.values()}
+    slides = "voellmy" in beds and "herschel_bulkley" in laws
+    return "morris" if slides or "mu_i" in laws else "stress"
 
 
 def _contact_options(scenario: Scenario) -> dict[str, Any]:

@@ -66,7 +66,7 @@ class ScenarioTable(Table):
         Field(
             None,
             description="resolved: form of the viscous term, Eq. (28); default: stress, in runs "
-            "with grains of mu(I) morris",
+            "with grains of mu(I), or of mud on a voellmy wall, morris",
         )
     )
     turbulence: Annotated[Literal["none", "smagorinsky", "mixing_length"], OF_RESOLVED] = Field(
