@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from doseki.assess.trust.ledger import ledger_of
+from doseki.assess.trust.ledger import GIVEN, HELD, TAKEN, Ledger, ledger_of
 from doseki.assess.trust.report import trust_checks
 from doseki.record.reader import load
 from doseki.running.resume import resume_run
@@ -242,6 +242,18 @@ def test_the_work_of_gravity_is_the_potential_that_was_released(tank):
 def test_energy_that_walls_and_relaxation_make_is_told(tank):
     """Eight particles across a stone that falls through three times that: no good run."""
     assert checks_of(tank)["energy of corrections"].verdict == "bad"
+
+
+@pytest.mark.parametrize(
+    ("spacings", "verdict"), [(0.009, "good"), (0.02, "doubtful"), (0.06, "bad")]
+)
+def test_water_at_rest_is_judged_by_how_far_it_sinks(tank, spacings, verdict):
+    """Nothing else takes part in the energy of a lake, whatever its depth is."""
+    still = without(tank, *HELD, *GIVEN, *TAKEN).run
+    weight = 9.8 * tank.history["mass"].max()
+    sunk = spacings * tank.scenario["dp"] * weight * np.linspace(0, 1, len(tank.history["time"]))
+    lake = Ledger(WithColumns(still, scheme_work=-sunk), "")
+    assert lake.numerical_check().verdict == verdict
 
 
 def test_contacts_take_what_a_bouncing_disc_loses(tmp_path):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...record.reader import Run
 from ...scenario.kinematics import DEFORM
-from .snapshots import Seen, gravity_of, is_resolved
+from .snapshots import gravity_of, is_resolved
 from .verdicts import Check, judged, unknown
 
 HELD = ("kinetic_energy", "bulk_energy", "shear_energy", "elastic_energy")
@@ -17,9 +17,6 @@ GIVEN = ("gravity_work", "wall_work", "contact_work", "scheme_work", "energy_ent
 TAKEN = ("av_dissipation", "energy_left", "fracture_work", "parting_work", "damping_work")
 OF_BODIES = "elastic_energy"  # without it in the history, nothing of deformable bodies is
 NUMERICAL = (0.01, 0.05)  # work of corrections over the largest energy that took part
-# Of weight times depth, which counts as an energy that took part: a rise of the water by a
-# ten-thousandth of its depth is good.  Water that hardly moves has next to no energy else.
-LEVEL = 0.01
 
 
 @dataclass(frozen=True)
@@ -81,12 +78,15 @@ class Ledger:
         value = residual / largest if largest else residual
         return judged(name, value, limits, counted, remedy, residual=residual, **details)
 
-    def numerical_check(self, seen: Seen) -> Check:
-        """Work of shifting and of the relaxation of density."""
+    def numerical_check(self) -> Check:
+        """Work of shifting and of the relaxation of density.
+
+        Weight times spacing counts as an energy that took part: water that hardly moves has next
+        to no other, and that it rises or sinks by a hundredth of a spacing is good.
+        """
         name = "energy of corrections"
         work = float(np.max(np.abs(self._column("scheme_work"))))
-        depth = float(np.median(seen.depth)) * self.run.scenario["dp"] if seen.depth else 0.0
-        largest = max(self.largest, LEVEL * float(self._weight.max()) * depth)
+        largest = max(self.largest, float(self._weight.max()) * self.run.scenario["dp"])
         counted = "largest work of shifting and of the relaxation of density"
         remedy = "lower dp; shifting = false tells what shifting takes"
         value = work / largest if largest else work
