@@ -200,6 +200,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
         except ResourceError as full:
             raise PhysicsError(f"{failure}. It could not be recorded: {full}") from failure
         run.recorder.close(_summary(run, "failed") | {"failure": str(failure)})
+        run.ranks.on_root(partial(write_reports, directory))
         raise PhysicsError(
             f"{failure}. {explained.advice} The record up to there is in {directory};"
             f" more: doseki explain {directory}",
@@ -233,7 +234,7 @@ TEXT: tuple[Report, ...] = (("summary.txt", write_summary),)  # what it says beg
 
 
 def write_reports(directory: str | Path, reports: Sequence[Report] = JUDGEMENTS + TEXT) -> str:
-    """Say what a finished run came to; it stays one where that fails, which is returned."""
+    """Say what a run came to; what cannot be written is returned in words, and harms no run."""
     remarks = []
     for what, write in reports:
         try:
