@@ -7,6 +7,7 @@
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/deformable/internal_forces.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
+#include "bodies/steps/sudden_forces.hpp"
 #include "physics/hyperelastic/strain.hpp"
 #include "physics/wall.hpp"
 
@@ -236,6 +237,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
     normal_ = sorted(normal_), depth_ = sorted(depth_), rigid_point_ = sorted(rigid_point_);
     surfaces_.start(solids_);
     flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
+    sudden_.assign(solids_.size(), {}), owed_.assign(solids_.size(), {});
     for (std::size_t p = 0; p < particles.size(); ++p)
         if (has(particles, p))
             particles.set_point(p, BodyKind::deformable, solids_.slot(particles.point(p)));
@@ -246,14 +248,21 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
 template <int D>
 void DeformableBodies<D>::end_step(double dt, double memory) {
     const double share = std::min(1.0, dt / memory);
+    for (const std::uint32_t k : solids_.stepped().points())
+        solids_.steady[k] = solids_.steady[k] - owed_[k], owed_[k] = {};
     solids_.push_by(solids_.steady, -0.5 * dt);
     solids_.follow(flow_force_, 0.5 * share);
     for (const std::uint32_t k : solids_.stepped().points()) {
         if (solids_.clamped(k)) continue;
-        const Vec<double, D> mean =
-            (1.0 / dt) * (solids_.v[k] - before_[k]) + (1.0 / solids_.mass(k)) * flow_force_[k];
+        const Vec<double, D> kick = (1.0 / solids_.mass(k)) * (flow_force_[k] - sudden_[k]),
+                             mean = (1.0 / dt) * (solids_.v[k] - before_[k]) + kick;
         acceleration_[k] = acceleration_[k] + share * (mean - acceleration_[k]);
     }
+}
+
+template <int D>
+void DeformableBodies<D>::find_sudden_forces() {
+    SuddenForces<D>(solids_, flow_force_).split(step_, sudden_);
 }
 
 /// Normals turn as surfaces do, with F^-T.

@@ -101,7 +101,8 @@ public:
                          const Vec<double, D>& acceleration) {
         solids_.make_deformable(body, placement);
         for (const std::uint32_t p : solids_.points_of(body))
-            flow_force_[p] = {}, acceleration_[p] = acceleration, before_[p] = solids_.v[p];
+            flow_force_[p] = sudden_[p] = owed_[p] = {}, acceleration_[p] = acceleration,
+            before_[p] = solids_.v[p];
     }
     void make_rigid(std::size_t body, const RigidMotion<D>& motion, double kinetic) {
         solids_.make_rigid(body, motion, kinetic);
@@ -179,14 +180,20 @@ public:
     /// See Bodies. In deformable_particles.cpp, with what puts the particles where points are.
     void gather(const Particles<D>& particles, const Ranks& ranks);
     /// Half a step of the forces of the fluid.
-    void kick(double half_dt) { solids_.push_by(flow_force_, half_dt); }
+    void kick(double half_dt) {
+        solids_.push_by(flow_force_, half_dt), solids_.push_by(sudden_, -half_dt);
+        for (const std::uint32_t p : solids_.stepped().points())
+            owed_[p] = owed_[p] + half_dt * sudden_[p];
+    }
     /// Begins a step of length dt after the first kick: what these forces have been so far acts all
-    /// through it instead, so that only their changes kick.
+    /// through it instead, so that only their changes kick, and of these the sudden ones do not.
     void begin_step(double dt) {
-        before_.resize(size());
+        before_.resize(size()), step_ = dt;
         for (const std::uint32_t p : solids_.stepped().points()) before_[p] = solids_.v[p];
         solids_.follow(flow_force_, 0.0);
         solids_.push_by(solids_.steady, -0.5 * dt);
+        for (const std::uint32_t p : solids_.stepped().points())
+            owed_[p] = (1.0 / dt) * owed_[p], solids_.steady[p] = solids_.steady[p] + owed_[p];
     }
     /// Ends it before the second kick. Averages accelerations, as the fluid sees them, over
     /// `memory`, and its forces over twice as long.
@@ -237,13 +244,17 @@ public:
         archive("deformable_flow_force", flow_force_),
             archive("deformable_steady_force", solids_.steady),
             archive("deformable_acceleration", acceleration_);
+        archive.optional("deformable_sudden_force", sudden_),
+            archive.optional("deformable_owed", owed_);
         if (archive.loads()) {
             const std::size_t n = solids_.size();
-            expect_fit(
-                normal_.size() == n && flow_force_.size() == n && solids_.steady.size() == n &&
-                    acceleration_.size() == n && depth_.size() == n && rigid_point_.size() == n &&
-                    material_.size() == solids_.bodies() && group_.size() == solids_.bodies(),
-                "deformable_normal");
+            if (sudden_.empty() && owed_.empty()) sudden_.assign(n, {}), owed_.assign(n, {});
+            expect_fit(normal_.size() == n && flow_force_.size() == n &&
+                           solids_.steady.size() == n && sudden_.size() == n && owed_.size() == n &&
+                           acceleration_.size() == n && depth_.size() == n &&
+                           rigid_point_.size() == n && material_.size() == solids_.bodies() &&
+                           group_.size() == solids_.bodies(),
+                       "deformable_normal");
         }
     }
 
@@ -255,12 +266,16 @@ public:
 private:
     TotalLagrangian<D> solids_;
     Division division() const;
+    void find_sudden_forces();
 
     Array<Vec<double, D>> normal_;          // at rest
     Array<double> depth_;                   // below the surface [m]
     Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
+    Array<Vec<double, D>> sudden_;  // of flow_force_, see SuddenForces
+    Array<Vec<double, D>> owed_;    // impulse of it, within a step the force that gives it
+    double step_ = 0.0;             // the last one [s]
     Array<ShownPoint<D>> shown_;
     DeformableSurfaces<D> surfaces_;
 };

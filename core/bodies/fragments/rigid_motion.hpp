@@ -82,14 +82,21 @@ RigidMotion<D> rigid_motion(const TotalLagrangian<D>& solids,
     return motion;
 }
 
-/// Those of all bodies that are not rigid.
+/// Points of all bodies that are not rigid.
 template <int D>
-Array<RigidMotion<D>> rigid_motions(const TotalLagrangian<D>& solids) {
+Array<Array<std::uint32_t>> stepped_points(const TotalLagrangian<D>& solids) {
     Array<Array<std::uint32_t>> points(solids.bodies());
     for (const std::uint32_t p : solids.stepped().points())
         if (!solids.gone(p)) points[static_cast<std::size_t>(solids.body(p))].push_back(p);
+    return points;
+}
+
+/// Motions of all bodies that are not rigid.
+template <int D>
+Array<RigidMotion<D>> rigid_motions(const TotalLagrangian<D>& solids) {
     Array<RigidMotion<D>> motions;
-    for (const auto& of_body : points) motions.push_back(rigid_motion<D>(solids, of_body));
+    for (const auto& of_body : stepped_points(solids))
+        motions.push_back(rigid_motion<D>(solids, of_body));
     return motions;
 }
 

@@ -49,6 +49,7 @@ void DeformableBodies<D>::gather(const Particles<D>& particles, const Ranks& ran
     if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
     bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::deformable, flow_force_});
     ranks.sum(numbers_of(flow_force_));
+    find_sudden_forces();
 }
 
 template <int D>
@@ -69,9 +70,9 @@ void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) 
     if (empty()) return;
     shown_.resize(size());
     solids_.stepped().for_each([&](std::size_t k) {
-        shown_[k].velocity = solids_.clamped(k)
-                                 ? Vec<double, D>{}
-                                 : solids_.v[k] + (ahead / solids_.mass(k)) * flow_force_[k];
+        shown_[k].velocity = solids_.clamped(k) ? Vec<double, D>{}
+                                                : solids_.v[k] + (ahead / solids_.mass(k)) *
+                                                                     (flow_force_[k] - sudden_[k]);
     });
     bulk::for_each(particles.size(), MoveShown<D>{particles, shown_});
 }
