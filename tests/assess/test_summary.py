@@ -68,6 +68,13 @@ def test_what_passed_a_section(tmp_path, record_run, width, rate, said):
     assert line[18:].startswith(said)
 
 
+@pytest.mark.parametrize(("dp", "said"), [("0.1", "100 mm"), ("1.0", "1 m"), ("4.0", "4 m")])
+def test_large_spacings_are_in_metres(flow_folder, dp, said):
+    scenario = flow_folder / "scenario.toml"
+    scenario.write_text(scenario.read_text().replace("dp = 0.1", f"dp = {dp}"))
+    assert f"dp = {said}," in summary_text(load(flow_folder))
+
+
 def test_summary_without_snapshots_or_history(tmp_path, record_run):
     record_run(tmp_path / "run", times=())
     assert "synthetic" in summary_text(load(tmp_path / "run"))

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from doseki.cli.main import main
 from doseki.figures.dots import extent_of
 from doseki.figures.kinds.energy import draw_energy, potential_energy
+from doseki.figures.kinds.histogram import draw_speed_row
+from doseki.figures.kinds.series import draw_curves
 from doseki.figures.kinds.spatial import DOWN, Space
-from doseki.figures.layout import nice_length
+from doseki.figures.layout import chart_grid, name_of_curves, nice_length, say_where_empty
 from doseki.figures.plot import draw_run, figures
+from doseki.measure.census import draw_speeds
 from doseki.measure.moments import moments
 from doseki.measure.views import named_window, whole_space
 from doseki.record.reader import load
@@ -146,6 +150,39 @@ def test_every_figure_has_one_legend_at_most(flow_with_nothing):
     assert len(legends(found)) == 1
     assert sum(axes.get_ylabel() == "velocity x (m/s)" for axes in found.axes) == 1
     assert len(found.axes) > 4
+
+
+def words_of(axes):
+    return [text.get_text() for text in axes.texts]
+
+
+def labels_of(axis):
+    return [label.get_text() for label in axis.get_ticklabels() if label.get_visible()]
+
+
+def test_a_panel_without_data_says_so_and_has_no_numbers():
+    figure, grid = chart_grid(2, 1, (5.0, 1.4), "a gauge")
+    times = np.array([0.0, 3.0])
+    for axes, values in zip(grid[:, 0], ([np.nan, np.nan], [1.0, 2.0]), strict=True):
+        draw_curves(axes, times, {"": np.array(values)})
+        name_of_curves(axes, "contact force of all the stones x (N/m)", 1.4)
+        say_where_empty(axes, times)
+    figure.canvas.draw()
+    empty, full = grid[:, 0]
+    assert (words_of(empty), words_of(full)) == (["no data"], [])
+    assert (labels_of(empty.yaxis), bool(labels_of(full.yaxis))) == ([], True)
+    assert empty.get_xlim()[0] > -1.0
+    above, below = (axes.yaxis.label.get_window_extent() for axes in (empty, full))
+    assert above.y0 > below.y1
+
+
+def test_speeds_of_nothing_are_no_measurement():
+    row = Figure().subplots(1, 2)
+    draw_speed_row(row, draw_speeds(np.zeros(0)), "grains")
+    for axes in row:
+        assert words_of(axes) == ["nothing came by"]
+        assert labels_of(axes.yaxis) == labels_of(axes.xaxis) == []
+        assert not axes.get_title(loc="left")
 
 
 def recorded(folder, row_at):

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from doseki.cli.app import app
 from doseki.errors import UserError
 from doseki.figures import movie, stage
-from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring
+from doseki.figures.colouring import FIXED_COLOUR, FLUID_COLOURS, SOLID_COLOURS, colouring, limits
 from doseki.figures.dots import dots, extent_of
 from doseki.figures.flow import draw_flow
 from doseki.figures.kinds.histogram import SpeedHistogram, draw_speed_row
@@ -106,6 +106,22 @@ def test_colour_scale_spans_the_particles_that_move(flow_folder):
     labels = [label for label, _ in scale.legend_entries()]
     assert (labels[0], labels[-1]) == ("-1", "-0.5")
     assert scale.heading == "velocity x (m/s)"
+
+
+def test_a_scale_has_no_values_that_nothing_has(flow_folder):
+    run = load(flow_folder)
+    scale = colouring(run, [run[-1]], "pressure", whole_space(2))  # 0 everywhere
+    assert [label for label, _ in scale.legend_entries()] == ["0"]
+    assert np.isfinite(scale.rgba(run[-1])).all()
+    axes = Figure().subplots()
+    scale.add_key(None, axes)
+    legend = axes.get_legend()
+    assert legend.get_title().get_text() == "pressure (Pa)"
+    assert [text.get_text() for text in legend.get_texts()] == ["0"]
+    many = np.zeros(10_000)
+    assert limits(many) == (0, 0)
+    many[:3] = 5.0  # fewer than are left out
+    assert limits(many) == (0, 5)
 
 
 def test_quantities_by_name(run_folder):
@@ -210,6 +226,22 @@ def test_movies_have_one_frame_per_snapshot(flow_folder, tmp_path, name, colour,
         first = np.asarray(frames.convert("RGB"))
         frames.seek(len(run) - 1)
         assert np.any(np.asarray(frames.convert("RGB")) != first)
+
+
+def test_a_gif_keeps_the_colours_of_its_key_in_all_frames(flow_folder, tmp_path):
+    run = load(flow_folder)
+    camera = movie._Camera(run, "velocity_x", None, width=300)
+    key = [np.round(255 * np.array(colors.to_rgb(c))) for _, c in camera._colours.legend_entries()]
+    with Image.open(make_movie(run, tmp_path / "m.gif", "velocity_x", width=300)) as frames:
+        for k, frame in enumerate(camera.frames()):
+            frames.seek(k)
+            shown, wanted = np.asarray(frames.convert("RGB")).astype(int), np.asarray(frame)
+            assert np.abs(shown - wanted).max() <= 4
+            seen = [(wanted == colour).all(axis=2) for colour in key]
+            assert sum(mask.sum() > 20 for mask in seen) > 3
+            for colour, mask in zip(key, seen, strict=True):
+                assert (shown[mask] == colour).all()
+    assert len({tuple(colour) for colour in key}) == len(key)
 
 
 def test_movies_of_space_show_surfaces_from_the_side(tmp_path, record_run):

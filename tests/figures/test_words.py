@@ -11,10 +11,10 @@ import pytest
 
 from doseki.cli.main import main
 from doseki.errors import UserError
-from doseki.figures import plot, text
+from doseki.figures import plot, saving, text
 from doseki.figures.census_output import CensusOptions, write_census
 from doseki.figures.dots import extent_of
-from doseki.figures.layout import chart_grid, nice_length
+from doseki.figures.layout import PanelGrid, ViewRows, chart_grid, nice_length, time_text
 from doseki.figures.movie import _Camera
 from doseki.figures.stage import WIDTH
 from doseki.measure.views import whole_space
@@ -67,22 +67,80 @@ def picture(title):
 
 
 def test_dollars_begin_no_formula():
-    with text.plain_text() as complaints:
+    with text.plain_text() as missing:
         one, other = picture("a $x$ b"), picture("a x b")
         assert not np.array_equal(one, other)
         assert np.array_equal(one, picture("a $x$ b"))
     with_formula = picture("a $x$ b")
     assert not np.array_equal(one, with_formula)
-    assert complaints == []
+    assert missing == []
 
 
 def test_characters_without_a_font_are_told(monkeypatch):
     monkeypatch.setattr(text, "CJK", ())
-    with text.plain_text() as complaints:
+    with text.plain_text() as missing:
         picture("土石 debris")
-    (said,) = complaints
+    (said,) = text.missing_text(missing)
     assert "no font has the characters 土石" in said
     assert "fonts-noto-cjk" in said
+
+
+def test_characters_of_many_pictures_are_told_once(monkeypatch, tmp_path, recwarn):
+    monkeypatch.setattr(text, "CJK", ())
+    drawn = saving.Drawn()
+    for name, title in (("one", "土石"), ("two", "石流"), ("three", "plain")):
+        drawn.add(tmp_path / f"{name}.png", lambda t=title: chart_grid(1, 1, (3, 1), t)[0])
+    assert len(drawn.pictures) == 3
+    (said,) = drawn.remarks
+    assert "the characters 土石流:" in said
+    assert not recwarn.list
+
+
+LONG = "土石流" + "Supercalifragilistic_" * 8 + " and more of a torrent" * 5
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: chart_grid(1, 1, (3, 1), LONG)[0],
+        lambda: PanelGrid(2, [True], (0.0, 1.0, 0.0, 3.0), LONG).figure,
+        lambda: ViewRows(1, [(0.0, 1.0, 0.0, 1.0)] * 3, LONG).figure,
+    ],
+)
+def test_long_titles_are_drawn_in_full_above_the_panels(make):
+    with text.plain_text():
+        figure = make()
+        canvas = figure.canvas
+        canvas.draw()
+        title = figure._suptitle
+        box, whole = title.get_window_extent(), figure.bbox
+    assert title.get_text().replace("\n", "").replace(" ", "") == LONG.replace(" ", "")
+    assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+    assert box.y1 <= whole.y1
+    for axes in figure.axes:
+        assert axes.get_window_extent().y1 < box.y0
+
+
+def test_the_title_of_a_grid_keeps_clear_of_its_panels():
+    with text.plain_text():
+        grid = PanelGrid(1, [False], (0.0, 1.0, 0.0, 3.0), LONG)
+        axes = grid.panel(0, 0)
+        axes.set_title("t = 0.00 s")
+        grid.figure.canvas.draw()
+        assert axes.title.get_window_extent().y1 < grid.figure._suptitle.get_window_extent().y0
+
+
+@pytest.mark.parametrize(
+    ("time", "longest", "said"),
+    [
+        (0.5, 2.0, "t = 0.50 s"),
+        (1.46e-3, 1.59e-3, "t = 0.00146 s"),
+        (0, 0.04, "t = 0.0000 s"),
+        (0, 0, "t = 0.00 s"),
+    ],
+)
+def test_times_are_in_seconds_as_at_the_axes_of_curves(time, longest, said):
+    assert time_text(time, longest) == said
 
 
 @pytest.mark.parametrize("title", ODD)
@@ -182,7 +240,7 @@ def test_a_disk_that_is_full_for_pictures_loses_no_run(scenario, tmp_path, capsy
         raise OSError(28, "No space left on device")
 
     shutil.rmtree(tmp_path / "run", ignore_errors=True)
-    monkeypatch.setattr(plot, "write_whole", fail)
+    monkeypatch.setattr(saving, "write_whole", fail)
     with pytest.raises(SystemExit) as ended:
         main(["run", str(scenario()), "-o", str(tmp_path / "run"), "--threads", "1"])
     assert ended.value.code == 0

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.measure.loads import running_peak
+from doseki.assess.loads import Loads, as_json, load_lines
+from doseki.measure.loads import BodyLoad, Series, _step_peak, running_peak
 
 
 def integral(time, mean):
@@ -40,6 +41,21 @@ def test_windows_between_samples_are_found(seed):
     means = (np.interp(begins + 0.01, time, whole) - np.interp(begins, time, whole)) / 0.01
     assert peak.value >= means.max() - 1e-9
     assert peak.value == pytest.approx(means.max(), rel=1e-3)
+
+
+def test_where_nothing_acts_there_is_no_time_of_a_peak():
+    time = np.linspace(0, 1, 201)
+    peak = running_peak(time, 0 * time, 0.01)
+    assert (peak.value, np.isnan(peak.time)) == (0, True)
+    # The core names a time in each interval, also of nothing.
+    none = {f"peak_force_{axis}": np.array([np.nan, 0.0, 0.0]) for axis in "xy"}
+    columns = none | {"peak_time": np.array([np.nan, 0.01, 0.06])}
+    peak = _step_peak(columns, np.array([1.0, 0.0]), 2)
+    body = BodyLoad("dam", np.eye(2)[0], peak, {"total": Series({0.01: peak}, 0.0)}, "N/m", 0.05)
+    lines = [text for _, text in load_lines(Loads(2, [body], []))]
+    assert lines[0] == "nothing acted"
+    assert not any("nan" in text for text in lines)
+    assert as_json(Loads(2, [body], []))["bodies"]["dam"]["step_peak"] == {"value": 0, "time": None}
 
 
 def test_what_samples_cannot_show_is_none():

@@ -11,7 +11,7 @@ from doseki.record.writer import Recorder
 
 CORNER = np.array([460000.0, 5200000.0, 1500.0])  # m, on a map
 WATER = '\n[material.water]\nlaw = "fluid"\nrho0 = 1000.0\n'
-BODY = '\n[body.grain]\nshape = "{shape}"\n'
+BODY = '\n[body.grain]\nshape = "{shape}"\nkinematics = "{kinematics}"\n'
 
 
 def block(sizes, start=(0.0, 0.0, 0.0)):
@@ -80,10 +80,12 @@ def map_run(tmp_path):
     return record_map(tmp_path / "map", "box")
 
 
-def record_map(path, shape, frames=5):
-    """Write that run, with a body of some shape."""
+def record_map(path, shape, frames=5, kinematics="rigid"):
+    """Write that run, with a body of some shape that may be deformable."""
     text = SCENARIO.format(dim=3, zeros="0.0, ").replace("[-1.0", "[0.0")
-    recorder = Recorder(path, text + WATER + BODY.format(shape=shape), MATERIALS, BODIES, 3)
+    recorder = Recorder(
+        path, text + WATER + BODY.format(shape=shape, kinematics=kinematics), MATERIALS, BODIES, 3
+    )
     for k in range(frames):
         state, grains = map_state(0.25 * k)
         recorder.snapshot(state, time=0.25 * k, step=k, dt=0.1, grains=grains)

@@ -15,6 +15,9 @@ from doseki.cli.main import main
 from doseki.record.writer import Recorder
 from doseki.report.markup import Markup, markup, table, tag
 from doseki.report.report import write_report
+from doseki.scenario.gauges.loads.load import Load
+
+from .conftest import give_figure
 
 EVIL = "</title><script>alert(1)</script><img src=x onerror=alert(2)>\"'&"
 VOID = {"meta", "img", "input", "br"}
@@ -88,7 +91,7 @@ def test_sections_come_in_order_and_only_where_there_is_something(drawn_flow, ma
     page = page_of(drawn_flow)
     names = [given["id"] for given, _ in page.all("section")]
     assert names[3:8] == ["ledgers", "figures", "maps", "loads", "sections"]
-    assert "arrival time" in page.by_id("maps")
+    assert "Time of arrival (s)" in page.by_id("maps")
     assert "-32500" in page.by_id("loads")
     assert "<i>" in page.by_id("sections")
     assert "gorge" in page.by_id("sections")
@@ -115,6 +118,59 @@ def test_gauges_are_drawn(tmp_path, page_of):
     page = page_of(tmp_path / "run")
     assert "p1: surface height, 2 rows" in page.by_id("gauges")
     assert "gauge p1" in {given["alt"] for given, _ in page.all("img")}
+
+
+def test_a_gauge_that_a_figure_shows_is_not_drawn_again(flow_folder, page_of):
+    tables = (
+        '\n[gauge.press]\nkind = "load"\nbodies = ["bed"]\n'
+        '\n[gauge.p1]\nkind = "surface_height"\nposition = [0.5, 0.0]\n'
+        '\n[figure.push]\nkind = "load"\ngauge = "press"\n'
+        '\n[figure.height]\nkind = "gauge"\ngauge = "p1"\n'
+    )
+    scenario = flow_folder / "scenario.toml"
+    scenario.write_text(scenario.read_text() + tables)
+    (flow_folder / "gauges").mkdir()
+    push = [
+        f"{name} [{unit}]" for name, unit in Load(kind="load", bodies=["bed"]).columns(2).items()
+    ]
+    for name, columns in (("press", push), ("p1", ["time [s]", "height [m]"])):
+        rows = (f"{time}," + ",".join("1" for _ in columns[1:]) for time in range(3))
+        text = "\n".join([",".join(columns), *rows, ""])
+        (flow_folder / "gauges" / f"{name}.csv").write_text(text)
+    give_figure(flow_folder)
+    page = page_of(flow_folder)
+    assert "gauges" not in {given["id"] for given, _ in page.all("section")}
+
+
+def test_captions_say_what_a_picture_shows(flow_folder, page_of):
+    scenario = flow_folder / "scenario.toml"
+    tables = '\n[figure.f1]\nkind = "series"\ncolumns = ["time", "kinetic_energy"]\n'
+    named = '\n[figure.f2]\nkind = "snapshot"\ntitle = "The <end>"\n'
+    scenario.write_text(scenario.read_text() + tables + named)
+    give_figure(flow_folder)
+    for name in ("f1", "f2", "before", "speeds", "my-own"):
+        Image.new("RGB", (40, 30)).save(flow_folder / "figures" / f"{name}.png")
+    captions = [text for _, text in page_of(flow_folder).all("figcaption")]
+    assert captions == [
+        "Overview: the start, the arrival of the flow, its peak and the end",
+        "Particles by material and velocity x",
+        "Time and kinetic energy over time",
+        "The <end>",
+        "my own",
+        "Speeds of basalt",
+    ]
+
+
+def test_without_scripts_there_are_no_dead_controls(map_run, drawn_flow, page_of):
+    for folder, turns in ((map_run, "turn"), (drawn_flow, "move")):
+        page = page_of(folder)
+        (view,) = [given for _, given, _ in page.elements if given.get("id") == "viewer"]
+        assert "hidden" in view
+        assert "Drag to" in page.by_id("viewer")
+        assert "needs JavaScript" not in page.by_id("viewer")
+        assert "needs JavaScript" in page.by_id("view")
+        (label,) = [g["aria-label"] for g, _ in page.all("canvas") if "aria-label" in g]
+        assert f"Arrow keys {turns}," in label
 
 
 def test_nothing_is_fetched(map_run, page_of):
@@ -207,6 +263,8 @@ def test_markup_escapes_all_but_itself():
     made = Page(table(["a", "b"], [("x", "1.5"), ("y", "-2e3")]))
     assert [given.get("class") for given, _ in made.all("td")] == [None, "number"] * 2
     assert [given.get("class") for given, _ in made.all("th")] == [None, "number"]
+    made = Page(table(["a", "b", "c"], [("1", "-", "-"), ("-", "x", ""), ("", "2", "-")]))
+    assert [given.get("class") for given, _ in made.all("td")] == ["number", None, None] * 3
 
 
 def test_a_run_without_snapshots_has_a_report_without_a_view(tmp_path, page_of):

@@ -108,6 +108,28 @@ def test_a_cube_is_a_hull_and_a_sphere_is_a_ball(map_run, tmp_path):
     assert shapes.radius == pytest.approx([0.15 * np.sqrt(3)])
 
 
+def test_deformable_bodies_are_their_particles(map_run, tmp_path):
+    run = load(record_map(tmp_path / "elastic", "box", 1, "elastic"))
+    scene = make_scene(run, PLENTY)
+    assert "bodies" not in scene.table
+    assert scene.table["flow"] == "flow and deformable bodies"
+    assert scene.table["frames"][0]["flow"]["count"] == 240 + 27
+    assert make_scene(load(map_run), PLENTY).table["flow"] == "flow"
+
+
+def test_what_is_the_same_everywhere_is_no_scale(tmp_path, record_run):
+    def state(_time):
+        made, _ = map_state(0.0)
+        made["grain"][:] = -1
+        return made | {"pressure": np.zeros(len(made["id"])), "velocity": 0 * made["velocity"]}
+
+    record_run(tmp_path / "run", dim=3, times=(0.0,), state_at=state, tables="")
+    scene = make_scene(load(tmp_path / "run"), PLENTY)
+    fields = {each["name"]: each for each in scene.table["fields"]}
+    assert "pressure" not in fields
+    assert (fields["speed"]["low"], fields["speed"]["high"]) == (0, 0)
+
+
 def test_bodies_stand_where_they_stood(map_run):
     run = load(map_run)
     scene = make_scene(run, PLENTY)

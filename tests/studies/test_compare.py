@@ -13,7 +13,9 @@ from doseki.record.reader import load
 from doseki.studies.flume_criteria import (
     AHEAD,
     BALANCE,
+    CRITERIA,
     FLOATS,
+    NOT_MEASURED,
     PASSED,
     RATIO,
     SPEED,
@@ -137,10 +139,26 @@ def test_the_scheme_of_the_paper_falls_short(flume):
     assert {row.quantity: row.verdict for row in rows if row.verdict != PASS} == {RATIO: SHORT}
 
 
-def test_a_run_that_ends_too_early_has_no_water_velocity(flume):
-    found = measured(flume(times=TIMES[:6]))
-    assert np.isnan(found[SPEED])
-    assert np.isnan(found[BALANCE])
+def test_what_a_run_ends_too_early_for_is_not_measured(flume):
+    rows = verdicts(measure_flume(load(flume(times=TIMES[:6]))))
+    found = {row.quantity: row.verdict for row in rows if row.verdict == NOT_MEASURED}
+    assert set(found) == {SPEED, BALANCE, FLOATS, PASSED, STUCK, RATIO}
+
+
+@pytest.mark.minutes
+def test_a_page_of_runs_to_which_no_water_came_has_no_verdict(flume, tmp_path, capsys):
+    runs = [str(flume(scheme, times=TIMES[:3])) for scheme in ("ueta2022", "resolved")]
+    with pytest.raises(SystemExit) as done:
+        main(["compare", "flume", *runs, "--out", str(tmp_path / "page")])
+    assert done.value.code == 0
+    told = capsys.readouterr().out
+    assert told.count("| not measured |") == 2 * len(CRITERIA)
+    assert "nan" not in told
+    assert "missed" not in told
+    page = (tmp_path / "page" / "comparison.md").read_text()
+    assert "resolved-fig7 is not drawn: no water came to the slope end." in page
+    assert "nan" not in page
+    assert "](resolved-fig7.png)" not in page
 
 
 @pytest.mark.minutes

@@ -10,12 +10,17 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import psutil
 import pytest
 
 from doseki.cli.main import main
 from doseki.errors import UserError
+from doseki.studies.outcome import pictures
+from doseki.studies.outcome.pictures import Pictures
+from doseki.studies.outcome.table import Entry, Table
+from doseki.studies.plan.axes import Axis
 from doseki.studies.plan.file import read_plan
 from doseki.studies.runs.folder import StudyFolder, StudyRuns
 from doseki.studies.runs.row import DONE, FAILED, LOST, Row, read_row, write_row
@@ -67,6 +72,31 @@ def test_each_run_has_a_row_and_what_is_there_is_not_run_again(tmp_path):
     lost = sorted(rows_before)[1]
     lost.unlink()
     assert run(path, out, pictures=False)[0].made == 1
+
+
+@pytest.mark.minutes
+def test_a_study_with_an_odd_title_ends_with_its_pictures(tmp_path, recwarn):
+    title = 'title = "Cost $\\\\frac{ of $ it"\n'
+    report, _ = run(write_study(tmp_path, title + STUDY), tmp_path / "out")
+    assert report.notes == []
+    assert {"parallel.png", "responses.png"} <= {file.name for file in report.files}
+    assert not recwarn.list
+
+
+def test_a_picture_that_fails_costs_a_study_no_other(tmp_path, monkeypatch):
+    def fail(*_):
+        raise ValueError("no ink")
+
+    monkeypatch.setattr(pictures, "parallel_coordinates", fail)
+    plan = read_plan(write_study(tmp_path))
+    place = SimpleNamespace(path=tmp_path / "1", number=1)
+    row = Row(DONE, "", results={"speed": 1.0})
+    drawn = Pictures(Table(plan, [Entry(place, (value,), row) for value in (5, 10)]), tmp_path)
+    drawn.draw()
+    assert [file.name for file in drawn.files] == ["responses.png"]
+    assert drawn.notes == ["figure parallel could not be drawn: ValueError('no ink')"]
+    assert pictures.outputs_of(drawn._table)[0].label == "speed (m/s)"
+    assert pictures._unit(Axis("dp", choices=(0.04, 0.05)), 2) == "m"
 
 
 @pytest.mark.minutes

@@ -58,12 +58,7 @@ def load_lines(loads: Loads) -> Iterator[tuple[str, str]]:
 def _body_lines(body: BodyLoad) -> Iterator[tuple[str, str]]:
     total = body.parts["total"]
     way = ", ".join(f"{x:.3g}" for x in body.direction)
-    text = f"peak {_at(body.step_peak, body.unit)} at a step"
-    for window, peak in total.means.items():
-        if math.isnan(peak.value):
-            continue
-        text += f", {_at(peak, body.unit)} over {1e3 * window:g} ms"
-    yield f"load {body.name}", text
+    yield f"load {body.name}", _peaks_text(body)
     shares = ", ".join(
         f"{part} {series.impulse:.4g}" for part, series in body.parts.items() if part != "total"
     )
@@ -75,6 +70,16 @@ def _body_lines(body: BodyLoad) -> Iterator[tuple[str, str]]:
         unit = "N" if each is body.boulder else body.unit
         pressure = "" if each.pressure is None else f", {each.pressure.value:.4g} Pa"
         yield "", f"{each.formula}: {_at(each.force, unit)}{pressure}"
+
+
+def _peaks_text(body: BodyLoad) -> str:
+    if math.isnan(body.step_peak.time):
+        return "nothing acted"
+    text = f"peak {_at(body.step_peak, body.unit)} at a step"
+    for window, peak in body.parts["total"].means.items():
+        if not math.isnan(peak.time):
+            text += f", {_at(peak, body.unit)} over {1e3 * window:g} ms"
+    return text
 
 
 def _dam_lines(dam: DamBalance, dim: int) -> Iterator[tuple[str, str]]:

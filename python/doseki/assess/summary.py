@@ -72,8 +72,11 @@ def _computed(run: Run) -> Iterator[Row]:
     """How much was computed: particles, time, steps, wall time, memory."""
     said = run.summary
     scheme, dim = run.scenario.get("scheme", ""), run.scenario["dim"]
-    spacing = f"dp = {1e3 * run.scenario['dp']:.4g} mm"
-    yield _line("scheme", f"{scheme}, {dim}-D, {spacing}, xi = {run.scenario.get('xi', 1.0):.4g}")
+    dp = run.scenario["dp"]
+    spacing = f"{dp:.4g} m" if dp >= 1 else f"{1e3 * dp:.4g} mm"
+    yield _line(
+        "scheme", f"{scheme}, {dim}-D, dp = {spacing}, xi = {run.scenario.get('xi', 1.0):.4g}"
+    )
     if len(run.history) and len(run.history["time"]):
         last = {column: values[-1] for column, values in run.history.items()}
         yield _line("time", f"{last['time']:.6g} s of {run.scenario['time_max']:.6g} s")

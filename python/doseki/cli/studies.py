@@ -77,6 +77,8 @@ def compare(
         lambda text: typer.echo(text, err=True),
     )
     comparison = compare_runs(folders, directory)
+    for remark in comparison.drawn.remarks:
+        typer.echo(f"warning: {remark}", err=True)
     typer.echo((directory / "comparison.json").read_text() if as_json else comparison.text())
     typer.echo(f"In {directory}: comparison.md, pictures", err=as_json)
 

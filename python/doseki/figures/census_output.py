@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import h5py
 import numpy as np
+from matplotlib.figure import Figure
 
 from ..errors import UserError
 from ..measure.census import CLASSES, Census, SpeedDraws, deposit_outline, draw_speeds, take_census
@@ -26,7 +27,7 @@ from .census import (
     draw_passed,
     draw_speed_histogram,
 )
-from .text import plain_text
+from .saving import Drawn
 
 OUTLET, DEPOSIT = "outlet", "deposit"  # windows that are used by default
 
@@ -83,11 +84,14 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
         tables["grading"] = grading_table(run)
     write_tables(folder, tables)
     where = f"window {name}" if name else "everywhere"
-    with plain_text() as complaints:
-        _write_figures(folder, run, census, drawn, where, outline, sections)
-        if breaks:
-            figure = draw_grading(gradings(run))
-            write_whole(folder / "grading.png", partial(figure.savefig, format="png"))
+    makers = _makers(run, census, drawn, where, outline)
+    if sections:
+        makers["passed"] = partial(draw_passed, census, sections, run.scenario["dim"])
+    if breaks:
+        makers["grading"] = lambda: draw_grading(gradings(run))
+    pictures = Drawn()
+    for what, make in makers.items():
+        pictures.add(folder / f"{what}.png", make)
     files = f"In {folder}: {', '.join(tables)} (.csv, census.h5), figures"
     lines = census_lines(census, drawn, where, sections)
     if not sections:
@@ -96,7 +100,7 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
             f"no passing is counted: x = 0 is not in the scene, which goes from {low:.8g} to "
             f"{high:.8g} m; say where with --section X"
         )
-    return [*lines, files, *complaints]
+    return [*lines, files, *(f"warning: {text}" for text in pictures.remarks)]
 
 
 def _sections(run: Run, census: Census) -> tuple[float, ...]:
@@ -173,25 +177,17 @@ def _csv(table: Mapping[str, np.ndarray]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _write_figures(
-    folder: Path,
-    run: Run,
-    census: Census,
-    drawn: SpeedDraws,
-    where: str,
-    outline: np.ndarray | None,
-    sections: Sequence[float],
-) -> None:
-    figures = {
-        "classes": draw_classes(census),
-        "speeds": draw_speed_histogram(drawn, where),
+def _makers(
+    run: Run, census: Census, drawn: SpeedDraws, where: str, outline: np.ndarray | None
+) -> dict[str, Callable[[], Figure]]:
+    """What draws each figure that every census may have."""
+    makers: dict[str, Callable[[], Figure]] = {
+        "classes": partial(draw_classes, census),
+        "speeds": partial(draw_speed_histogram, drawn, where),
     }
-    if sections:
-        figures["passed"] = draw_passed(census, sections, run.scenario["dim"])
     if outline is not None and len(outline):
-        figures["deposit"] = draw_deposit(outline, run.scenario["dim"])
-    for name, figure in figures.items():
-        write_whole(folder / f"{name}.png", partial(figure.savefig, format="png"))
+        makers["deposit"] = partial(draw_deposit, outline, run.scenario["dim"])
+    return makers
 
 
 def census_lines(

@@ -73,11 +73,7 @@ class CategoryColours:
 
     def add_key(self, grid: KeyRoom, axes: Axes) -> None:
         """Explain the colours to the right of the panel `axes`."""
-        handles = [Patch(color=colour, label=label) for label, colour in self.legend_entries()]
-        axes.legend(
-            handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0,
-            frameon=False, fontsize="small", handlelength=1.0,
-        )  # fmt: skip
+        add_names(axes, self.legend_entries())
 
 
 class GrainColours(CategoryColours):
@@ -127,11 +123,14 @@ class ScaleColours:
 
     def legend_entries(self) -> list[tuple[str, str]]:
         """(label, colour) of a few values of the scale."""
-        values = np.linspace(*self._limits, 5)
+        values = np.unique(np.linspace(*self._limits, 5))
         return [(f"{v:.3g}", colors.to_hex(colormaps[SCALE](self._norm(v)))) for v in values]
 
     def add_key(self, grid: KeyRoom, axes: Axes) -> None:
-        """Explain the colours by a bar to the right of the panel `axes`."""
+        """Explain the colours by a bar to the right of the panel `axes`, one value by its name."""
+        if self._limits[0] == self._limits[1]:
+            add_names(axes, self.legend_entries(), self.heading)
+            return
         bar = grid.figure.colorbar(ScalarMappable(self._norm, SCALE), cax=grid.beside(axes))
         bar.set_label(self.heading, fontsize="small")
 
@@ -149,6 +148,16 @@ def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) ->
     return ScaleColours(snapshots, name, view)
 
 
+def add_names(axes: Axes, entries: Sequence[tuple[str, str]], heading: str = "") -> None:
+    """Name colours to the right of the panel `axes`: (label, colour) each."""
+    axes.legend(
+        handles=[Patch(color=colour, label=label) for label, colour in entries],
+        title=heading or None, title_fontsize="small", loc="upper left",
+        bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, frameon=False, fontsize="small",
+        handlelength=1.0,
+    )  # fmt: skip
+
+
 def palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str]:
     if name != "material":
         return {k: OTHER_COLOURS[i % len(OTHER_COLOURS)] for i, k in enumerate(kinds)}
@@ -159,11 +168,12 @@ def palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str]
 
 
 def limits(values: np.ndarray) -> tuple[float, float]:
-    """Ends of the colour scale: never the same number twice."""
+    """Ends of the colour scale: the same number where all are."""
     values = values[np.isfinite(values)]
     if len(values) == 0:
-        return 0.0, 1.0
-    trim = 0.5 if len(values) > FEW else 0.0
-    low, high = np.percentile(values, (trim, 100 - trim))
-    margin = 0.05 * (abs(low) or 1.0) if low == high else 0.0
-    return low - margin, high + margin
+        return 0.0, 0.0
+    if len(values) > FEW:
+        low, high = np.percentile(values, (0.5, 99.5))
+        if low < high:
+            return float(low), float(high)
+    return float(values.min()), float(values.max())

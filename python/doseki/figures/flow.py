@@ -9,7 +9,9 @@ from ..measure.flow import Flow
 from ..record.reader import Run
 from ..record.units import unit_in
 from .kinds.series import draw_curves
-from .layout import chart_grid, figure_legend, lengths_in_full
+from .layout import chart_grid, figure_legend, lengths_in_full, name_of_curves, say_where_empty
+
+PANEL = (7.0, 2.0)  # inches
 
 MEASURES = (  # attribute of WindowFlow, what it is, its unit in 3-D
     ("fluid_velocity", "mean velocity x of the fluid", "m/s"),
@@ -22,10 +24,11 @@ MEASURES = (  # attribute of WindowFlow, what it is, its unit in 3-D
 def draw_flow(run: Run, flow: Flow) -> Figure:
     """One panel for the front, and one for each thing that windows show."""
     panels = {"front of the fluid (m)": {"": flow.front}} | _window_panels(run, flow)
-    figure, grid = chart_grid(len(panels), 1, (7.0, 2.0), "The flow over time")
+    figure, grid = chart_grid(len(panels), 1, PANEL, "The flow over time")
     for axes, (label, curves) in zip(grid[:, 0], panels.items(), strict=True):
         draw_curves(axes, flow.times, curves)
-        axes.set_ylabel(label, fontsize="small")
+        name_of_curves(axes, label, PANEL[1])
+        say_where_empty(axes, flow.times)
     lengths_in_full(grid[0, 0], "y")
     grid[-1, 0].set_xlabel("time (s)")
     figure_legend(figure, grid.flat)

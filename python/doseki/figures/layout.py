@@ -14,12 +14,14 @@ from matplotlib.ticker import MaxNLocator
 
 from ..measure.moments import Moment
 from ..record.reader import Run
+from .text import TITLE, wrapped
 
 DPI = 150
 WIDTH, HEIGHT = 8.0, 12.0  # inches for all panels of a row, of a column
-LEFT, BOTTOM, ABOVE, TITLE = 0.95, 0.55, 0.35, 0.35  # inches around the panels
+LEFT, BOTTOM, ABOVE = 0.95, 0.55, 0.35  # inches around the panels
+FIRST_LINE, LINE, EDGE = 0.35, 0.2, 0.15  # inches of a title: first line, others, at its sides
 GAP, KEY_SLOT = 0.25, 1.6  # inches to the right of a panel
-VIEWS_WIDTH, VIEW_GAP = 11.0, 0.8  # inches for views in space, and below each of them
+VIEWS_WIDTH, VIEW_GAP = 8.5, 0.8  # inches for views in space, and below each of them
 VIEW_TOP = 0.25  # inches of the gap that are above a view
 FLAT_VIEWS = 9.0  # views that are longer than so many heights stand below each other
 FULL = (-5, 9)  # powers of ten between which lengths, m, have no exponent
@@ -45,9 +47,8 @@ class PanelGrid:
         self._panel_width = min(widest, max(self._panel_height / ratio, 1.5))
         self._right_of = [KEY_SLOT if key else GAP for key in key_after]
         width = LEFT + len(key_after) * self._panel_width + sum(self._right_of)
-        height = BOTTOM + rows * (self._panel_height + ABOVE) + (TITLE if title else 0.0)
-        self.figure = _figure(width, height)
-        self.figure.suptitle(title, fontsize="medium", wrap=True, y=1 - 0.1 / height, va="top")
+        height = BOTTOM + rows * (self._panel_height + ABOVE)
+        self.figure, _ = _titled_figure(width, height, title)
 
     def panel(self, row: int, column: int) -> Axes:
         """The axes at (row, column), counted from the top left."""
@@ -89,11 +90,8 @@ class ViewRows:
         self._sizes = np.stack([wide, high], axis=1) * scale
         inner = (high.sum() if self._flat else high.max()) * scale
         self._row = inner + (4 - columns) * VIEW_GAP
-        self._rows, self._title = rows, TITLE if title else 0.1
         across = (wide.max() if self._flat else wide.sum()) * scale + columns * LEFT
-        height = rows * self._row + self._title
-        self.figure = _figure(across + KEY_SLOT, height)
-        self.figure.suptitle(title, fontsize="medium", wrap=True, y=1 - 0.1 / height, va="top")
+        self.figure, self._title = _titled_figure(across + KEY_SLOT, rows * self._row, title)
 
     def row(self, number: int) -> list[Axes]:
         """The axes of a row: slanting view, plan, section."""
@@ -162,10 +160,21 @@ def chart_grid(
 
     `sharex` says whether all have the same x axis, or those of each column.
     """
-    figure = _figure(columns * panel[0] + 1.5, rows * panel[1] + 0.6)
+    width = columns * panel[0] + 1.5
+    lines = wrapped(title, width - 2 * EDGE)
+    figure = _figure(width, rows * panel[1] + 0.6 + LINE * lines.count("\n"))
     figure.set_layout_engine("constrained")
-    figure.suptitle(title, fontsize="medium", wrap=True)
+    figure.suptitle(lines, fontsize=TITLE)
     return figure, figure.subplots(rows, columns, squeeze=False, sharex=sharex)
+
+
+def _titled_figure(width: float, height: float, title: str) -> tuple[Figure, float]:
+    """A figure with a title over `height` inches of panels, and the inches that the title takes."""
+    lines = wrapped(title, width - 2 * EDGE)
+    room = FIRST_LINE + LINE * lines.count("\n") if lines else 0.1
+    figure = _figure(width, height + room)
+    figure.suptitle(lines, fontsize=TITLE, y=1 - 0.1 / (height + room), va="top")
+    return figure, room
 
 
 def _figure(width: float, height: float) -> Figure:
@@ -187,6 +196,31 @@ def figure_legend(figure: Figure, panels: Iterable[Axes]) -> None:
         )  # fmt: skip
 
 
+def name_of_curves(axes: Axes, name: str, height: float) -> None:
+    """What a panel of `height` inches shows, beside it, in as many lines as there is room for."""
+    axes.set_ylabel(wrapped(name, 0.85 * height), fontsize=TITLE)
+
+
+def say_empty(axes: Axes, why: str = "no data", times: np.ndarray | None = None) -> None:
+    """A panel that shows nothing says so; numbers at its axes would look like measurements.
+
+    `times` are those that were looked at: they stay on the axis that it shares with others.
+    """
+    which: Literal["y", "both"] = "both" if times is None else "y"
+    axes.tick_params(axis=which, which="both", length=0, labelleft=False, labelbottom=False)
+    axes.grid(visible=False)
+    axes.text(0.5, 0.5, why, transform=axes.transAxes, ha="center", va="center", color="0.4")
+    if times is not None and len(times):
+        axes.update_datalim([(times.min(), 0.0), (times.max(), 0.0)], updatey=False)
+        axes.autoscale_view(scaley=False)
+
+
+def say_where_empty(axes: Axes, times: np.ndarray | None = None) -> None:
+    """The same for a panel of curves of which none has a value."""
+    if not any(np.isfinite(np.asarray(line.get_ydata())).any() for line in axes.lines):
+        say_empty(axes, times=times)
+
+
 def moment_text(run: Run, moment: Moment) -> str:
     """The time of a moment, and what happened then."""
     time = time_text(float(run.times[moment.index]), float(run.times[-1]))
@@ -194,5 +228,6 @@ def moment_text(run: Run, moment: Moment) -> str:
 
 
 def time_text(time: float, longest: float) -> str:
-    """`t = 2.5 ms` or `t = 2.50 s`, by the length of the run."""
-    return f"t = {1e3 * time:.3g} ms" if longest < 0.1 else f"t = {time:.2f} s"
+    """`t = 2.50 s`, of a short run with more digits: in seconds, as curves over time are."""
+    digits = 2 if not 0 < longest < 0.1 else 2 - math.floor(math.log10(longest))
+    return f"t = {time:.{digits}f} s"

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from PIL import Image
+from scipy.spatial import cKDTree
 
 from ..errors import UserError
 from ..measure.views import View, named_window, tilt, whole_space
@@ -28,6 +30,7 @@ from .text import plain_text
 SIDEWAYS = np.array([0.0, 1.0, 0.0])  # away from the viewer
 QUALITY = 60  # of 100, of a .webp
 SAMPLES = 20  # snapshots looked at to choose the limits of the picture and of the colours
+SHADES, SEEN = 256, 6  # colours of a .gif, frames that they are chosen from
 
 
 def make_movie(
@@ -61,7 +64,7 @@ def make_movie(
             raise UserError(f"{run.directory}: no movie: {reason}") from None
     with clear_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, lambda temporary: encode(temporary, camera.frames(), frames_per_second))
+    write_whole(path, lambda temporary: encode(temporary, camera, frames_per_second))
     return path
 
 
@@ -95,6 +98,14 @@ class _Camera:
         """One picture for each snapshot."""
         return (self._frame(snapshot) for snapshot in self._run)
 
+    def palette(self) -> np.ndarray:
+        """Shades (SHADES, 3) uint8 for all frames, the colours of the key among them."""
+        count = len(self._run)
+        seen = np.unique(np.linspace(0, count - 1, min(SEEN, count)).round().astype(int))
+        key = [to_rgb(colour) for _, colour in self._colours.legend_entries()]
+        kept = np.round(255 * np.array([(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *key])).astype(np.uint8)
+        return _palette([self._frame(self._run[int(index)]) for index in seen], kept)
+
     def _frame(self, snapshot: Snapshot) -> Image.Image:
         pixels = self._pixels(snapshot)
         return self.stage.frame(pixels, time_text(snapshot.time, self._run.times[-1]))
@@ -108,8 +119,41 @@ class _Camera:
         return picture(shown, rgba, self._extent, self._width)
 
 
-def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
-    small = (frame.quantize(64) for frame in frames)
+def _palette(frames: Sequence[Image.Image], kept: np.ndarray) -> np.ndarray:
+    """Shades (SHADES, 3): the colours `kept` (n, 3), and what comes nearest to those of the frames.
+
+    The root of how often a colour is there counts, or a wide background would take all shades.
+    """
+    codes = np.concatenate([_codes(frame).ravel() for frame in frames])
+    colours, count = np.unique(codes, return_counts=True)
+    weighed = np.repeat(_rgb(colours), np.sqrt(count).astype(int), axis=0)
+    small = Image.fromarray(weighed[None]).quantize(SHADES - len(kept))
+    found = np.array(small.getpalette(), dtype=np.uint8).reshape(-1, 3)
+    return np.resize(np.concatenate([kept, found])[:SHADES], (SHADES, 3))
+
+
+def _in_palette(frame: Image.Image, palette: np.ndarray) -> Image.Image:
+    """A frame in the nearest of the shades; Pillow looks them up too coarsely to keep a colour."""
+    codes, pixel = np.unique(_codes(frame), return_inverse=True)
+    _, nearest = cKDTree(palette).query(_rgb(codes))
+    image = Image.fromarray(nearest.astype(np.uint8)[pixel].reshape(frame.height, frame.width))
+    image.putpalette(palette.tobytes())
+    return image
+
+
+def _codes(frame: Image.Image) -> np.ndarray:
+    """The colour of each pixel (rows, columns) as one number."""
+    red, green, blue = np.moveaxis(np.asarray(frame).astype(np.int32), -1, 0)
+    return red << 16 | green << 8 | blue
+
+
+def _rgb(codes: np.ndarray) -> np.ndarray:
+    return np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=-1).astype(np.uint8)
+
+
+def _encode_gif(path: Path, camera: _Camera, frames_per_second: int) -> None:
+    palette = camera.palette()
+    small = (_in_palette(frame, palette) for frame in camera.frames())
     first = next(small)
     first.save(
         path, format="GIF", save_all=True, append_images=small, loop=0,
@@ -117,7 +161,8 @@ def _encode_gif(path: Path, frames: Iterator[Image.Image], frames_per_second: in
     )  # fmt: skip
 
 
-def _encode_webp(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
+def _encode_webp(path: Path, camera: _Camera, frames_per_second: int) -> None:
+    frames = camera.frames()
     first = next(frames)
     first.save(
         path, format="WEBP", save_all=True, append_images=frames, loop=0, quality=QUALITY,
@@ -125,10 +170,11 @@ def _encode_webp(path: Path, frames: Iterator[Image.Image], frames_per_second: i
     )  # fmt: skip
 
 
-def _encode_mp4(path: Path, frames: Iterator[Image.Image], frames_per_second: int) -> None:
+def _encode_mp4(path: Path, camera: _Camera, frames_per_second: int) -> None:
     program = shutil.which("ffmpeg")
     if program is None:
         raise UserError("an .mp4 needs the program ffmpeg, which is not installed; a .gif does not")
+    frames = camera.frames()
     first = next(frames)
     command = [
         program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from ..errors import DosekiError, UserError, one_line
+from ..errors import UserError
 from ..measure.flow import measure_flow
 from ..measure.moments import moments
 from ..measure.views import tables, tilt, whole_space
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..scenario.tables.figure import Figure as FigureTable
-from ..util.files import clear_errors, write_whole
 from ..util.spelling import suggestion
 from .flow import draw_flow
 from .kinds.energy import draw_energy
@@ -27,22 +25,8 @@ from .kinds.series import MASSES, draw_history
 from .kinds.snapshot import draw_panels
 from .maps.output import map_makers
 from .nothing import NothingToDrawError
+from .saving import Drawn
 from .text import plain_text
-
-
-@dataclass
-class Drawn:
-    """The pictures of a run, and what is to be said of those that are missing, or not as wanted."""
-
-    pictures: list[Path] = field(default_factory=list)
-    failures: list[str] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)  # of those that would be empty
-
-    @property
-    def remarks(self) -> list[str]:
-        """All that is to be said."""
-        return [*self.failures, *self.warnings]
 
 
 def draw_run(directory: str | Path) -> Drawn:
@@ -57,26 +41,10 @@ def draw_run(directory: str | Path) -> Drawn:
     refuse_links(run.folder)
     drawn = Drawn()
     for name, make in _makers(run):
-        _add(drawn, run.folder.figures / f"{name}.png", make)
+        drawn.add(run.folder.figures / f"{name}.png", make)
     for name, make in map_makers(run):
-        _add(drawn, run.folder.maps / f"{name}.png", make)
+        drawn.add(run.folder.maps / f"{name}.png", make)
     return drawn
-
-
-def _add(drawn: Drawn, path: Path, make: Callable[[], Figure]) -> None:
-    """Draw one figure, or say why there is none."""
-    name = path.stem
-    try:
-        with plain_text() as complaints:
-            _save(make(), path)
-        drawn.pictures.append(path)
-        drawn.warnings += [f"figure {name}: {text}" for text in complaints]
-    except NothingToDrawError as reason:
-        drawn.notes.append(one_line(f"figure {name} is not drawn: {reason}"))
-    except Exception as error:
-        # Whatever a picture stumbles over: the run, and the other pictures, do not.
-        said = str(error) if isinstance(error, DosekiError) else repr(error)
-        drawn.failures.append(one_line(f"figure {name} could not be drawn: {said}"))
 
 
 def plot_run(directory: str | Path) -> list[Path]:
@@ -154,9 +122,3 @@ GENERAL: dict[str, Callable[[Run], Figure]] = {
     "mass": _mass,
     "flow": _flow,
 }
-
-
-def _save(figure: Figure, path: Path) -> None:
-    with clear_errors(path):
-        path.parent.mkdir(exist_ok=True)
-    write_whole(path, lambda temporary: figure.savefig(temporary, format="png"))

@@ -23,13 +23,16 @@ RESOLVED = 1 + 1e-6  # of a window, the longest interval between samples that sh
 
 @dataclass(frozen=True)
 class Peak:
-    """A highest value, and when: of a running mean the middle of its window."""
+    """A highest value, and when: of a running mean the middle of its window.
+
+    Where nothing acted it is zero, at no time.
+    """
 
     value: float
     time: float  # s
 
 
-NO_PEAK = Peak(float("nan"), float("nan"))
+NO_PEAK, NOTHING = Peak(float("nan"), float("nan")), Peak(0.0, float("nan"))
 
 
 @dataclass(frozen=True)
@@ -141,6 +144,8 @@ def _step_peak(record: GaugeRecord, direction: np.ndarray, dim: int) -> Peak:
     thrust = columns(record, "peak_", dim) @ direction
     if not np.isfinite(thrust).any():
         return NO_PEAK
+    if not np.nan_to_num(thrust).any():
+        return NOTHING
     k = int(np.nanargmax(thrust))
     return Peak(float(thrust[k]), float(record["peak_time"][k]))
 
@@ -161,6 +166,8 @@ def running_peak(time: np.ndarray, impulse: np.ndarray, window: float) -> Peak:
     start, end = time[0], time[-1]
     if np.diff(time).max() > window * RESOLVED or end - start < window / RESOLVED:
         return NO_PEAK
+    if not impulse.any():
+        return NOTHING
     begins = np.concatenate([time, time - window])
     begins = np.unique(np.clip(begins, start, max(start, end - window)))
     later = np.interp(begins + window, time, impulse)

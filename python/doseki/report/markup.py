@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
+UNKNOWN = "-"  # of what has no number
 VOID = {"img", "input", "meta", "br"}
 
 
@@ -48,24 +49,30 @@ def tag(name: str, /, *content: Content, **attributes: str | bool | None) -> Mar
 
 
 def table(head: Sequence[Content], rows: Iterable[Sequence[Content]], caption: str = "") -> Markup:
-    """A table that scrolls sideways where it is wide; cells that look like numbers go right."""
+    """A table that scrolls sideways where it is wide; columns of numbers go right."""
     body = [list(row) for row in rows]
-    lines = [tag("tr", [_cell(cell) for cell in row]) for row in body]
-    heads = tag("thead", tag("tr", [_head(cell, k, body) for k, cell in enumerate(head)]))
+    width = max(map(len, [head, *body]))
+    classes = ["number" if _is_of_numbers(body, column) else None for column in range(width)]
+    lines = [tag("tr", map(_cell, row, classes)) for row in body]
+    heads = tag("thead", tag("tr", map(_head, head, classes)))
     title = tag("caption", caption) if caption else None
     return tag("div", tag("table", title, heads if head else None, tag("tbody", lines)),
                class_="scroll")  # fmt: skip
 
 
-def _head(cell: Content, column: int, rows: Sequence[Sequence[Content]]) -> Markup:
-    """The head of a column, which stands over its numbers where it has them."""
-    cells = [row[column] for row in rows if column < len(row) and row[column] != ""]
-    numbers = bool(cells) and all(map(_is_number, cells))
-    return tag("th", cell, scope="col", class_="number" if numbers else None)
+def _is_of_numbers(rows: Sequence[Sequence[Content]], column: int) -> bool:
+    """Whether a column has numbers, and nothing else but cells without one."""
+    cells = [row[column] for row in rows if column < len(row)]
+    known = [cell for cell in cells if cell not in ("", UNKNOWN)]
+    return bool(known) and all(map(_is_number, known))
 
 
-def _cell(cell: Content) -> Markup:
-    return tag("td", cell, class_="number" if _is_number(cell) else None)
+def _head(cell: Content, kind: str | None) -> Markup:
+    return tag("th", cell, scope="col", class_=kind)
+
+
+def _cell(cell: Content, kind: str | None) -> Markup:
+    return tag("td", cell, class_=kind)
 
 
 def _is_number(cell: Content) -> bool:

@@ -19,6 +19,7 @@ SCRIPTS = (
 GENERATOR = "doseki report"
 TURN = "Drag to turn, with shift or two fingers to move"
 MOVE = "Drag to move"
+KEYS = "The particles of the run. Arrow keys {}, + and - zoom, space plays."
 HINT = "; pinch to zoom, or use the wheel after a click; double-click to go back."
 
 
@@ -43,7 +44,7 @@ def page(title: str, content: Sequence[Content], scene: Scene | None) -> str:
 
 
 def viewer(scene: Scene) -> Markup:
-    """The interactive view; browser/viewer.js fills it."""
+    """The interactive view; browser/viewer.js fills it, and shows it where it can."""
     part, is_flat = _part, scene.table["dim"] == 2
     overlay = [
         part("div", "legend", class_="legend"),
@@ -52,7 +53,7 @@ def viewer(scene: Scene) -> Markup:
     ]
     picture = part(
         "canvas", "picture", tabindex="0", role="img",
-        aria_label="The particles of the run. Arrow keys turn, + and - zoom, space plays.",
+        aria_label=KEYS.format("move" if is_flat else "turn"),
     )  # fmt: skip
     times = [
         part("button", "play", "▶ Play", type="button"),
@@ -67,12 +68,16 @@ def viewer(scene: Scene) -> Markup:
         )
     ]  # fmt: skip
     colour = tag("label", "Colour ", part("select", "field"))
+    hints = [
+        tag("p", MOVE if is_flat else TURN, HINT, class_="hint"),
+        tag("p", " ".join(scene.notes)) if scene.notes else None,
+    ]
     return tag(
         "section",
         tag("h2", "The flow"),
         tag(
             "div",
-            tag("div", picture, overlay, class_="stage"),
+            tag("div", picture, part("canvas", "paper"), overlay, class_="stage"),
             tag("div", times, class_="times"),
             tag(
                 "div",
@@ -81,12 +86,12 @@ def viewer(scene: Scene) -> Markup:
                 tag("span", views),
                 class_="tools",
             ),
+            tag("div", hints, class_="hints small"),
             id="viewer",
             class_="flat" if is_flat else None,
+            hidden=True,
         ),
         tag("noscript", tag("p", "The interactive view needs JavaScript; the figures do not.")),
-        tag("p", MOVE if is_flat else TURN, HINT, class_="small"),
-        tag("p", " ".join(scene.notes), class_="small") if scene.notes else None,
         id="view",
     )
 

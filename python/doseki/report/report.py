@@ -16,6 +16,7 @@ from ..util.files import write_whole_text
 from ..util.foreign import open_regular, readable
 from .markup import Content, Markup, section, tag
 from .page import GENERATOR, page, viewer
+from .parts.captions import of_figures, of_maps
 from .parts.facts import facts, heading
 from .parts.findings import findings
 from .parts.gauges import gauges
@@ -107,7 +108,7 @@ def _after(run: Run, album: Album) -> list[Content]:
         "trust": lambda: findings(run),
         "ledgers": lambda: ledgers(run),
         "figures": lambda: _figures(run, album),
-        "maps": lambda: gallery("Maps", album.folder(run.folder.maps), "maps"),
+        "maps": lambda: gallery("Maps", album.folder(run.folder.maps, of_maps()), "maps"),
         "loads": lambda: tables_of(folder, "loads", "Loads", album),
         "sections": lambda: tables_of(folder, "sections", "Sections", album),
         "gauges": lambda: gauges(run, album),
@@ -122,7 +123,7 @@ def _figures(run: Run, album: Album) -> Markup | None:
         refuse_links(run.folder)
         drawn = draw_run(run.folder.path)
         album.notes += [one_line(f"{text}.") for text in drawn.failures]
-    return gallery("Figures", album.folder(run.folder.figures), "figures")
+    return gallery("Figures", album.folder(run.folder.figures, of_figures(run)), "figures")
 
 
 def _terrain(run: Run, album: Album) -> Grid | None:

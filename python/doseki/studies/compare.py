@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +19,8 @@ from ..figures.kinds.panels import Panels
 from ..figures.kinds.series import draw_curves
 from ..figures.kinds.snapshot import draw_panels
 from ..figures.layout import chart_grid, figure_legend
-from ..figures.text import plain_text
+from ..figures.nothing import NothingToDrawError
+from ..figures.saving import Drawn
 from ..measure.moments import Moment
 from ..measure.views import before_flow, named_window, with_flow
 from ..record.reader import Run, load
@@ -26,13 +28,23 @@ from ..record.writer import jsonable
 from ..running.runner import RunOptions, run_scenario
 from ..scenario.load import load_scenario
 from ..scenario.schemes import RESOLVED, UETA2022
-from ..util.files import clear_errors, write_whole, write_whole_text
+from ..util.files import clear_errors, write_whole_text
 from ..util.spelling import suggestion
 from ..validate.judging import PASS, Row
-from .flume_criteria import CRITERIA, LOAD, OUTLET, SPEED, FlumeRun, measure_flume, verdicts
+from .flume_criteria import (
+    CRITERIA,
+    LOAD,
+    NOT_MEASURED,
+    OUTLET,
+    SPEED,
+    FlumeRun,
+    measure_flume,
+    verdicts,
+)
 
 COMPARISONS = ("flume",)
 SCHEMES = (UETA2022, RESOLVED)
+NO_WATER = "no water came to the slope end"
 NOT_HERE = (
     "Not measured here: change with resolution, sound speed and xi (`doseki trust flume --vary xi`,"
     " `--set dp=...`), and contact, drag and numerical viscosity by themselves (`doseki validate`)."
@@ -45,6 +57,7 @@ class Comparison:
 
     flumes: tuple[FlumeRun, ...]
     rows: tuple[list[Row], ...]
+    drawn: Drawn = field(default_factory=Drawn)
 
     def text(self) -> str:
         """The table of verdicts, Markdown."""
@@ -56,9 +69,16 @@ class Comparison:
             unit = f" ({criterion.unit})" if criterion.unit else ""
             cells = [f"{criterion.quantity}{unit}: {criterion.reason}", str(criterion.bands[0])]
             for row in found:
-                cells += [f"{row.value.number:.3g}", "met" if row.verdict == PASS else "**missed**"]
+                cells += _found(row)
             lines.append(_line(cells))
         return "\n".join(lines)
+
+
+def _found(row: Row) -> list[str]:
+    """The number and the verdict of a row."""
+    if row.value is None or row.verdict == NOT_MEASURED:
+        return ["", NOT_MEASURED]
+    return [f"{row.value.number:.3g}", "met" if row.verdict == PASS else "**missed**"]
 
 
 def _line(cells: Sequence[str]) -> str:
@@ -101,23 +121,23 @@ def compare_runs(folders: Sequence[Path], directory: Path) -> Comparison:
     if found != list(SCHEMES):
         raise UserError(f"need one run of each scheme, {' and '.join(SCHEMES)}; not {found}")
     flumes = tuple(measure_flume(run) for run in runs)
-    comparison = Comparison(flumes, tuple(verdicts(flume) for flume in flumes))
     with clear_errors(directory):
         directory.mkdir(parents=True, exist_ok=True)
-    _draw_pictures(flumes, directory)
+    drawn = _draw_pictures(flumes, directory)
+    comparison = Comparison(flumes, tuple(verdicts(flume) for flume in flumes), drawn)
     write_whole_text(directory / "comparison.md", _page(comparison))
     write_whole_text(directory / "comparison.json", json.dumps(_table(comparison), indent=1) + "\n")
     return comparison
 
 
-@plain_text()
-def _draw_pictures(flumes: Sequence[FlumeRun], directory: Path) -> None:
-    pictures = {"water": _water_figure(flumes), "passed": _passed_figure(flumes)}
+def _draw_pictures(flumes: Sequence[FlumeRun], directory: Path) -> Drawn:
+    drawn = Drawn()
+    drawn.add(directory / "water.png", lambda: _water_figure(flumes))
+    drawn.add(directory / "passed.png", lambda: _passed_figure(flumes))
     for flume in flumes:
-        pictures |= {f"{flume.scheme}-{key}": f for key, f in _figures(flume).items()}
-    for key, figure in pictures.items():
-        path = directory / f"{key}.png"
-        write_whole(path, partial(figure.savefig, format="png"))
+        for key, draw in _DRAW.items():
+            drawn.add(directory / f"{flume.scheme}-{key}.png", partial(draw, flume))
+    return drawn
 
 
 def _scheme(run: Run) -> str:
@@ -150,22 +170,46 @@ FIGURES = {
 }
 
 
-def _figures(flume: FlumeRun) -> dict[str, Figure]:
-    """The figures of the paper for one run."""
+def _draw_speeds(flume: FlumeRun) -> Figure:
+    return draw_speed_histogram(flume.speeds, f"{flume.scheme}: slope end")
+
+
+def _draw_before(flume: FlumeRun) -> Figure:
+    outlet = named_window(flume.run, OUTLET)
+    return _draw_outlet(flume, Moment(before_flow(flume.run, outlet), "before the flow"))
+
+
+def _draw_during(flume: FlumeRun) -> Figure:
+    if math.isnan(flume.arrival):
+        raise NothingToDrawError(NO_WATER)
+    outlet = named_window(flume.run, OUTLET)
+    return _draw_outlet(flume, Moment(with_flow(flume.run, outlet), "with the flow"))
+
+
+def _draw_outlet(flume: FlumeRun, moment: Moment) -> Figure:
+    outlet = named_window(flume.run, OUTLET)
+    what = Panels(outlet, ["material", "velocity_x"], flume.scheme)
+    return draw_panels(flume.run, [moment], what)
+
+
+def _draw_load(flume: FlumeRun) -> Figure:
     run = flume.run
-    outlet, debris = named_window(run, OUTLET), named_window(run, LOAD)
-    before, during = before_flow(run, outlet), with_flow(run, outlet)
-    both = Panels(outlet, ["material", "velocity_x"], flume.scheme)
-    return {
-        "fig5": draw_speed_histogram(flume.speeds, f"{flume.scheme}: slope end"),
-        "fig6": draw_panels(run, [Moment(before, "before the flow")], both),
-        "fig7": draw_panels(run, [Moment(during, "with the flow")], both),
-        "fig8": draw_panels(run, spread(run, 3), Panels(debris, ["material"], flume.scheme)),
-        "classes": draw_classes(flume.census),
-    }
+    what = Panels(named_window(run, LOAD), ["material"], flume.scheme)
+    return draw_panels(run, spread(run, 3), what)
+
+
+_DRAW: dict[str, Callable[[FlumeRun], Figure]] = {
+    "fig5": _draw_speeds,
+    "fig6": _draw_before,
+    "fig7": _draw_during,
+    "fig8": _draw_load,
+    "classes": lambda flume: draw_classes(flume.census),
+}
 
 
 def _water_figure(flumes: Sequence[FlumeRun]) -> Figure:
+    if all(math.isnan(flume.arrival) for flume in flumes):
+        raise NothingToDrawError(NO_WATER)
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Mean velocity of the water at the slope end")
     for flume in flumes:
         draw_curves(grid[0, 0], flume.flow.times, {flume.scheme: flume.water})
@@ -193,10 +237,12 @@ def _band(quantity: str) -> tuple[float, float]:
 
 def _page(comparison: Comparison) -> str:
     parts = ["# The flume of the paper in both schemes", comparison.text(), NOT_HERE]
-    parts += ["![water](water.png)", "![passed](passed.png)"]
+    drawn = {path.stem for path in comparison.drawn.pictures}
+    parts += [f"![{name}]({name}.png)" for name in ("water", "passed") if name in drawn]
     for key, caption in FIGURES.items():
-        parts.append(f"## {caption}")
-        parts += [f"![{f.scheme}]({f.scheme}-{key}.png)" for f in comparison.flumes]
+        names = [f"{flume.scheme}-{key}" for flume in comparison.flumes]
+        parts += [f"## {caption}", *(f"![{name}]({name}.png)" for name in names if name in drawn)]
+    parts += [f"{text}." for text in (*comparison.drawn.notes, *comparison.drawn.remarks)]
     for flume in comparison.flumes:
         parts.append(f"{flume.scheme}: {_about(flume)}")
     return "\n\n".join(parts) + "\n"
@@ -206,8 +252,10 @@ def _about(flume: FlumeRun) -> str:
     scenario, speeds = flume.run.scenario, flume.speeds
     text = (
         f"dp = {scenario['dp']:.4g} m, {len(np.unique(flume.census.table['id']))} grains, to "
-        f"{flume.census.times[-1]:g} s; water in the window from {flume.arrival:.3g} s on"
+        f"{flume.census.times[-1]:g} s; "
     )
+    came = math.isfinite(flume.arrival)
+    text += f"water in the window from {flume.arrival:.3g} s on" if came else NO_WATER
     if len(speeds.speeds):
         text += (
             f"; grains there: mean {speeds.speeds.mean():.3g} m/s, means of {speeds.size} random "

@@ -7,7 +7,7 @@ simulation is taken to agree with them.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,7 @@ PASSED, STUCK = "load past the outlet in 7 s", "load left on the slope"
 RATIO = "grain speed / water velocity"
 SETTLED = 1.0  # s between the arrival of water at the outlet and the time over which it is averaged
 EVACUATION = 7.0  # s
+NOT_MEASURED = "not measured"  # the run ended too early, or nothing came by
 
 CRITERIA = (
     Criterion(SPEED, (between(1.7, 2.3),), "measured: about 2 m/s, with a camera", "m/s"),
@@ -102,22 +103,28 @@ def measure_flume(run: Run) -> FlumeRun:
     water = direction * np.array(flow.windows[OUTLET].fluid_velocity)
     steadily = (flow.times >= steady[0]) & (flow.times <= steady[1])
     rows = census.rows(view, arrival, _supply_end(run))
+    evacuated = _at_load(census) + EVACUATION
     speeds = draw_speeds(measure.speed(census.table["velocity"][rows]))
     values = {
         SPEED: _mean(water, steadily),
         BALANCE: _balance(run, float(end), direction, steady),
         AHEAD: _ahead(census, arrival, float(end)),
         FLOATS: float(census.mass_of(FLOATING).max() / census.load_mass),
-        PASSED: _passed(census, float(end)),
+        PASSED: float(np.interp(evacuated, census.times, census.passed(end)) / census.load_mass),
         STUCK: _stuck(census, float(end), float(view.lower[-1])),
         RATIO: _ratio(speeds.speeds, np.interp(census.table["time"][rows], flow.times, water)),
     }
+    if not evacuated <= census.times[-1]:  # what the load does until then is not known
+        values |= dict.fromkeys((FLOATS, PASSED, STUCK), math.nan)
     outcome = Outcome({name: Value(number) for name, number in values.items()})
     return FlumeRun(run, census, flow, speeds, arrival, outcome)
 
 
 def verdicts(flume: FlumeRun) -> list[Row]:
-    """A row for each criterion; the paper's scheme falls short where it misses one."""
+    """A row for each criterion; the paper's scheme falls short where it misses one.
+
+    What was not measured has no verdict.
+    """
     short = "" if flume.scheme == RESOLVED else SHORT_OF_PAPER
     criteria = tuple(
         Criterion(c.quantity, c.bands, c.reason, c.unit, short=short) for c in CRITERIA
@@ -126,7 +133,12 @@ def verdicts(flume: FlumeRun) -> list[Row]:
     case = Case(
         flume.scheme, "The flume", "d/dp", (across,), lambda _: flume.outcome, criteria, ("", "")
     )
-    return judged(case, {across: flume.outcome})
+    rows = judged(case, {across: flume.outcome})
+    return [
+        row if math.isfinite(flume.outcome.values[row.quantity].number)
+        else replace(row, verdict=NOT_MEASURED, note="")
+        for row in rows
+    ]  # fmt: skip
 
 
 def _reached(census: Census, x: float) -> float:
@@ -182,13 +194,11 @@ def _ahead(census: Census, arrival: float, outlet: float) -> float:
     return float((census.table["mass"][now].sum() + gone) / census.load_mass)
 
 
-def _passed(census: Census, outlet: float) -> float:
-    """Share of the load past the outlet within EVACUATION after the water has reached the load."""
+def _at_load(census: Census) -> float:
+    """Time at which the water has reached the load, s; nan if never."""
     first = census.table["time"] == census.times[0]
     x = census.table["position"][first, 0]
-    arrival = _reached(census, float(x.max() if census.direction < 0 else x.min()))
-    share = np.interp(arrival + EVACUATION, census.times, census.passed(outlet))
-    return float(share / census.load_mass)
+    return _reached(census, float(x.max() if census.direction < 0 else x.min()))
 
 
 def _stuck(census: Census, outlet: float, below: float) -> float:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
+from ..figures.saving import Drawn
 from ..solver.build import load_core
 from ..util.files import clear_errors
 from .case import Case
@@ -31,17 +33,17 @@ def validate(
     core = load_core()
     before = core.threads()
     core.set_threads(threads or before)
-    results, pictures = [], {}
+    results, drawn = [], Drawn()
     try:
         for case in cases:
             with in_precision(how.get("precision")):
                 result = validate_case(case, how["tier"], tell)
             results.append(result)
             if result.outcomes:
-                pictures[case.name] = f"{case.name}.png"
-                with clear_errors(directory / pictures[case.name]):
-                    draw_result(result, directory / pictures[case.name])
-            write_report(directory, results, how, pictures)
+                drawn.add(directory / f"{case.name}.png", partial(draw_result, result))
+            write_report(directory, results, how, {file.stem: file.name for file in drawn.pictures})
     finally:
         core.set_threads(before)
+    for remark in drawn.remarks:
+        tell(f"warning: {remark}")
     return results

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ..figures.layout import chart_grid
 from .judging import Result
@@ -15,14 +14,14 @@ LINES = ("-", "--", "-.", ":")
 MARKS = ("o", "s", "^", "v", "d", "x", "+", "*")
 
 
-def draw_result(result: Result, path: Path) -> None:
-    """Write the picture of a case that has run."""
+def draw_result(result: Result) -> Figure:
+    """The picture of a case that has run."""
     panels = 1 + (len(result.outcomes) > 1)
     figure, grid = chart_grid(1, panels, PANEL, result.case.title, sharex=False)
     _draw_curves(grid[0, 0], result)
     if panels > 1:
         _draw_errors(grid[0, 1], result)
-    figure.savefig(path)
+    return figure
 
 
 def _draw_curves(axes: Axes, result: Result) -> None:

@@ -14,12 +14,13 @@ from ...record.reader import GaugeRecord, Run
 from ...scenario.gauges.gauge import Gauge
 from ...scenario.tables.figure import GaugeFigure
 from ...util.spelling import suggestion
-from ..layout import chart_grid, figure_legend, lengths_in_full
+from ..layout import chart_grid, figure_legend, lengths_in_full, name_of_curves, say_where_empty
 from .series import draw_curves
 
 PROFILES = 4  # drawn, where no times are given
 NAMED = 12  # curves at most that have a name
-TALL, LOW, MANY = 2.4, 1.4, 6  # inches of a panel; of one of more than so many
+WIDE = 5.0  # inches of a panel
+TALL, LOW, MANY = 2.4, 1.4, 6  # inches of its height; of that of one of more than so many
 
 
 def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
@@ -34,16 +35,18 @@ def draw_gauge(run: Run, name: str, table: GaugeFigure) -> Figure:
     record, gauge = gauge_record(run, table.gauge), gauges[table.gauge]
     shown = table.columns or gauge.curves(run.scenario["dim"])
     height = TALL if len(shown) <= MANY else LOW
-    figure, grid = chart_grid(len(shown), 1, (7.0, height), table.title or table.gauge)
+    figure, grid = chart_grid(len(shown), 1, (WIDE, height), table.title or table.gauge)
     for axes, column in zip(grid[:, 0], shown, strict=True):
         label = f"{column.replace('_', ' ')} ({record.units[column]})"
         if gauge.is_profile:
             _draw_profiles(axes, record, column, table.times)
             axes.set_xlabel(label)
             lengths_in_full(axes, "y")
+            say_where_empty(axes)
         else:
             _draw_over_time(axes, record, column, gauge.series)
-            axes.set_ylabel(label)
+            name_of_curves(axes, label, height)
+            say_where_empty(axes, record["time"])
             if record.units[column] == "m":
                 lengths_in_full(axes, "y")
     if not gauge.is_profile:

@@ -15,7 +15,7 @@ from ...measure.moments import Moment
 from ...measure.views import View, named_window, select, whole_space
 from ...record.reader import Run, Snapshot
 from ...scenario.tables.figure import HistogramFigure
-from ..layout import SMALL, chart_grid, figure_legend, moment_text
+from ..layout import SMALL, chart_grid, figure_legend, moment_text, say_empty
 from ..nothing import NothingToDrawError
 from .moments import chosen
 
@@ -80,16 +80,18 @@ def draw_rows(run: Run, moments: Sequence[Moment], what: SpeedHistogram) -> Figu
 def draw_speed_row(row: Sequence[Axes], drawn: SpeedDraws, name: str, when: str = "") -> None:
     """All speeds, counted as `name`, beside what random samples of them look like."""
     every, sampled = row
-    every.stairs(drawn.counts, drawn.edges, fill=True, color=ALL_COLOUR, alpha=0.85)
-    if len(drawn.speeds):
-        mean = float(drawn.speeds.mean())
-        every.axvline(mean, color="black", label="mean", linewidth=1, linestyle="--")
-        when += f"mean {mean:.2f} m/s, "
-    every.set_title(f"{when}all {len(drawn.speeds)}", **SMALL)
-    every.set_ylabel(name)
-    _draw_samples(sampled, drawn)
     for axes in row:
         axes.set_xlabel("speed (m/s)")
+    every.set_ylabel(name)
+    if not len(drawn.speeds):
+        for axes in row:
+            say_empty(axes, "nothing came by")
+        return
+    every.stairs(drawn.counts, drawn.edges, fill=True, color=ALL_COLOUR, alpha=0.85)
+    mean = float(drawn.speeds.mean())
+    every.axvline(mean, color="black", label="mean", linewidth=1, linestyle="--")
+    every.set_title(f"{when}mean {mean:.2f} m/s, all {len(drawn.speeds)}", **SMALL)
+    _draw_samples(sampled, drawn)
 
 
 def _draw_samples(axes: Axes, drawn: SpeedDraws) -> None:

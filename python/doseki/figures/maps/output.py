@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -25,9 +24,8 @@ from ...measure.maps.snapshots import maps_from_snapshots
 from ...record.beginning import refuse_links
 from ...record.reader import Run, load
 from ...record.writer import jsonable
-from ...util.files import write_whole, write_whole_text
-from ..nothing import NothingToDrawError
-from ..text import plain_text
+from ...util.files import write_whole_text
+from ..saving import Drawn
 from .drawing import draw_map, draw_profile
 from .structures import Structures
 
@@ -58,14 +56,17 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
         path, doubts = _path(options.path, bed.crs)
         profile = along_path(maps, bed, path)
         said += doubts
-    with plain_text() as complaints:
-        files = list(_draw(run, maps, bed))
-        if profile is not None:
-            files += _profile(run, profile)
+    drawn = Drawn()
+    for name, make in _makers(run, maps, bed):
+        drawn.add(run.folder.maps / f"{name}.png", make)
+    if profile is not None:
+        drawn.pictures.append(_write_profile(run, profile))
+        title = str(run.scenario.get("title", ""))
+        drawn.add(run.folder.maps / "profile.png", lambda: draw_profile(profile, title))
     found = runout(maps, bed)
     told = [*runout_lines(found), *(path_lines(profile) if profile is not None else ())]
     write_whole_text(run.folder.maps / "runout.json", json.dumps(jsonable(asdict(found))) + "\n")
-    return [*said, *map(str, files), *told, *complaints]
+    return [*said, *map(str, drawn.pictures), *told, *(f"warning: {t}" for t in drawn.remarks)]
 
 
 def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, list[str]]:
@@ -119,19 +120,6 @@ def _makers(
         )
 
 
-def _draw(run: Run, maps: Mapping[str, Raster], bed: Raster) -> Iterator[Path]:
-    """Draw every map that shows anything."""
-    for name, make in _makers(run, maps, bed):
-        with suppress(NothingToDrawError):
-            yield _save(run, name, make())
-
-
-def _save(run: Run, name: str, figure: Figure) -> Path:
-    path = run.folder.maps / f"{name}.png"
-    write_whole(path, lambda temporary: figure.savefig(temporary, format="png"))
-    return path
-
-
 LONGEST_NAME = 255  # of a file
 
 
@@ -159,12 +147,11 @@ def _path(given: str, crs: str | None) -> tuple[np.ndarray, list[str]]:
     return lines[0].vertices, [f"warning: {not_compared_text(given, why)}"] if why else []
 
 
-def _profile(run: Run, profile: Mapping[str, np.ndarray]) -> Iterator[Path]:
-    """The table and the picture of a profile."""
+def _write_profile(run: Run, profile: Mapping[str, np.ndarray]) -> Path:
+    """The table of a profile."""
     header = ",".join(f"{name} [{unit}]" for name, unit in COLUMNS.items())
     rows = np.column_stack([profile[name] for name in COLUMNS])
     text = "\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())])
     table = run.folder.maps / "profile.csv"
     write_whole_text(table, text + "\n")
-    yield table
-    yield _save(run, "profile", draw_profile(profile, str(run.scenario.get("title", ""))))
+    return table

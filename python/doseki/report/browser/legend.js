@@ -22,6 +22,8 @@ function fillLegend(place, field, extra) {
   // What nothing has that moves has no colour.
   const named = (field.names ?? []).map((name, k) => [name, field.colours[k]]).filter(([, colour]) => colour);
   const entries = named.length > MOST_NAMES ? [[`${named.length} names`, "transparent"]] : named;
+  const isScale = !field.names && field.low < field.high;
+  if (!field.names && !isScale) entries.push([numberText(field.low), `rgb(${field.table.slice(0, 3)})`]);
   const swatches = [...entries, ...extra].map(([name, colour]) => {
     const entry = element("span", name, "swatch");
     const square = element("i");
@@ -29,7 +31,7 @@ function fillLegend(place, field, extra) {
     entry.prepend(square);
     return entry;
   });
-  place.replaceChildren(title, ...(field.names ? [] : [scaleOf(field)]), ...swatches);
+  place.replaceChildren(title, ...(isScale ? [scaleOf(field)] : []), ...swatches);
 }
 
 function scaleOf(field) {
@@ -45,12 +47,13 @@ function scaleOf(field) {
   return scale;
 }
 
-// A bar of a round length, true at the middle of the picture.
-function drawScaleBar(place, camera, width, height) {
-  const metres = (2 * camera.height) / height; // of a pixel
-  const length = niceLength(0.22 * width * metres);
+// A bar of a round length, true at the middle of the picture, also where that is shown smaller: on
+// paper.
+function drawScaleBar(place, camera, aspect) {
+  const width = 2 * camera.height * aspect; // m, of what is seen
+  const length = niceLength(0.22 * width);
   const [, factor, unit] = UNITS.find(([least]) => length >= least);
-  place.style.width = `${length / metres}px`;
+  place.style.width = `${(100 * length) / width}%`;
   place.textContent = `${Number((length * factor).toPrecision(2))} ${unit}`;
 }
 

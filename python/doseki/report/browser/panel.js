@@ -29,15 +29,17 @@ function buildPanel(viewer) {
 // One for each layer, where there are several, and one for walls in front.
 function checkboxes(viewer) {
   const { scene, camera } = viewer;
-  const names = LAYERS.filter((name) => name === "flow" || scene[name]);
-  const boxes = names.map((name) => checkbox(viewer, name, (on) => (viewer.shown[name] = on)));
+  const bodies = scene.flow === "flow" ? "bodies" : "rigid bodies"; // beside deformable ones
+  const labels = { flow: scene.flow, walls: "walls", bodies, terrain: "terrain" };
+  const names = LAYERS.filter((name) => scene[name]);
+  const boxes = names.map((name) => checkbox(viewer, labels[name], (on) => (viewer.shown[name] = on)));
   if (boxes.length < 2) return [];
   if (camera.flat) return boxes;
-  const clear = checkbox(viewer, "clear flow", (on) => (viewer.clear = on));
+  const clear = checkbox(viewer, `clear ${scene.flow}`, (on) => (viewer.clear = on));
   viewer.clearBox = clear.querySelector("input");
   const cut = checkbox(viewer, "cut walls in front", (on) => (viewer.hides = on));
   cut.querySelector("input").checked = viewer.hides;
-  return [...boxes, clear, ...(scene.walls ? [cut] : [])];
+  return [...boxes, ...(scene.flow ? [clear] : []), ...(scene.walls ? [cut] : [])];
 }
 
 function checkbox(viewer, name, set) {

@@ -58,8 +58,18 @@ class Viewer {
     });
     new ResizeObserver(() => this.draw()).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
-    addEventListener("beforeprint", () => this.draw());
+    addEventListener("beforeprint", () => this.setPrinting(true));
+    addEventListener("afterprint", () => this.setPrinting(false));
+    addEventListener("hashchange", () => this.follow());
     await this.show(this.asked());
+  }
+
+  // An address is a whole view: what it does not name is as at the start.
+  follow() {
+    const asked = this.asked();
+    if (!Object.keys(asked).length) return; // a place in the page
+    this.camera.reset();
+    this.show({ frame: this.scene.start, field: this.names[0], clear: 0, ...asked });
   }
 
   // What the address says after its #: frame, field, azimuth, elevation, zoom, clear (1: one sees through the flow).
@@ -67,24 +77,25 @@ class Viewer {
     const asked = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
     const found = this.names.includes(asked.field) ? { field: asked.field } : {};
     for (const key of ["frame", "azimuth", "elevation", "zoom", "clear"]) {
-      if (asked[key] && Number.isFinite(Number(asked[key]))) found[key] = Number(asked[key]);
+      const number = numberOr(asked[key] || null);
+      if (number !== undefined) found[key] = number;
     }
     return found;
   }
 
-  // Changes what is shown; what is not named stays. Resolves when it has been drawn.
-  async show({ frame = this.frame, field = this.field.name, azimuth, elevation, zoom, clear } = {}) {
+  // Changes what is shown; what is not named, or no number, stays. Resolves when it has been drawn.
+  async show({ frame, field = this.field.name, azimuth, elevation, zoom, clear } = {}) {
+    const { camera } = this;
     this.clear = Boolean(clear ?? this.clear);
-    const last = this.scene.frames.length - 1;
-    this.frame = clamp(Math.round(frame), 0, last);
+    this.frame = clamp(Math.round(numberOr(frame, this.frame)), 0, this.scene.frames.length - 1);
     this.field = this.scene.fields[Math.max(0, this.names.indexOf(field))];
-    this.camera.look(azimuth ?? this.camera.azimuth, elevation ?? this.camera.elevation);
+    camera.look(numberOr(azimuth, camera.azimuth), numberOr(elevation, camera.elevation));
     const moment = await this.moment(this.frame);
     if (moment !== this.moments[this.frame]) return; // another one has been asked for since
     this.hand(moment);
-    if (zoom > 0) {
+    if (numberOr(zoom, 0) > 0) {
       this.draw();
-      this.camera.zoom(1 / zoom);
+      camera.zoom(1 / zoom);
     }
     this.draw();
   }
@@ -131,7 +142,6 @@ class Viewer {
     this.part("play").textContent = this.playing ? "❚❚ Pause" : "▶ Play";
     clearInterval(this.clock);
     if (!this.playing) return this.draw();
-    if (this.frame === frames.length - 1) this.frame = -1;
     const pause = clamp((1000 * PLAY_SECONDS) / frames.length, 50, 400);
     this.clock = setInterval(() => this.step(), pause);
   }
@@ -156,7 +166,20 @@ class Viewer {
     }, REST);
   }
 
+  // Paper is light, and has a copy of the picture: browsers print what a canvas of the graphics
+  // processor has shown last, not what has been drawn since, and lay the page out anew meanwhile.
+  setPrinting(printing) {
+    const { canvas } = this, paper = this.part("paper");
+    this.printing = false;
+    document.documentElement.classList.toggle("printing", printing);
+    this.draw();
+    this.printing = printing;
+    Object.assign(paper, { width: canvas.width, height: canvas.height });
+    if (printing) paper.getContext("2d").drawImage(canvas, 0, 0);
+  }
+
   draw() {
+    if (this.printing) return;
     const { canvas, camera, scene } = this, style = getComputedStyle(this.place);
     const colour = (name) => rgbOf(style.getPropertyValue(name).trim()).map((v) => v / 255);
     const ratio = Math.min(3, Math.min(devicePixelRatio || 1, 2) * (this.fine && !this.playing ? 2 : 1));
@@ -181,7 +204,7 @@ class Viewer {
     const { scene, camera, canvas } = this, { time } = scene.frames[this.frame];
     const extra = [
       ...(this.shown.walls && scene.walls ? [["fixed", "var(--wall)"]] : []),
-      ...(scene.bodies && !known ? [["rigid bodies", "var(--body)"]] : []),
+      ...(scene.bodies && this.shown.bodies && !known ? [["rigid bodies", "var(--body)"]] : []),
     ];
     fillLegend(this.part("legend"), this.field, extra);
     this.part("time").value = this.frame;
@@ -190,7 +213,7 @@ class Viewer {
     this.part("clock").textContent = clock;
     this.part("field").value = this.field.name;
     if (this.clearBox) this.clearBox.checked = this.clear;
-    drawScaleBar(this.part("bar"), camera, canvas.clientWidth, canvas.clientHeight);
+    drawScaleBar(this.part("bar"), camera, canvas.width / canvas.height);
     drawAxes(this.part("axes"), camera, scene.axes);
     this.place.dataset.state = JSON.stringify(this.state());
   }
@@ -209,6 +232,11 @@ class Viewer {
   }
 }
 
+// What is given as a number, or another one.
+function numberOr(value, other) {
+  return Number.isFinite(Number(value ?? NaN)) ? Number(value) : other;
+}
+
 function rgbOf(colour) {
   return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
 }
@@ -216,6 +244,7 @@ function rgbOf(colour) {
 async function openViewer() {
   const place = document.getElementById("viewer");
   if (!place) return;
+  place.hidden = false;
   try {
     const viewer = new Viewer(place, JSON.parse(document.getElementById("scene").textContent));
     window.doseki = { state: () => viewer.state(), show: (wanted) => viewer.show(wanted) };

@@ -11,8 +11,9 @@ from ...figures.text import plain_text
 from ...measure.views import tables
 from ...record.reader import Run
 from ...scenario.gauges.gauge import Gauge
-from ...scenario.tables.figure import Figure, GaugeFigure
+from ...scenario.tables.figure import Figure, GaugeFigure, LoadFigure
 from ..markup import Markup, section, tag
+from .captions import words
 from .pictures import Album, captioned
 
 MOST = 24  # gauges that are drawn
@@ -21,7 +22,8 @@ DPI = 110
 
 def gauges(run: Run, album: Album) -> Markup | None:
     """The section of the gauges."""
-    shown = {t.gauge for t in tables(run, "figure", Figure).values() if isinstance(t, GaugeFigure)}
+    drawn = tables(run, "figure", Figure).values()
+    shown = {each.gauge for each in drawn if isinstance(each, GaugeFigure | LoadFigure)}
     wanted = [name for name in run.gauges if name not in shown and _has_rows(run, name, album)]
     if len(wanted) > MOST:
         album.notes.append(f"{len(wanted) - MOST} of {len(wanted)} gauges are left out.")
@@ -52,5 +54,5 @@ def _figures(run: Run, names: list[str], album: Album) -> Iterator[Markup]:
             album.notes.append(one_line(f"gauge {name} is left out: {error}."))
             continue
         if picture := album.picture(file.getvalue(), f"gauge {name}"):
-            kind = kinds[name].kind.replace("_", " ")
+            kind = words(kinds[name].kind)
             yield captioned(picture, f"{name}: {kind}, {len(run.gauges[name]['time'])} rows")

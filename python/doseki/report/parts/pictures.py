@@ -14,6 +14,7 @@ from PIL import Image
 from ...errors import UserError, one_line
 from ...util.foreign import read_bytes
 from ..markup import Content, Markup, section, tag
+from .captions import Captions, words
 
 WIDE = 1150  # pixels: a picture that is wider takes the whole width of the page
 WIDTHS = (2000, 1200, 700)  # pixels: none is wider than the first; of others, the first with room
@@ -53,34 +54,34 @@ class Album:
                 break
         return text, size
 
-    def folder(self, path: Path) -> list[Markup]:
-        """The PNG files of a folder as figures: an overview first, then by name."""
+    def folder(self, path: Path, captions: Captions | None = None) -> list[Markup]:
+        """The PNG files of a folder as figures: an overview first, then by name.
+
+        Those that have no caption are called as their files are.
+        """
         found = path.glob("*.png") if path.is_dir() else []
         files = sorted(found, key=lambda file: (file.stem != "overview", file.name))
         if len(files) > MOST:
             self.notes.append(
                 f"{len(files) - MOST} of {len(files)} pictures in {path.name}/ are left out."
             )
-        return [made for file in files[:MOST] if (made := self._file(file)) is not None]
+        named = {file: (captions or {}).get(file.stem) or words(file.stem) for file in files[:MOST]}
+        made = (self._file(file, caption) for file, caption in named.items())
+        return [figure for figure in made if figure is not None]
 
-    def _file(self, file: Path) -> Markup | None:
+    def _file(self, file: Path, caption: str) -> Markup | None:
         try:
             data = read_bytes(file, MOST_BYTES)
         except UserError as error:
             self.notes.append(one_line(f"{file.name} is left out: {error}."))
             return None
         picture = self.picture(data, file.name)
-        return None if picture is None else captioned(picture, words(file.stem))
+        return None if picture is None else captioned(picture, caption)
 
 
 def captioned(content: Content, caption: str) -> Markup:
     """A figure with its caption."""
     return tag("figure", content, tag("figcaption", caption))
-
-
-def words(stem: str) -> str:
-    """A caption from the name of a file."""
-    return stem.replace("_", " ").replace("-", " ")
 
 
 def gallery(title: str, figures: Iterable[Markup], name: str) -> Markup | None:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...errors import UserError, one_line
 from ...util.foreign import read_text, readable
-from ..markup import Content, Markup, section, table, tag, terms
+from ..markup import UNKNOWN, Content, Markup, section, table, tag, terms
 from .pictures import Album
 
 MOST_BYTES = 20 * 2**20  # of a file that is read
@@ -19,7 +19,6 @@ MOST_ROWS, MOST_COLUMNS = 40, 30  # of a table that are shown
 LONGEST = 200  # characters of a cell
 DEEPEST = 3  # tables within tables
 DIGITS = 5
-UNKNOWN = "-"
 REASONS = {  # of what has no number, by the stem of a table
     "loads": "no mean over less than the interval of its gauge or over more than the record, and "
     "no peak where nothing acted",

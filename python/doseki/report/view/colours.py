@@ -24,7 +24,10 @@ SPEED, PRESSURE, DEPTH = "speed", "pressure", "depth"
 
 @dataclass(frozen=True)
 class Field:
-    """A quantity from `low` to `high`, in `unit`; or one of `names`, each with its colour."""
+    """A quantity from `low` to `high`, in `unit`; or one of `names`, each with its colour.
+
+    Both limits are the same number where nothing has another one.
+    """
 
     name: str
     unit: str = ""
@@ -43,7 +46,7 @@ class Field:
     def share(self, values: np.ndarray) -> np.ndarray:
         """Numbers of 8 bits: from the lower to the upper limit, or the index of a name."""
         if self.names is None:
-            return small((values - self.low) / (self.high - self.low))
+            return small((values - self.low) / ((self.high - self.low) or 1.0))
         return (values % 256).astype(np.uint8)
 
 
@@ -80,7 +83,9 @@ def fields_of(run: Run, samples: Sequence[Snapshot]) -> list[Field]:
     """What the view of a run can be coloured by; limits are those of what moves in `samples`."""
     first = samples[0]
     fluids = fluid_names(run)
-    numbers = [SPEED, PRESSURE]
+    numbers = [SPEED]
+    if any(_moving(each, PRESSURE).any() for each in samples):  # deformable bodies have none
+        numbers.append(PRESSURE)
     if fluids & set(first.material_names) and any(run.scenario.get("gravity", [])):
         numbers.append(DEPTH)
     found = [_number(name, samples) for name in numbers]
@@ -88,13 +93,17 @@ def fields_of(run: Run, samples: Sequence[Snapshot]) -> list[Field]:
     return found
 
 
+def _moving(snapshot: Snapshot, name: str) -> np.ndarray:
+    """Values of a field that what moves has."""
+    return values_of(snapshot, name)[~snapshot["fixed"]]
+
+
 def _number(name: str, samples: Sequence[Snapshot]) -> Field:
-    values = [values_of(each, name)[~each["fixed"]] for each in samples]
-    low, high = limits(np.concatenate(values))
+    low, high = limits(np.concatenate([_moving(each, name) for each in samples]))
     key = {SPEED: "velocity", DEPTH: "position"}.get(name, name)
     unit = FIELD_BY_KEY[key].unit_in(samples[0].dim)
     if name != PRESSURE:
-        low, high = 0.0, high if high > 0 else 1.0
+        low = 0.0
     return Field(name, unit, low, high)
 
 

@@ -82,7 +82,10 @@ class RigidShapes:
 
 
 def rigid_shapes(run: Run, snapshot: Snapshot) -> RigidShapes | None:
-    """The shapes of the bodies that move, from a snapshot with all their particles."""
+    """The shapes of the bodies that move, from a snapshot with all their particles.
+
+    None where no body is drawn as a shape: those that deform are drawn as their particles.
+    """
     table = snapshot.grains
     if not len(table.get("position", ())):
         return None
@@ -106,7 +109,7 @@ def rigid_shapes(run: Run, snapshot: Snapshot) -> RigidShapes | None:
         shapes.material.append(int(material[own[0]]) if len(own) else 0)
         if hull is not None:
             shapes.hulls.append(hull)
-    return shapes
+    return shapes if any(shapes.drawn) else None
 
 
 def _by_grain(grain: np.ndarray, count: int) -> list[np.ndarray]:

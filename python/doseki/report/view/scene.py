@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import UserError
+from ...measure.census import keep_their_shape
 from ...record.reader import Run, Snapshot
 from .box import Box, box_of
 from .colours import Field, fields_of, scale
@@ -59,16 +60,30 @@ class SceneMaker:
         self.fields: list[Field] = fields_of(run, samples)
         self.packer = ParticlePacker(run, self.box, self.fields, samples)
         self.shapes: RigidShapes | None = rigid_shapes(run, run[0])
+        self.flow_name = self._flow_name(samples)
         self.walls_go = any(
             bool(np.any(snapshot["velocity"][snapshot["fixed"]])) for snapshot in samples
         )
 
+    def _flow_name(self, samples: Sequence[Snapshot]) -> str:
+        """What moves as particles, in words; empty where nothing does."""
+        flows = deforms = False
+        for snapshot in samples:
+            moves = ~snapshot["fixed"] & ~self._as_shapes(snapshot)
+            keeps_shape = np.append(keep_their_shape(self.run, snapshot), True)
+            is_flow = keeps_shape[snapshot["grain"]]  # grain -1: of no body
+            flows |= bool(np.any(moves & is_flow))
+            deforms |= bool(np.any(moves & ~is_flow))
+        return " and ".join(["flow"] * flows + ["deformable bodies"] * deforms)
+
+    def _as_shapes(self, snapshot: Snapshot) -> np.ndarray:
+        """Mask (N,) of the particles of bodies that are drawn as shapes."""
+        none = np.zeros(len(snapshot["id"]), bool)
+        return self.shapes.of_bodies(snapshot) if self.shapes else none
+
     def flow(self, snapshot: Snapshot, thinning: Thinning) -> Block:
         """What moves, but for bodies that are drawn as shapes."""
-        none = np.zeros(len(snapshot["id"]), bool)
-        return self.packer.flow(
-            snapshot, thinning, self.shapes.of_bodies(snapshot) if self.shapes else none
-        )
+        return self.packer.flow(snapshot, thinning, self._as_shapes(snapshot))
 
     def walls(self, snapshot: Snapshot, thinning: Thinning) -> Block:
         """What does not move, but for the terrain where it is drawn as a surface."""
@@ -160,6 +175,7 @@ def _table(maker: SceneMaker) -> dict[str, Any]:
         "focus": [end.tolist() for end in box.focus],
         "up": up.tolist(),
         "axes": list("xyz"[: box.dim]),
+        "flow": maker.flow_name,
         "clock": _clock(times),
         "start": 0,
         "radius": maker.packer.largest,

@@ -70,6 +70,15 @@ OF_TOP_LEVEL = {key: spec for key, spec in specs_of(ScenarioTable).items() if ke
 OF_SECTIONS = {name: _specs_of_section(kind) for name, kind in SECTIONS.items()}
 
 
+def unit_of(name: str, dim: int) -> str:
+    """The unit of a number at a key, named as --set does (`dp`); empty where none is known."""
+    first, *inner = name.split(".")
+    spec: Spec = OF_SECTIONS[first] if first in SECTIONS else OF_TOP_LEVEL.get(first)
+    for key in inner[1:] if first in SECTIONS else inner:
+        spec = _of_key(spec, key)
+    return spec.unit_in(dim).own if isinstance(spec, Measured) else ""
+
+
 class _Reader:
     """Converts values of a run of so many dimensions."""
 

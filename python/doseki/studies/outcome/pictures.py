@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 
 from ...errors import DosekiError
 from ...figures.maps.drawing import draw_map
-from ...figures.nothing import NothingToDrawError
+from ...figures.saving import Drawn
 from ...figures.studies.bands import draw_band
 from ...figures.studies.responses import Column, grid_images, parallel_coordinates, responses
 from ...measure.maps.quantities import MapQuantity
-from ...util.files import clear_errors, write_whole
+from ...scenario.reading.units import unit_of
+from ..plan.axes import Axis
 from ..plan.file import Plan
 from ..reading.bands import CurveBand, MapBand, SeriesBand
 from ..reading.observations import ObservedSeries
@@ -31,8 +32,14 @@ class Pictures:
     def __init__(self, table: Table, directory: Path) -> None:
         """Of a table, in the folder of its study."""
         self._table, self._directory = table, directory
-        self.files: list[Path] = []
-        self.notes: list[str] = []
+        self._drawn = Drawn()
+        self.files = self._drawn.pictures  # and tables of bands among them
+        self._notes: list[str] = []
+
+    @property
+    def notes(self) -> list[str]:
+        """What there is no picture of, and why, and what is wrong with pictures."""
+        return [*self._notes, *self._drawn.notes, *self._drawn.remarks]
 
     def draw(self) -> None:
         """All of them."""
@@ -51,7 +58,7 @@ class Pictures:
                 elif isinstance(band, MapBand):
                     self._draw_map(name, band)
             except DosekiError as error:
-                self.notes.append(f"bands.{name}: {error}")
+                self._notes.append(f"bands.{name}: {error}")
 
     def _draw_curve(self, name: str, band: CurveBand) -> None:
         found = curve_percentiles(name, band, self._table)
@@ -90,38 +97,36 @@ class Pictures:
             )
 
     def _save(self, name: str, draw: Callable[[], Figure]) -> None:
-        folder = self._directory / "figures"
-        try:
-            figure = draw()
-        except NothingToDrawError as reason:
-            self.notes.append(f"{name}: {reason}")
-            return
-        with clear_errors(folder):
-            folder.mkdir(exist_ok=True)
-        path = folder / f"{name}.png"
-        write_whole(path, lambda temporary: figure.savefig(temporary, format="png"))
-        self.files.append(path)
+        self._drawn.add(self._directory / "figures" / f"{name}.png", draw)
 
 
 def inputs_of(table: Table) -> list[Column]:
     """What varies, of the runs that were done."""
     return [
         Column(
-            axis.label, table.values(k), axis.log,
+            _label(axis.name, _unit(axis, table.plan.scenario.dim)), table.values(k), axis.log,
             () if axis.is_numeric else tuple(str(choice) for choice in axis.choices),
         )
         for k, axis in enumerate(table.plan.axes)
     ]  # fmt: skip
 
 
+def _label(name: str, unit: str) -> str:
+    """Name and unit at an axis, as those of all figures."""
+    return f"{name} ({unit})" if unit and unit != "1" else name
+
+
+def _unit(axis: Axis, dim: int) -> str:
+    """That of its values, or of the key where they are numbers without one."""
+    return axis.own_unit or (unit_of(axis.name, dim) if axis.is_numeric else "")
+
+
 def outputs_of(table: Table) -> list[Column]:
     """The score where there is one, and the results."""
     units = table.plan.units()
     found = [Column("score", table.scores())] if table.is_scored else []
-    for name in table.plan.results:
-        label = f"{name} [{units[name]}]" if units[name] else name
-        found.append(Column(label, table.results(name)))
-    return found
+    results = table.plan.results
+    return found + [Column(_label(name, units[name]), table.results(name)) for name in results]
 
 
 def _observed(

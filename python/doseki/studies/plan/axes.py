@@ -79,13 +79,17 @@ class Axis:
         return all(isinstance(w, str) and quantity(w) is not None for w in words)
 
     @property
-    def label(self) -> str:
-        """Name and unit, as a column of a table has it."""
+    def own_unit(self) -> str:
+        """The unit that its values name; empty where they name none."""
         units = {
             found[1].own for v in self.choices if isinstance(v, str) and (found := quantity(v))
         }
-        unit = self.unit or ("".join(units) if len(units) == 1 else "")
-        return f"{self.name} [{unit}]" if unit else self.name
+        return self.unit or ("".join(units) if len(units) == 1 else "")
+
+    @property
+    def label(self) -> str:
+        """Name and unit, as a column of a table has it."""
+        return f"{self.name} [{self.own_unit}]" if self.own_unit else self.name
 
     def _scaled(self, value: float) -> float:
         return math.log(value) if self.log else value
