@@ -73,7 +73,11 @@ class CategoryColours:
 
     def add_key(self, grid: KeyRoom, axes: Axes) -> None:
         """Explain the colours to the right of the panel `axes`."""
-        add_names(axes, self.legend_entries())
+        handles = [Patch(color=colour, label=label) for label, colour in self.legend_entries()]
+        axes.legend(
+            handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0,
+            frameon=False, fontsize="small", handlelength=1.0,
+        )  # fmt: skip
 
 
 class GrainColours(CategoryColours):
@@ -127,12 +131,18 @@ class ScaleColours:
         return [(f"{v:.3g}", colors.to_hex(colormaps[SCALE](self._norm(v)))) for v in values]
 
     def add_key(self, grid: KeyRoom, axes: Axes) -> None:
-        """Explain the colours by a bar to the right of the panel `axes`, one value by its name."""
-        if self._limits[0] == self._limits[1]:
-            add_names(axes, self.legend_entries(), self.heading)
-            return
-        bar = grid.figure.colorbar(ScalarMappable(self._norm, SCALE), cax=grid.beside(axes))
-        bar.set_label(self.heading, fontsize="small")
+        """Explain the colours by a bar to the right of the panel `axes`, of one where all are."""
+        beside = grid.beside(axes)
+        if self._limits[0] < self._limits[1]:
+            grid.figure.colorbar(ScalarMappable(self._norm, SCALE), cax=beside)
+        else:
+            [(label, colour)] = self.legend_entries()
+            beside.set_facecolor(colour)
+            beside.set_xticks([])
+            beside.set_yticks([0.5], [label])
+            beside.yaxis.tick_right()
+            beside.yaxis.set_label_position("right")
+        beside.set_ylabel(self.heading, fontsize="small")
 
 
 Colouring = CategoryColours | GrainColours | ScaleColours
@@ -146,16 +156,6 @@ def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) ->
     if name == "grain":
         return GrainColours(run, snapshots)
     return ScaleColours(snapshots, name, view)
-
-
-def add_names(axes: Axes, entries: Sequence[tuple[str, str]], heading: str = "") -> None:
-    """Name colours to the right of the panel `axes`: (label, colour) each."""
-    axes.legend(
-        handles=[Patch(color=colour, label=label) for label, colour in entries],
-        title=heading or None, title_fontsize="small", loc="upper left",
-        bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, frameon=False, fontsize="small",
-        handlelength=1.0,
-    )  # fmt: skip
 
 
 def palette(kinds: Sequence[str], name: str, fluids: set[str]) -> dict[str, str]:
