@@ -165,16 +165,14 @@ def test_a_mirrored_drop_has_the_same_account(tmp_path):
 
 
 def test_it_breaks_in_water(tmp_path):
-    """On the floor of a pool; water and bodies together keep the account as they do unbroken."""
+    """On the floor of a pool; water and bodies together keep the account."""
     head = HEAD.format(dim=2, dp=0.01, time=0.012, out=0.012, gravity=[0, -9.81])
     head += "cflnumber = 0.2\n"  # what water does to elastic bodies has an error of the step
     run = recorded(tmp_path, head + POOL + CHALK)
     history = run.history
     assert history["broken_bonds"][0] == 0
     assert history["broken_bonds"][-1] > 20
-    elastic = recorded(tmp_path / "elastic", (head + POOL + CHALK).replace("breakable", "elastic"))
-    assert gap(ledger_of(run)) < gap(ledger_of(elastic)) + 0.001
-    assert gap(ledger_of(run)) < 0.006
+    assert gap(ledger_of(run)) < 0.004
     again = recorded(tmp_path / "again", head + POOL + CHALK, threads=2)
     for key in ("position", "velocity", "pressure", "damage"):
         assert np.array_equal(again[-1][key], run[-1][key]), key
