@@ -76,4 +76,5 @@ def test_numbers_of_the_resolved_scheme(rows):
     eta = "{wendland_c2} (C6: {wendland_c6})".format(**RESOLVED_ETA)
     assert limits in [row[3] for row in rows if row[2] == "`cflnumber`, `cfl_force`"]
     assert eta in [row[3] for row in rows if row[2] == "`eta`"]
-    assert "stress (mu(I), mud on Voellmy beds: morris)" in [row[3] for row in rows if row[2] == "`viscosity`"]
+    form = "stress (mu(I), mud on Voellmy beds: morris)"
+    assert form in [row[3] for row in rows if row[2] == "`viscosity`"]
