@@ -7,9 +7,9 @@
 #include <span>
 
 #include "base/array.hpp"
+#include "bodies/body_energy.hpp"
 #include "bodies/breakable/breakable_bodies.hpp"
 #include "bodies/contacts.hpp"
-#include "bodies/deformable/body_energy.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"

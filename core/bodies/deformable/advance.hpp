@@ -6,8 +6,8 @@
 #include "base/parallel.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/deformable/internal_forces.hpp"
+#include "bodies/deformable/sudden_forces.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
-#include "bodies/steps/sudden_forces.hpp"
 #include "physics/hyperelastic/strain.hpp"
 #include "physics/wall.hpp"
 
