@@ -147,7 +147,7 @@ def test_strength_inflows_and_outflows_carry_over(tmp_path, dim, precision):
 
 
 def test_it_is_near_the_run_that_went_on(tank, later):
-    """A snapshot has no rates, averages or springs: what follows differs a little."""
+    """A snapshot has no rates, averages, springs or sudden forces: what follows differs a little."""
     file = later("time = 0.02")
     simulation, _ = build_simulation(load_scenario(file))
     simulation.advance(limit=0.03, pause=0.03, max_steps=10**6)
@@ -156,7 +156,7 @@ def test_it_is_near_the_run_that_went_on(tank, later):
     assert free.sum() == (went_on["motion"] == FREE).sum()
     apart = state["velocity"][free] - went_on["velocity"][went_on["motion"] == FREE]
     scale = went_on["velocity"][went_on["motion"] == FREE]
-    assert np.sqrt((apart**2).sum() / (scale**2).sum()) < 0.02
+    assert np.sqrt((apart**2).sum() / (scale**2).sum()) < 0.03
     grains = simulation.grains()
     centre = grains["centre"][~grains["fixed"]]
     assert np.abs(centre - went_on.grains["position"]).max() < 1e-4

@@ -244,11 +244,9 @@ public:
         archive("deformable_flow_force", flow_force_),
             archive("deformable_steady_force", solids_.steady),
             archive("deformable_acceleration", acceleration_);
-        archive.optional("deformable_sudden_force", sudden_),
-            archive.optional("deformable_owed", owed_);
+        archive("deformable_sudden_force", sudden_), archive("deformable_owed", owed_);
         if (archive.loads()) {
             const std::size_t n = solids_.size();
-            if (sudden_.empty() && owed_.empty()) sudden_.assign(n, {}), owed_.assign(n, {});
             expect_fit(normal_.size() == n && flow_force_.size() == n &&
                            solids_.steady.size() == n && sudden_.size() == n && owed_.size() == n &&
                            acceleration_.size() == n && depth_.size() == n &&
