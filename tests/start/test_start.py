@@ -147,7 +147,7 @@ def test_strength_inflows_and_outflows_carry_over(tmp_path, dim, precision):
 
 
 def test_it_is_near_the_run_that_went_on(tank, later):
-    """A snapshot has no rates, averages, springs or sudden forces: what follows differs a little."""
+    """A snapshot has no rates, averages, springs or sudden forces: later states differ a little."""
     file = later("time = 0.02")
     simulation, _ = build_simulation(load_scenario(file))
     simulation.advance(limit=0.03, pause=0.03, max_steps=10**6)
