@@ -46,14 +46,14 @@ struct ForceAccumulators {
     Largest<T> viscous_pair;  // coefficient of one pair in it
     Vec<T, D> pressure_gradient, concentration_gradient;
     Vec<T, D> corrected_gradient;  // of concentration, with the corrections of the neighbours
-    T concentration{};             // of fluid: sum of rest volumes times W
+    T concentration{}, squares{};  // of fluid: sums of rest volumes times W, and of their squares
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.force...), f(self.traction...), f(self.power...), f(self.made_power...);
         f(self.viscous_rate...), f(self.viscous_pair...);
         f(self.pressure_gradient...), f(self.concentration_gradient...);
-        f(self.corrected_gradient...), f(self.concentration...);
+        f(self.corrected_gradient...), f(self.concentration...), f(self.squares...);
     }
 };
 
@@ -171,7 +171,8 @@ DOSEKI_FN void add_fluid(ForceAccumulators<T, D>& sums, const FlowConstants& con
     const T damping = T(-1) * VF * mu, itself = number<T>(1e-6 * constants.dp);
     sums.viscous_rate += number<T>(constants.roughest) * damping;
     sums.viscous_pair.take(select(pair.r > itself, damping, T(0)));
-    sums.concentration += j.rest_volume * W;
+    const T share = j.rest_volume * W;
+    sums.concentration += share, sums.squares += share * share;
     add_gradients(sums, pair.r_ij, VF, i.p - j.p, j.correction * pair.r_ij);
 }
 

@@ -97,15 +97,20 @@ private:
         return state_.velocity[p] + (0.5 * dt_) * state_.acceleration[p];
     }
 
-    /// Eq. (131), 0 for a particle that sees no other fluid. What walls say of the pressure along
-    /// them is what it told them a step before: alone with a wall it would keep its gradient for
-    /// ever, on a ridge add to it, and be driven along by it.
+    /// Eq. (131), 0 for a particle that sees no other fluid, or one neighbour alone. What walls say
+    /// of the pressure along them is what it told them a step before. Alone with a wall it would
+    /// keep its gradient for ever, on a ridge add to it; two that lie askew would tell a gradient
+    /// that is nothing but their places. Both would be driven along the wall.
     DOSEKI_DEVICE_FN double company(const Summed& at) const {
         constexpr double enough = 0.05;  // of the sum on a lattice; one neighbour adds 0.07 or more
+        constexpr double few = 1.2, several = 2.4;
         const double own =
             at.fields.rest_volume / model_.spacing_power[D] * model_.own_concentration;
-        return std::clamp((at.sums.concentration - own) / (enough * model_.lattice_concentration),
-                          0.0, 1.0);
+        const double others = at.sums.concentration - own, squares = at.sums.squares - own * own;
+        const double share = others / (enough * model_.lattice_concentration);
+        if (!(share > 0.0 && squares > 0.0)) return 0.0;
+        const double neighbours = others * others / squares;  // as if all were as near
+        return std::min(share, 1.0) * std::clamp((neighbours - few) / (several - few), 0.0, 1.0);
     }
 
     /// Over the particle's volume.

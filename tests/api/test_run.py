@@ -265,3 +265,26 @@ def test_numbers_of_numpy_are_options(channel, tmp_path):
 def test_every_needs_a_callback(channel, tmp_path):
     with pytest.raises(doseki.UserError, match="give a callback"):
         doseki.run(channel, tmp_path / "run", every=0.1)
+
+
+def test_a_callback_that_may_look_less_often_is_warned_of(tmp_path):
+    """Steps of bodies alone may go from one row of the history to the next."""
+    scenario = doseki.Scenario(
+        {
+            "dim": 2, "dp": 0.01, "scheme": "resolved", "xi": 0.01, "gravity": [0, 0],
+            "time_max": 0.2, "time_out": 0.2, "time_history": 0.02,
+            "body": {
+                "a": {
+                    "shape": "disc", "material": "basalt", "centre": [0, 0], "radius": 0.05,
+                    "velocity": [1, 0],
+                }
+            },
+        }
+    )  # fmt: skip
+    looks = Looks()
+    with pytest.warns(doseki.DosekiWarning, match="give time_history = 0.01"):
+        doseki.run(scenario, tmp_path / "often", callback=looks, every=0.01, **QUIET)
+    assert len(looks.times) == 11
+    with warnings.catch_warnings():
+        warnings.filterwarnings("error", "every =")
+        doseki.run(scenario, tmp_path / "run", callback=Looks(), every=0.02, **QUIET)

@@ -74,14 +74,16 @@ def test_it_closes(dropped):
 
 @pytest.mark.parametrize("name", [*BODY_ENERGIES, "contact_work", "kinetic_energy"])
 def test_every_part_of_it_matters(dropped, name):
-    assert gap(without(dropped, name)) > 0.01
+    assert gap(without(dropped, name)) > 0.005
 
 
 def test_contacts_and_cracks_make_no_energy(dropped):
-    """What cracks, parting and dampers took grows, and contacts with friction give none."""
+    """What cracks, parting and dampers took grows, but for what a point gains that strains more by
+    the bonds that are left to it, Eq. (128); contacts with friction give none.
+    """
     history = dropped.history
     taken = sum(history[name] for name in ("fracture_work", "parting_work", "damping_work"))
-    assert (np.diff(taken) > -0.002 * history["kinetic_energy"][0]).all()
+    assert (np.diff(taken) > -0.01 * history["kinetic_energy"][0]).all()
     assert history["contact_work"].max() < 0.002 * history["kinetic_energy"][0]
 
 

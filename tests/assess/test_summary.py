@@ -7,6 +7,9 @@ import pytest
 
 from doseki.assess.summary import duration_text, summary_text
 from doseki.record.reader import load
+from doseki.running.resume import resume_run
+from doseki.running.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
 
 from ..synthetic_runs import flow_state
 
@@ -85,3 +88,47 @@ def test_long_times_are_in_hours():
     assert duration_text(75) == "1 min 15 s"
     assert duration_text(3599) == "59 min 59 s"
     assert duration_text(87884) == "24 h 25 min"
+
+
+POOL = """
+dim = 2
+dp = 0.02
+scheme = "resolved"
+speed_max = 0.5
+time_max = 0.02
+time_out = 0.02
+gravity = [0, -9.81]
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.4, 0.1]
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [-0.06, -0.04]
+max = [0.46, 0]
+"""
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+def test_what_is_doubtful_before_a_run_stands_in_its_summary(tmp_path, stopped):
+    """Once each, also where the run was stopped on its way and resumed."""
+    (tmp_path / "pool.toml").write_text(POOL)
+    told, folder = [], tmp_path / "run"
+
+    def stop(*_):
+        if stopped:
+            (folder / "STOP").touch()
+
+    options = RunOptions(1, progress=stop, started=lambda *started: told.extend(started[-1]))
+    run_scenario(load_scenario(tmp_path / "pool.toml"), folder, options)
+    if stopped:
+        assert load(folder).summary["status"] == "stopped"
+        resume_run(folder, (), RunOptions(1))
+    warnings = load(folder).summary["warnings"]
+    for words in ("flows too slowly", "a wall of 2 layers is thinner", "for Mach 0.1 set"):
+        assert sum(words in each for each in told) == 1
+        assert sum(words in each for each in warnings) == 1
+        assert words in (folder / "summary.txt").read_text()

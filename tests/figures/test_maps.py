@@ -136,6 +136,9 @@ def test_a_map_shows_the_dam_that_stands_on_it(dammed, angle):
         assert box.y1 <= scale.y0
         assert box.y0 >= 0
         assert box.x1 <= figure.bbox.x1
+        box = figure.axes[0].get_legend().get_window_extent()
+        numbers = [each.get_window_extent() for each in figure.axes[0].get_xticklabels()]
+        assert not any(box.overlaps(number.padded(4)) for number in numbers)
 
 
 def test_a_dam_does_not_cut_the_numbers_of_contours(dammed):

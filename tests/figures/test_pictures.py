@@ -23,6 +23,7 @@ from doseki.figures.kinds.histogram import SpeedHistogram, draw_speed_row
 from doseki.figures.kinds.panels import Panels
 from doseki.figures.kinds.snapshot import draw_panels
 from doseki.figures.movie import make_movie
+from doseki.figures.panel import draw_panel
 from doseki.figures.plot import figures, plot_run
 from doseki.figures.raster import EMPTY, coloured, splat
 from doseki.measure.census import draw_speeds
@@ -114,10 +115,11 @@ def test_a_scale_has_no_values_that_nothing_has(flow_folder):
     assert [label for label, _ in scale.legend_entries()] == ["0"]
     assert np.isfinite(scale.rgba(run[-1])).all()
     axes = Figure().subplots()
-    scale.add_key(None, axes)
-    legend = axes.get_legend()
-    assert legend.get_title().get_text() == "pressure (Pa)"
-    assert [text.get_text() for text in legend.get_texts()] == ["0"]
+    draw_panel(axes, run, run[-1], "pressure", whole_space(2))
+    [key] = axes.child_axes
+    assert key.get_ylabel() == "pressure (Pa)"
+    assert [tick.get_text() for tick in key.get_yticklabels()] == ["0"]
+    assert key.get_facecolor() == colors.to_rgba(scale.legend_entries()[0][1])
     many = np.zeros(10_000)
     assert limits(many) == (0, 0)
     many[:3] = 5.0  # fewer than are left out

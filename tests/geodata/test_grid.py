@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.geodata.ground import read_ground, write_ground
 from doseki.geodata.raster import Raster
 
 from .conftest import plane_at
@@ -172,3 +173,25 @@ def test_the_smallest_rasters(shape):
 )
 def test_what_is_no_raster_is_refused(plane, refusal, change, word):
     assert word in refusal(change, plane)
+
+
+@pytest.mark.parametrize("driver", ["AAIGrid", "GTiff"])
+@pytest.mark.parametrize(
+    ("own", "written"), [(None, -9999), (-32768, -32768), (8, -9999), (-9999, -9999)]
+)
+def test_the_ground_of_a_run_keeps_its_number_for_no_data(tmp_path, own, written, driver):
+    """Unless that is one of its heights."""
+    if driver == "GTiff":
+        pytest.importorskip("rasterio", reason="pip install 'doseki[terrain]'")
+    values = np.array([[8.0, np.nan], [9.0, 10.0]])
+    write_ground(tmp_path, Raster(values, 0.0, 0.0, 1.0, None, driver, own))
+    kept = read_ground(tmp_path)
+    assert kept.nodata == written
+    np.testing.assert_array_equal(kept.values, values)
+
+
+def test_the_number_for_no_data_is_never_a_value():
+    heights = Raster(np.array([[-9999.0, -32768.0], [np.nan, 1.0]]), 0.0, 0.0, 1.0)
+    assert heights.with_free_nodata().nodata == -99999.0
+    grid = Raster(np.ones((2, 2)), 0.0, 0.0, 1.0, None, "AAIGrid", np.nan)
+    assert grid.with_free_nodata().nodata == -9999.0  # ESRI ASCII grids have numbers alone

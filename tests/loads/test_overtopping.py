@@ -13,12 +13,51 @@ from doseki.cli.app import app
 from doseki.driver.gauges import outside_everything
 from doseki.errors import UserError
 from doseki.measure import design
-from doseki.measure.loads import body_loads, expected_loads
+from doseki.measure.loads import body_loads, comes_from_behind, expected_loads
 from doseki.measure.overtopping import dam_balances
 from doseki.scene.build import build_bodies
 from doseki.solver.build import build_simulation
 
 from .scenes import RAIN, STREAM, run_of, scenario_of
+
+# Water that falls on a wall.
+RUSH = """
+dim = 2
+dp = 0.05
+scheme = "resolved"
+speed_max = 4
+time_max = 0.3
+time_out = 0.3
+gravity = [9.81, 0]
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.5, 0.4]
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [1, -0.2]
+max = [1.2, 0.6]
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [0, -0.2]
+max = [1, 0]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+about = [1, 0]
+approach = "before"
+interval = 0.01
+[gauge.before]
+kind = "approach"
+position = [0.5, 0]
+direction = [1, 0]
+interval = 0.01
+"""
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +154,33 @@ def test_wider_structures_get_more():
             assert wide.pressure == narrow.pressure
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_section_that_looks_against_the_flow_is_told(tmp_path, way):
+    """In the summary, its text and by the command; formulas do not see what is thrown back."""
+    turned = f"gauge.before.direction=[{way}, 0]"
+    run = run_of(tmp_path, RUSH, turned)
+    found = [each for each in run.summary["warnings"] if "against the flow" in each]
+    done = CliRunner().invoke(app, ["loads", str(run.directory)])
+    (load,) = body_loads(run)
+    assert bool(load.design) == (way > 0)
+    if way > 0:
+        assert not found
+        assert "against" not in done.output
+        return
+    (said,) = found
+    assert said.startswith("gauge.before.direction = [-1, 0] points against the flow")
+    assert said.endswith("set it to [1, 0]")
+    assert said in run.folder.summary_text.read_text()
+    assert said in done.output
+
+
+def test_a_wave_that_is_thrown_back_makes_no_section_wrong():
+    time, rate = np.linspace(0, 4, 5), np.array([np.nan, 2.0, 1.0, -1.0, -1.0])
+    record = {"time": time, "depth": np.ones(5), "velocity": rate, "density": np.ones(5)}
+    assert not comes_from_behind(record)
+    assert comes_from_behind(record | {"velocity": np.array([np.nan, -2.0, -1.0, 1.0, 0.0])})
+
+
 def test_formulas():
     """Numbers worked out by hand; Huebl and Holzinger's in the form 5 rho v2 Fr^-1.2."""
     h, v, rho, g = 1.5, 6.0, 1900.0, 9.81
@@ -140,7 +206,8 @@ def test_a_boulder_by_hertz():
 def test_the_command_prints_and_writes_them(stream):
     done = CliRunner().invoke(app, ["loads", str(stream.directory)])
     assert done.exit_code == 0, done.output
-    for word in ("load dam", "dam crest", "rho v2 h b", "Huebl & Holzinger (2003)", "over 10 ms"):
+    assert "dam crest         past the plane" in done.output
+    for word in ("load dam", "rho v2 h b", "Huebl & Holzinger (2003)", "over 10 ms"):
         assert word in done.output
     contents = json.loads((stream.directory / "loads.json").read_text())
     with (stream.directory / "loads.csv").open() as file:

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from doseki.errors import UserError
+from doseki.figures.kinds.load import _draw_parts
 from doseki.figures.kinds.registry import draw
 from doseki.measure.views import tables
+from doseki.record.reader import GaugeRecord
 from doseki.scenario.tables.figure import Figure
 from doseki.solver.build import build_simulation
 
@@ -89,3 +91,30 @@ def test_a_figure_of_a_load_has_its_parts(dam):
     assert names == ["total", "static", "dynamic", "contact", "largest step"]
     record = dam.gauges["dam"]
     np.testing.assert_allclose(figure.axes[0].lines[1].get_ydata(), record["static_force_x"][1:])
+
+
+def test_the_map_of_a_face_stands_above_its_curves(dam):
+    """Its left side is theirs, and its scale of colours stands beside it."""
+    figure = draw(dam, "face", tables(dam, "figure", Figure)["face"])
+    figure.canvas.draw()
+    face, below = (axes.get_window_extent() for axes in figure.axes[:2])
+    assert face.x0 == pytest.approx(below.x0, abs=1)
+    (scale,) = figure.axes[0].child_axes
+    assert 0 < scale.get_window_extent().x0 - face.x1 < 0.1 * face.width
+
+
+@pytest.mark.parametrize("across", [1e-13, 1.0])
+def test_what_is_rounding_has_the_scale_of_the_others(across):
+    time = np.linspace(0, 1, 11)
+    parts = ("", "static_", "dynamic_", "contact_", "peak_")
+    columns = {"time": time, "peak_time": time}
+    for k, axis in enumerate("xy"):
+        size = (across, 1e3)[k]
+        columns |= {f"{part}force_{axis}": size * np.sin(9 * time) for part in parts}
+    columns |= {f"{part}moment": np.sin(9 * time) for part in parts}
+    rows = [[repr(float(x)) for x in row] for row in zip(*columns.values(), strict=True)]
+    record = GaugeRecord([f"{name} [N]" for name in columns], rows, "dam.csv")
+    figure = _draw_parts(record, 2, "dam")
+    x, y, moment = (axes.get_ylim() for axes in figure.axes)
+    assert (x == y) == (across < 1e-9)
+    assert max(moment) < 2

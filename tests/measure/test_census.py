@@ -33,6 +33,8 @@ from doseki.measure.census import (
 from doseki.measure.views import View, fluid_names
 from doseki.record.reader import load
 
+from ..assess.accounts import recorded
+from ..small_scenarios import CHALK
 from ..synthetic_runs import flow_state
 
 D = 0.01  # m, of the grains
@@ -323,3 +325,43 @@ def test_a_run_without_grains_has_no_census(tmp_path, record_run, plain_state):
     record_run(tmp_path / "run", state_at=water)[0].close({})
     with pytest.raises(UserError, match="no grains"):
         take_census(load(tmp_path / "run"))
+
+
+ALL_DUST = """
+dim = 2
+dp = 0.005
+scheme = "resolved"
+speed_max = 6
+time_max = 0.002
+time_out = 0.001
+gravity = [0, 0]
+
+[body.disc]
+shape = "disc"
+material = "chalk"
+kinematics = "elastic"
+centre = [0, 0.0205]
+radius = 0.02
+velocity = [0, -10]
+
+[body.plate]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [-0.1, -0.02]
+max = [0.1, 0]
+"""
+
+
+def test_a_body_that_is_all_dust_is_no_more(tmp_path, capsys):
+    """Its row stays, and the census does not count it."""
+    weak = CHALK.replace("1e5", "3e4").replace("energy = 1", "energy = 0.01")
+    run = recorded(tmp_path, ALL_DUST + weak)
+    table = run[-1].grains
+    assert (table["removed"][0], table["mass"][0]) == (1, 0)
+    assert table["mass"].sum() == pytest.approx(run[0].grains["mass"][0])
+    living = np.count_nonzero(table["removed"] == 0)
+    assert living == np.count_nonzero(table["parent"] >= 0) > 10
+    with pytest.raises(SystemExit):
+        main(["census", str(tmp_path / "run")])
+    assert f"1 grain at first and {living} at last, at 3 times" in capsys.readouterr().out

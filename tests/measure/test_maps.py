@@ -12,7 +12,7 @@ from doseki.measure.maps.files import rasters_of, read_maps, write_maps
 from doseki.measure.maps.grid import MapSettings, few_particles, map_grid
 from doseki.measure.maps.peaks import Peaks, deposit
 from doseki.measure.maps.profile import along_path
-from doseki.measure.maps.runout import runout
+from doseki.measure.maps.runout import runout, runout_lines
 from doseki.record.folder import RunFolder
 
 WEST, SOUTH = 460_000.0, 5_200_000.0
@@ -290,6 +290,48 @@ def test_the_runout():
     assert found.toe[0] == WEST + 15.5
     assert found.distance == pytest.approx(np.hypot(13, 1))
     assert found.angle == pytest.approx(np.degrees(np.arctan2(6.5, np.hypot(13, 1))))
+
+
+def test_there_is_no_runout_before_the_flow_has_left_its_beginning():
+    """An inflow 6 m wide that has come 1 m is as long as it is wide, and no run-out."""
+    grid = bed(slope=0.5)
+    states = [slab((2, 2, 0), (k, 8, 1), 0.25) for k in (3, 4, 12)]
+    for count, reach in ((1, None), (2, None), (3, np.hypot(9, 5))):
+        peaks = peaks_of(grid, *states[:count])
+        found = runout(rasters_of(peaks, states[count - 1], MapSettings(0.25)), grid)
+        assert found.distance == (reach and pytest.approx(reach))
+        assert (found.angle is None) == (reach is None)
+        _, line = runout_lines(found)
+        assert line.startswith("no run-out: the flow" if reach is None else "run-out 10.3 m at")
+
+
+def test_what_flows_upwards_has_no_angle():
+    grid = bed(slope=-0.5)
+    states = [slab((k, 3, 0), (k + 2, 5, 1), 0.25) for k in (2, 14)]
+    found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
+    assert found.distance > 10
+    assert found.angle is None
+    assert "not downhill" in list(runout_lines(found))[1]
+
+
+@pytest.mark.parametrize("driver", ["AAIGrid", "GTiff"])
+@pytest.mark.parametrize(
+    ("own", "used"),
+    [(None, -9999), (-32768, -32768), (0, -9999), (9999, -9999), (-3.4e38, -3.4e38), (1e38, 1e38)],
+)
+def test_no_data_is_the_number_of_the_terrain_where_it_can_be_no_result(own, used, driver):
+    grid = Raster(bed().values, WEST, SOUTH, 1.0, None, driver, own)
+    state = slab((0, 0, 0), (4, 4, 1), 0.25)
+    rasters = rasters_of(peaks_of(grid, state), state, MapSettings(0.25))
+    assert {raster.nodata for raster in rasters.values()} == {used}
+
+
+def test_only_geotiffs_have_nan_for_no_data():
+    state = slab((0, 0, 0), (4, 4, 1), 0.25)
+    for driver, same in (("AAIGrid", False), ("GTiff", True)):
+        grid = Raster(bed().values, WEST, SOUTH, 1.0, None, driver, np.nan)
+        rasters = rasters_of(peaks_of(grid, state), state, MapSettings(0.25))
+        assert np.isnan(rasters["peak_depth"].nodata) == same
 
 
 def test_the_runout_without_heights_or_flow():

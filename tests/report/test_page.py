@@ -280,7 +280,7 @@ def test_a_large_picture_is_made_smaller_or_left_out(drawn_flow, page_of):
     random = np.random.default_rng(1).integers(0, 255, (900, 3000, 3), np.uint8)
     Image.fromarray(random).save(drawn_flow / "maps" / "depth.png")
     (drawn_flow / "maps" / "fake.png").write_text("<script>")
-    for size, width in ((20, "2000"), (1.5, "700")):
+    for size, width in ((20, "2000"), (1.5, "1200"), (0.7, "700")):
         widths = {
             given["alt"]: given["width"]
             for given, _ in page_of(drawn_flow, size_mb=size).all("img")
@@ -288,8 +288,7 @@ def test_a_large_picture_is_made_smaller_or_left_out(drawn_flow, page_of):
         assert widths["depth.png"] == width
         assert "fake.png" not in widths
         assert (drawn_flow / "report.html").stat().st_size < 1e6 * size
-    written = write_report(drawn_flow, size_mb=0.6)
-    assert written.size < 0.6e6
+    written = write_report(drawn_flow, size_mb=0.1)
     assert any("depth.png is left out" in note for note in written.notes)
     assert any("fake.png is left out" in note for note in written.notes)
 
@@ -297,3 +296,23 @@ def test_a_large_picture_is_made_smaller_or_left_out(drawn_flow, page_of):
 def test_the_file_is_no_larger_than_it_may_be(map_run):
     for size in (0.5, 0.1, 0.08):
         assert write_report(map_run, size_mb=size).size < 1e6 * size
+
+
+def test_maps_and_loads_stay_longest(drawn_flow, page_of):
+    """All pictures are made smaller before one is left out, and of these first what is neither."""
+    random = np.random.default_rng(1).integers(0, 255, (600, 900, 3), np.uint8)
+    for name in ("figures/first", "maps/depth", "loads/dam"):
+        (drawn_flow / name).parent.mkdir(exist_ok=True)
+        Image.fromarray(random).save(drawn_flow / f"{name}.png")
+    sizes = {}
+    for size in (20, 3, 0.6):
+        images = page_of(drawn_flow, size_mb=size).all("img")
+        sizes[size] = {given["alt"]: int(given["width"]) for given, _ in images}
+    assert sizes[20] | {"first.png": 900, "depth.png": 900, "dam.png": 900} == sizes[20]
+    assert sizes[3] | {"first.png": 700, "depth.png": 700, "dam.png": 700} == sizes[3]
+    written = write_report(drawn_flow, size_mb=0.6)
+    assert sizes[0.6] | {"depth.png": 450, "dam.png": 450} == sizes[0.6]
+    assert "first.png" not in sizes[0.6]
+    assert written.size < 0.6e6
+    assert any("first.png is left out" in note for note in written.notes)
+    assert any("pictures are shown 450 pixels wide" in note for note in written.notes)

@@ -9,9 +9,12 @@ import pytest
 
 from doseki.errors import UserError
 from doseki.record.reader import load
+from doseki.report.parts.provenance import provenance
+from doseki.running.provenance import noted_files
 from doseki.running.resume import resume_run
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
+from doseki.util.input_file import digest_of
 
 from .channel import assert_same_record
 
@@ -94,10 +97,28 @@ def test_it_goes_on_from_another_place_without_its_files(stopped, tmp_path, monk
 
 
 def test_it_begins_anew_without_its_files(stopped, tmp_path):
+    named = noted_files(load(stopped).folder)
     for file in [*(stopped / "checkpoints").iterdir(), stopped / "summary.json"]:
         file.unlink()
     resume_run(stopped, (), RunOptions(threads=1))
     assert_same_record(stopped, tmp_path / "straight")
+    assert noted_files(load(stopped).folder) == named
+
+
+def test_every_file_is_in_its_provenance_and_its_report(stopped, tmp_path):
+    """Those that the run needs no longer, too; with the content that they had when read."""
+    assert [(each["key"], each["file"]) for each in noted_files(load(stopped).folder)] == [
+        ("scenario", "case.toml"),
+        ("body.water.file", "water.csv"),
+        ("inflow.more.hydrograph", "flood.csv"),
+        ("body.stone.file", "stone.stl"),
+    ]
+    write_scenario(tmp_path / "again")
+    shown = provenance(load(stopped))
+    for each in noted_files(load(stopped).folder):
+        assert each["digest"] == digest_of(tmp_path / "again" / each["file"])
+        assert each["file"] in shown
+        assert each["digest"] in shown
 
 
 def test_the_stored_scenario_runs_again(stopped, tmp_path):

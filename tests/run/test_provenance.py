@@ -7,6 +7,7 @@ import re
 import socket
 
 import pytest
+from tests.terrain.scenes import grid, text
 
 import doseki
 from doseki.errors import UserError
@@ -18,6 +19,7 @@ from doseki.running.provenance import (
     provenance_now,
     read_provenance,
 )
+from doseki.scenario.load import load_scenario
 
 
 def test_it_says_versions_machine_and_command():
@@ -64,3 +66,53 @@ def test_it_goes_with_the_run_that_is_overwritten(run_folder):
     note_provenance(folder, True, 1, 1)
     folder.report.write_text("old")
     assert {folder.provenance, folder.report} <= set(folder.recorded())
+
+
+RELEASE = """
+[body.slide]
+shape = "release"
+material = "water"
+file = "release.geojson"
+thickness = 0.5
+[inflow.rain]
+material = "water"
+surge = "surge.csv"
+width = 0.5
+position = [3, 2, 10]
+direction = [1, 0, 0]
+[gauge.probe]
+kind = "surface_height"
+position = [3, 2, 10]
+[gauge.probe.array]
+file = "places.csv"
+"""
+
+
+def test_files_that_a_scenario_takes_in_are_known(tmp_path):
+    """Polygons, hydrographs and places of copies become keys of the stored scenario."""
+    grid(tmp_path / "terrain.asc", lambda x, y: 10 - 0.1 * x)
+    (tmp_path / "terrain.prj").write_text("")
+    ring = [[1, 1], [2, 1], [2, 2], [1, 2], [1, 1]]
+    shape = {"type": "Polygon", "coordinates": [ring]}
+    feature = {"type": "Feature", "properties": {}, "geometry": shape}
+    collection = {"type": "FeatureCollection", "features": [feature]}
+    (tmp_path / "release.geojson").write_text(json.dumps(collection))
+    (tmp_path / "surge.csv").write_text("t,thickness,velocity\n0,0.5,1\n1,0.5,1\n")
+    (tmp_path / "places.csv").write_text("x,y,z\n0,0,0\n1,0,0\n")
+    (tmp_path / "base.toml").write_text(text(3, more=RELEASE))
+    (tmp_path / "case.toml").write_text('extends = "base.toml"\n')
+    scenario = load_scenario(str(tmp_path / "case.toml"))
+    before = {each.file.path.name: each.file.digest for each in scenario.named_files}
+    named = {(each.key, each.file.path.name) for each in scenario.named_files}
+    assert named == {
+        ("scenario", "case.toml"),
+        ("extends", "base.toml"),
+        ("terrain.file", "terrain.asc"),
+        ("terrain.file", "terrain.prj"),
+        ("body.slide.file", "release.geojson"),
+        ("inflow.rain.surge", "surge.csv"),
+        ("gauge.probe.array.file", "places.csv"),
+    }
+    (tmp_path / "release.geojson").write_text("{}")
+    digests = {each.file.path.name: each.file.digest for each in scenario.named_files}
+    assert digests == before  # that of what was read

@@ -45,20 +45,60 @@ def test_value(text, value):
         ("= c", "unknown name c"),
         ("= aa", "did you mean a?"),
         ("= open('x')", "calls open"),
-        ("= (1).real", "Attribute"),
-        ("= [1][0]", "Subscript"),
+        ("= (1).real", "has a dot before a name"),
+        ("= [1][0]", "has square brackets after a value"),
+        ("= [1, 2]", "has a list"),
+        ("= 1,5", "has a comma outside a call"),
         ("= 'x'*1000000000", "arithmetic needs numbers"),
-        ("= f'{a}'", "cannot be evaluated"),
-        ("= lambda: 1", "cannot be evaluated"),
+        ("= 'x' < 1", "a comparison needs numbers"),
+        ("= sqrt('x')", "sqrt needs numbers"),
+        ("= f'{a}'", "has a string with braces"),
+        ("= lambda: 1", "has `lambda`"),
+        ("= [i for i in a]", "has what is no arithmetic"),
+        ("= a^3", "has ^: a power is written **"),
+        ("= a & b", "has &: of two conditions that both hold write `and`"),
+        ("= a | b", "has |: of two conditions of which one holds write `or`"),
+        ("= ~a", "has ~: write `not`"),
+        ("= a << 2", "has <<: write a product with a power"),
+        ("= a is b", "has `is`: write =="),
+        ("= a in b", "has `in`: compare with =="),
+        ("= 2j", "has 2j, which is no number"),
+        ("= None", "has None, which is no number"),
+        ("= log(2)", "calls log, which is not one of sqrt"),
+        ("= a(2)", "a product is written *"),
+        ("= 2(a)", "a product is written *"),
+        ("= 2a", "a product is written *"),
+        ("= sin(1, 2)", "gives sin 2 values: it takes 1"),
+        ("= max(1)", "gives max 1 value: it takes 2 or more"),
+        ("= round()", "gives round no values: it takes 1 or 2"),
+        ("= max(1, key=2)", "gives max an argument with ="),
+        ("= sin", "has sin without values: write sin(...)"),
+        ("= !a", "it has !: write `not`"),
+        ("= a && b", "it has &&: of two conditions that both hold write `and`"),
+        ("= a ? 1 : 2", "a choice is written `a if condition else b`"),
+        ("= 1 if a", "it has `if` without `else`"),
+        ("= a = 2", "whether two are equal is written =="),
+        ("= exp(1000)", "exp(1000) is no finite number"),
+        ("= " + "9" * 400 + "/2", "has numbers that are too large"),
         ("= 1 +", "not a valid expression"),
         ("= ", "not a valid expression"),
-        ("= sqrt(-1)", "cannot be evaluated"),
+        ("= sqrt(-1)", "sqrt(-1) is no finite number"),
         ("= " + "1+" * 400 + "1", "500 characters"),
     ],
 )
 def test_refusal(text, complaint):
-    with pytest.raises(ExpressionError, match=re.escape(complaint)):
+    with pytest.raises(ExpressionError, match=re.escape(complaint)) as said:
         evaluate(text, NAMES)
+    assert not re.search("ast|object|__|instance", str(said.value))
+
+
+@pytest.mark.parametrize("text", ["1 if x > 0 else 2", "0 < x < 1", "x > 0 and y > 0", "not x"])
+def test_what_differs_from_place_to_place_is_not_chosen(text):
+    """A condition is one number at each place, which may be a factor."""
+    position = np.array([[-1.0, 0.0], [1.0, 0.0]])
+    with pytest.raises(ExpressionError, match=r"multiply by conditions, as in \(x > 0\)\*2"):
+        evaluate_at(f"= {text}", {}, position)
+    np.testing.assert_array_equal(evaluate_at("= (x > 0)*2 + (x <= 0)*3", {}, position), [3, 2])
 
 
 def test_powers_do_not_grow_into_huge_integers():

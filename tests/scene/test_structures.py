@@ -232,3 +232,16 @@ max = [0, 1]
     path.write_text(text.format(turn=0))
     (found,) = findings(path, EndsAtWall)
     assert "make the walls of body.tank boxes of their own, the sides 3 dp" in str(found)
+
+
+def test_only_gauges_that_do_not_read_both_bodies_are_named(tmp_path):
+    """The same wall, read together with its floor and alone."""
+    both = '[gauge.all]\nkind = "force"\nbodies = ["floor", "wall"]\ninterval = 0.1\n'
+    start = CORNER.index("[gauge.thrust]")
+    path = tmp_path / "case.toml"
+    path.write_text((CORNER[:start] + both).format(turn=0, foot=0, end=0.15))
+    assert not findings(path, EndsAtWall)
+    path.write_text((CORNER[:start] + both + CORNER[start:]).format(turn=0, foot=0, end=0.15))
+    (found,) = findings(path, EndsAtWall)
+    assert (found.place, found.gauges) == ("body.wall", ("thrust",))
+    assert "which gauge.thrust does not read" in str(found)

@@ -12,6 +12,7 @@ from doseki.geodata.raster import Raster, write_raster
 from doseki.record.reader import load
 from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
+from doseki.scene.checks.terrain import HolesAsHeights, terrain_findings
 
 from .scenes import grid, profile, text
 
@@ -63,6 +64,46 @@ def test_numbers_that_are_no_heights_are_refused(path, tmp_path):
     (tmp_path / "terrain.asc").write_text("\n".join(lines) + "\n")
     with pytest.raises(UserError, match="1 cells hold -9999, which is no height"):
         load_scenario(path)
+
+
+@pytest.mark.parametrize(("value", "rise"), [(0.0, 1000.0), (1e4, 5.0)])
+def test_holes_that_are_written_as_heights_are_told(path, tmp_path, value, rise):
+    """A map of 1000 m has pits of 1000 m where holes are 0, also where cells are averaged."""
+
+    def hills(x, y):
+        return rise + 0.5 * x + np.sin(x + 2 * y)
+
+    grid(tmp_path / "terrain.asc", hills)
+    assert load_scenario(path).bed.islands is None
+    holes = [(2.85, 1.05), (2.85, 1.15), (2.95, 1.15), (4.05, 3.05)]
+
+    def with_holes(x, y):
+        is_hole = sum(np.isclose(x, a) & np.isclose(y, b) for a, b in holes)
+        return np.where(is_hole, value, hills(x, y))
+
+    grid(tmp_path / "terrain.asc", with_holes)
+    for settings in ([], ["terrain.resample=0.2"]):
+        (said,) = told_of_holes(load_scenario(path, settings))
+        assert said.startswith(f"terrain.file: 4 cells stand at {value:g} m, ")
+        assert "as at [4.05, 3.05] m" in said
+        assert f"gdal_edit -a_nodata {value:g} IN; .asc: a line NODATA_value {value:g}" in said
+    assert told_of_holes(load_scenario(path, ["terrain.window=[0, 0, 2.5, 4]"])) == []
+
+
+def told_of_holes(scenario):
+    found = terrain_findings(scenario, {})
+    return [str(each) for each in found if isinstance(each, HolesAsHeights)]
+
+
+def test_steep_ground_and_steps_are_no_holes(path, tmp_path):
+    """A wall of ten cells that a path leads up to, and a tower that is not sheer enough."""
+
+    def cliff(x, y):
+        ramp = np.clip(x - 1, 0, 4) / 4
+        return np.where(y > 2, 2.0, 2.0 * ramp) + np.where((x > 5) & (y > 3), 3.0, 0.0)
+
+    grid(tmp_path / "terrain.asc", cliff)
+    assert load_scenario(path).bed.islands is None
 
 
 @pytest.mark.filterwarnings("error")

@@ -128,6 +128,14 @@ void TotalLagrangian<D>::compute_accelerations(double half_dt, const Vec<double,
 }
 
 template <int D>
+void TotalLagrangian<D>::internal_accelerations(std::span<Vec<double, D>> accelerations) {
+    if (bonds_.any())
+        sum_internal_forces(0.0, InternalAcceleration<D>{spans(), accelerations});
+    else
+        accelerate_whole_internally(accelerations);
+}
+
+template <int D>
 BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
     compute_accelerations(0.5 * dt, gravity);
     const BodyStep<D> given = push_points(dt, gravity);

@@ -73,6 +73,18 @@ struct AcceleratePoint {
     }
 };
 
+/// Without loads and gravity.
+template <int D>
+struct InternalAcceleration {
+    SolidSpans<D> solids;
+    std::span<Vec<double, D>> acceleration;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const InternalForce<double, D>& force) const {
+        acceleration[p] =
+            solids.clamped[p] ? Vec<double, D>{} : (1.0 / solids.body_of(p).rho0) * force.all;
+    }
+};
+
 template <int D>
 template <class Where, class Term, class Epilogue>
 void TotalLagrangian<D>::sum_over_pairs(const Term& term, const Epilogue& epilogue,

@@ -102,6 +102,11 @@ void TotalLagrangian<D>::accelerate_whole(double half_dt, const Vec<double, D>& 
     sum_whole_forces<WhereParticlesAre>(half_dt, AcceleratePoint<D>{spans(), gravity});
 }
 
+template <int D>
+void TotalLagrangian<D>::accelerate_whole_internally(std::span<Vec<double, D>> accelerations) {
+    sum_whole_forces<WhereParticlesAre>(0.0, InternalAcceleration<D>{spans(), accelerations});
+}
+
 /// Damping sees the velocities that the last accelerations predict for the middle of the step; its
 /// work is that of its force on the way that is gone.
 template <int D>
@@ -121,6 +126,8 @@ template double TotalLagrangian<2>::drift(double);
 template double TotalLagrangian<3>::drift(double);
 template void TotalLagrangian<2>::accelerate_whole(double, const Vec<double, 2>&);
 template void TotalLagrangian<3>::accelerate_whole(double, const Vec<double, 3>&);
+template void TotalLagrangian<2>::accelerate_whole_internally(std::span<Vec<double, 2>>);
+template void TotalLagrangian<3>::accelerate_whole_internally(std::span<Vec<double, 3>>);
 template BodyStep<2> TotalLagrangian<2>::push_points(double, const Vec<double, 2>&);
 template BodyStep<3> TotalLagrangian<3>::push_points(double, const Vec<double, 3>&);
 

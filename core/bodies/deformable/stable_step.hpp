@@ -18,10 +18,8 @@ Array<Vec<double, D>> TotalLagrangian<D>::linear_response(const Array<Vec<double
                                                           const Array<Vec<double, D>>& velocity) {
     for (const std::uint32_t p : stepped_.points())
         x[p] = rest_[p] + displacement[p], v[p] = velocity[p];
-    Array<Vec<double, D>> all(size()), response(size());  // clusters have points of others, too
-    sum_internal_forces(0.0, [&](std::size_t p, const InternalForce<double, D>& force) {
-        if (!clamped_[p]) all[p] = (1.0 / body_of(p).rho0) * force.all;
-    });
+    Array<Vec<double, D>> all(size()), response(size());
+    internal_accelerations(all);
     for (const std::uint32_t p : stepped_.points()) response[p] = all[p];
     return response;
 }

@@ -120,6 +120,10 @@ public:
     /// Moves `steady` to such a force by a share of what they differ in; the first is it at once.
     void follow(std::span<const Vec<double, D>> force, double share);
 
+    /// Accelerations by internal forces alone, with x and v as they are [m/s^2]; those of points
+    /// that are not stepped mean nothing.
+    void internal_accelerations(std::span<Vec<double, D>> accelerations);
+
     /// Steps of their own over `dt`, under `load`, `steady` and gravity.
     void advance(double dt, const Vec<double, D>& gravity) {
         const int steps = max(1, static_cast<int>(std::ceil(dt / timestep())));
@@ -310,6 +314,7 @@ private:
     template <class Where, class F>
     void sum_whole_forces(double half_dt, const F& take);
     void accelerate_whole(double half_dt, const Vec<double, D>& gravity);
+    void accelerate_whole_internally(std::span<Vec<double, D>> accelerations);
     BodyStep<D> push_points(double dt, const Vec<double, D>& gravity);
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.

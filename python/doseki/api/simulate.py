@@ -15,7 +15,7 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
-from ..assess.preflight import brief_doubts
+from ..assess.estimates import step_ends
 from ..driver.live import Callback, Watch
 from ..driver.schedule import StopRequests
 from ..errors import DosekiWarning, UserError
@@ -53,6 +53,7 @@ def run(
 
     `callback(view)` is called with a LiveView at the start and then at the first step at or past
     each multiple of `every`, s of simulated time, or of `every_steps` steps; default: of time_out.
+    Steps of bodies without water may be longer than `every`, which is warned of.
     The run is the same with and without it, bit for bit.  Where it returns False the run stops in
     good order and can be resumed; an exception in it does the same, and is raised when the record
     is closed.
@@ -67,6 +68,7 @@ def run(
     folder = free_directory(made.name) if directory is None else Path(directory)
     wishes = _Wishes(threads, checkpoint_every, checkpoint_minutes, progress)
     wishes.watch = _watch(callback, every, every_steps, checked.time_out)
+    _warn_of_long_steps(checked, every)
     with wishes.options(checked.title, checked.time_max, overwrite) as options:
         run_scenario(checked, folder, options)
     wishes.hand_on()
@@ -171,6 +173,15 @@ def _watch(
     return Watch(callback, time_out if every is None and steps is None else every, steps)
 
 
+def _warn_of_long_steps(scenario: CheckedScenario, every: float | None) -> None:
+    """Say that a callback may look less often than it is to, as no step is cut short for it."""
+    if every is not None and scenario.has_bodies_alone and every < min(step_ends(scenario)):
+        _warn(
+            f"every = {every:g} s, but without water steps may be longer, and the callback looks "
+            f"after whole ones: give time_history = {every:g}"
+        )
+
+
 def _positive(name: str, value: Any) -> float | None:
     """A time, s, which may be a number of numpy; None stays None."""
     if value is None:
@@ -191,9 +202,10 @@ def _count(name: str, value: Any, most: int = 2**62) -> int | None:
     return count
 
 
-def _warn_of(scenario: CheckedScenario, *started: Any) -> None:
+def _warn_of(*started: Any) -> None:
     """Say what is doubtful about a run that is about to begin."""
-    for doubt in brief_doubts(scenario, *started):
+    *_, doubts = started
+    for doubt in doubts:
         _warn(doubt)
 
 

@@ -10,12 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..driver.schedule import steps_between
+from ..driver.schedule import OutputTimes, steps_between
 from ..record.snapshot_writer import SnapshotWriter
 from ..record.vtkhdf import Header
 from ..scenario.model import Scenario
-from ..scene.inflow_sections import build_inflows
+from ..scene.inflow_sections import InflowSection, build_inflows
 from ..solver.protocol import Simulation
+from .estimates import step_ends
+from .ground.spreading import ground_to_come
 
 BURST_SECONDS = 1.0  # of wall time
 HISTORY_BYTES = 430  # a row
@@ -30,6 +32,8 @@ class Estimate:
 
     particles: int  # at the start
     most_particles: float
+    ground: float  # of them, wall particles that come where the flow spreads over a terrain
+    scattered: float  # of the same, at most
     state: float  # of the memory, what the steps work on
     memory: float
     disk: float
@@ -46,14 +50,15 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
     Where nothing has entered a dry scene by then, what particles take is nan.
     """
     start = len(simulation)
-    rate, timestep = _burst(simulation, scenario.time_max)
-    mean, most = _particles(scenario, body_names, start)
+    mean, most, ground, scattered = _particles(scenario, simulation, body_names)
+    rate, timestep = _burst(simulation, scenario)
     done, now, end = simulation.steps, simulation.time, scenario.time_max
-    steps = done + steps_between(now, end, timestep, scenario.sampled_intervals)
+    steps = done + steps_between(now, end, timestep, step_ends(scenario))
     unhindered = done + steps_between(now, end, timestep, ())
     if not len(simulation):
         unknown = (math.nan,) * 4
-        return Estimate(start, most, *unknown, steps, steps - unhindered, math.nan, timestep)
+        counts = start, most, ground, scattered
+        return Estimate(*counts, *unknown, steps, steps - unhindered, math.nan, timestep)
     snapshot_bytes, snapshot_seconds = _snapshot(scenario, simulation, body_names)
     per_particle = simulation.bytes_per_particle
     length = scenario.time_max - scenario.begins_at
@@ -66,6 +71,8 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
     return Estimate(
         particles=start,
         most_particles=most,
+        ground=ground,
+        scattered=scattered,
         state=most * per_particle,
         # Beside the state, a copy of it for failures, one to be written, and the image of a file.
         memory=PROCESS_BYTES + most * (per_particle + 3 * checkpoint),
@@ -81,30 +88,50 @@ def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) 
     )
 
 
-def _burst(simulation: Simulation, time_max: float) -> tuple[float, float]:
-    """Particle updates per second, and the timestep, over the second half of a burst."""
-    steps = 1
+def _burst(simulation: Simulation, scenario: Scenario) -> tuple[float, float]:
+    """Particle updates per second, and the timestep, over the second half of a burst.
+
+    Outputs end steps of bodies alone, which nothing else may.
+    """
+    steps, time_max = 1, scenario.time_max
+    intervals = step_ends(scenario) if scenario.has_bodies_alone else [time_max]
+    ends = [OutputTimes(interval, time_max) for interval in intervals]
     started = time.perf_counter()
     middle = (started, simulation.updates, simulation.steps, simulation.time)
     while (now := time.perf_counter()) - started < BURST_SECONDS and simulation.time < time_max:
         if now - started < 0.5 * BURST_SECONDS:
             middle = (now, simulation.updates, simulation.steps, simulation.time)
-        simulation.advance(limit=time_max, pause=time_max, max_steps=steps)
+        limit = min(end.after(simulation.time) for end in ends)
+        simulation.advance(limit=limit, pause=limit, max_steps=steps)
         steps = min(2 * steps, max(1, int(0.1 * simulation.steps)))
     elapsed = time.perf_counter() - middle[0]
     steps = max(1, simulation.steps - middle[2])
     return (simulation.updates - middle[1]) / elapsed, (simulation.time - middle[3]) / steps
 
 
-def _particles(scenario: Scenario, body_names: list[str], start: int) -> tuple[float, float]:
-    """Mean and largest number of particles, if nothing that enters leaves again."""
-    mean = most = float(start)
+def _particles(
+    scenario: Scenario, simulation: Simulation, body_names: list[str]
+) -> tuple[float, float, float, float]:
+    """Mean and largest number of particles, if nothing leaves; new ground in that, and at most."""
+    times = np.linspace(scenario.begins_at, scenario.time_max, 1001)
+    entered = np.zeros(len(times))
     for section in build_inflows(scenario, body_names):
-        entered = section.entered(np.linspace(scenario.begins_at, scenario.time_max, 1001))
-        entered -= entered[0]
-        most += float(entered[-1])
-        mean += float(entered.mean())
-    return mean, most
+        entered += _entered(section, times)
+    ground, scattered = np.zeros(len(times)), 0.0
+    if scenario.bed is not None:
+        ground, scattered = ground_to_come(scenario, simulation.state(), body_names, times, entered)
+    more = entered + ground
+    start = len(simulation)
+    return start + float(more.mean()), start + float(more.max()), float(ground.max()), scattered
+
+
+def _entered(section: InflowSection, times: np.ndarray) -> np.ndarray:
+    """Particles (n,) that have come in between the first of the times, s, and each."""
+    each = np.diff(section.entered(times), prepend=section.entered(times[:1]))
+    if len(section.thickness):  # a surge, whose layers are as high as it is thick
+        thick = np.interp(times, section.times, section.thickness)
+        each *= (section.row_height[:, None] <= thick).mean(axis=0)
+    return np.asarray(np.cumsum(each))
 
 
 def _snapshot(

@@ -8,12 +8,14 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from ..record.particles import BOUND, FIXED, FREE
+from ..scenario.kinematics import DEFORM
+from ..scenario.materials import Material
 from ..scenario.model import Scenario
-from ..scenario.schemes import RESOLVED
 from ..scene.ground import ground_of
 from ..scene.inflow_sections import build_inflows
 
 State = Mapping[str, np.ndarray]
+SOLID_COURANT = 0.65  # steps of waves in bodies that deform, of dp/c_P
 
 
 def grain_spacings(scenario: Scenario) -> float | None:
@@ -41,9 +43,39 @@ def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict
     return depths
 
 
-def has_bodies_alone(scenario: Scenario) -> bool:
-    """Whether all that moves are bodies as a whole: no particle has an equation of state."""
-    return scenario.scheme == RESOLVED and scenario.is_dry
+def step_ends(scenario: Scenario) -> list[float]:
+    """Times between what ends a step exactly, s: outputs, and rows of the history."""
+    return [*scenario.sampled_intervals, *[scenario.time_history][: scenario.rows_end_steps]]
+
+
+def wave_speed(material: Material) -> float:
+    """c_P of plane waves of compression, m/s."""
+    modulus, ratio = material.elasticity
+    stiff = modulus * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio))
+    return math.sqrt(stiff / material.rho0)
+
+
+def solid_steps_text(dt: float, duration: float) -> str:
+    """What a `solid_timestep`, s, means for a run of some duration, s."""
+    return (
+        f"within these, steps of about {dt:.2g} s while a body deforms: some {duration / dt:,.0f} "
+        "if one always does"
+    )
+
+
+def solid_timestep(scenario: Scenario) -> float | None:
+    """About how long the steps of bodies are while they deform, s; None where none does.
+
+    Eq. (84), which they have, also knows their shape and damping, and cracks.
+    """
+    steps = [
+        SOLID_COURANT
+        * (body.given("dp") or scenario.dp)
+        / wave_speed(scenario.materials[body.material])
+        for name, body in scenario.body.items()
+        if body.material is not None and scenario.kinematics_of(name).name in DEFORM
+    ]
+    return min(steps, default=None)
 
 
 def mach_number(scenario: Scenario, state: State) -> tuple[float, float] | None:
@@ -53,7 +85,7 @@ def mach_number(scenario: Scenario, state: State) -> tuple[float, float] | None:
     fall through all of the scene. In the resolved scheme bodies have no such sound: None where
     there is nothing else.
     """
-    if has_bodies_alone(scenario):
+    if scenario.has_bodies_alone:
         return None
     free = state["motion"] != FIXED
     speeds = np.linalg.norm(state["velocity"][free], axis=1)

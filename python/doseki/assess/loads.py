@@ -10,11 +10,22 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from ..measure.loads import BodyLoad, DamBalance, Expected, Peak, body_loads
+from ..measure.loads import (
+    BodyLoad,
+    DamBalance,
+    Expected,
+    Peak,
+    body_loads,
+    comes_from_behind,
+)
 from ..measure.overtopping import dam_balances
+from ..measure.views import gauge_record, tables
 from ..record.reader import Run
 from ..record.units import unit_in
+from ..scenario.gauges.gauge import Gauge
+from ..scenario.gauges.loads.approach import Approach
 from ..util.files import write_whole_text
+from ..util.finding import Finding
 
 FORMAT = 1  # of loads.json
 HEADER = ("gauge", "what", "quantity", "value", "unit", "time [s]")
@@ -31,6 +42,31 @@ class Loads:
 
     def __bool__(self) -> bool:
         return bool(self.bodies or self.dams)
+
+
+@dataclass(frozen=True)
+class AgainstFlow(Finding):
+    """A section through which the flow comes from behind."""
+
+    direction: tuple[float, ...]
+
+    def __str__(self) -> str:
+        now, turned = (", ".join(f"{sign * x + 0.0:g}" for x in self.direction) for sign in (1, -1))
+        return (
+            f"{self.place} = [{now}] points against the flow: thrust on its structure counts as "
+            f"negative, and design formulas are left out; set it to [{turned}]"
+        )
+
+
+def sections_turned_round(run: Run) -> list[AgainstFlow]:
+    """A finding for each gauge of kind approach through which the flow came from behind."""
+    return [
+        AgainstFlow(f"gauge.{name}.direction", tuple(gauge.direction.tolist()))
+        for name, gauge in tables(run, "gauge", Gauge).items()
+        if isinstance(gauge, Approach)
+        and name in run.gauges
+        and comes_from_behind(gauge_record(run, name))
+    ]
 
 
 def loads_of(run: Run) -> Loads:
@@ -86,7 +122,7 @@ def _dam_lines(dam: DamBalance, dim: int) -> Iterator[tuple[str, str]]:
     mass, volume = unit_in("kg", dim), unit_in("m3", dim)
     yield (
         f"dam {dam.name}",
-        f"over the crest {dam.mass_passed:.5g} {mass} ({dam.volume_passed:.4g} {volume}), "
+        f"past the plane {dam.mass_passed:.5g} {mass} ({dam.volume_passed:.4g} {volume}), "
         f"upstream {dam.mass_upstream:.5g} {mass} ({dam.volume_upstream:.4g} {volume}), "
         f"residual {dam.residual:.2g}",
     )

@@ -16,11 +16,18 @@ from ..scenario.tables.bodies import Box
 from ..scene.kinds.release import released_volumes, volume_text
 from ..solver.build import filled_simulation, load_core
 from ..solver.protocol import SimulationView
-from ..util.finding import Finding, sentences
+from ..util.finding import Finding, rounded_up, sentences
 from ..util.memory import available_bytes
 from ..util.telling import Tell, say_nothing
 from .cost import Estimate, estimate
-from .estimates import flow_depths, grain_spacings, mach_number
+from .estimates import (
+    flow_depths,
+    grain_spacings,
+    mach_number,
+    solid_steps_text,
+    solid_timestep,
+    step_ends,
+)
 from .lakes import filled_text, filled_volumes
 from .summary import duration_text
 from .warnings import findings, thorough_findings
@@ -69,7 +76,7 @@ def preflight(
     finally:
         core.set_threads(before)
     lines = [scenario.title or "scenario", ""]
-    lines += [*_particles(scenario, state, body_names), *_costs(expected)]
+    lines += [*_particles(scenario, state, body_names), *_costs(scenario, expected)]
     lines += [*_resolution(scenario, state, body_names)]
     doubts = sentences(thorough_findings(scenario, state, body_names, warnings))
     lines += ["", *(f"warning: {doubt}" for doubt in doubts)] if doubts else ["", "no warnings"]
@@ -83,24 +90,20 @@ def brief_check(
     scenario: Scenario,
     simulation: SimulationView,
     body_names: list[str],
-    warnings: Sequence[Finding] = (),
+    doubts: Sequence[str] = (),
 ) -> list[str]:
-    """A few lines about a simulation that has just been started; costs well under a second.
-
-    `warnings` are those that came up when the scene was built.
-    """
+    """A few lines about a simulation that has just been started, with its `brief_doubts`."""
     dt = simulation.rates()["timestep"]
     memory = len(simulation) * simulation.bytes_per_particle
-    steps = steps_between(scenario.begins_at, scenario.time_max, dt, scenario.sampled_intervals)
+    steps = steps_between(scenario.begins_at, scenario.time_max, dt, step_ends(scenario))
     # Where nothing limits a step, the next output or the end does.
-    first = min(dt, *scenario.sampled_intervals, scenario.time_max - scenario.begins_at)
+    first = min(dt, *step_ends(scenario), scenario.time_max - scenario.begins_at)
     head = (
         f"{len(simulation):,} particles, {_size(memory)}, first timestep {first:.3g} s: about"
         f" {steps:,.0f} steps"
     )
     names = dict.fromkeys(_copied(name) for name in body_names)
     sizes = [f"{name}: {size}" for name in names for size in _resized(scenario, name)]
-    doubts = brief_doubts(scenario, simulation, body_names, warnings)
     return [head, *sizes, *(f"warning: {doubt}" for doubt in doubts)]
 
 
@@ -110,7 +113,10 @@ def brief_doubts(
     body_names: list[str],
     warnings: Sequence[Finding] = (),
 ) -> list[str]:
-    """What is doubtful about a simulation that has just been started, a sentence each."""
+    """What is doubtful about a simulation that has just been started, a sentence each.
+
+    It costs well under a second.  `warnings` are those that came up when the scene was built.
+    """
     return sentences(findings(scenario, simulation.state(), body_names, warnings))
 
 
@@ -161,8 +167,8 @@ def _first(scenario: Scenario, name: str) -> str:
     return name if name in scenario.body else f"{name}.1"
 
 
-def _costs(expected: Estimate) -> Iterator[str]:
-    yield _line("most particles", f"{expected.most_particles:,.0f}, if nothing leaves")
+def _costs(scenario: Scenario, expected: Estimate) -> Iterator[str]:
+    yield _line("most particles", _most_text(expected))
     if math.isnan(expected.memory):
         yield _line("steps", f"{expected.steps:,.0f} or more")
         yield _line("cost", "not known: nothing has entered within a burst of a second")
@@ -175,8 +181,27 @@ def _costs(expected: Estimate) -> Iterator[str]:
     outputs = f", {expected.shortened:,.0f} of them because outputs end steps"
     shown = outputs if expected.shortened >= 1 else ""
     yield _line("steps", f"{expected.steps:,.0f}{shown}")
+    yield from _solid_steps(scenario, expected)
     yield _line("updates", f"{expected.updates:.2g} of particles")
     yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second")
+
+
+def _solid_steps(scenario: Scenario, expected: Estimate) -> Iterator[str]:
+    """Those of bodies that deform, where they are shorter than those of the run."""
+    solid = solid_timestep(scenario)
+    if solid is not None and solid < expected.timestep:
+        yield _line("", solid_steps_text(solid, scenario.time_max - scenario.begins_at))
+
+
+def _most_text(expected: Estimate) -> str:
+    if not expected.scattered:
+        return f"{expected.most_particles:,.0f}, if nothing leaves"
+    most = expected.most_particles
+    scattered = most - expected.ground + expected.scattered
+    said = f"about {rounded_up(most):,.0f}, if nothing leaves: ground comes where the flow spreads"
+    if rounded_up(scattered) == rounded_up(most):
+        return said
+    return f"{said}, up to {rounded_up(scattered):,.0f} in all where particles scatter"
 
 
 def _resolution(

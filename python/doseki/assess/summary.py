@@ -17,6 +17,7 @@ from ..record.units import unit_in
 from ..scenario.gauges.section import DRY
 from ..scene.kinds.release import volume_text
 from ..util.files import write_whole_text
+from .estimates import solid_steps_text
 from .lakes import filled_text
 from .loads import load_lines, loads_of
 from .trust.report import trust_lines
@@ -81,11 +82,21 @@ def _computed(run: Run) -> Iterator[Row]:
         last = {column: values[-1] for column, values in run.history.items()}
         yield _line("time", f"{last['time']:.6g} s of {run.scenario['time_max']:.6g} s")
         yield _line("steps", f"{last['step']:,.0f}, the last one {last['dt']:.3g} s")
+        yield from _solid_steps(run)
     if "wall_seconds" in said:
         rate = said.get("particle_updates_per_second", math.nan)
         yield _line("wall time", f"{duration_text(said['wall_seconds'])}, {rate:.3g} updates/s")
     if "bytes_per_particle" in said:
         yield _line("memory", f"{said['bytes_per_particle']:.0f} bytes per particle")
+
+
+def _solid_steps(run: Run) -> Iterator[Row]:
+    """Those of bodies that deform, where they are shorter than those of the run."""
+    time, step = (run.history[column] for column in ("time", "step"))
+    duration, steps = time[-1] - time[0], step[-1] - step[0]
+    solid = run.summary.get("solid_timestep", math.inf)
+    if solid * steps < duration:
+        yield _line("", solid_steps_text(solid, duration))
 
 
 def duration_text(seconds: float) -> str:

@@ -20,9 +20,9 @@ from .estimates import (
     flow_depths,
     gap,
     grain_spacings,
-    has_bodies_alone,
     mach_number,
 )
+from .ground.pits import narrow_pits
 from .open_sides import open_sides
 from .rheology import rheology_findings
 from .sound_speed import raised, usual_speed
@@ -212,7 +212,9 @@ def thorough_findings(
 ) -> list[Finding]:
     """Those of `findings`, and those that take a while to find."""
     names = dict(enumerate(body_names))
-    return [*findings(scenario, state, body_names, of_scene), *_detached(scenario, state, names)]
+    at_once = findings(scenario, state, body_names, of_scene)
+    slow = [*_detached(scenario, state, names), *narrow_pits(scenario, state, body_names)]
+    return [*at_once, *slow]
 
 
 def _grains(scenario: Scenario) -> Iterator[Finding]:
@@ -229,7 +231,7 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 
 
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
-    if has_bodies_alone(scenario):
+    if scenario.has_bodies_alone:
         return  # which meet the shapes of walls, not their particles
     needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
     for body, name in names.items():

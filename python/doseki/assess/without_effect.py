@@ -10,10 +10,9 @@ import numpy as np
 
 from ..record.particles import BOUND, FIXED
 from ..scenario.kinematics import BREAKABLE, DEFORM
-from ..scenario.materials import Material
 from ..scenario.model import Scenario
 from ..util.finding import Finding
-from .estimates import State
+from .estimates import State, wave_speed
 
 MISSING = {"rolling_friction": 0.0, "restitution": 1.0}  # what such contacts have instead
 
@@ -98,14 +97,7 @@ def _waking_speed(scenario: Scenario, body: _Bodies) -> float | None:
     material = scenario.materials[body.material]
     if material.fracture != "cohesive":  # random flaws decide
         return math.nan
-    return material.of_laws["tensile_strength"] / (material.rho0 * _wave_speed(material))
-
-
-def _wave_speed(material: Material) -> float:
-    """c_P of plane waves of compression, m/s."""
-    modulus, ratio = material.elasticity
-    stiff = modulus * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio))
-    return math.sqrt(stiff / material.rho0)
+    return material.of_laws["tensile_strength"] / (material.rho0 * wave_speed(material))
 
 
 def _given_in(scenario: Scenario, name: str | None, key: str) -> str | None:

@@ -54,7 +54,8 @@ def report(
             "--size-mb",
             parser=number(0.5, 2000.0),
             metavar="MB",
-            help="Largest size of the file: particles and snapshots are left out to keep it.",
+            help="Largest size of the file: pictures are made smaller, and particles and snapshots"
+            " left out, to keep it.",
         ),
     ] = 20.0,
     output: Annotated[
@@ -147,15 +148,18 @@ def loads(
 ) -> None:
     """Loads on the structures of a run: peaks, means, impulses, design formulas, overtopping."""
     from ..assess.loads import as_json as contents
-    from ..assess.loads import load_lines, write_loads
+    from ..assess.loads import load_lines, sections_turned_round, write_loads
     from ..record.reader import load
 
-    found = write_loads(load(directory))
+    run = load(directory)
+    found = write_loads(run)
     if not found:
         raise UserError(
             f"{directory}: no gauge of kind load or overtopping has read anything; "
             "docs/scenarios.md says how to name one"
         )
+    for doubt in sections_turned_round(run):
+        typer.echo(f"warning: {doubt}", err=True)
     if as_json:
         typer.echo(json.dumps(contents(found)))
         return

@@ -89,6 +89,7 @@ class ActiveRun:
         self.rewind = Rewind()
         self.watch: Watch | None = None  # who else looks on
         self.outputs = OutputTimes(scenario.time_out, scenario.time_max)
+        self.rows = OutputTimes(scenario.time_history, scenario.time_max)
         self.gauges = [
             (gauge, OutputTimes(gauge.interval, scenario.time_max))
             for gauge in build_gauges(scenario, body_names)
@@ -124,11 +125,9 @@ class ActiveRun:
         self.position.snapshots += 1
 
     def record_history(self) -> None:
-        """Write a row of diagnostics; the next one is due one interval later."""
+        """Write a row of diagnostics."""
         self.recorder.history(self.history_row())
         self.position.rows += 1
-        while self.position.next_history <= self.simulation.time:
-            self.position.next_history += self.scenario.time_history
 
     def history_row(self) -> dict[str, float]:
         """What is known of the run now."""
@@ -175,14 +174,21 @@ class ActiveRun:
         return self.outputs.time(self.position.outputs)
 
     def limit_at(self, simulated: float) -> float:
-        """The limit that steps have at a simulated time: the next snapshot or sample."""
+        """The limit that steps have at a simulated time: the next snapshot or sample.
+
+        Steps of bodies alone may be long: a row of the history that is asked for is one of theirs.
+        """
         times = [self.outputs, *(times for _, times in self.gauges)]
         times += [self.maps.times] if self.maps else []
+        times += [self.rows] if self.scenario.rows_end_steps else []
         limit = min(each.after(simulated) for each in times)
         return min(limit, self.scenario.time_max)
 
-    def start(self) -> None:
-        """Take the first rates; record the initial state, and write the first checkpoint."""
+    def start(self, look: Callable[[], None] = lambda: None) -> None:
+        """Take the first rates, record the initial state and write the first checkpoint.
+
+        `look` is called before the checkpoint, which keeps what is found doubtful then.
+        """
         if not self.goes_on:
             self.simulation.start()
         self.record_snapshot()
@@ -193,6 +199,7 @@ class ActiveRun:
             self.record_gauge(gauge)
         if self.maps:
             self.maps.look(self.simulation)
+        look()
         self.write_checkpoint()
 
     @property
@@ -252,8 +259,11 @@ class ActiveRun:
         simulation, limit = self.simulation, self.limit_at(self.simulation.time)
         samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
         look = self.maps.times.after(simulation.time) if self.maps else math.inf
+        # Also a step that ends there but for rounding, wherever bursts end.
+        row = min(self.rows.after(simulation.time), self.scenario.time_max)
+        row *= 1 - 0.5 * OutputTimes.SAME
         started, processor, first = time.perf_counter(), time.process_time(), simulation.steps
-        pause = min(limit, pause, self.position.next_history)
+        pause = min(limit, pause, row)
         if self.watch is not None:
             pause = min(pause, self.watch.next_time)
             steps = min(steps, self.watch.steps_left(simulation.steps) or steps)
@@ -269,7 +279,7 @@ class ActiveRun:
                 self.record_gauge(gauge)
         if self.maps and self.outputs.is_due(simulation.time, look):
             self.maps.look(simulation)
-        if simulation.time >= min(self.position.next_history, self.scenario.time_max):
+        if simulation.time >= row:
             self.record_history()
         return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))
 

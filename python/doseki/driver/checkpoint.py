@@ -39,7 +39,6 @@ class Position:
     snapshots: Count = 0  # recorded
     rows: Count = 0  # of the history
     gauge_rows: dict[str, Count] = field(default_factory=dict)  # never changed in place
-    next_history: Time = 0.0
     next_checkpoint: Time = 0.0
     wall_seconds: Time = 0.0
     sensors: dict[str, list[float]] = field(default_factory=dict)  # state by name of the gauge
@@ -49,7 +48,7 @@ class Position:
 class Beginning:
     """What was known of a run when it began, and its stored scenario does not say."""
 
-    warnings: list[str] = field(default_factory=list)  # about its scene
+    warnings: list[str] = field(default_factory=list)  # about its scene and its first state
     # The key by which the reduced sound speed was given, and its value.
     sound_speed_from: dict[str, float] = field(default_factory=dict)
 

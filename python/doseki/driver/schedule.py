@@ -61,7 +61,7 @@ def steps_between(start: float, end: float, dt: float, intervals: Iterable[float
         times.append(multiples[(multiples > start) & (multiples < end)])
     gaps = np.diff(np.unique(np.concatenate(times)))
     gaps = gaps[gaps > OutputTimes.SAME * end]  # else two of these times are one
-    return float(np.ceil(gaps / dt * (1 - 1e-9)).sum())
+    return float(np.maximum(np.ceil(gaps / dt * (1 - 1e-9)), 1.0).sum())
 
 
 class CheckpointClock:

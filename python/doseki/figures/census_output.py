@@ -196,7 +196,7 @@ def census_lines(
     """The census in a few lines."""
     shares = census_shares(census)
     greatest = ", ".join(f"{name} {_percent(share.max())}" for name, share in shares.items())
-    lines = [f"{len(np.unique(census.table['id']))} grains at {len(census.times)} times"]
+    lines = [f"{_counted(census)} at {len(census.times)} times"]
     lines.append(f"most of the load at once: {greatest}")
     if len(drawn.speeds):
         lines.append(
@@ -211,6 +211,14 @@ def census_lines(
         told = f"{count} grain{'' if count == 1 else 's'}, {_percent(share)} of the load"
         lines.append(f"passed x = {section:.12g} m {way} at the end: {told}")
     return lines
+
+
+def _counted(census: Census) -> str:
+    """How many grains there are, at the first and at the last of several times."""
+    first, last = (np.sum(census.table["time"] == time) for time in census.times[[0, -1]])
+    if len(np.unique(census.table["id"])) == first == last:
+        return f"{last} grain{'' if last == 1 else 's'}"
+    return f"{first} grain{'' if first == 1 else 's'} at first and {last} at last,"
 
 
 def _percent(share: float) -> str:

@@ -14,6 +14,8 @@ from .interpolation import area_mean, bilinear, locally_linear
 
 TOLERANCE = 1e-6  # of a cell, by which edges of grids may differ
 MAX_CELLS = 400_000_000  # of a grid that is made; 3.2 GB
+NODATA = -9999.0  # the usual number for no data
+OTHERS = (NODATA, -32768.0, -99999.0, -3.4028234663852886e38)  # where that is a value
 SUFFIX = {"GTiff": ".tif", "AAIGrid": ".asc"}
 
 
@@ -100,6 +102,20 @@ class Raster:
     def suffix(self) -> str:
         """The ending of a file of its format: .tif or .asc."""
         return SUFFIX[self.driver]
+
+    def can_hold_nan(self, nodata: float) -> bool:
+        """Whether a number for no data is NaN and files of its format have that."""
+        return math.isnan(nodata) and self.driver == "GTiff"
+
+    def with_free_nodata(self) -> Raster:
+        """The same with its number for no data, or another one where that is one of its values."""
+        own = () if self.nodata is None else (self.nodata,)
+        for number in (*own, *OTHERS):
+            if math.isnan(number) and not self.can_hold_nan(number):
+                continue
+            if not means_no_data(self.values, number).any():
+                return replace(self, nodata=number)
+        return replace(self, nodata=None)
 
     def with_values(self, values: np.ndarray) -> Raster:
         """The same grid with other values (rows, cols)."""

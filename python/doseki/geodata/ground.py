@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +37,7 @@ def write_ground(folder: Path, ground: Raster | Profile) -> None:
         file.unlink()
     if isinstance(ground, Raster):
         # The number for no data in the file that it came from may be a height of this one.
-        write_raster(folder / f"terrain{ground.suffix}", replace(ground, nodata=None))
+        write_raster(folder / f"terrain{ground.suffix}", ground.with_free_nodata())
         return
     rows = [HEADER, *zip(ground.x.tolist(), ground.z.tolist(), strict=True)]
     write_whole_text(folder / "terrain.csv", "".join(f"{x},{z}\n" for x, z in rows))

@@ -18,6 +18,7 @@ from . import design
 from .views import gauge_record, tables
 
 WINDOWS = (0.010, 0.100)  # s, of the running means
+AGAINST = 0.5  # of all that passed a section, in excess, from which on the flow comes from behind
 RESOLVED = 1 + 1e-6  # of a window, the longest interval between samples that shows it
 
 
@@ -177,7 +178,12 @@ def running_peak(time: np.ndarray, impulse: np.ndarray, window: float) -> Peak:
 
 
 def expected_loads(approach: GaugeRecord, width: float, g: float) -> list[Expected]:
-    """What formulas expect of the flow that a section gauge has seen, on `width`, m."""
+    """What formulas expect of the flow that a section gauge has seen, on `width`, m.
+
+    Nothing where the flow went against its direction: along it goes what is thrown back.
+    """
+    if comes_from_behind(approach):
+        return []
     time, h = approach["time"], approach["depth"]
     v, rho = approach["velocity"], approach["density"]
     flows = np.isfinite(v) & (v > 0) & (h > 0)
@@ -197,6 +203,13 @@ def expected_loads(approach: GaugeRecord, width: float, g: float) -> list[Expect
         of_pressure("Huebl & Holzinger (2003)", design.huebl_holzinger(h, v, rho, g)),
         of_pressure("Kwan (2012), alpha 2.5", design.kwan(v, rho)),
     ]
+
+
+def comes_from_behind(approach: GaugeRecord) -> bool:
+    """Whether the flow through a section went against the direction of its gauge."""
+    rates = np.nan_to_num(approach["depth"] * approach["velocity"] * approach["density"])
+    passed = 0.5 * (rates[1:] + rates[:-1]) * np.diff(approach["time"])
+    return bool(passed.sum() < -AGAINST * np.abs(passed).sum())
 
 
 def _highest(time: np.ndarray, values: np.ndarray) -> Peak:

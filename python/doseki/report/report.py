@@ -10,8 +10,10 @@ from ..assess.summary import title_of
 from ..errors import UserError, one_line
 from ..figures.plot import draw_run
 from ..geodata.raster import read_raster
+from ..measure.views import tables
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
+from ..scenario.tables.figure import Figure, LoadFigure
 from ..util.files import write_whole_text
 from ..util.foreign import open_regular, readable
 from .markup import Content, Markup, section, tag
@@ -21,7 +23,7 @@ from .parts.facts import facts, heading
 from .parts.findings import findings
 from .parts.gauges import gauges
 from .parts.ledger import ledgers
-from .parts.pictures import Album, gallery
+from .parts.pictures import WIDTHS, Album, gallery
 from .parts.provenance import provenance
 from .parts.tables import tables_of
 from .view.scene import Scene, make_scene
@@ -29,7 +31,9 @@ from .view.terrain import Grid, grid_of
 
 MB = 1e6
 DEFAULT_MB = 20.0
-LEAST_VIEW = 0.4  # of the size, kept for the view: pictures take no more than the rest
+# Of the size, kept for the view: pictures take no more than the rest. It is less rather than that
+# pictures are left out.
+LEAST_VIEW, SHORT_VIEW = 0.4, 0.2
 SPARE = 12_000  # bytes of what stands around the view, and of notes
 HEAD_BYTES = 4096  # of a report, in which it says that it is one
 
@@ -50,23 +54,29 @@ def write_report(
 ) -> Report:
     """Write the report on the run in `directory` into DIR/report.html, or `output`.
 
-    It is at most about `size_mb` 10^6 bytes: particles, then snapshots, of the view are left out
-    so that it is. Raises UserError where there is no run, or a file of it is damaged, and
-    ResourceError where the disk is full.
+    It is at most about `size_mb` 10^6 bytes: pictures are made smaller, then particles and
+    snapshots of the view left out, then pictures, those of maps and loads last. Raises UserError
+    where there is no run, or a file of it is damaged, and ResourceError where the disk is full.
     """
     run = _checked(load(directory))
     path = output or run.folder.report
     _check_free(path)
-    album = Album((1 - LEAST_VIEW) * size_mb * MB)
-    terrain = _terrain(run, album)
-    before, after = _before(run), _after(run, album)
+    notes = _draw_missing(run)
+    terrain = _terrain(run, notes)
+    before, texts = _before(run), _texts(run)
+    room = size_mb * MB - len(page("", [before, texts], Scene({})).encode("utf-8")) - SPARE
+    pictures, album = _pictures(run, room)
+    notes += album.notes
+    if album.shrunk and album.widest < WIDTHS[0]:
+        notes.append(f"{album.shrunk} pictures are shown {album.widest} pixels wide.")
+    after = [*texts[:2], *pictures, *texts[2:]]
     rest = len(page("", [before, after], Scene({})).encode("utf-8"))
     scene, note = _scene(run, size_mb * MB - rest - SPARE, terrain)
-    notes = [*(scene.notes if scene else [note]), *album.notes]
     shown: Content = viewer(scene) if scene else section("The flow", tag("p", note), name="view")
-    text = page(str(title_of(run)), [*before, shown, *after, _end(album)], scene)
+    text = page(str(title_of(run)), [*before, shown, *after, _end(notes)], scene)
     write_whole_text(path, text)
-    return Report(path, len(text.encode("utf-8")), notes)
+    told = [*(scene.notes if scene else [note]), *notes]
+    return Report(path, len(text.encode("utf-8")), told)
 
 
 def _check_free(path: Path) -> None:
@@ -101,32 +111,61 @@ def _before(run: Run) -> list[Content]:
     return _made(run, {"title": lambda: heading(run), "summary": lambda: facts(run)})
 
 
-def _after(run: Run, album: Album) -> list[Content]:
-    """What comes after it."""
+def _texts(run: Run) -> list[Content]:
+    """What comes after it without pictures: two sections before those with pictures, one after."""
+    return _made(
+        run,
+        {
+            "trust": lambda: findings(run),
+            "ledgers": lambda: ledgers(run),
+            "provenance": lambda: provenance(run),
+        },
+    )
+
+
+def _pictures(run: Run, room: float) -> tuple[list[Content], Album]:
+    """The sections with pictures, as large as there is room for them and for a view, bytes."""
+    album = Album()
+    for widest in WIDTHS:
+        album = Album(widest, drawn=album.drawn)
+        made = _with_pictures(run, album)
+        if album.size <= (1 - LEAST_VIEW) * room:
+            return made, album
+    left_out = album.without((1 - SHORT_VIEW) * room)
+    album = Album(WIDTHS[-1], left_out, album.drawn)
+    return _with_pictures(run, album), album
+
+
+def _with_pictures(run: Run, album: Album) -> list[Content]:
     folder = run.folder.path
     makers: dict[str, Maker] = {
-        "trust": lambda: findings(run),
-        "ledgers": lambda: ledgers(run),
         "figures": lambda: _figures(run, album),
         "maps": lambda: gallery("Maps", album.folder(run.folder.maps, of_maps()), "maps"),
         "loads": lambda: tables_of(folder, "loads", "Loads", album),
         "sections": lambda: tables_of(folder, "sections", "Sections", album),
         "gauges": lambda: gauges(run, album),
-        "provenance": lambda: provenance(run),
     }
     return _made(run, makers)
 
 
 def _figures(run: Run, album: Album) -> Markup | None:
-    """The figures of the run; where there are none yet, they are drawn."""
-    if len(run) and not any(run.folder.figures.glob("*.png")):
+    of_loads = [
+        name for name, each in tables(run, "figure", Figure).items() if isinstance(each, LoadFigure)
+    ]
+    figures = album.folder(run.folder.figures, of_figures(run), of_loads)
+    return gallery("Figures", figures, "figures")
+
+
+def _draw_missing(run: Run) -> list[str]:
+    """Draw the figures of a run that has none yet; says which could not be drawn."""
+    if not len(run) or any(run.folder.figures.glob("*.png")):
+        return []
+    with readable(run.folder.path, " for the section figures of its report"):
         refuse_links(run.folder)
-        drawn = draw_run(run.folder.path)
-        album.notes += [one_line(f"{text}.") for text in drawn.failures]
-    return gallery("Figures", album.folder(run.folder.figures, of_figures(run)), "figures")
+        return [one_line(f"{text}.") for text in draw_run(run.folder.path).failures]
 
 
-def _terrain(run: Run, album: Album) -> Grid | None:
+def _terrain(run: Run, notes: list[str]) -> Grid | None:
     """The terrain of a 3-D run as it was used; what cannot be read is left out, with a note."""
     file = run.folder.terrain
     if file is None or run.scenario["dim"] != 3:
@@ -134,7 +173,7 @@ def _terrain(run: Run, album: Album) -> Grid | None:
     try:
         return grid_of(read_raster(file))
     except UserError as error:
-        album.notes.append(one_line(f"{file.name} is left out: {error}."))
+        notes.append(one_line(f"{file.name} is left out: {error}."))
         return None
 
 
@@ -146,8 +185,8 @@ def _scene(run: Run, room: float, terrain: Grid | None) -> tuple[Scene | None, s
         return make_scene(run, room, terrain), ""
 
 
-def _end(album: Album) -> Content:
+def _end(notes: list[str]) -> Content:
     """What was left out."""
-    if not album.notes:
+    if not notes:
         return None
-    return tag("footer", tag("h2", "Left out"), tag("ul", [tag("li", n) for n in album.notes]))
+    return tag("footer", tag("h2", "Left out"), tag("ul", [tag("li", n) for n in notes]))

@@ -7,7 +7,7 @@ import os
 import platform
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
@@ -56,9 +56,16 @@ def provenance_now(threads: int = 0, ranks: int = 1) -> dict[str, Any]:
     }
 
 
-def note_provenance(folder: RunFolder, fresh: bool, threads: int, ranks: int) -> None:
+def note_provenance(
+    folder: RunFolder,
+    fresh: bool,
+    threads: int,
+    ranks: int,
+    files: Sequence[Mapping[str, str]] = (),
+) -> None:
     """Write down with what a run starts, or goes on where it is not `fresh`.
 
+    `files` are those that its scenario named, with key, name and digest.
     What was written before is lost where it is damaged: a run goes on all the same. Raises
     ResourceError or UserError where nothing can be written.
     """
@@ -66,7 +73,9 @@ def note_provenance(folder: RunFolder, fresh: bool, threads: int, ranks: int) ->
     if not fresh:
         with suppress(UserError):
             before = read_provenance(folder)
-    text = json.dumps({"runs": [*before, provenance_now(threads, ranks)]}, indent=1) + "\n"
+    inputs = {"inputs": [dict(each) for each in files]} if fresh else {}
+    entry = provenance_now(threads, ranks) | inputs
+    text = json.dumps({"runs": [*before, entry]}, indent=1) + "\n"
     write_whole_text(folder.provenance, text)
 
 
@@ -82,6 +91,17 @@ def read_provenance(folder: RunFolder) -> list[dict[str, Any]]:
         if not isinstance(entries, list) or not all(isinstance(each, dict) for each in entries):
             raise ValueError('"runs" must be a list of tables')
     return entries
+
+
+def noted_files(folder: RunFolder) -> list[dict[str, str]]:
+    """The files that the scenario of a run named; none where it does not say.
+
+    Raises UserError for a damaged file.
+    """
+    entries = read_provenance(folder)
+    files = entries[0].get("inputs") if entries else None
+    tables = [each for each in files if isinstance(each, dict)] if isinstance(files, list) else []
+    return [{key: str(each.get(key, "")) for key in ("key", "file", "digest")} for each in tables]
 
 
 @cache

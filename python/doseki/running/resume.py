@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -23,7 +24,7 @@ from ..scene.build import body_names
 from ..util.files import write_whole_text
 from ..util.sealed import check_seal, sealed
 from ..util.toml_writer import to_toml
-from .provenance import core_name, read_provenance
+from .provenance import core_name, noted_files, read_provenance
 from .runner import RunOptions, carry_out, run_scenario, write_reports
 
 Overrides: TypeAlias = Sequence[str | Change]
@@ -98,7 +99,10 @@ def _check_identity(folder: RunFolder, checkpoint: Checkpoint) -> None:
 def _begun_anew(folder: RunFolder, overrides: Overrides, options: RunOptions) -> dict[str, Any]:
     """The run again from its scenario: it was ended before it could write a checkpoint."""
     scenario = _scenario(folder.scenario, overrides)
-    return run_scenario(scenario, folder.path, replace(options, overwrite=True))
+    files: list[dict[str, str]] = []
+    with suppress(UserError):
+        files = options.ranks.on_root(lambda: noted_files(folder))
+    return run_scenario(scenario, folder.path, replace(options, overwrite=True, files=files))
 
 
 def _scenario(path: Path, overrides: Overrides) -> Scenario:
@@ -106,7 +110,8 @@ def _scenario(path: Path, overrides: Overrides) -> Scenario:
     before, after = load_scenario(path), load_scenario(path, overrides)
     tables = before.model_dump(by_alias=True), after.model_dump(by_alias=True)
     changed = [key for key in tables[0] if _text(tables[0][key]) != _text(tables[1][key])]
-    if wrong := sorted(set(changed) - CHANGEABLE):
+    follows = {"time_history"} - after.model_fields_set  # from time_max
+    if wrong := sorted(set(changed) - CHANGEABLE - follows):
         raise UserError(
             f"{wrong[0]} cannot change when a run is resumed; these can:"
             f" {', '.join(sorted(CHANGEABLE))}"

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..assess.estimates import solid_timestep
 from ..assess.failure.failure import Failure, explain_failure
 from ..assess.lakes import filled_volumes
-from ..assess.loads import write_loads
+from ..assess.loads import sections_turned_round, write_loads
+from ..assess.preflight import brief_doubts
 from ..assess.summary import write_summary
 from ..assess.trust.report import write_trust
 from ..driver.active_run import ActiveRun, Progress
@@ -29,15 +31,15 @@ from ..scene.kinds.release import released_volumes
 from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.cores import chosen_threads
-from ..util.finding import Finding, sentences
+from ..util.finding import sentences
 from ..util.telling import Tell, say_nothing
 from .first_state import first_state
 from .provenance import note_provenance
 
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost
 
-# Scenario, core simulation, names of bodies, warnings about the scene.
-Started = Callable[[Scenario, SimulationView, list[str], Sequence[Finding]], None]
+# Scenario, core simulation, names of bodies, what is doubtful about them in sentences.
+Started = Callable[[Scenario, SimulationView, list[str], Sequence[str]], None]
 
 
 def _no_progress(_time: float, _timestep: float, _step: int) -> None:
@@ -48,7 +50,7 @@ def _say_nothing(
     _scenario: Scenario,
     _simulation: SimulationView,
     _body_names: list[str],
-    _warnings: Sequence[Finding],
+    _doubts: Sequence[str],
 ) -> None:
     pass
 
@@ -67,6 +69,8 @@ class RunOptions:
     tell: Tell = field(default=say_nothing)  # how far the work before the first step has come
     watch: Watch | None = None  # a callback that looks on; on one rank alone
     stops: Callable[[Path], StopRequests] = StopRequests  # what asks the run in a folder to stop
+    # The files of a scenario that is one which a run stored: it named them, and names them no more.
+    files: Sequence[Mapping[str, str]] = ()
 
     def __post_init__(self) -> None:
         if self.watch is not None and self.ranks.count > 1:
@@ -76,6 +80,7 @@ class RunOptions:
 def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
     last = run.history_row()
+    solid = solid_timestep(scenario)
     released = run.ranks.on_root(lambda: released_volumes(scenario))
     filled = run.ranks.on_root(lambda: filled_volumes(scenario))
     balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
@@ -97,7 +102,8 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "ledger_residual": balance,
         "mass_through_ground": simulation.totals()["mass_through_ground"],
         "largest_overlap": simulation.grains()["worst_overlap"],
-        "warnings": [*run.beginning.warnings, *_of_maps(run)],
+        "warnings": list(dict.fromkeys(_warnings(run))),
+        **({} if solid is None else {"solid_timestep": solid}),
         **({"released": released} if released else {}),
         **({"filled": filled} if filled else {}),
         **({"runout": run.maps.runout} if run.maps else {}),
@@ -105,9 +111,20 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     }
 
 
-def _of_maps(run: ActiveRun) -> list[str]:
-    """What is to be said of the maps of a run."""
-    return sentences(run.maps.findings) + run.maps.remarks if run.maps else []
+def _warnings(run: ActiveRun) -> Iterator[str]:
+    """What is doubtful about a run: its set-up, its maps, and its gauges."""
+    yield from run.beginning.warnings
+    if run.maps:
+        yield from [*sentences(run.maps.findings), *run.maps.remarks]
+    yield from run.ranks.on_root(lambda: _of_gauges(run.folder.path))
+
+
+def _of_gauges(directory: Path) -> list[str]:
+    """What the record of a run says of its gauges; what cannot be read harms no run."""
+    try:
+        return sentences(sections_turned_round(load(directory)))
+    except (Exception, Interrupted) as error:
+        return [f"the gauges of the run could not be judged: {error or repr(error)}"]
 
 
 def run_scenario(
@@ -125,6 +142,7 @@ def run_scenario(
         state = first_state(scenario, options.ranks, options.tell)
         names = scenario.material_names, state.body_names
         text, inputs = scenario.effective_toml(stored=True), scenario.inputs
+        named = options.ranks.on_root(lambda: [each.table for each in scenario.named_files])
         recorder = options.ranks.recorder(
             directory,
             lambda: Recorder(directory, text, *names, scenario.dim, options.overwrite, inputs),
@@ -135,7 +153,7 @@ def run_scenario(
             scenario, state.simulation, recorder, state.body_names, options.ranks, state.warnings
         )
         run.goes_on = state.goes_on
-        return carry_out(run, options, fresh=True)
+        return carry_out(run, replace(options, files=options.files or named), fresh=True)
 
 
 @contextmanager
@@ -162,6 +180,17 @@ def _explained(run: ActiveRun, message: str) -> Failure:
     return failure
 
 
+def _tell_of_start(run: ActiveRun, started: Started) -> None:
+    """Keep what is doubtful about a run that has just been started, and tell of it."""
+
+    def look(whole: SimulationView) -> None:
+        of_run = run.scenario, whole, run.body_names
+        run.beginning.warnings = brief_doubts(*of_run, run.warnings)
+        started(*of_run, run.beginning.warnings)
+
+    run.ranks.show(run.simulation, look)
+
+
 def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any]:
     """Takes a run, `fresh` or restored, to its end; see run_scenario."""
     core, directory = load_core(), run.folder.path
@@ -170,20 +199,15 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
     core.set_threads(threads)
     if not (options.threads or chosen_threads() or run.ranks.count > 1):
         run.threads = ThreadChoice(threads, core.set_threads)
-    run.ranks.on_root(lambda: note_provenance(run.folder, fresh, threads, run.ranks.count))
+    ranks, files = run.ranks.count, options.files
+    run.ranks.on_root(lambda: note_provenance(run.folder, fresh, threads, ranks, files))
     run.ranks.working_in(directory, run.simulation)
     stop = options.stops(directory)
     reason = ""
     try:
         with stop.listening():
             if fresh:
-                run.start()
-                run.ranks.show(
-                    run.simulation,
-                    lambda whole: options.started(
-                        run.scenario, whole, run.body_names, run.warnings
-                    ),
-                )
+                run.start(partial(_tell_of_start, run, options.started))
             clock = CheckpointClock(
                 options.checkpoint_every,
                 options.checkpoint_minutes,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from ..geodata.crs import MapScale, map_scale
 from ..geodata.errors import GeodataError
 from ..geodata.ground import Profile
 from ..geodata.raster import Raster, read_raster
+from .islands import Islands, islands_of
 from .particle_files.columns_csv import numbers_in, read_csv_columns
 from .tables.terrain.terrain import Terrain
 from .values.toml_source import Where
@@ -38,6 +39,7 @@ class Bed:
         unknown: the same shape, 1 at such nodes.
         raster: 3-D: the map as it is used, after window, resampling and smoothing; in 2-D None.
         scale: how long a metre is on the map, where that is known.
+        islands: cells of the map, before it is resampled, that look like holes written as a number.
 
     """
 
@@ -47,6 +49,7 @@ class Bed:
     unknown: np.ndarray
     raster: Raster | None = None
     scale: MapScale | None = None
+    islands: Islands | None = None
 
     @cached_property
     def table(self) -> dict[str, object]:
@@ -97,18 +100,20 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        raster = _used(_with_heights(path, _read(path, where)), terrain)
+        raster = _windowed(_with_heights(path, _read(path, where)), terrain)
+        islands = islands_of(raster)
+        raster = _remade(raster, terrain)
     except GeodataError as error:
         raise where.error(("terrain",), f"terrain: {error}") from None
     if dim == 3:
-        return _bed_of_raster(path, raster, where)
+        return replace(_bed_of_raster(path, raster, where), islands=islands)
     if terrain.section is None:
         raise where.error(
             ("terrain",),
             "terrain.section is missing: a 2-D run cuts a grid along a line, [[x, y], [x, y]]; "
             "or give a CSV file with columns x and z",
         )
-    return _bed_of_section(path, raster, terrain, dp, where)
+    return replace(_bed_of_section(path, raster, terrain, dp, where), islands=islands)
 
 
 def _read(path: Path, where: Where) -> Raster:
@@ -138,10 +143,13 @@ def _with_heights(path: Path, raster: Raster) -> Raster:
     return raster
 
 
-def _used(raster: Raster, terrain: Terrain) -> Raster:
+def _windowed(raster: Raster, terrain: Terrain) -> Raster:
     """What is used of the map."""
-    if terrain.window is not None:
-        raster = raster.window(*terrain.window)
+    return raster if terrain.window is None else raster.window(*terrain.window)
+
+
+def _remade(raster: Raster, terrain: Terrain) -> Raster:
+    """With cells of another size, and smoothed."""
     if terrain.resample is not None:
         raster = raster.resampled(terrain.resample)
     if terrain.smoothing is not None:

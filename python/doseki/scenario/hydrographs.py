@@ -92,7 +92,7 @@ def _highest(surge: Any) -> float:
 
 def _from_file(where: Where, name: str, key: str, file: str) -> list[list[float]]:
     keys = ("inflow", name, key)
-    path = where.folder(keys) / file
+    path = where.file(keys, file)
     try:
         return read_surge(path) if key == "surge" else read_hydrograph(path)
     except (ValueError, UserError) as error:

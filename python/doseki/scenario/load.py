@@ -20,6 +20,7 @@ from .earlier import earlier_run
 from .hydrographs import completed_inflows
 from .materials import Material, MaterialError, complete_materials, equation_of_state
 from .model import Found, Scenario, file_of, min_sound_speed, names_in_use, terrain_file
+from .named_files import read_in_full
 from .particle_files.reader import ParticleTable, read_particles
 from .reading.changes import with_changes
 from .reading.copies import with_copies
@@ -94,7 +95,8 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
     if any(isinstance(body, Release) for body in tables.body.values()):
         completed["body"], doubts = _with_releases(tables, bed, where)
     earlier = None if tables.start is None else earlier_run(tables.start, where)
-    found = Found(constants, read, earlier, bed, doubts)
+    taken_in = read_in_full(where.named)
+    found = Found(constants, read, earlier, bed, doubts, taken_in)
     scenario = Scenario.made_of(tables, completed, where, materials, found)
     check_scenario(scenario)
     return scenario

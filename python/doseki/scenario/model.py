@@ -14,7 +14,7 @@ from pydantic import ConfigDict, PrivateAttr
 from ..record.folder import INPUTS
 from ..util.finding import Finding
 from ..util.frozen import frozen
-from ..util.input_file import InputFile, digest_of
+from ..util.input_file import InputFile, input_file
 from ..util.toml_writer import to_toml
 from .bed import Bed
 from .earlier import Earlier
@@ -23,6 +23,7 @@ from .gauges.loads.metered import Metered
 from .gauges.loads.overtopping import Overtopping
 from .kinematics import Kinematics
 from .materials import MATERIAL_PARAMETERS, Material, fracture_keys
+from .named_files import NamedFile, named_files
 from .particle_files.reader import ParticleTable
 from .schemes import KERNEL_SUPPORT, RESOLVED
 from .table import Table
@@ -42,6 +43,7 @@ class Found:
     earlier: Earlier | None = None
     bed: Bed | None = None
     findings: Sequence[Finding] = ()
+    taken_in: Sequence[InputFile] = ()  # files of which the tables hold all that is needed
 
 
 class Scenario(ScenarioTable):
@@ -66,6 +68,7 @@ class Scenario(ScenarioTable):
     _earlier: Earlier | None = PrivateAttr(None)
     _bed: Bed | None = PrivateAttr(None)
     _findings: Sequence[Finding] = PrivateAttr(())
+    _taken_in: Sequence[InputFile] = PrivateAttr(())
 
     @classmethod
     def made_of(
@@ -87,7 +90,7 @@ class Scenario(ScenarioTable):
         made._constants = frozen(found.constants)
         made._particle_tables = frozen(found.particle_tables)
         made._earlier, made._bed = found.earlier, found.bed
-        made._findings = tuple(found.findings)
+        made._findings, made._taken_in = tuple(found.findings), tuple(found.taken_in)
         return made
 
     def forget_heights(self) -> None:
@@ -227,6 +230,16 @@ class Scenario(ScenarioTable):
         maps = [] if self.maps is None else [self.maps.interval or self.time_out]
         return [self.time_out, *(self.interval_of(gauge) for gauge in self.gauge.values()), *maps]
 
+    @property
+    def has_bodies_alone(self) -> bool:
+        """Whether all that moves are bodies as a whole: no particle has an equation of state."""
+        return self.is_dry and self.scheme == RESOLVED
+
+    @property
+    def rows_end_steps(self) -> bool:
+        """Whether steps end at rows of the history: these are asked for, and steps may be long."""
+        return self.has_bodies_alone and "time_history" in self.model_fields_set
+
     def setting(self, body_names: Sequence[str] = ()) -> Setting:
         """What surrounds its gauges; `body_names` are those that particles index."""
         low, high = self.domain_min, self.domain_max
@@ -276,22 +289,34 @@ class Scenario(ScenarioTable):
         of_terrain = [] if self.terrain_input is None else [self.terrain_input]
         return [*self.body_files.values(), *of_terrain, *self.start_files]
 
+    @property
+    def named_files(self) -> list[NamedFile]:
+        """Every file that was read for it, those that it no longer needs among them.
+
+        Raises UserError for one that cannot be read.
+        """
+        known = {file.path: file for file in [*self._taken_in, *self.inputs]}
+        named = dict(self.where.named)
+        if self.start_files:
+            named["start", "from"] = [file.path for file in self.start_files]
+        return named_files(named, known)
+
     @cached_property
     def terrain_input(self) -> InputFile | None:
         """That of [terrain]."""
-        return None if self.terrain is None else _input(terrain_file(self.where, self.terrain))
+        return None if self.terrain is None else input_file(terrain_file(self.where, self.terrain))
 
     @cached_property
     def body_files(self) -> dict[str, InputFile]:
         """Those that bodies name, by body."""
         given = ((name, body.given("file")) for name, body in self.body.items())
         files = {name: file_of(self.where, name, file) for name, file in given if file is not None}
-        return {name: _input(path) for name, path in files.items()}
+        return {name: input_file(path) for name, path in files.items()}
 
     @cached_property
     def start_files(self) -> list[InputFile]:
         """Those of the run that it starts from."""
-        return [] if self._earlier is None else [_input(path) for path in self._earlier.files]
+        return [] if self._earlier is None else [input_file(p) for p in self._earlier.files]
 
     def effective_toml(self, stored: bool = False) -> str:
         """The scenario as TOML that `load_scenario` reads back to the same run.
@@ -299,6 +324,7 @@ class Scenario(ScenarioTable):
         `stored`: for the folder of the run, which holds copies of the files that it names.
         """
         implied = {"xi_height", "speed_max", "slope"}  # xi and gravity say the same
+        implied |= {"time_history"} - self.model_fields_set  # not asked for
         table = self.model_dump(by_alias=True, exclude_none=True, exclude=implied | set(SECTIONS))
         given = self.model_dump(include=set(SECTIONS), exclude_unset=True)
         given["material"] = {name: self._material_table(name) for name in self.material_names}
@@ -334,10 +360,6 @@ class Scenario(ScenarioTable):
         return {key: value for key, value in values if key not in others | {"name"}}
 
 
-def _input(path: Path) -> InputFile:
-    return InputFile(path.resolve(), digest_of(path))
-
-
 def _name_of(file: InputFile, stored: bool) -> str:
     """As a scenario names it, or as the one in the folder of a run does."""
     return f"{INPUTS}/{file.name}" if stored else str(file.path)
@@ -345,12 +367,12 @@ def _name_of(file: InputFile, stored: bool) -> str:
 
 def file_of(where: Where, name: str, file: str) -> Path:
     """The file of [body.NAME]; its path is relative to the scenario file that names it."""
-    return where.folder(("body", name, "file")) / file
+    return where.file(("body", name, "file"), file)
 
 
 def terrain_file(where: Where, terrain: Terrain) -> Path:
     """The file of [terrain]; its path is relative to the scenario file that names it."""
-    return where.folder(("terrain", "file")) / terrain.file
+    return where.file(("terrain", "file"), terrain.file)
 
 
 def names_in_use(tables: ScenarioTable, read: Mapping[str, ParticleTable]) -> list[str]:

@@ -24,6 +24,11 @@ def digest_of(path: Path) -> str:
     return digest.hexdigest()
 
 
+def input_file(path: Path) -> InputFile:
+    """A file with its content as it is now; raises UserError for one that cannot be read."""
+    return InputFile(path.resolve(), digest_of(path))
+
+
 @dataclass(frozen=True)
 class InputFile:
     """Where a file is, and what its content was when it was looked at."""

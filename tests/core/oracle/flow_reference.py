@@ -26,6 +26,7 @@ SURFACE, EDGE, ALONE = 0.9, 2.2, 3.0  # values of the measure of the free surfac
 LEAST_DEPTH = 1.5  # dp over which the pressure of the outermost row may fall
 LEAST_CONCENTRATION = 0.6
 ENOUGH_COMPANY = 0.05
+FEW, SEVERAL = 1.2, 2.4  # neighbours
 LEAST_BETA = 0.05  # of the Riemann dissipation
 SMOOTH = 2.0  # times the approach that a resolved strain makes, below which that is no noise
 RELAXATION, RELAXATION_AT_REST = 100.0, 1000.0  # of density, h/c
@@ -555,11 +556,14 @@ class FlowReference:
         self.pressure_gradient = np.einsum("iab,ib->ia", self.inverse, plain) * self._company()
 
     def _company(self) -> np.ndarray:
-        """(n, 1): 0 for who sees no other fluid, so that walls tell it nothing but gravity."""
-        full, own = lattice_concentration(self.options, self.R, self.dim)
-        around = (self.rest_volume[None] * self.ff.W).sum(axis=1)
-        others = around - self.rest_volume * own / self.options.dp**self.dim
-        return np.clip(others / (ENOUGH_COMPANY * full), 0, 1)[:, None]
+        """(n, 1): 0 for who sees no more than one neighbour: walls tell it nothing but gravity."""
+        full, _ = lattice_concentration(self.options, self.R, self.dim)
+        share = self.rest_volume[None] * self.ff.W
+        np.fill_diagonal(share, 0)
+        others, squares = share.sum(axis=1), (share**2).sum(axis=1)
+        neighbours = np.divide(others**2, squares, out=np.zeros_like(others), where=squares > 0)
+        enough = np.clip(others / (ENOUGH_COMPANY * full), 0, 1)
+        return (enough * np.clip((neighbours - FEW) / (SEVERAL - FEW), 0, 1))[:, None]
 
     def _measure_surface(self) -> None:
         """Measure of the free surface, and how full the fluid is regardless of it."""

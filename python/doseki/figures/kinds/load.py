@@ -18,6 +18,7 @@ from ..layout import chart_grid, figure_legend
 from ..nothing import NothingToDrawError
 from .series import draw_curves
 
+ROUNDING = 1e-9  # of the largest component: a force or a moment below is drawn on its scale
 TALL, LOW = 2.4, 1.8  # inches of a panel; of one of more than three
 
 
@@ -56,9 +57,22 @@ def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
         axes.plot(*steps, ".", color="0.6", markersize=2, zorder=0, label="largest step")
         axes.set_ylim(seen)
         axes.set_ylabel(f"{column.replace('_', ' ')} ({record.units[column]})")
+    for kind in ("force", "moment"):
+        alike = [k for k, column in enumerate(shown) if column.startswith(kind)]
+        _share_scale([grid[k, 0] for k in alike])
     grid[-1, 0].set_xlabel("time (s)")
     figure_legend(figure, grid[:1, 0])
     return figure
+
+
+def _share_scale(panels: list[Axes]) -> None:
+    """Draw what is nothing but rounding on the scale of the largest component."""
+    limits = [axes.get_ylim() for axes in panels]
+    sizes = [max(map(abs, each)) for each in limits]
+    largest = int(np.argmax(sizes))
+    for axes, size in zip(panels, sizes, strict=True):
+        if size < ROUNDING * sizes[largest]:
+            axes.set_ylim(limits[largest])
 
 
 def _draw_panels(record: GaugeRecord, gauge: Panels, title: str) -> Figure:
@@ -104,7 +118,8 @@ def _draw_map(figure: Figure, axes: Axes, gauge: Panels, pressure: np.ndarray) -
         size * np.arange(count + 1) for size, count in zip(gauge.size, gauge.panels, strict=True)
     ]
     mesh = axes.pcolormesh(*ends, pressure.reshape(second, first), cmap="viridis")
-    axes.set_aspect("equal")
+    axes.set_aspect("equal", anchor="W")  # its left side is that of the curves below
     axes.set_xlabel("along the first edge (m)")
     axes.set_ylabel("along the second edge (m)")
-    figure.colorbar(mesh, ax=axes, label="pressure (Pa)")
+    beside = axes.inset_axes((1.03, 0.0, 0.04, 1.0))
+    figure.colorbar(mesh, cax=beside, label="pressure (Pa)")

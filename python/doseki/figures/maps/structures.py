@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
-from matplotlib.transforms import blended_transform_factory
 
 from ...geodata.raster import Raster
 from ...measure.maps.standing import KEYS, clamped_bodies, standing
@@ -63,7 +62,7 @@ def _fixed_tables(run: Run) -> dict[str, Any]:
 
 
 def draw_structures(axes: Axes, scale: Axes, structures: Structures | None) -> None:
-    """Fill what of them is within the limits of a map, with a word below its `scale` of colours."""
+    """Fill what of them is within the limits of a map, with a word in the corner below `scale`."""
     if structures is None:
         return
     west, east, south, north = *axes.get_xlim(), *axes.get_ylim()
@@ -77,10 +76,9 @@ def draw_structures(axes: Axes, scale: Axes, structures: Structures | None) -> N
     outline = [0.0]
     axes.contourf(x, y, depth, levels=[*outline, np.inf], colors=[COLOUR], zorder=OVER)
     axes.contour(x, y, depth, levels=outline, colors=EDGE, linewidths=1.0, zorder=OVER)
-    below = blended_transform_factory(scale.figure.transFigure, scale.transAxes)
     key = axes.legend(
-        handles=[Patch(facecolor=COLOUR, edgecolor=EDGE, label=LABEL)], loc="upper right",
-        bbox_to_anchor=(1.0, -0.03), bbox_transform=below, frameon=False,
+        handles=[Patch(facecolor=COLOUR, edgecolor=EDGE, label=LABEL)], loc="lower right",
+        bbox_to_anchor=(1.0, 0.0), bbox_transform=scale.figure.transFigure, frameon=False,
         fontsize="small", handlelength=1.2, borderpad=0.0, borderaxespad=0.3,
     )  # fmt: skip
     key.set_in_layout(False)  # it would push the map aside

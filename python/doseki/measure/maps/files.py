@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...geodata.grid import Raster
+from ...geodata.grid import NODATA, Raster
 from ...geodata.raster import read_raster, write_raster
 from ...record.folder import RunFolder
 from ...util.files import clear_errors
@@ -24,8 +24,8 @@ from .quantities import (
     MapQuantity,
 )
 
+BEYOND = 1e30  # which no result reaches
 CONTOURS = f"{PEAK_DEPTH.name}_contours.geojson"
-NODATA = -9999.0  # that of a terrain might be a depth
 
 
 def rasters_of(
@@ -35,7 +35,16 @@ def rasters_of(
     grid = peaks.grid
     values = {quantity.name: peaks.map_of(quantity.name) for quantity in REMEMBERED}
     values[DEPOSIT.name] = deposit(grid, state, settings.speed_deposit, settings.dry_below)
-    return {name: replace(_masked(grid, each), nodata=NODATA) for name, each in values.items()}
+    nodata = _nodata(grid)
+    return {name: replace(_masked(grid, each), nodata=nodata) for name, each in values.items()}
+
+
+def _nodata(grid: Raster) -> float:
+    """The number of the terrain for no data, unless it might be a result, which are not below 0."""
+    own = grid.nodata
+    if own is None or not (own < 0 or own > BEYOND or grid.can_hold_nan(own)):
+        return NODATA
+    return own
 
 
 def _masked(grid: Raster, values: np.ndarray) -> Raster:

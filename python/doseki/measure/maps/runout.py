@@ -12,6 +12,8 @@ from ...geodata.grid import Raster
 from .files import reached
 from .quantities import ARRIVAL_TIME, DEPOSIT
 
+NEARLY = 1 - 1e-6  # of a cell, by which a flow must have left where it was first seen
+
 
 @dataclass(frozen=True)
 class Runout:
@@ -26,7 +28,9 @@ class Runout:
         distance: between them on the map, m.
         angle: of the line from top to toe, degrees (Heim's Fahrboeschung).
 
-    The last four are None where the run has no terrain, or nothing flows.
+    The last four are None where the run has no terrain, or nothing flows. There is no toe, distance
+    or angle while the flow reaches no farther from the top than it did when it was first seen, and
+    no angle where the toe is as high as the top, or higher.
 
     """
 
@@ -59,7 +63,10 @@ def runout(maps: Mapping[str, Raster], bed: Raster) -> Runout:
     toe = np.unravel_index(np.argmax(away), bed.shape)
     points = [(float(x[at]), float(y[at]), float(bed.values[at])) for at in (top, toe)]
     distance = float(away[toe])
-    angle = math.degrees(math.atan2(points[0][2] - points[1][2], distance)) if distance else None
+    if distance < float(away[first].max()) + bed.cell * NEARLY:
+        return Runout(*areas, points[0])
+    drop = points[0][2] - points[1][2]
+    angle = math.degrees(math.atan2(drop, distance)) if drop > 0 else None
     return Runout(*areas, points[0], points[1], distance, angle)
 
 
@@ -67,11 +74,13 @@ def runout_lines(found: Runout) -> Iterator[str]:
     """Area, deposit and run-out as sentences."""
     lying = f"{found.deposit_volume:.4g} m3 lie on {found.deposit_area:.4g} m2"
     yield f"covered {found.area:.4g} m2; {lying}"
-    if found.angle is not None and found.top is not None and found.toe is not None:
-        yield (
-            f"run-out {found.distance:.4g} m at {found.angle:.3g} degrees, from {_point(found.top)}"
-            f" to {_point(found.toe)}"
-        )
+    if found.top is None:
+        return
+    if found.toe is None:
+        yield "no run-out: the flow reaches no farther than it did when it was first seen"
+        return
+    how = "not downhill" if found.angle is None else f"at {found.angle:.3g} degrees"
+    yield (f"run-out {found.distance:.4g} m {how}, from {_point(found.top)} to {_point(found.toe)}")
 
 
 def _point(point: tuple[float, float, float]) -> str:

@@ -11,6 +11,7 @@ from ...figures.text import plain_text
 from ...measure.views import tables
 from ...record.reader import Run
 from ...scenario.gauges.gauge import Gauge
+from ...scenario.gauges.loads.load import Load
 from ...scenario.tables.figure import Figure, GaugeFigure, LoadFigure
 from ..markup import Markup, section, tag
 from .captions import words
@@ -41,18 +42,25 @@ def _has_rows(run: Run, name: str, album: Album) -> bool:
         return False
 
 
+def _drawn(run: Run, name: str) -> bytes:
+    """The curves of a gauge as a PNG."""
+    file = io.BytesIO()
+    with plain_text():
+        figure = draw_gauge(run, name, GaugeFigure(kind="gauge", gauge=name))
+        figure.savefig(file, format="png", dpi=DPI)
+    return file.getvalue()
+
+
 def _figures(run: Run, names: list[str], album: Album) -> Iterator[Markup]:
     kinds = tables(run, "gauge", Gauge)
     for name in names:
         try:
-            table = GaugeFigure(kind="gauge", gauge=name)
-            with plain_text():
-                figure = draw_gauge(run, name, table)
-                file = io.BytesIO()
-                figure.savefig(file, format="png", dpi=DPI)
+            if name not in album.drawn:
+                album.drawn[name] = _drawn(run, name)
         except DosekiError as error:
             album.notes.append(one_line(f"gauge {name} is left out: {error}."))
             continue
-        if picture := album.picture(file.getvalue(), f"gauge {name}"):
+        is_load = isinstance(kinds[name], Load)
+        if picture := album.picture(album.drawn[name], f"gauge {name}", is_load):
             kind = words(kinds[name].kind)
             yield captioned(picture, f"{name}: {kind}, {len(run.gauges[name]['time'])} rows")

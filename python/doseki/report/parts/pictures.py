@@ -5,10 +5,11 @@ from __future__ import annotations
 import base64
 import io
 import warnings
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
 from ...errors import UserError, one_line
@@ -17,7 +18,9 @@ from ..markup import Content, Markup, section, tag
 from .captions import Captions, words
 
 WIDE = 1150  # pixels: a picture that is wider takes the whole width of the page
-WIDTHS = (2000, 1200, 700)  # pixels: none is wider than the first; of others, the first with room
+# Pixels: no picture is wider than the first; where room is short, than the first with room for all.
+WIDTHS = (2000, 1200, 700, 450)
+COLOURS = 256  # of a picture that was made smaller, which takes a third of the bytes then
 MOST_PIXELS = 60_000_000  # of a picture that is opened at all
 MOST_BYTES = 40 * 2**20  # of a file
 MOST = 60  # pictures of a folder
@@ -25,39 +28,58 @@ MOST = 60  # pictures of a folder
 
 @dataclass
 class Album:
-    """Pictures that go into a page while there is room: `room` bytes are left."""
+    """Pictures that go into a page, none of them wider than `widest` pixels.
 
-    room: float
+    Those in `left_out`, by their numbers, do not: there is no room for them.
+    """
+
+    widest: int = WIDTHS[0]
+    left_out: frozenset[int] = frozenset()
+    drawn: dict[str, bytes] = field(default_factory=dict)  # pictures that were made for the page
     notes: list[str] = field(default_factory=list)  # what was left out, and why
+    sizes: list[int] = field(default_factory=list)  # bytes of each picture, shown or not
+    matters: list[bool] = field(default_factory=list)  # of each: it is a map, or a load
+    shrunk: int = 0  # pictures that have fewer pixels than their files
 
-    def picture(self, data: bytes, name: str) -> Markup | None:
+    @property
+    def size(self) -> int:
+        """Bytes of all pictures that are shown."""
+        return sum(size for k, size in enumerate(self.sizes) if k not in self.left_out)
+
+    def without(self, room: float) -> frozenset[int]:
+        """The pictures to leave out so that the others fit into so many bytes.
+
+        Maps and loads stay as long as they can; of these, as of the others, small ones do.
+        """
+        order = sorted(range(len(self.sizes)), key=lambda k: (not self.matters[k], self.sizes[k]))
+        used = np.cumsum([self.sizes[k] for k in order])
+        return frozenset(k for k, together in zip(order, used, strict=True) if together > room)
+
+    def picture(self, data: bytes, name: str, matters: bool = False) -> Markup | None:
         """A PNG as an element; None, and a note, where it is none or there is no room for it."""
         try:
-            text, (width, height) = self._fitting(data)
+            content, (width, height), is_smaller = _made_small(data, self.widest)
         except (OSError, ValueError, Image.DecompressionBombError, Image.DecompressionBombWarning):
             self.notes.append(f"{name} is left out: it is not a PNG that can be shown.")
             return None
-        if len(text) > self.room:
+        text = base64.b64encode(content).decode("ascii")
+        self.sizes.append(len(text))
+        self.matters.append(matters)
+        if len(self.sizes) - 1 in self.left_out:
             self.notes.append(f"{name} is left out: no room for its {len(text) / 1e6:.2g} MB.")
             return None
-        self.room -= len(text)
+        self.shrunk += is_smaller
         source = f"data:image/png;base64,{text}"
         size = {"width": str(width), "height": str(height)}
         return tag("img", src=source, alt=name, class_="wide" if width > WIDE else None, **size)
 
-    def _fitting(self, data: bytes) -> tuple[str, tuple[int, int]]:
-        """Base64 and size of the widest form that there is room for, or of the smallest."""
-        for widest in WIDTHS:
-            content, size = _made_small(data, widest)
-            text = base64.b64encode(content).decode("ascii")
-            if len(text) <= self.room:
-                break
-        return text, size
-
-    def folder(self, path: Path, captions: Captions | None = None) -> list[Markup]:
+    def folder(
+        self, path: Path, captions: Captions | None = None, matter: Collection[str] | None = None
+    ) -> list[Markup]:
         """The PNG files of a folder as figures: an overview first, then by name.
 
-        Those that have no caption are called as their files are.
+        Those that have no caption are called as their files are.  `matter` are the names of those
+        that stay longest where room is short; all of them, where it is None.
         """
         found = path.glob("*.png") if path.is_dir() else []
         files = sorted(found, key=lambda file: (file.stem != "overview", file.name))
@@ -66,16 +88,19 @@ class Album:
                 f"{len(files) - MOST} of {len(files)} pictures in {path.name}/ are left out."
             )
         named = {file: (captions or {}).get(file.stem) or words(file.stem) for file in files[:MOST]}
-        made = (self._file(file, caption) for file, caption in named.items())
+        made = (
+            self._file(file, caption, matter is None or file.stem in matter)
+            for file, caption in named.items()
+        )
         return [figure for figure in made if figure is not None]
 
-    def _file(self, file: Path, caption: str) -> Markup | None:
+    def _file(self, file: Path, caption: str, matters: bool) -> Markup | None:
         try:
             data = read_bytes(file, MOST_BYTES)
         except UserError as error:
             self.notes.append(one_line(f"{file.name} is left out: {error}."))
             return None
-        picture = self.picture(data, file.name)
+        picture = self.picture(data, file.name, matters)
         return None if picture is None else captioned(picture, caption)
 
 
@@ -90,10 +115,11 @@ def gallery(title: str, figures: Iterable[Markup], name: str) -> Markup | None:
     return section(title, tag("div", found, class_="gallery"), name=name) if found else None
 
 
-def _made_small(data: bytes, widest: int) -> tuple[bytes, tuple[int, int]]:
-    """A PNG of at most so many pixels a row, and its size; raises ValueError or OSError for others.
+def _made_small(data: bytes, widest: int) -> tuple[bytes, tuple[int, int], bool]:
+    """A PNG of at most so many pixels a row, its size, and whether it has fewer than it had.
 
-    Raises also Pillow's complaints about pictures that unpack to too much.
+    Raises ValueError or OSError for what is none, and Pillow's complaints about pictures that
+    unpack to too much.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("error", Image.DecompressionBombWarning)
@@ -102,9 +128,17 @@ def _made_small(data: bytes, widest: int) -> tuple[bytes, tuple[int, int]]:
                 raise ValueError("too many pixels")
             image.load()
             if image.width <= widest:
-                return data, image.size
+                return data, image.size, False
             size = widest, max(1, round(image.height * widest / image.width))
-            made = image.convert("RGBA" if "transparency" in image.info else "RGB").resize(size)
+            made = _on_white(image).resize(size, Image.Resampling.LANCZOS)
     file = io.BytesIO()
-    made.save(file, "PNG", optimize=True)
-    return file.getvalue(), size
+    made.quantize(COLOURS, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+    return file.getvalue(), size, True
+
+
+def _on_white(image: Image.Image) -> Image.Image:
+    """What is seen of a picture on paper."""
+    if "transparency" not in image.info and "A" not in image.getbands():
+        return image.convert("RGB")
+    paper = Image.new("RGBA", image.size, "white")
+    return Image.alpha_composite(paper, image.convert("RGBA")).convert("RGB")

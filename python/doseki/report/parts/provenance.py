@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from ...record.reader import Run
-from ...running.provenance import commit, provenance_now, read_provenance
+from ...running.provenance import commit, noted_files, provenance_now, read_provenance
 from ...util.foreign import read_text
 from ...util.input_file import digest_of
 from ..markup import Content, Markup, section, table, tag, terms
@@ -58,15 +59,25 @@ def _rows(entry: Mapping[str, Any]) -> Iterator[tuple[str, Content]]:
 
 
 def _inputs(run: Run) -> Content:
-    """The files that the scenario names, as the folder holds them, with their digests."""
+    """The files that the scenario named, with digests, and whether the folder holds a copy."""
     files = sorted(run.folder.inputs.glob("*")) if run.folder.inputs.is_dir() else []
-    files = [file for file in files if file.is_file()]
-    if not files:
+    copies = {digest_of(file): file for file in files[:MOST_FILES] if file.is_file()}
+    named = noted_files(run.folder)
+    rows = [(f["key"], f["file"], f["digest"], _copy_of(copies, f["digest"])) for f in named]
+    told = {each["digest"] for each in named}
+    others = [digest for digest in copies if digest not in told]
+    rows += [("", "", digest, _copy_of(copies, digest)) for digest in others]
+    if not rows:
         return tag("p", "The scenario reads no other files.", class_="small")
-    rows = [(file.name, str(file.stat().st_size), digest_of(file)) for file in files[:MOST_FILES]]
-    more = len(files) - len(rows)
+    more = max(len(rows) - MOST_FILES, 0) + max(len(files) - MOST_FILES, 0)
     note = tag("p", f"... and {more} more files") if more > 0 else None
-    return [table(["input file", "bytes", "BLAKE2b (128 bit)"], rows), note]
+    return [table(["for", "input file", "BLAKE2b (128 bit)", "copy"], rows[:MOST_FILES]), note]
+
+
+def _copy_of(copies: Mapping[str, Path], digest: str) -> str:
+    """The file of this content in the folder of the run, and its size; "" for none."""
+    file = copies.get(digest)
+    return "" if file is None else f"{file.name}, {file.stat().st_size} bytes"
 
 
 def _scenario(run: Run) -> Content:

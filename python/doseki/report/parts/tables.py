@@ -41,7 +41,7 @@ def tables_of(folder: Path, stem: str, title: str, album: Album) -> Markup | Non
             shown.append([tag("h3", file.name), list(_shown(file, REASONS.get(stem, "no number")))])
         except UserError as error:
             album.notes.append(one_line(f"{file.name} is left out: {error}."))
-    pictures = album.folder(inside)
+    pictures = album.folder(inside, matter=None if stem == "loads" else ())
     return section(
         title, shown, tag("div", pictures, class_="gallery") if pictures else None, name=stem
     )

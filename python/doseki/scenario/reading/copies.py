@@ -109,7 +109,7 @@ def _array(
         _check_number(array.turns)
         copies = [turned(plain, kind, k * step, array.about) for k in range(array.turns)]
     elif array.file is not None:
-        path = where.folder((*keys, "array", "file")) / array.file
+        path = where.file((*keys, "array", "file"), array.file)
         copies = []
         for *shift, angle in _placements(path, dim):
             at = moved(plain, np.array(shift))

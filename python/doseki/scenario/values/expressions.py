@@ -9,30 +9,20 @@ from __future__ import annotations
 import ast
 import math
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
 from typing import Any
 
 import numpy as np
-from simpleeval import FunctionNotDefined, NameNotDefined, SimpleEval
+from simpleeval import NameNotDefined, SimpleEval
 
 from ...errors import UserError
 from ...util.spelling import suggestion
+from .syntax import ALLOWED, advice, complaint, depends_on
 
 MAX_LENGTH = 500
 POSITION_NAMES = ("x", "y", "z")
 CONSTANTS = {"pi": math.pi}
-NODES = (
-    ast.Expr,
-    ast.Constant,
-    ast.Name,
-    ast.UnaryOp,
-    ast.BinOp,
-    ast.BoolOp,
-    ast.Compare,
-    ast.IfExp,
-    ast.Call,
-)
 Function = Callable[..., Any]
 Functions = Mapping[str, Function]
 
@@ -106,6 +96,11 @@ def evaluate_at(text: str, names: Mapping[str, Any], position: np.ndarray) -> np
 
     Raises ExpressionError, also when a value is not finite.
     """
+    if depends_on(_parse(text), POSITION_NAMES):
+        raise ExpressionError(
+            f'"{text}" chooses by x, y or z, which are many: multiply by conditions, as in'
+            " (x > 0)*2 + (x <= 0)*3"
+        )
     axes = dict(zip(POSITION_NAMES, position.T, strict=False))
     value = _evaluate(text, {**names, **axes}, ARRAY_FUNCTIONS)
     try:
@@ -124,28 +119,28 @@ def _parse(text: str) -> ast.Expression:
     try:
         return ast.parse(source, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise ExpressionError(f'"{text}" is not a valid expression') from None
+        raise ExpressionError(f'"{text}" is not a valid expression{advice(source)}') from None
 
 
 def _evaluate(text: str, names: Mapping[str, Any], functions: Functions) -> Any:
     tree = _parse(text)
-    evaluator = SimpleEval(operators=OPERATORS, functions=dict(functions), names=_Names(names))
-    evaluator.nodes = {kind: run for kind, run in evaluator.nodes.items() if kind in NODES}
+    if said := complaint(tree, functions):
+        raise ExpressionError(f'"{text}" {said}')
+    named = {name: _told(name, function) for name, function in functions.items()}
+    evaluator = SimpleEval(operators=OPERATORS, functions=named, names=_Names(names))
+    evaluator.nodes = {kind: run for kind, run in evaluator.nodes.items() if kind in ALLOWED}
     try:
         with np.errstate(all="ignore"):
             return evaluator.eval(text, previously_parsed=tree.body)
     except (ExpressionError, UserError):
         raise
-    except FunctionNotDefined as error:
-        known = ", ".join(functions)
-        raise ExpressionError(
-            f'"{text}" calls {error.func_name}, which is not one of {known}'
-        ) from None
     except NameNotDefined as error:
         near = suggestion(error.name, [*names, *CONSTANTS])
         raise ExpressionError(f'"{text}" uses the unknown name {error.name}{near}') from None
     except ZeroDivisionError:
         raise ExpressionError(f'"{text}" divides by zero') from None
+    except OverflowError:
+        raise ExpressionError(f'"{text}" has numbers that are too large') from None
     except RecursionError:
         raise ExpressionError(f'"{text}" is nested too deeply') from None
     except Exception as error:
@@ -163,16 +158,34 @@ class _Names:
         return CONSTANTS[name] if name in CONSTANTS else self._names[name]
 
 
-def _of_numbers(operation: Function) -> Function:
+def _told(name: str, function: Function) -> Function:
+    """The function, with words about values that it has no number for."""
+
+    def called(*values: Any) -> Any:
+        _check_numbers(name, values)
+        try:
+            return function(*values)
+        except (ValueError, OverflowError, TypeError):
+            shown = ", ".join(f"{value:g}" for value in values if not isinstance(value, np.ndarray))
+            raise ValueError(f"{name}({shown}) is no finite number") from None
+
+    return called
+
+
+def _of_numbers(operation: Function, what: str = "arithmetic") -> Function:
     """The operation, refused for anything but numbers and arrays (no "a" * 10**9)."""
 
     def checked(*operands: Any) -> Any:
-        for x in operands:
-            if not isinstance(x, int | float | np.ndarray):
-                raise ExpressionError(f"arithmetic needs numbers, not {repr(x)[:60]}")
+        _check_numbers(what, operands)
         return operation(*operands)
 
     return checked
+
+
+def _check_numbers(what: str, values: Iterable[Any]) -> None:
+    for value in values:
+        if not isinstance(value, int | float | np.ndarray | np.number):
+            raise ExpressionError(f"{what} needs numbers, not {repr(value)[:60]}")
 
 
 def _power(base: Any, exponent: Any) -> Any:
@@ -194,8 +207,8 @@ OPERATORS = {
     ast.Not: operator.not_,
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
+    ast.Lt: _of_numbers(operator.lt, "a comparison"),
+    ast.LtE: _of_numbers(operator.le, "a comparison"),
+    ast.Gt: _of_numbers(operator.gt, "a comparison"),
+    ast.GtE: _of_numbers(operator.ge, "a comparison"),
 }

@@ -142,6 +142,7 @@ class Where:
         self._changes: dict[KeyPath, Change] = {}
         self._written: dict[KeyPath, KeyPath] = {}
         self._files: dict[KeyPath, Path] = {}
+        self._named: dict[KeyPath, list[Path]] = {}
 
     @property
     def files(self) -> Mapping[KeyPath, Path]:
@@ -155,6 +156,26 @@ class Where:
         folder = self._deepest(keys).folder if change is None else change.folder
         self._files[keys] = folder
         return folder
+
+    @property
+    def named(self) -> Mapping[KeyPath, Sequence[Path]]:
+        """The files read for each key, as written; the scenario and its bases among them."""
+        files = [source.path for source in self._sources if isinstance(source, TomlSource)]
+        keys: list[KeyPath] = [("extends",)] * len(files)
+        if isinstance(self._sources[0], TomlSource):
+            keys[0] = ("scenario",)
+        read: dict[KeyPath, list[Path]] = {}
+        for key, file in zip(keys, files, strict=True):
+            read.setdefault(key, []).append(file)
+        return read | self._named
+
+    def file(self, keys: KeyPath, name: str) -> Path:
+        """The file that is named at `keys`, and will be read."""
+        path = self.folder(keys) / name
+        paths = self._named.setdefault(self._as_written(keys), [])
+        if path not in paths:
+            paths.append(path)
+        return path
 
     def note_change(self, keys: KeyPath, change: Change) -> None:
         """Remember that a change gave what stands at these keys."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,19 +48,20 @@ class Shallow(Finding):
 
 @dataclass(frozen=True)
 class EndsAtWall(Finding):
-    """A structure that ends where the face of another fixed body begins."""
+    """A structure that ends where the face of a fixed body begins that its gauges do not read."""
 
-    gauge: str
+    gauges: tuple[str, ...]
     other: str
     at: tuple[float, ...]  # m
     dp: float
 
     def __str__(self) -> str:
         place = place_text(self.at)
+        gauges = " and ".join(f"gauge.{gauge}" for gauge in self.gauges)
         return (
             f"{self.place}: ends at {self.other}, at ({place}) m, whose particles behind its face "
-            f"carry the thrust on a quarter of dp there, which gauge.{self.gauge} does not read: "
-            f"{self._remedy}"
+            f"carry the thrust on a quarter of dp there, which {gauges} "
+            f"{'does' if len(self.gauges) == 1 else 'do'} not read: {self._remedy}"
         )
 
     @property
@@ -121,9 +122,8 @@ def structure_findings(
 ) -> Iterator[Finding]:  # fmt: skip
     """A doubt about each fixed body whose load is read."""
     faces = _Faces(particles, normal, depth < scenario.dp)
-    for name, gauge in _metered_bodies(scenario).items():
-        own = [names.index(each) for each in scenario.names_of_bodies(name)]
-        of_it = (particles.motion == FIXED) & np.isin(particles.body, own)
+    for name, gauges in _metered_bodies(scenario).items():
+        gauge, of_it = gauges[0], _fixed_of(scenario, particles, names, [name])
         if not of_it.any():
             continue
         first_row = faces.is_first[of_it]
@@ -131,23 +131,33 @@ def structure_findings(
         lost = list(_in_walls(scenario, name, gauge, place))
         yield from lost
         if not lost and not scenario.is_dry:
-            yield from _ends_at_wall(scenario, name, gauge, faces, of_it, names)
+            yield from _ends_at_walls(scenario, name, gauges, faces, names)
         if scenario.bed is None:
             continue
         yield from _shallow(scenario, name, gauge, place, normal[of_it], first_row)
         table = scenario.body[name]
-        if isinstance(scenario.gauge[gauge], Load) and isinstance(table, Box):
-            yield from _one_face(scenario, name, gauge, table)
+        loads = [each for each in gauges if isinstance(scenario.gauge[each], Load)]
+        if loads and isinstance(table, Box):
+            yield from _one_face(scenario, name, loads[0], table)
 
 
-def _metered_bodies(scenario: Scenario) -> dict[str, str]:
-    """Bodies with the first gauge that reads what acts on each."""
-    found: dict[str, str] = {}
+def _metered_bodies(scenario: Scenario) -> dict[str, list[str]]:
+    """Bodies with the gauges that read what acts on each."""
+    found: dict[str, list[str]] = {}
     for name, gauge in scenario.gauge.items():
         for body in gauge.bodies if isinstance(gauge, Metered) else ():
             if body in scenario.body:
-                found.setdefault(body, name)
+                found.setdefault(body, []).append(name)
     return found
+
+
+def _fixed_of(
+    scenario: Scenario, particles: ParticleSet, names: list[str], bodies: Iterable[str]
+) -> np.ndarray:
+    """Mask (N,) of the fixed particles of some bodies."""
+    own = [names.index(each) for body in bodies for each in scenario.names_of_bodies(body)]
+    mask: np.ndarray = (particles.motion == FIXED) & np.isin(particles.body, own)
+    return mask
 
 
 def _in_walls(scenario: Scenario, name: str, gauge: str, position: np.ndarray) -> Iterator[Finding]:
@@ -175,19 +185,43 @@ class _Faces:
     is_first: np.ndarray  # (N,)
 
 
-def _ends_at_wall(
-    scenario: Scenario, name: str, gauge: str, faces: _Faces, of_it: np.ndarray, names: list[str]
+def _ends_at_walls(
+    scenario: Scenario, name: str, gauges: list[str], faces: _Faces, names: list[str]
 ) -> Iterator[Finding]:
-    """Looks in each hollow corner that its face makes with that of another for what lies behind."""
+    """Looks for ends of a body that some of its gauges do not see the whole of."""
+    of_it = _fixed_of(scenario, faces.particles, names, [name])
+    alike: dict[frozenset[str], list[str]] = {}
+    for each in gauges:
+        gauge = scenario.gauge[each]
+        assert isinstance(gauge, Metered)
+        read = [body for body in gauge.bodies if body in scenario.body]
+        alike.setdefault(frozenset(read), []).append(each)
+    ends: dict[tuple[int, tuple[float, ...]], list[str]] = {}
+    for bodies, those in alike.items():
+        of_gauge = _fixed_of(scenario, faces.particles, names, bodies)
+        if (end := _end_at_wall(scenario.dp, faces, of_it, of_gauge)) is not None:
+            ends.setdefault(end, []).extend(those)
+    for (body, at), those in ends.items():
+        yield EndsAtWall(f"body.{name}", tuple(those), f"body.{names[body]}", at, scenario.dp)
+
+
+def _end_at_wall(
+    dp: float, faces: _Faces, of_it: np.ndarray, of_gauge: np.ndarray
+) -> tuple[int, tuple[float, ...]] | None:
+    """The other body and the place of an end, m; None for none.
+
+    Looks in each hollow corner that its face makes with that of a body which a gauge does not read
+    for what the gauge reads behind.
+    """
     from scipy.spatial import cKDTree
 
-    dp, particles, normal = scenario.dp, faces.particles, faces.normal
+    particles, normal = faces.particles, faces.normal
     is_face = (
         (particles.motion == FIXED) & faces.is_first & (np.linalg.norm(normal, axis=1) > ASIDE)
     )
-    own, others = np.flatnonzero(is_face & of_it), np.flatnonzero(is_face & ~of_it)
+    own, others = np.flatnonzero(is_face & of_it), np.flatnonzero(is_face & ~of_gauge)
     if not len(own) or not len(others):
-        return
+        return None
     position = particles.position
     near = cKDTree(position[others]).query_ball_point(position[own], BESIDE * dp)
     one = np.repeat(own, [len(each) for each in near])
@@ -199,14 +233,13 @@ def _ends_at_wall(
         & (np.abs((normal[one] * normal[other]).sum(axis=1)) < ASIDE)
     )
     one, other = one[hollow], other[hollow]
-    tree, there = cKDTree(position[of_it]), np.ones(len(one), bool)
+    tree, there = cKDTree(position[of_gauge]), np.ones(len(one), bool)
     for on in DEPTHS[2:]:
         there &= tree.query(position[one] - on * dp * normal[other])[0] < NEAR * dp
-    if not there.all():
-        k = int(np.argmin(there))
-        body = names[particles.body[other[k]]]
-        at = tuple(position[one[k]].tolist())
-        yield EndsAtWall(f"body.{name}", gauge, f"body.{body}", at, dp)
+    if there.all():
+        return None
+    k = int(np.argmin(there))
+    return int(particles.body[other[k]]), tuple(position[one[k]].tolist())
 
 
 def _one_face(scenario: Scenario, name: str, gauge: str, box: Box) -> Iterator[Finding]:

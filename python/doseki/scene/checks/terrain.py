@@ -9,7 +9,7 @@ from typing import Any
 from ...record.units import unit_in
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
-from ...util.finding import Finding
+from ...util.finding import Finding, place_text
 from ..inflow_sections import (
     InflowSection,
     build_inflows,
@@ -50,6 +50,26 @@ class Coarse(Finding):
         return (
             f"{self.place}: cells of {self.cell:g} m are smaller than particles (dp = {self.dp:g} "
             f"m), which cannot follow them; terrain.resample = {self.dp:g} averages them"
+        )
+
+
+@dataclass(frozen=True)
+class HolesAsHeights(Finding):
+    """Cells of the map that only cliffs join with the rest: most likely holes."""
+
+    cells: int
+    low: float  # m
+    high: float  # m
+    jump: float  # m
+    at: tuple[float, float]  # m
+
+    def __str__(self) -> str:
+        cells = "1 cell stands" if self.cells == 1 else f"{self.cells:,} cells stand"
+        height = f"{self.low:g}" if self.low == self.high else f"{self.low:.4g} to {self.high:.4g}"
+        return (
+            f"{self.place}: {cells} at {height} m, {self.jump:.3g} m or more from all neighbours,"
+            f" as at [{place_text(self.at)}] m; if these are holes, let the file say so"
+            f" (gdal_edit -a_nodata {self.low:g} IN; .asc: a line NODATA_value {self.low:g})"
         )
 
 
@@ -150,6 +170,9 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
         return
     if bed.unknown.any():
         yield Unknown(TERRAIN, bed.unknown_share)
+    if (found := bed.islands) is not None:
+        where = found.low, found.high, found.jump, found.place
+        yield HolesAsHeights(f"{TERRAIN}.file", found.cells, *where)
     scale = bed.scale
     if scale is not None and abs(scale.factor - 1.0) > STRETCH:
         yield Stretched(f"{TERRAIN}.file", scale.factor, scale.latitude, scale.utm)

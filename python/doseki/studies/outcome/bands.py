@@ -13,7 +13,6 @@ from ...errors import UserError
 from ...figures.maps.structures import Structures
 from ...geodata.grid import Raster
 from ...geodata.raster import write_raster
-from ...measure.maps.files import NODATA
 from ...measure.maps.quantities import ARRIVAL_TIME, PEAK_DEPTH
 from ...record.reader import Run, load
 from ...util.files import clear_errors, write_whole_text
@@ -147,7 +146,7 @@ def _make(folder: Path) -> None:
 
 
 def _with(raster: Raster, values: np.ndarray) -> Raster:
-    return Raster(values, raster.west, raster.south, raster.cell, raster.crs, raster.driver, NODATA)
+    return raster.with_values(values)
 
 
 def _resampled(bed: Raster, cells: Raster) -> Raster:

@@ -1,4 +1,4 @@
-"""What has gone over the crest of a dam, and what stands behind it."""
+"""What has gone past a plane, as over the crest of a dam, and what stands behind it."""
 
 from __future__ import annotations
 
