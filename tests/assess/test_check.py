@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import doseki
+from doseki.assess.ground.sliding import Sliding
 from doseki.assess.preflight import brief_check, check_scenario
 from doseki.assess.warnings import ShallowFlow, thorough_findings
 from doseki.scenario.load import load_scenario
@@ -52,9 +53,10 @@ def doubts(tmp_path):
             SCENARIO.format(xi=xi, layers=layers, bottom=bottom, top=top).replace(*replace) + more
         )
         scenario = load_scenario(file, [f"scheme={scheme}"])
-        simulation, *about = filled_simulation(scenario)
+        simulation, names, of_scene = filled_simulation(scenario)
         simulation.start()
-        return [str(doubt) for doubt in thorough_findings(scenario, simulation.state(), *about)]
+        sliding = Sliding(scenario, simulation.state(), names)
+        return [str(doubt) for doubt in thorough_findings(sliding, of_scene)]
 
     return find
 

@@ -174,7 +174,10 @@ def test_steps_of_bodies_that_deform_are_told_of(bodies_alone, tmp_path):
     given = bodies_alone.scenario["body"]["disc"]["kinematics"]
     file = tmp_path / "case.toml"
     file.write_text(BODIES.format(kinematics=given) + CHALK)
-    told = "within these, steps of about 9.7e-06 s while a body deforms: some 246 if one always"
+    told = (
+        "within these, steps of about 9.7e-06 s while a body deforms: some 246 of them if one"
+        " deforms all the time"
+    )
     for text in (check_scenario(load_scenario(str(file)), 1), summary_text(bodies_alone)):
         assert (told in text) == (given != "rigid")
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from doseki.assess.loads import AgainstFlow
 from doseki.cli.app import app
 from doseki.driver.gauges import outside_everything
 from doseki.errors import UserError
@@ -172,6 +173,12 @@ def test_a_section_that_looks_against_the_flow_is_told(tmp_path, way):
     assert said.endswith("set it to [1, 0]")
     assert said in run.folder.summary_text.read_text()
     assert said in done.output
+
+
+def test_a_direction_is_turned_round_as_its_file_has_it():
+    said = str(AgainstFlow("gauge.before.direction", (0.123456789, -3.0, 0.0)))
+    assert said.startswith("gauge.before.direction = [0.123456789, -3, 0] points")
+    assert said.endswith("set it to [-0.123456789, 3, 0]")
 
 
 def test_a_wave_that_is_thrown_back_makes_no_section_wrong():

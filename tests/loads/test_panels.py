@@ -103,18 +103,26 @@ def test_the_map_of_a_face_stands_above_its_curves(dam):
     assert 0 < scale.get_window_extent().x0 - face.x1 < 0.1 * face.width
 
 
-@pytest.mark.parametrize("across", [1e-13, 1.0])
-def test_what_is_rounding_has_the_scale_of_the_others(across):
+def limits_of_parts(across, along):
+    """Limits of the panels of a load with forces of these sizes along x and y."""
     time = np.linspace(0, 1, 11)
     parts = ("", "static_", "dynamic_", "contact_", "peak_")
     columns = {"time": time, "peak_time": time}
     for k, axis in enumerate("xy"):
-        size = (across, 1e3)[k]
-        columns |= {f"{part}force_{axis}": size * np.sin(9 * time) for part in parts}
+        size = (across, along)[k]
+        columns |= {f"{part}force_{axis}": size * (2 + np.sin(9 * time)) for part in parts}
     columns |= {f"{part}moment": np.sin(9 * time) for part in parts}
     rows = [[repr(float(x)) for x in row] for row in zip(*columns.values(), strict=True)]
     record = GaugeRecord([f"{name} [N]" for name in columns], rows, "dam.csv")
-    figure = _draw_parts(record, 2, "dam")
-    x, y, moment = (axes.get_ylim() for axes in figure.axes)
-    assert (x == y) == (across < 1e-9)
+    return [axes.get_ylim() for axes in _draw_parts(record, 2, "dam").axes]
+
+
+@pytest.mark.parametrize("along", [1e3, 1e-3])
+@pytest.mark.parametrize("share", [0.0, 1e-13, 1e-3])
+def test_what_is_rounding_has_the_scale_of_the_others(share, along):
+    x, y, moment = limits_of_parts(share * along, along)
+    if share < 1e-9:
+        assert x == (0, y[1])
+    else:
+        assert x[1] < 0.1 * y[1]
     assert max(moment) < 2

@@ -14,6 +14,7 @@ from tests.synthetic_runs import BODIES, MATERIALS, SCENARIO, history_row, rando
 from doseki.cli.main import main
 from doseki.record.writer import Recorder
 from doseki.report.markup import Markup, markup, table, tag
+from doseki.report.parts.pictures import Album
 from doseki.report.report import write_report
 from doseki.scenario.gauges.loads.load import Load
 
@@ -291,6 +292,19 @@ def test_a_large_picture_is_made_smaller_or_left_out(drawn_flow, page_of):
     written = write_report(drawn_flow, size_mb=0.1)
     assert any("depth.png is left out" in note for note in written.notes)
     assert any("fake.png is left out" in note for note in written.notes)
+
+
+def test_one_picture_that_is_too_large_costs_no_other():
+    """Maps and loads come first; of the others each that still fits stays."""
+    album = Album(sizes=[50, 900, 30, 40], matters=[True, True, False, False])
+    assert album.without(100) == {1, 3}
+
+
+def test_one_picture_alone_is_one(drawn_flow):
+    random = np.random.default_rng(1).integers(0, 255, (600, 900, 3), np.uint8)
+    Image.fromarray(random).save(drawn_flow / "figures" / "first.png")
+    notes = write_report(drawn_flow, size_mb=2).notes
+    assert any(note.startswith("1 picture is shown") for note in notes)
 
 
 def test_the_file_is_no_larger_than_it_may_be(map_run):

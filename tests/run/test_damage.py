@@ -28,9 +28,16 @@ HERE = Path("000000000003.h5")
 def make_checkpoint(step=3):
     state = {"time": np.array([0.1]), "steps": np.array([step]), "lanes": np.array([4])}
     state["position"] = np.eye(50, 2)
-    return Checkpoint(
-        state, Position(2, 2, 17, {"depth": 3}, 0.125, 0.5, 3.5), ["water"], ["sea", "bed"]
+    position = Position(
+        outputs=2,
+        snapshots=2,
+        rows=17,
+        gauge_rows={"depth": 3},
+        next_checkpoint=0.5,
+        wall_seconds=3.5,
+        sensors={"wall": [0.1, 1 / 3]},
     )
+    return Checkpoint(state, position, ["water"], ["sea", "bed"])
 
 
 @pytest.fixture(scope="module")

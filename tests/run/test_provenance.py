@@ -19,6 +19,7 @@ from doseki.running.provenance import (
     provenance_now,
     read_provenance,
 )
+from doseki.scenario import named_files
 from doseki.scenario.load import load_scenario
 
 
@@ -116,3 +117,24 @@ def test_files_that_a_scenario_takes_in_are_known(tmp_path):
     (tmp_path / "release.geojson").write_text("{}")
     digests = {each.file.path.name: each.file.digest for each in scenario.named_files}
     assert digests == before  # that of what was read
+
+
+def test_what_lies_beside_a_file_need_not_be_readable(tmp_path, monkeypatch):
+    for name in ("a.asc", "a.prj", "a.asc.aux.xml"):
+        (tmp_path / name).write_text(name)
+    closed, read = {"a.prj"}, named_files.input_file
+
+    def forbidden(path):
+        if path.name in closed:
+            raise UserError(f"{path}: cannot be read")
+        return read(path)
+
+    monkeypatch.setattr(named_files, "input_file", forbidden)
+    named = {("body", "slide", "file"): [tmp_path / "a.asc"]}
+    in_full = named_files.read_in_full(named)
+    assert [each.path.name for each in in_full] == ["a.asc", "a.asc.aux.xml"]
+    by_key = named_files.named_files(named, {})
+    assert [each.file.path.name for each in by_key] == ["a.asc", "a.asc.aux.xml"]
+    closed.add("a.asc")
+    with pytest.raises(UserError, match="cannot be read"):
+        named_files.read_in_full(named)

@@ -27,6 +27,7 @@ NAMES = {"a": 2, "b": 0.5, "word": "single"}
         ("=2**0.5", math.sqrt(2)),
         ("= sqrt(pi)", math.sqrt(math.pi)),
         ("= round(2.6)", 3),
+        ("= round(1.234, 4/2)", 1.23),
         ("= ceil(2.1) - floor(2.9)", 1),
         ("= max(a, b, 1)", 2),
         ("= 'one' if a == 2 and not b > 1 else 'many'", "one"),
@@ -80,6 +81,11 @@ def test_value(text, value):
         ("= a = 2", "whether two are equal is written =="),
         ("= exp(1000)", "exp(1000) is no finite number"),
         ("= " + "9" * 400 + "/2", "has numbers that are too large"),
+        ("= (1 and 2", "a parenthesis is not closed"),
+        ("= (2 if a else 3", "a parenthesis is not closed"),
+        ("= a)", "a parenthesis is not opened"),
+        ("= 2exp(1)", "a product is written *"),
+        ("= round(1.234, 1.5)", "the second value of round, how many digits, is not whole"),
         ("= 1 +", "not a valid expression"),
         ("= ", "not a valid expression"),
         ("= sqrt(-1)", "sqrt(-1) is no finite number"),
@@ -92,13 +98,59 @@ def test_refusal(text, complaint):
     assert not re.search("ast|object|__|instance", str(said.value))
 
 
-@pytest.mark.parametrize("text", ["1 if x > 0 else 2", "0 < x < 1", "x > 0 and y > 0", "not x"])
+@pytest.mark.parametrize(
+    "text", ["2 if a else", "3 and", "5 in", "3 or (1)(", "0x1G", "1E5 +", "'2a(' 1"]
+)
+def test_a_product_is_named_only_where_one_is_missing(text):
+    with pytest.raises(ExpressionError) as said:
+        evaluate(f"= {text}", NAMES)
+    assert "product" not in str(said.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1 if x > 0 else 2",
+        "0 < x < 1",
+        "x > 0 and y > 0",
+        "x > 0 or y > 0",
+        "not x",
+        "(x > 0) & (y > 0)",
+        "(x > 0) | (y > 0)",
+        "~(x > 0)",
+    ],
+)
 def test_what_differs_from_place_to_place_is_not_chosen(text):
     """A condition is one number at each place, which may be a factor."""
     position = np.array([[-1.0, 0.0], [1.0, 0.0]])
-    with pytest.raises(ExpressionError, match=r"multiply by conditions, as in \(x > 0\)\*2"):
+    with pytest.raises(
+        ExpressionError, match=r"multiply by conditions, as in \(x > 0\)\*2"
+    ) as said:
         evaluate_at(f"= {text}", {}, position)
+    joined = "a product for both, max(...) for one of them, 1 - (...) for not"
+    assert joined in str(said.value)
     np.testing.assert_array_equal(evaluate_at("= (x > 0)*2 + (x <= 0)*3", {}, position), [3, 2])
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("(x > 0) * (y > 0)", [0, 0, 1]),
+        ("max(x > 0, y > 0)", [0, 1, 1]),
+        ("1 - (x > 0)", [1, 0, 0]),
+        ("(x > 0) - (y >= 0)", [-1, 1, 0]),
+        ("-(x > 0)", [0, -1, -1]),
+        ("+(x != 0)", [1, 1, 1]),
+        ("(x == 2) + (y == 1)", [0, 1, 2]),
+        ("(max(a, 1) > 0)*x", [-1, 2, 2]),
+        ("(sqrt(a) > 0)*3", [3, 3, 3]),
+        ("(floor(a) == 2)*x", [-1, 2, 2]),
+        ("-(sqrt(a) != 0) if floor(a) > 0 and not sqrt(a) < 0 else 5", [-1, -1, -1]),
+    ],
+)
+def test_conditions_are_numbers_at_each_place(text, values):
+    position = np.array([[-1.0, 0.0], [2.0, -1.0], [2.0, 1.0]])
+    np.testing.assert_array_equal(evaluate_at(f"= {text}", NAMES, position), values)
 
 
 def test_powers_do_not_grow_into_huge_integers():

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -11,6 +14,7 @@ from doseki.geodata.ground import read_ground, write_ground
 from doseki.geodata.raster import Raster, write_raster
 from doseki.record.reader import load
 from doseki.running.runner import run_scenario
+from doseki.scenario.islands import islands_of
 from doseki.scenario.load import load_scenario
 from doseki.scene.checks.terrain import HolesAsHeights, terrain_findings
 
@@ -88,6 +92,72 @@ def test_holes_that_are_written_as_heights_are_told(path, tmp_path, value, rise)
         assert "as at [4.05, 3.05] m" in said
         assert f"gdal_edit -a_nodata {value:g} IN; .asc: a line NODATA_value {value:g}" in said
     assert told_of_holes(load_scenario(path, ["terrain.window=[0, 0, 2.5, 4]"])) == []
+
+
+def test_holes_of_several_heights_have_no_one_number(path, tmp_path):
+    """The file can name one number for no data alone, with all of its digits."""
+
+    def holes(low, high):
+        def height(x, y):
+            hole = np.where(x > 3, high, low)
+            return np.where(np.isclose(y, 1.05) & (np.abs(x - 3) < 0.1), hole, 1000 + x)
+
+        return height
+
+    grid(tmp_path / "terrain.asc", holes(12.3456789, 12.3456789))
+    (said,) = told_of_holes(load_scenario(path))
+    assert "-a_nodata 12.3456789 IN; .asc: a line NODATA_value 12.3456789)" in said
+    grid(tmp_path / "terrain.asc", holes(12.0, 12.5))
+    (said,) = told_of_holes(load_scenario(path))
+    assert "2 cells stand at 12 to 12.5 m" in said
+    assert "nodata" not in said.lower()
+
+
+@pytest.mark.parametrize(("low", "told"), [(5.0, False), (1000.0, True)])
+def test_large_parts_at_0_are_a_sea_unless_they_are_far_below(path, tmp_path, low, told):
+    """40 % of a map: the sea at a quay of 5 m, or what a map of mountains does not know."""
+    grid(tmp_path / "terrain.asc", lambda x, y: np.where(x < 0.4 * 6, 0.0, low + 0.1 * x))
+    assert bool(told_of_holes(load_scenario(path))) == told
+
+
+def test_the_floor_of_a_flume_is_no_hole(path, tmp_path):
+    def flume(x, y):
+        return np.where(np.abs(y - 2) < 0.5, 0.0, 4.0)
+
+    grid(tmp_path / "terrain.asc", flume)
+    assert load_scenario(path).bed.islands is None
+
+
+def test_parts_wind_around_cells_without_data():
+    """The only way between two plateaus leads around a corner; cells without data are none."""
+    values = np.full((40, 40), 100.0)
+    values[10:13, 10:13], values[11, 11] = 0.0, np.nan
+    values[20, 5:], values[20, 39] = np.nan, 100.0
+    values[30, 30:33] = values[31, 32] = values[32, 32] = 0.0
+    found = islands_of(Raster(values, 0.0, 0.0, 1.0))
+    assert (found.cells, found.low, found.high, found.jump) == (8 + 5, 0.0, 0.0, 100.0)
+    assert found.place == (10.5, 29.5)
+
+
+def test_holes_are_looked_for_when_asked_and_fast(path, tmp_path, monkeypatch):
+    """Once for all that ask; a map of four million cells takes 0.2 s and six times its size."""
+    grid(tmp_path / "terrain.asc", lambda x, y: np.where((x < 0.2) & (y < 0.1), 0, 1000 + x))
+    calls = []
+    monkeypatch.setattr(
+        "doseki.scenario.bed.islands_of", lambda r: calls.append(r) or islands_of(r)
+    )
+    scenario = load_scenario(path)
+    assert not calls
+    assert told_of_holes(scenario) == told_of_holes(scenario) != []
+    assert len(calls) == 1
+    values = 1000 + np.add.outer(np.zeros(2000), np.arange(2000.0) % 7)
+    values[100:103, 200:204] = 0.0
+    tracemalloc.start()
+    began = time.process_time()
+    assert islands_of(Raster(values, 0.0, 0.0, 1.0)).cells == 12
+    assert time.process_time() - began < 1.0
+    assert tracemalloc.get_traced_memory()[1] < 6 * values.nbytes
+    tracemalloc.stop()
 
 
 def told_of_holes(scenario):

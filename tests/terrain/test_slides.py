@@ -81,15 +81,15 @@ def test_a_block_slides_as_a_point_mass_does(tmp_path, sign):
     path = tmp_path / "case.toml"
     low, high = sorted((sign * 3.0, sign * 5.0))
     more = f"mu = {MU}\n" + MASS + BLOCK.format(low=low, high=high)
-    path.write_text(text(2, dp=0.125, speed=13.0, wall="voellmy", more=more))
+    path.write_text(text(2, dp=0.0625, speed=13.0, wall="voellmy", more=more))
     places, speeds, lengths = slid(path, 10.0)
     on_slope = 9.81 * (math.sin(TILT) - MU * math.cos(TILT)) * 2.5
     assert speeds[49] == pytest.approx(on_slope, rel=0.02)
     start = 4.0 + 0.25 * math.sin(TILT)
     middles, exact = train(start, lengths[49], 10.0, MU)
     # A thick block works against its own friction where the bed bends.
-    assert max(speeds) == pytest.approx(exact.max(), rel=0.04)
-    assert sign * places[-1] - start == pytest.approx(middles[-1] - start, rel=0.1)
+    assert max(speeds) == pytest.approx(exact.max(), rel=0.03)
+    assert sign * places[-1] - start == pytest.approx(middles[-1] - start, rel=0.05)
     assert abs(places[-1] - places[-5]) < 0.02, "it has stopped"
 
 

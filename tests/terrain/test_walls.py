@@ -157,7 +157,7 @@ def test_what_leaves_the_map_leaves_the_run(tmp_path):
     path.write_text(text(2, dp=0.05, speed=6.0, more=SLIDE))
     simulation, _ = simulation_of(path)
     before = simulation.totals()["mass"]
-    simulation.advance(limit=1.5, pause=1.5, max_steps=10**6)
+    simulation.advance(limit=0.9, pause=0.9, max_steps=10**6)
     after = simulation.totals()
     assert after["mass_left"] > 0.3 * before
     assert after["mass"] + after["mass_left"] == pytest.approx(before, rel=1e-12)

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "bodies/elastic/total_lagrangian.hpp"
@@ -33,9 +34,8 @@ public:
     }
 
 private:
-    static constexpr double steady = 0.05;     // of the mean; less than that may kick
-    static constexpr double residual = 0.03;   // of the change
-    static constexpr double amplitude = 1e-6;  // of displacements, in spacings
+    static constexpr double steady = 0.05;    // of the mean; less than that may kick
+    static constexpr double residual = 0.03;  // of the change
     static constexpr int iterations = 200;
 
     /// Of one body. Squares are weighted by mass.
@@ -44,6 +44,7 @@ private:
         double left = 0.0, before = 0.0;  // of the residual, now and before
         double product = 0.0;             // of the search and its image
         double longest = 0.0;             // of the search
+        double farthest = 0.0;            // from the origin [m]
         bool is_solved = false;
     };
 
@@ -77,7 +78,9 @@ private:
         each([&](std::size_t k, std::uint32_t p, Body& body) {
             left_[k] = change(p);
             body.change += square(p, left_[k]);
-            body.mean += dot(solids_.steady[p], solids_.steady[p]) / solids_.mass(p);
+            if (!solids_.clamped(p))
+                body.mean += dot(solids_.steady[p], solids_.steady[p]) / solids_.mass(p);
+            body.farthest = std::max(body.farthest, norm(solids_.x[p]));
         });
         search_ = left_;
         for (Body& body : bodies_) {
@@ -89,19 +92,25 @@ private:
 
     void solve(double dt) {
         const std::size_t n = solids_.stepped().points().size();
-        x_.resize(n), v_.resize(n), image_.resize(n);
+        x_.resize(n), v_.resize(n), image_.resize(n), at_rest_.resize(n);
         accelerations_.resize(solids_.size());
         each([&](std::size_t k, std::uint32_t p, const Body&) {
             x_[k] = solids_.x[p], v_[k] = solids_.v[p], solids_.v[p] = {};
         });
         solids_.internal_accelerations(accelerations_);
-        at_rest_ = image_;
         each([&](std::size_t k, std::uint32_t p, const Body&) { at_rest_[k] = accelerations_[p]; });
         for (int i = 0; i < iterations && !is_solved(); ++i) apply(0.125 * dt * dt), advance();
         each([&](std::size_t k, std::uint32_t p, const Body&) {
             solids_.x[p] = x_[k], solids_.v[p] = v_[k];
         });
         solids_.internal_accelerations(accelerations_);
+    }
+
+    /// Of displacements [m]: small for strain, and large for the rounding of coordinates.
+    static double amplitude(double spacing, double farthest) {
+        constexpr double small = 1e-6, large = 1e-3, digits = 1e5;
+        const double rounding = std::numeric_limits<double>::epsilon() * farthest;
+        return std::clamp(digits * rounding, small * spacing, large * spacing);
     }
 
     /// Finds the image of the search.
@@ -111,7 +120,7 @@ private:
             body.longest = std::max(body.longest, norm(search_[k]));
         });
         auto scale = [&](std::uint32_t p, const Body& body) {
-            return amplitude * solids_.body_of(p).spacing / body.longest;
+            return amplitude(solids_.body_of(p).spacing, body.farthest) / body.longest;
         };
         each([&](std::size_t k, std::uint32_t p, const Body& body) {
             solids_.x[p] = x_[k];

@@ -17,6 +17,7 @@ from ..scenario.model import Scenario
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..solver.protocol import Simulation
 from .estimates import step_ends
+from .ground.sliding import Sliding
 from .ground.spreading import ground_to_come
 
 BURST_SECONDS = 1.0  # of wall time
@@ -44,13 +45,20 @@ class Estimate:
     timestep: float
 
 
-def estimate(scenario: Scenario, simulation: Simulation, body_names: list[str]) -> Estimate:
+def estimate(
+    scenario: Scenario,
+    simulation: Simulation,
+    body_names: list[str],
+    sliding: Sliding | None = None,
+) -> Estimate:
     """Measure on a started `simulation`, which is stepped, and extrapolate to time_max.
 
-    Where nothing has entered a dry scene by then, what particles take is nan.
+    Where nothing has entered a dry scene by then, what particles take is nan.  `sliding` is where
+    its fluid may get to, if that is needed elsewhere, too.
     """
     start = len(simulation)
-    mean, most, ground, scattered = _particles(scenario, simulation, body_names)
+    sliding = sliding or Sliding(scenario, simulation.state(), body_names)
+    mean, most, ground, scattered = _particles(sliding, start)
     rate, timestep = _burst(simulation, scenario)
     done, now, end = simulation.steps, simulation.time, scenario.time_max
     steps = done + steps_between(now, end, timestep, step_ends(scenario))
@@ -109,19 +117,20 @@ def _burst(simulation: Simulation, scenario: Scenario) -> tuple[float, float]:
     return (simulation.updates - middle[1]) / elapsed, (simulation.time - middle[3]) / steps
 
 
-def _particles(
-    scenario: Scenario, simulation: Simulation, body_names: list[str]
-) -> tuple[float, float, float, float]:
-    """Mean and largest number of particles, if nothing leaves; new ground in that, and at most."""
+def _particles(sliding: Sliding, start: int) -> tuple[float, float, float, float]:
+    """Mean and largest number of particles, if nothing leaves; new ground in that, and at most.
+
+    `start` are there at first.
+    """
+    scenario = sliding.scenario
     times = np.linspace(scenario.begins_at, scenario.time_max, 1001)
     entered = np.zeros(len(times))
-    for section in build_inflows(scenario, body_names):
+    for section in build_inflows(scenario, sliding.names):
         entered += _entered(section, times)
     ground, scattered = np.zeros(len(times)), 0.0
     if scenario.bed is not None:
-        ground, scattered = ground_to_come(scenario, simulation.state(), body_names, times, entered)
+        ground, scattered = ground_to_come(sliding, times, entered)
     more = entered + ground
-    start = len(simulation)
     return start + float(more.mean()), start + float(more.max()), float(ground.max()), scattered
 
 

@@ -59,7 +59,7 @@ def solid_steps_text(dt: float, duration: float) -> str:
     """What a `solid_timestep`, s, means for a run of some duration, s."""
     return (
         f"within these, steps of about {dt:.2g} s while a body deforms: some {duration / dt:,.0f} "
-        "if one always does"
+        "of them if one deforms all the time"
     )
 
 

@@ -51,7 +51,10 @@ class AgainstFlow(Finding):
     direction: tuple[float, ...]
 
     def __str__(self) -> str:
-        now, turned = (", ".join(f"{sign * x + 0.0:g}" for x in self.direction) for sign in (1, -1))
+        now, turned = (
+            ", ".join(repr(sign * x + 0.0).removesuffix(".0") for x in self.direction)
+            for sign in (1, -1)
+        )
         return (
             f"{self.place} = [{now}] points against the flow: thrust on its structure counts as "
             f"negative, and design formulas are left out; set it to [{turned}]"

@@ -28,6 +28,7 @@ from .estimates import (
     solid_timestep,
     step_ends,
 )
+from .ground.sliding import Sliding
 from .lakes import filled_text, filled_volumes
 from .summary import duration_text
 from .warnings import findings, thorough_findings
@@ -68,7 +69,8 @@ def preflight(
         simulation, body_names, warnings = filled_simulation(scenario, tell=tell)
         simulation.start()
         state = simulation.state()
-        expected = estimate(scenario, simulation, body_names)
+        sliding = Sliding(scenario, state, body_names)
+        expected = estimate(scenario, simulation, body_names, sliding)
     except core.ResourceFailure as failure:
         raise ResourceError(str(failure)) from failure
     except core.PhysicsFailure as failure:
@@ -78,7 +80,7 @@ def preflight(
     lines = [scenario.title or "scenario", ""]
     lines += [*_particles(scenario, state, body_names), *_costs(scenario, expected)]
     lines += [*_resolution(scenario, state, body_names)]
-    doubts = sentences(thorough_findings(scenario, state, body_names, warnings))
+    doubts = sentences(thorough_findings(sliding, warnings))
     lines += ["", *(f"warning: {doubt}" for doubt in doubts)] if doubts else ["", "no warnings"]
     return Preflight(
         "\n".join(lines), doubts, len(state["id"]), expected.memory, expected.disk,

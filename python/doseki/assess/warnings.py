@@ -23,6 +23,7 @@ from .estimates import (
     mach_number,
 )
 from .ground.pits import narrow_pits
+from .ground.sliding import Sliding
 from .open_sides import open_sides
 from .rheology import rheology_findings
 from .sound_speed import raised, usual_speed
@@ -207,13 +208,11 @@ def findings(
     return list(dict.fromkeys(found))
 
 
-def thorough_findings(
-    scenario: Scenario, state: State, body_names: list[str], of_scene: Sequence[Finding] = ()
-) -> list[Finding]:
-    """Those of `findings`, and those that take a while to find."""
-    names = dict(enumerate(body_names))
-    at_once = findings(scenario, state, body_names, of_scene)
-    slow = [*_detached(scenario, state, names), *narrow_pits(scenario, state, body_names)]
+def thorough_findings(sliding: Sliding, of_scene: Sequence[Finding] = ()) -> list[Finding]:
+    """Those of `findings`, and those that take a while to find, of a scene as it starts."""
+    scenario, state, names = sliding.scenario, sliding.state, sliding.names
+    at_once = findings(scenario, state, names, of_scene)
+    slow = [*_detached(scenario, state, dict(enumerate(names))), *narrow_pits(sliding)]
     return [*at_once, *slow]
 
 

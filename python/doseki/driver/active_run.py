@@ -260,10 +260,10 @@ class ActiveRun:
         samples = [(gauge, times.after(simulation.time)) for gauge, times in self.gauges]
         look = self.maps.times.after(simulation.time) if self.maps else math.inf
         # Also a step that ends there but for rounding, wherever bursts end.
-        row = min(self.rows.after(simulation.time), self.scenario.time_max)
-        row *= 1 - 0.5 * OutputTimes.SAME
+        next_row = min(self.rows.after(simulation.time), self.scenario.time_max)
+        next_row *= 1 - 0.5 * OutputTimes.SAME
         started, processor, first = time.perf_counter(), time.process_time(), simulation.steps
-        pause = min(limit, pause, row)
+        pause = min(limit, pause, next_row)
         if self.watch is not None:
             pause = min(pause, self.watch.next_time)
             steps = min(steps, self.watch.steps_left(simulation.steps) or steps)
@@ -279,7 +279,7 @@ class ActiveRun:
                 self.record_gauge(gauge)
         if self.maps and self.outputs.is_due(simulation.time, look):
             self.maps.look(simulation)
-        if simulation.time >= row:
+        if simulation.time >= next_row:
             self.record_history()
         return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))
 

@@ -104,7 +104,7 @@ GRAIN_FIELDS = (
     ParticleField("mass", "Mass", "", "kg", "scalar", "mass; in 2-D per metre of thickness"),
     ParticleField("contacts", "Contacts", "", "", "scalar", "number of bodies it touches", "int32"),
     ParticleField("overlap", "Overlap", "", "", "scalar", "largest overlap over the diameter"),
-    ParticleField("removed", "Removed", "", "", "scalar", "1: is no more", "int32"),
+    ParticleField("removed", "Removed", "", "", "scalar", "1: has left or is all dust", "int32"),
     ParticleField("body", "Body", "", "", "scalar", "index of the named body", "int32"),
     ParticleField(
         "parent",

@@ -68,7 +68,8 @@ def write_report(
     pictures, album = _pictures(run, room)
     notes += album.notes
     if album.shrunk and album.widest < WIDTHS[0]:
-        notes.append(f"{album.shrunk} pictures are shown {album.widest} pixels wide.")
+        some = "1 picture is" if album.shrunk == 1 else f"{album.shrunk} pictures are"
+        notes.append(f"{some} shown {album.widest} pixels wide.")
     after = [*texts[:2], *pictures, *texts[2:]]
     rest = len(page("", [before, after], Scene({})).encode("utf-8"))
     scene, note = _scene(run, size_mb * MB - rest - SPARE, terrain)

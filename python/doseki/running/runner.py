@@ -26,6 +26,7 @@ from ..geodata.ground import write_ground
 from ..record.beginning import check_free
 from ..record.reader import Run, load
 from ..record.writer import Recorder
+from ..scenario.gauges.loads.approach import Approach
 from ..scenario.model import Scenario
 from ..scene.kinds.release import released_volumes
 from ..solver.build import load_core
@@ -116,11 +117,12 @@ def _warnings(run: ActiveRun) -> Iterator[str]:
     yield from run.beginning.warnings
     if run.maps:
         yield from [*sentences(run.maps.findings), *run.maps.remarks]
-    yield from run.ranks.on_root(lambda: _of_gauges(run.folder.path))
+    if any(isinstance(gauge, Approach) for gauge in run.scenario.gauge.values()):
+        yield from run.ranks.on_root(lambda: _of_gauges(run.folder.path))
 
 
 def _of_gauges(directory: Path) -> list[str]:
-    """What the record of a run says of its gauges; what cannot be read harms no run."""
+    """What the record of a run says of its sections; what cannot be read harms no run."""
     try:
         return sentences(sections_turned_round(load(directory)))
     except (Exception, Interrupted) as error:

@@ -14,7 +14,7 @@ from ..geodata.crs import MapScale, map_scale
 from ..geodata.errors import GeodataError
 from ..geodata.ground import Profile
 from ..geodata.raster import Raster, read_raster
-from .islands import Islands, islands_of
+from .islands import MAX_CELLS, Islands, islands_of
 from .particle_files.columns_csv import numbers_in, read_csv_columns
 from .tables.terrain.terrain import Terrain
 from .values.toml_source import Where
@@ -39,7 +39,8 @@ class Bed:
         unknown: the same shape, 1 at such nodes.
         raster: 3-D: the map as it is used, after window, resampling and smoothing; in 2-D None.
         scale: how long a metre is on the map, where that is known.
-        islands: cells of the map, before it is resampled, that look like holes written as a number.
+        as_read: the map before it is resampled and smoothed, in 3-D and of a section, unless it is
+            very large.
 
     """
 
@@ -49,7 +50,12 @@ class Bed:
     unknown: np.ndarray
     raster: Raster | None = None
     scale: MapScale | None = None
-    islands: Islands | None = None
+    as_read: Raster | None = None
+
+    @cached_property
+    def islands(self) -> Islands | None:
+        """Cells of the map as it was read that look like holes written as a number."""
+        return None if self.as_read is None else islands_of(self.as_read)
 
     @cached_property
     def table(self) -> dict[str, object]:
@@ -100,20 +106,20 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        raster = _windowed(_with_heights(path, _read(path, where)), terrain)
-        islands = islands_of(raster)
-        raster = _remade(raster, terrain)
+        as_read = _windowed(_with_heights(path, _read(path, where)), terrain)
+        raster = _remade(as_read, terrain)
+        kept = as_read if as_read.values.size <= MAX_CELLS else None
     except GeodataError as error:
         raise where.error(("terrain",), f"terrain: {error}") from None
     if dim == 3:
-        return replace(_bed_of_raster(path, raster, where), islands=islands)
+        return replace(_bed_of_raster(path, raster, where), as_read=kept)
     if terrain.section is None:
         raise where.error(
             ("terrain",),
             "terrain.section is missing: a 2-D run cuts a grid along a line, [[x, y], [x, y]]; "
             "or give a CSV file with columns x and z",
         )
-    return replace(_bed_of_section(path, raster, terrain, dp, where), islands=islands)
+    return replace(_bed_of_section(path, raster, terrain, dp, where), as_read=kept)
 
 
 def _read(path: Path, where: Where) -> Raster:

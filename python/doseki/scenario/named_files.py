@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import UserError
 from ..util.input_file import InputFile, input_file
 from .values.toml_source import KeyPath, dotted
 
@@ -34,11 +36,11 @@ class NamedFile:
 def read_in_full(named: Mapping[KeyPath, Sequence[Path]]) -> list[InputFile]:
     """Files with the content that they have now, but for those that are large and are copied."""
     return [
-        input_file(each)
+        each
         for keys, paths in named.items()
         if keys[0] not in LARGE
         for path in paths
-        for each in _with_those_beside(path)
+        for each in _with_those_beside(path, {})
     ]
 
 
@@ -47,16 +49,23 @@ def named_files(
 ) -> list[NamedFile]:
     """All files by key; `known` are those that were looked at before, by their places."""
     return [
-        NamedFile(dotted(keys), known.get(each.resolve()) or input_file(each))
+        NamedFile(dotted(keys), each)
         for keys, paths in named.items()
         for path in paths
-        for each in _with_those_beside(path)
+        for each in _with_those_beside(path, known)
     ]
 
 
-def _with_those_beside(path: Path) -> Iterable[Path]:
-    """A file and those that belong to it, as far as they are there."""
+def _with_those_beside(path: Path, known: Mapping[Path, InputFile]) -> Iterator[InputFile]:
+    """A file and those that belong to it, as far as they are there and can be read.
+
+    Raises UserError where the file itself cannot.
+    """
+    yield known.get(path.resolve()) or input_file(path)
     endings = BESIDE.get(path.suffix.lower(), ())
     beside = [path.with_suffix(ending) for ending in endings]
     beside += [path.with_name(path.name + ending) for ending in ADDED if endings]
-    return [path, *(each for each in beside if each.is_file())]
+    for each in beside:
+        if each.is_file():
+            with suppress(UserError):
+                yield known.get(each.resolve()) or input_file(each)

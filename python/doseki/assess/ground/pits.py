@@ -9,11 +9,9 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from ...scenario.bed import Bed
-from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding, place_text
-from ..estimates import State
-from .sliding import Swept, swept_ground
+from .sliding import Sliding, Swept
 
 DEEP = 1.2  # spacings below the middle of neighbours on opposite sides
 SHARP = 0.5  # curvature times dp; a radius of two spacings
@@ -38,9 +36,9 @@ class NarrowPits(Finding):
         )
 
 
-def narrow_pits(scenario: Scenario, state: State, names: list[str]) -> Iterator[Finding]:
+def narrow_pits(sliding: Sliding) -> Iterator[Finding]:
     """Pits of the ground that a flow may come over."""
-    bed = scenario.bed
+    scenario, bed = sliding.scenario, sliding.scenario.bed
     if bed is None or scenario.is_dry:
         return
     depth = np.where(binary_dilation(bed.unknown, iterations=2), 0.0, pit_depths(bed.heights))
@@ -48,7 +46,7 @@ def narrow_pits(scenario: Scenario, state: State, names: list[str]) -> Iterator[
     nodes = np.argwhere(sharp & (depth > DEEP * scenario.dp))
     if not len(nodes):
         return
-    swept = swept_ground(scenario, state, names)
+    swept = sliding.swept
     if swept is None:
         return
     nodes = nodes[_is_near(_places(bed, nodes), swept)]

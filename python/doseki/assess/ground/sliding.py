@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +32,20 @@ class Swept:
     def more(self, time: np.ndarray) -> np.ndarray:
         """Cells (n,) beyond those of the start at times, s."""
         return np.maximum(0.0, np.interp(time, self.times, self.covered) - self.covered[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Sliding:
+    """A scene as it starts, and the ground that its fluid may come over."""
+
+    scenario: Scenario
+    state: State
+    names: list[str]  # of bodies
+
+    @cached_property
+    def swept(self) -> Swept | None:
+        """That ground, found when it is first asked for."""
+        return swept_ground(self.scenario, self.state, self.names)
 
 
 class _Source(NamedTuple):
@@ -75,7 +90,7 @@ def swept_ground(scenario: Scenario, state: State, names: list[str]) -> Swept | 
     points = _joined([_launched(scenario, source, cell) for source in sources])
     times, cells = _slide(scenario, ground, points, cell)
     since = np.repeat(times, [len(each) for each in cells])
-    place, first = np.unique(np.vstack(cells), axis=0, return_index=True)
+    place, first, _ = _each_once(np.vstack(cells))
     covered = np.searchsorted(np.sort(since[first]), times, "right")
     return Swept((place + 0.5) * cell, cell, np.array(times), covered)
 
@@ -112,18 +127,32 @@ def _above(ground: Ground, x: np.ndarray, velocity: np.ndarray, fluid: Material)
 
 def _cell(place: np.ndarray, dp: float) -> float:
     """The side of cells of which points start from MAX_CELLS or fewer, m."""
-    side = dp
-    while len(np.unique(np.floor(place / side), axis=0)) > MAX_CELLS:
-        side *= 2
+    columns, side = _each_once(_numbers(place, dp))[0], dp
+    while len(columns) > MAX_CELLS:
+        columns, side = _each_once(columns // 2)[0], 2 * side
     return side
+
+
+def _numbers(place: np.ndarray, cell: float) -> np.ndarray:
+    """The cells that places (n, dim - 1) are in, in numbers of cells from 0."""
+    return np.floor(place / cell).astype(np.int64)
+
+
+def _each_once(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cells (n, dim - 1) in order, each once, the first row of each, and which of them rows are."""
+    order = np.lexsort(cells.T[::-1])
+    in_order = cells[order]
+    is_new = np.ones(len(cells), bool)
+    is_new[1:] = (in_order[1:] != in_order[:-1]).any(axis=1)
+    of_it = np.empty(len(cells), np.int64)
+    of_it[order] = np.cumsum(is_new) - 1
+    return in_order[is_new], order[is_new], of_it
 
 
 def _launched(scenario: Scenario, source: _Source, cell: float) -> _Points:
     """Points that set out from each column of a fluid."""
-    columns, of_it, count = np.unique(
-        np.floor(source.place / cell), axis=0, return_inverse=True, return_counts=True
-    )
-    of_it = of_it.ravel()
+    columns, _, of_it = _each_once(_numbers(source.place, cell))
+    count = np.bincount(of_it)
     depth = np.zeros(len(columns))
     np.maximum.at(depth, of_it, source.height + 0.5 * scenario.dp)
     mean = [np.bincount(of_it, v) / count for v in source.velocity.T]
@@ -194,7 +223,7 @@ def _slide(
 
 def _cells(points: _Points, cell: float) -> np.ndarray:
     """The cells that points are in, in numbers of cells from 0, each once."""
-    return np.asarray(np.unique(np.floor(points.place / cell), axis=0))
+    return _each_once(_numbers(points.place, cell))[0]
 
 
 def _stepped(gravity: np.ndarray, ground: Ground, points: _Points, dt: float) -> _Points:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -48,10 +50,12 @@ def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
     height = TALL if len(shown) <= 3 else LOW
     figure, grid = chart_grid(len(shown), 1, (7.0, height), title)
     time = 0.5 * (record["time"][1:] + record["time"][:-1])  # of means
+    sizes = []
     for axes, column in zip(grid[:, 0], shown, strict=True):
         curves = {"total": record[column][1:]}
         curves |= {part: record[f"{part}_{column}"][1:] for part in PARTS}
         draw_curves(axes, time, curves)
+        sizes.append(_size(curves.values()))
         seen = axes.get_ylim()  # single steps of a collision would squash the means
         steps = record["peak_time"][1:], record[f"peak_{column}"][1:]
         axes.plot(*steps, ".", color="0.6", markersize=2, zorder=0, label="largest step")
@@ -59,20 +63,25 @@ def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
         axes.set_ylabel(f"{column.replace('_', ' ')} ({record.units[column]})")
     for kind in ("force", "moment"):
         alike = [k for k, column in enumerate(shown) if column.startswith(kind)]
-        _share_scale([grid[k, 0] for k in alike])
+        _share_scale([grid[k, 0] for k in alike], [sizes[k] for k in alike])
     grid[-1, 0].set_xlabel("time (s)")
     figure_legend(figure, grid[:1, 0])
     return figure
 
 
-def _share_scale(panels: list[Axes]) -> None:
-    """Draw what is nothing but rounding on the scale of the largest component."""
-    limits = [axes.get_ylim() for axes in panels]
-    sizes = [max(map(abs, each)) for each in limits]
+def _size(curves: Iterable[np.ndarray]) -> float:
+    """The largest size of what is known of some curves."""
+    values = np.concatenate(list(curves))
+    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
+
+
+def _share_scale(panels: list[Axes], sizes: list[float]) -> None:
+    """Draw what is nothing but rounding on the scale of the largest component, and zero in it."""
     largest = int(np.argmax(sizes))
+    low, high = panels[largest].get_ylim()
     for axes, size in zip(panels, sizes, strict=True):
         if size < ROUNDING * sizes[largest]:
-            axes.set_ylim(limits[largest])
+            axes.set_ylim(min(low, 0.0), max(high, 0.0))
 
 
 def _draw_panels(record: GaugeRecord, gauge: Panels, title: str) -> Figure:

@@ -28,9 +28,9 @@ class Runout:
         distance: between them on the map, m.
         angle: of the line from top to toe, degrees (Heim's Fahrboeschung).
 
-    The last four are None where the run has no terrain, or nothing flows. There is no toe, distance
-    or angle while the flow reaches no farther from the top than it did when it was first seen, and
-    no angle where the toe is as high as the top, or higher.
+    The last four are None where the run has no terrain, or nothing flows. Toe, distance and angle
+    are also None while the flow reaches less than a cell farther from the top than it did when it
+    was first seen, and the angle where the toe is as high as the top, or higher.
 
     """
 

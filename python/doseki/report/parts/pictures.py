@@ -9,7 +9,6 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
 from PIL import Image
 
 from ...errors import UserError, one_line
@@ -52,8 +51,13 @@ class Album:
         Maps and loads stay as long as they can; of these, as of the others, small ones do.
         """
         order = sorted(range(len(self.sizes)), key=lambda k: (not self.matters[k], self.sizes[k]))
-        used = np.cumsum([self.sizes[k] for k in order])
-        return frozenset(k for k, together in zip(order, used, strict=True) if together > room)
+        left_out, used = set(), 0
+        for k in order:
+            if used + self.sizes[k] > room:
+                left_out.add(k)
+            else:
+                used += self.sizes[k]
+        return frozenset(left_out)
 
     def picture(self, data: bytes, name: str, matters: bool = False) -> Markup | None:
         """A PNG as an element; None, and a note, where it is none or there is no room for it."""

@@ -26,6 +26,23 @@ CONSTANTS = {"pi": math.pi}
 Function = Callable[..., Any]
 Functions = Mapping[str, Function]
 
+
+class ExpressionError(ValueError):
+    """An expression that cannot be evaluated; the message says why, in words."""
+
+
+def _of_whole_digits(function: Function) -> Function:
+    """A function that rounds, with its number of digits as an integer."""
+
+    def rounded(value: Any, *digits: Any) -> Any:
+        for each in digits:
+            if isinstance(each, np.ndarray) or not float(each).is_integer():
+                raise ExpressionError("the second value of round, how many digits, is not whole")
+        return function(value, *map(int, digits))
+
+    return rounded
+
+
 SCALAR_FUNCTIONS: dict[str, Function] = {
     "sqrt": math.sqrt,
     "sin": math.sin,
@@ -33,7 +50,7 @@ SCALAR_FUNCTIONS: dict[str, Function] = {
     "tan": math.tan,
     "exp": math.exp,
     "radians": math.radians,
-    "round": round,
+    "round": _of_whole_digits(round),
     "floor": math.floor,
     "ceil": math.ceil,
     "abs": abs,
@@ -59,7 +76,7 @@ ARRAY_FUNCTIONS: dict[str, Function] = SCALAR_FUNCTIONS | {
     "tan": _elementwise(np.tan),
     "exp": _elementwise(np.exp),
     "radians": _elementwise(np.radians),
-    "round": np.round,
+    "round": _of_whole_digits(np.round),
     "floor": _elementwise(np.floor),
     "ceil": _elementwise(np.ceil),
     "abs": _elementwise(np.abs),
@@ -67,10 +84,6 @@ ARRAY_FUNCTIONS: dict[str, Function] = SCALAR_FUNCTIONS | {
     "max": _of_several(np.maximum),
 }
 RESERVED_NAMES = {*POSITION_NAMES, *CONSTANTS, *SCALAR_FUNCTIONS}
-
-
-class ExpressionError(ValueError):
-    """An expression that cannot be evaluated; the message says why, in words."""
 
 
 def is_expression(value: object) -> bool:
@@ -99,7 +112,8 @@ def evaluate_at(text: str, names: Mapping[str, Any], position: np.ndarray) -> np
     if depends_on(_parse(text), POSITION_NAMES):
         raise ExpressionError(
             f'"{text}" chooses by x, y or z, which are many: multiply by conditions, as in'
-            " (x > 0)*2 + (x <= 0)*3"
+            " (x > 0)*2 + (x <= 0)*3; of two conditions write a product for both, max(...) for"
+            " one of them, 1 - (...) for not"
         )
     axes = dict(zip(POSITION_NAMES, position.T, strict=False))
     value = _evaluate(text, {**names, **axes}, ARRAY_FUNCTIONS)
@@ -165,6 +179,8 @@ def _told(name: str, function: Function) -> Function:
         _check_numbers(name, values)
         try:
             return function(*values)
+        except ExpressionError:
+            raise
         except (ValueError, OverflowError, TypeError):
             shown = ", ".join(f"{value:g}" for value in values if not isinstance(value, np.ndarray))
             raise ValueError(f"{name}({shown}) is no finite number") from None
@@ -180,6 +196,16 @@ def _of_numbers(operation: Function, what: str = "arithmetic") -> Function:
         return operation(*operands)
 
     return checked
+
+
+def _comparison(operation: Function) -> Function:
+    """The comparison, whose results are numbers wherever those of numpy would be none."""
+
+    def compared(first: Any, second: Any) -> Any:
+        found = operation(first, second)
+        return found if isinstance(found, bool) else 1.0 * found
+
+    return compared
 
 
 def _check_numbers(what: str, values: Iterable[Any]) -> None:
@@ -205,10 +231,10 @@ OPERATORS = {
     ast.USub: _of_numbers(operator.neg),
     ast.UAdd: _of_numbers(operator.pos),
     ast.Not: operator.not_,
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: _of_numbers(operator.lt, "a comparison"),
-    ast.LtE: _of_numbers(operator.le, "a comparison"),
-    ast.Gt: _of_numbers(operator.gt, "a comparison"),
-    ast.GtE: _of_numbers(operator.ge, "a comparison"),
+    ast.Eq: _comparison(operator.eq),
+    ast.NotEq: _comparison(operator.ne),
+    ast.Lt: _of_numbers(_comparison(operator.lt), "a comparison"),
+    ast.LtE: _of_numbers(_comparison(operator.le), "a comparison"),
+    ast.Gt: _of_numbers(_comparison(operator.gt), "a comparison"),
+    ast.GtE: _of_numbers(_comparison(operator.ge), "a comparison"),
 }

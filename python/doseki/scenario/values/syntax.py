@@ -46,6 +46,12 @@ TYPED = {  # what is no Python, in the order in which it is looked for
     "?": "a choice is written `a if condition else b`",
     "!": "write `not`, and != for unequal",
 }
+KEYWORDS = "if|else|and|or|not|in|is"
+# A number before a name, but no base (0x1), no exponent (1e5) and no word of the language.
+PRODUCT = re.compile(
+    rf"(?<![\w.])(?!0[xX][\da-fA-F]|0[oObB]\d)[\d.]+(?![eE][-+]?\d)\s*"
+    rf"(?!(?:{KEYWORDS})\b)[A-Za-z_]"
+)
 ARGUMENTS = {"round": (1, 2), "min": (2, None), "max": (2, None)}  # least and most; others: 1
 
 
@@ -61,7 +67,10 @@ def complaint(tree: ast.Expression, functions: Collection[str]) -> str | None:
 
 def advice(source: str) -> str:
     """What to write in place of what cannot be read at all; "" where nothing is known."""
-    bare = re.sub("[!=<>]=", "", source)
+    bare = re.sub("'[^']*'|\"[^\"]*\"|[!=<>]=", "", source)
+    if bare.count("(") != bare.count(")"):
+        state = "closed" if bare.count("(") > bare.count(")") else "opened"
+        return f": a parenthesis is not {state}"
     for typed, hint in TYPED.items():
         if typed in bare:
             return f": it has {typed}: {hint}"
@@ -70,13 +79,13 @@ def advice(source: str) -> str:
         return ": it has = once more: whether two are equal is written =="
     if "if" in words and "else" not in words:
         return ": it has `if` without `else`: write `a if condition else b`"
-    if re.search(r"(?<![\w.])[\d.]+\s*[A-Za-df-z_]", bare):
+    if PRODUCT.search(bare):
         return ": a product is written *"
     return ""
 
 
 def depends_on(tree: ast.Expression, names: Collection[str]) -> bool:
-    """Whether one of its conditions, of which one side is chosen, depends on one of the names."""
+    """Whether it chooses by, or joins, conditions that depend on one of the names."""
     chosen = [part for node in ast.walk(tree) for part in _conditions(node)]
     return any(
         isinstance(node, ast.Name) and node.id in names
@@ -89,7 +98,9 @@ def _conditions(node: ast.AST) -> Iterator[ast.AST]:
     match node:
         case ast.IfExp():
             yield node.test
-        case ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
+        case ast.BoolOp() | ast.UnaryOp(op=ast.Not() | ast.Invert()):
+            yield node
+        case ast.BinOp(op=ast.BitAnd() | ast.BitOr()):
             yield node
         case ast.Compare() if len(node.ops) > 1:
             yield node

@@ -68,9 +68,15 @@ class HolesAsHeights(Finding):
         height = f"{self.low:g}" if self.low == self.high else f"{self.low:.4g} to {self.high:.4g}"
         return (
             f"{self.place}: {cells} at {height} m, {self.jump:.3g} m or more from all neighbours,"
-            f" as at [{place_text(self.at)}] m; if these are holes, let the file say so"
-            f" (gdal_edit -a_nodata {self.low:g} IN; .asc: a line NODATA_value {self.low:g})"
+            f" as at [{place_text(self.at)}] m; if these are holes, let the file say so{self._how}"
         )
+
+    @property
+    def _how(self) -> str:
+        if self.low != self.high:
+            return ""  # files have one number for no data
+        number = repr(self.low).removesuffix(".0")
+        return f" (gdal_edit -a_nodata {number} IN; .asc: a line NODATA_value {number})"
 
 
 @dataclass(frozen=True)

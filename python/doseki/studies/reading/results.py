@@ -154,8 +154,14 @@ class RunOut(Result):
         return RUN_OUT[self.value]
 
     def read(self, run: Run) -> float:
-        """The quantity; nan where nothing has flowed."""
-        found = (run.summary.get("runout") or {}).get(self.value)
+        """The quantity; the distance of a flow that has got no farther than its start is 0 m.
+
+        It is nan where nothing has flowed, and so is the angle of such a flow.
+        """
+        runout = run.summary.get("runout") or {}
+        found = runout.get(self.value)
+        if found is None and self.value == "distance" and runout.get("top") is not None:
+            return 0.0
         return float("nan") if found is None else float(found)
 
 
