@@ -109,30 +109,24 @@ void TotalLagrangian<D>::sum_springs(const ElasticRecords<D>& records,
         sum_over_pairs<OnThreads>(SpringTerm<D>{records}, epilogue);
 }
 
-/// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead.
+/// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead. Bonds are on
+/// the processor.
 template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
-    if (!bonds_.any()) return sum_whole_forces<OnThreads>(half_dt, take);
+    if (!bonds_.any()) return sum_whole_forces(half_dt, take);
     predict<OnThreads>(half_dt);
     sum_bonded_forces(take);
 }
 
-/// Bonds are on the processor.
 template <int D>
 void TotalLagrangian<D>::compute_accelerations(double half_dt, const Vec<double, D>& gravity) {
-    if (bonds_.any())
-        sum_internal_forces(half_dt, AcceleratePoint<D>{spans(), gravity});
-    else
-        accelerate_whole(half_dt, gravity);
+    sum_internal_forces(half_dt, AcceleratePoint<D>{spans(), gravity});
 }
 
 template <int D>
 void TotalLagrangian<D>::internal_accelerations(std::span<Vec<double, D>> accelerations) {
-    if (bonds_.any())
-        sum_internal_forces(0.0, InternalAcceleration<D>{spans(), accelerations});
-    else
-        accelerate_whole_internally(accelerations);
+    sum_internal_forces(0.0, InternalAcceleration<D>{spans(), accelerations});
 }
 
 template <int D>

@@ -107,14 +107,4 @@ void TotalLagrangian<D>::predict(double half_dt) {
     Where::for_each(which.size(), PredictPoint<D>{spans(), which, half_dt});
 }
 
-/// Calls take(p, force per volume at rest), for velocities predicted half_dt ahead.
-template <int D>
-template <class Where, class F>
-void TotalLagrangian<D>::sum_whole_forces(double half_dt, const F& take) {
-    predict<Where>(half_dt);
-    sum_over_pairs<Where>(DeformationTerm<D>{records()}, UpdatePoint<D>{spans()});
-    if (springs_damp_) sum_over_pairs<Where>(SpringTerm<D>{records()}, DampSprings<D>{spans()});
-    sum_over_pairs<Where>(InternalForceTerm<D>{records()}, take);
-}
-
 }  // namespace doseki

@@ -97,14 +97,15 @@ double TotalLagrangian<D>::drift(double dt) {
     return dt * sqrt(bulk::reduce(which.size(), 0.0, maximum, DriftPoint<D>{spans(), which, dt}));
 }
 
+/// Of bodies without bonds, see sum_internal_forces.
 template <int D>
-void TotalLagrangian<D>::accelerate_whole(double half_dt, const Vec<double, D>& gravity) {
-    sum_whole_forces<WhereParticlesAre>(half_dt, AcceleratePoint<D>{spans(), gravity});
-}
-
-template <int D>
-void TotalLagrangian<D>::accelerate_whole_internally(std::span<Vec<double, D>> accelerations) {
-    sum_whole_forces<WhereParticlesAre>(0.0, InternalAcceleration<D>{spans(), accelerations});
+template <class F>
+void TotalLagrangian<D>::sum_whole_forces(double half_dt, const F& take) {
+    using Where = WhereParticlesAre;
+    predict<Where>(half_dt);
+    sum_over_pairs<Where>(DeformationTerm<D>{records()}, UpdatePoint<D>{spans()});
+    if (springs_damp_) sum_over_pairs<Where>(SpringTerm<D>{records()}, DampSprings<D>{spans()});
+    sum_over_pairs<Where>(InternalForceTerm<D>{records()}, take);
 }
 
 /// Damping sees the velocities that the last accelerations predict for the middle of the step; its
@@ -124,10 +125,10 @@ template void TotalLagrangian<2>::follow(std::span<const Vec<double, 2>>, double
 template void TotalLagrangian<3>::follow(std::span<const Vec<double, 3>>, double);
 template double TotalLagrangian<2>::drift(double);
 template double TotalLagrangian<3>::drift(double);
-template void TotalLagrangian<2>::accelerate_whole(double, const Vec<double, 2>&);
-template void TotalLagrangian<3>::accelerate_whole(double, const Vec<double, 3>&);
-template void TotalLagrangian<2>::accelerate_whole_internally(std::span<Vec<double, 2>>);
-template void TotalLagrangian<3>::accelerate_whole_internally(std::span<Vec<double, 3>>);
+template void TotalLagrangian<2>::sum_whole_forces(double, const AcceleratePoint<2>&);
+template void TotalLagrangian<3>::sum_whole_forces(double, const AcceleratePoint<3>&);
+template void TotalLagrangian<2>::sum_whole_forces(double, const InternalAcceleration<2>&);
+template void TotalLagrangian<3>::sum_whole_forces(double, const InternalAcceleration<3>&);
 template BodyStep<2> TotalLagrangian<2>::push_points(double, const Vec<double, 2>&);
 template BodyStep<3> TotalLagrangian<3>::push_points(double, const Vec<double, 3>&);
 

@@ -311,10 +311,8 @@ private:
     void sum_over_pairs(const Term& term, const Epilogue& epilogue) const;
     template <class Where>
     void predict(double half_dt);
-    template <class Where, class F>
+    template <class F>
     void sum_whole_forces(double half_dt, const F& take);
-    void accelerate_whole(double half_dt, const Vec<double, D>& gravity);
-    void accelerate_whole_internally(std::span<Vec<double, D>> accelerations);
     BodyStep<D> push_points(double dt, const Vec<double, D>& gravity);
 
     // Of bodies that may break: bodies/deformable/breaking.hpp.

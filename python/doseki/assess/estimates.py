@@ -45,7 +45,8 @@ def flow_depths(scenario: Scenario, state: State, names: dict[int, str]) -> dict
 
 def step_ends(scenario: Scenario) -> list[float]:
     """Times between what ends a step exactly, s: outputs, and rows of the history."""
-    return [*scenario.sampled_intervals, *[scenario.time_history][: scenario.rows_end_steps]]
+    rows = [scenario.time_history] if scenario.rows_end_steps else []
+    return [*scenario.sampled_intervals, *rows]
 
 
 def wave_speed(material: Material) -> float:
