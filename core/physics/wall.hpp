@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -173,16 +174,29 @@ struct NarrowGap {
     }
 };
 
-/// What the first row of a face sees of another one when nothing fits between them any more: a gap
-/// of one spacing.
-template <class Kernel, int D>
-double full_cover(double dp, double support) {
-    return weight_of_row<Kernel, D>(dp, support, 2.0 * dp);
-}
-/// The same of the row below, which sees no farther.
-template <class Kernel, int D>
-double full_cover_below(double dp, double support) {
-    return weight_of_row<Kernel, D>(dp, support, 0.92 * support);
-}
+/// What a wall particle sees of a plane face that goes on all around, by the distance of the first
+/// row of that face, c(d) of Eq. (174). No two rows are nearer than one spacing, but for what
+/// contacts yield.
+struct FullCover {
+    static constexpr int steps = 16;
+    double nearest = 0.0, step = 1.0;    // [m]
+    double farthest = 0.0, below = 0.0;  // of the first row, of that below, which sees no farther
+    std::array<double, steps + 1> weight{};
+
+    DOSEKI_DEVICE_FN double at(double distance) const {
+        const double x = std::clamp((distance - nearest) / step, 0.0, double(steps));
+        const int k = std::min(static_cast<int>(x), steps - 1);
+        return weight[k] + (x - k) * (weight[k + 1] - weight[k]);
+    }
+
+    template <class Kernel, int D>
+    static FullCover of(double dp, double support) {
+        FullCover cover{dp, 0.0, 2.0 * dp, 0.92 * support, {}};
+        cover.step = (std::max(cover.farthest, cover.below) - dp) / steps;
+        for (int k = 0; k <= steps; ++k)
+            cover.weight[k] = weight_of_row<Kernel, D>(dp, support, dp + k * cover.step);
+        return cover;
+    }
+};
 
 }  // namespace doseki

@@ -66,7 +66,7 @@ struct WallAccumulators {
     Vec<T, D> velocity;  // against the wall
     Vec<T, D> area;      // that it sees of the fluid, outwards, over the wall particle's volume
     // Over the faces of other bodies around its own:
-    Vec<T, D> film_force, face_velocity;
+    Vec<T, D> film_force, face_velocity, to_face;
     T cover{}, film_pressure{}, film_density{};
 
     template <class F, class... Self>
@@ -74,8 +74,8 @@ struct WallAccumulators {
         f(self.force...), f(self.moment...), f(self.weight...), f(self.height...);
         f(self.pressure...), f(self.density...), f(self.viscosity...);
         f(self.velocity...), f(self.area...), f(self.film_force...);
-        f(self.face_velocity...), f(self.cover...), f(self.film_pressure...),
-            f(self.film_density...);
+        f(self.face_velocity...), f(self.to_face...), f(self.cover...);
+        f(self.film_pressure...), f(self.film_density...);
     }
 };
 
@@ -263,6 +263,7 @@ DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& grav
     for (int a = 0; a < D; ++a) {
         head += v.film_density * number<T>(gravity[a]) * pair.r_ij[a];
         sums.face_velocity[a] += share * v.v[a];
+        sums.to_face[a] -= share * pair.r_ij[a];
     }
     sums.cover += share;
     sums.film_pressure += share * head;

@@ -92,7 +92,7 @@ struct ResolvedModel {
     FlowConstants constants{};
     double lattice_concentration = 1.0, own_concentration = 0.0;  // of that, a particle's own
     double own_gradient_factor = 0.0;                             // of a particle with itself
-    double full_cover = 1.0, full_cover_below = 1.0;              // see physics/wall.hpp
+    FullCover full_cover;
     NarrowGap narrow_gap;
     std::array<double, D + 1> spacing_power{1.0};  // dp^k
 
@@ -115,11 +115,8 @@ struct ResolvedModel {
                                               : lattice_sums<WendlandC2<D>, D>(flow.dp, support);
         lattice_concentration = lattice.concentration;
         own_concentration = lattice.own_share;
-        full_cover = flow.wide_kernel ? doseki::full_cover<WendlandC6<D>, D>(flow.dp, support)
-                                      : doseki::full_cover<WendlandC2<D>, D>(flow.dp, support);
-        full_cover_below = flow.wide_kernel
-                               ? doseki::full_cover_below<WendlandC6<D>, D>(flow.dp, support)
-                               : doseki::full_cover_below<WendlandC2<D>, D>(flow.dp, support);
+        full_cover = flow.wide_kernel ? FullCover::of<WendlandC6<D>, D>(flow.dp, support)
+                                      : FullCover::of<WendlandC2<D>, D>(flow.dp, support);
         narrow_gap = flow.wide_kernel ? NarrowGap::of<WendlandC6<D>, D>(flow.dp, support)
                                       : NarrowGap::of<WendlandC2<D>, D>(flow.dp, support);
         constants.gradient_scale = 1.0 / lattice.moment;

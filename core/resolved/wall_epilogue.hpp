@@ -73,6 +73,9 @@ private:
     /// longer the steps are.
     static constexpr double film_inertia = 0.5;
 
+    /// Share of what it would see of a plane face that a face sees at least beside one that curves.
+    static constexpr double curved = 0.9;
+
     DOSEKI_DEVICE_FN double volume(std::size_t p) const { return records_[p - first_wall_].volume; }
 
     /// The film goes towards the pressure of the fluid and of the faces around it as they were a
@@ -85,12 +88,12 @@ private:
         wall.film_density[p] = sums.weight > 0.0 ? sums.density / sums.weight : 0.0;
         wall.film_traction[p] = {};
         const bool dry = sums.weight == 0.0 && sums.film_density == 0.0 && before == 0.0;
-        wall.film_cover[p] = dry ? 0.0 : std::min(1.0, sums.cover / full_cover(p));
+        wall.film_cover[p] = dry ? 0.0 : std::min(1.0, sums.cover / least_cover(p));
         if (sums.cover == 0.0) {
             wall.film_change[p] = 0.0;
             return {};
         }
-        const double weight = std::max(sums.weight + sums.cover, full_cover(p));
+        const double weight = with_air(p, sums);
         const double mean = (sums.pressure + sums.film_pressure) / weight;
         wall.film_change[p] = mean - before + film_inertia * wall.film_change[p];
         wall.pressure[p] = before + wall.film_change[p];
@@ -101,15 +104,79 @@ private:
 
     DOSEKI_DEVICE_FN Vec<double, D> film_traction(std::size_t p,
                                                   const WallAccumulators<double, D>& sums) const {
-        const Vec<double, D> hidden = hidden_area(p, sums);
+        const Vec<double, D> hidden = without_air(p, hidden_area(p, sums), sums);
         const double size = std::sqrt(dot(hidden, hidden));
         if (size == 0.0) return {};
         const double pressure = pressure_at_surface(p, (1.0 / size) * hidden, sums);
-        return (-pressure / std::max(sums.cover, full_cover(p))) * hidden;
+        return (-pressure / std::max(sums.cover, least_cover(p))) * hidden;
     }
 
-    DOSEKI_DEVICE_FN double full_cover(std::size_t p) const {
-        return state_.wall.face[p] > Face::none ? model_.full_cover : model_.full_cover_below;
+    DOSEKI_DEVICE_FN double farthest(std::size_t p) const {
+        const FullCover& full = model_.full_cover;
+        return state_.wall.face[p] > Face::none ? full.farthest : full.below;
+    }
+    DOSEKI_DEVICE_FN double least_cover(std::size_t p) const {
+        return model_.full_cover.at(farthest(p));
+    }
+    /// Eq. (174): what a face sees of water, other faces and air. That of a body knows air by what
+    /// is missing of a face that goes on all around, at the distance of the one that is there; one
+    /// that curves lacks some as well. At edges half of what is around is on the other side.
+    DOSEKI_DEVICE_FN double with_air(std::size_t p, const WallAccumulators<double, D>& sums) const {
+        const double seen = sums.weight + sums.cover, least = std::max(seen, least_cover(p));
+        if (state_.wall.face[p] < Face::first_body) return least;
+        const double distance = std::min(to_face(p, sums), farthest(p)),
+                     share = std::min(1.0, seen / (curved * model_.full_cover.at(distance))),
+                     square = share * share;
+        return std::max(least, 2.0 * seen / (square * square * (1.0 + met_beyond_edges(p, sums))));
+    }
+
+    /// How far the other face is in front of this one, at edges of that which it is in front of.
+    DOSEKI_DEVICE_FN double to_face(std::size_t p, const WallAccumulators<double, D>& sums) const {
+        const WallState<D>& wall = state_.wall;
+        double height = dot(wall.normal[p], sums.to_face);
+        for (int k = 0; k < D; ++k)
+            height = std::max(height, dot(row(wall.edge_normals[p], k), sums.to_face));
+        return height / sums.cover;
+    }
+
+    /// The least of `met` of the faces at an edge.
+    DOSEKI_DEVICE_FN double met_beyond_edges(std::size_t p,
+                                             const WallAccumulators<double, D>& sums) const {
+        const WallState<D>& wall = state_.wall;
+        double least = 1.0;
+        for (int k = 0; k < D; ++k)
+            if (wall.edge_depths[p][k] < model_.options.flow.dp)
+                least = std::min(least, met(p, row(wall.edge_normals[p], k), sums));
+        return least;
+    }
+
+    /// What is hidden of a face that meets nothing has air in front of it: below its foot it sees
+    /// the face on which its body stands.
+    DOSEKI_DEVICE_FN Vec<double, D> without_air(std::size_t p, const Vec<double, D>& hidden,
+                                                const WallAccumulators<double, D>& sums) const {
+        const WallState<D>& wall = state_.wall;
+        const Vec<double, D> nearest = row(wall.edge_normals[p], 0);
+        if (dot(nearest, nearest) == 0.0) return met(p, wall.normal[p], sums) * hidden;
+        Vec<double, D> pressed = hidden;
+        for (int k = 0; k < D; ++k) {
+            const Vec<double, D> n = row(wall.edge_normals[p], k);
+            const double air = 1.0 - met(p, n, sums);
+            pressed = pressed - (air * std::max(0.0, dot(hidden, n))) * n;
+        }
+        return pressed;
+    }
+
+    /// Eq. (175): whether the face with the normal n meets water or another face, from 0, air,
+    /// to 1.
+    DOSEKI_DEVICE_FN double met(std::size_t p, const Vec<double, D>& n,
+                                const WallAccumulators<double, D>& sums) const {
+        const double all = dot(state_.wall.area[p], n);
+        if (!(all > 0.0)) return 1.0;
+        const double little = 0.5 * farthest(p) * least_cover(p),
+                     lean = 0.01 * std::sqrt(dot(sums.to_face, sums.to_face)),
+                     water = 3.0 * volume(p) * dot(sums.area, n) / all,
+                     face = (dot(sums.to_face, n) - lean) / little;
+        return std::min(1.0, std::max(0.0, water) + std::max(0.0, face));
     }
 
     /// That of the film where it presses against the direction n. Faces that part stretch the film
