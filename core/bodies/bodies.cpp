@@ -115,9 +115,9 @@ void Bodies<D>::renumber_contacts(const Fragments<D>& fragments, std::size_t sol
     find_contacts();
 }
 
-/// Pairs that could not touch before, since both were of one body or one is new, have the overlaps
-/// that they are born with at rest, Eq. (115). In 2-D crack faces fit each other, but parts that
-/// hung together at a corner may have turned into each other.
+/// Pairs that could not touch before, since both were of one body, one is new or one was clamped in
+/// what the other is of, have the overlaps that they are born with at rest, Eq. (115). In 2-D crack
+/// faces fit each other, but parts that hung together at a corner may have turned into each other.
 template <int D>
 void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first_dust) {
     Array<std::uint8_t> is_old(contact_.points.size(), 0);
@@ -129,9 +129,13 @@ void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first
         if (now >= 0) is_old[static_cast<std::size_t>(now)] = 1;
     }
     const Array<std::int32_t> was = bodies_before(fragments, first_dust);
-    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+    auto is_part = [&was](std::int32_t body) {
+        return was[static_cast<std::size_t>(body)] != body;
+    };
+    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair, bool touches) {
         if (!is_old[pair.first()] || (!pair.with_shape() && !is_old[pair.second()])) return true;
         const auto [a, b] = contact_.bodies(pair);
+        if (!touches && (is_part(a) || is_part(b))) return true;
         return was[static_cast<std::size_t>(a)] == was[static_cast<std::size_t>(b)];
     });
 }
@@ -146,7 +150,7 @@ void Bodies<D>::rest_in_holders() {
         if (deformable.solids().clamped(p))
             is_held[rigid.size() + static_cast<std::size_t>(deformable.body_of_point(p))] = 1;
     if (std::ranges::find(is_held, 1) == is_held.end()) return;
-    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair) {
+    contacts_.accept_overlaps(contact_, [&](const ContactPair& pair, bool) {
         const auto [first, second] = contact_.bodies(pair);
         const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
         return (is_held[a] && holds[b]) || (holds[a] && is_held[b]);

@@ -239,7 +239,8 @@ void Contacts<D>::accept_overlaps(ContactBodies<D>& bodies, const NewPair& is_ne
     const ContactRows<D> all = rows(bodies);
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const std::size_t rows = all.run_from(k);
-        if (rows == 0 || !is_new(pairs_[k])) continue;
+        const bool touches = dot(normals_[k], normals_[k]) > 0.0;
+        if (rows == 0 || !is_new(pairs_[k], touches)) continue;
         const Overlaps<D> overlaps = all.overlaps(k);
         for (std::size_t n = 0; n < std::min(overlaps.size(), rows); ++n) {
             pushes_[k + n].touches = false, contacts_[k + n].overlap = 0.0;

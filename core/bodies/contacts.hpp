@@ -37,7 +37,8 @@ public:
     void renumber(const Array<std::int32_t>& point, const Array<std::int32_t>& shape);
 
     /// Lets the overlaps that pairs have now press no more than before, Eq. (115), those for which
-    /// is_new(pair). Unless they have met, their contacts begin at the speed that they have next.
+    /// is_new(pair, touches): whether it has pushed before. Unless they have met, their contacts
+    /// begin at the speed that they have next.
     template <class NewPair>
     void accept_overlaps(ContactBodies<D>& bodies, const NewPair& is_new, bool have_met = true);
 

@@ -233,8 +233,8 @@ template <int D>
 void OpenBoundaries<D>::serialise(Archive& archive) {
     archive("mass_initial", ledger.initial), archive("mass_asked", ledger.requested);
     archive("entered", ledger.inflow), archive("left", ledger.outflow);
-    archive.optional("through_ground", ledger.through_ground);
-    archive.optional("mass_asked_before", ledger.requested_before);
+    archive("through_ground", ledger.through_ground);
+    archive("mass_asked_before", ledger.requested_before);
     archive("next_id", next_id);
     planes.serialise(archive);
     for (std::size_t k = 0; k < inflows.size(); ++k)

@@ -63,11 +63,6 @@ public:
         expect_fit(from.rows == 1, name);
         std::memcpy(static_cast<void*>(&value), from.numbers, sizeof(T));
     }
-    /// Of what older checkpoints lack: the value stays as it is then.
-    template <class T>
-    void optional(const char* name, T& value) {
-        if (!loads_ || load(prefix_ + name).columns > 0) (*this)(name, value);
-    }
     template <class T>
     void operator()(const char* name, Array<T>& values) {
         column(name, values);

@@ -89,7 +89,7 @@ public:
         const ElasticEnergy energy = bodies_.elastic_energy();
         table["strain_energy"] = energy.strain, table["spring_energy"] = energy.springs;
         table["kinetic_energy"] = bodies_.kinetic_energy();
-        table["fracture_work"] = bodies_.fracture_work() + energy.opening;
+        table["fracture_work"] = bodies_.fracture_work();
         table["damping_work"] = bodies_.damping_work();
         return to_python(table);
     }

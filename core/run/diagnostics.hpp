@@ -34,7 +34,7 @@ DeformableTotals deformable_totals(const Bodies<D>& bodies) {
     DeformableTotals sum;
     const ElasticEnergy energy = bodies.deformable.elastic_energy();
     sum.elastic_energy = energy.sum();
-    sum.fracture_work = solids.fracture_work() + energy.opening;
+    sum.fracture_work = solids.fracture_work();
     sum.damping_work = solids.damping_work();
     sum.broken_bonds = static_cast<std::int64_t>(solids.bonds().broken());
     sum.parts = static_cast<std::int64_t>(parts.bodies);

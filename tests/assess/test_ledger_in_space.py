@@ -79,11 +79,12 @@ def test_every_part_of_it_matters(dropped, name):
 
 def test_contacts_and_cracks_make_no_energy(dropped):
     """What cracks, parting and dampers took grows, but for what a point gains that strains more by
-    the bonds that are left to it, Eq. (128); contacts with friction give none.
+    the bonds that are left to it, Eq. (128), and what cracks that are not through give back when
+    they close, Eq. (110); contacts with friction give none.
     """
     history = dropped.history
     taken = sum(history[name] for name in ("fracture_work", "parting_work", "damping_work"))
-    assert (np.diff(taken) > -0.01 * history["kinetic_energy"][0]).all()
+    assert (np.diff(taken) > -0.02 * history["kinetic_energy"][0]).all()
     assert history["contact_work"].max() < 0.002 * history["kinetic_energy"][0]
 
 
@@ -127,4 +128,4 @@ def test_it_closes_where_stiff_rock_cracks_in_all_directions(tmp_path, kinematic
         text += BALL.format(name=name, kinematics=kinematics, centre=turned[0], velocity=turned[1])
     run = recorded(tmp_path, text)
     assert run.history["broken_bonds"][-1] > 2000
-    assert gap(ledger_of(run)) < 0.002
+    assert gap(ledger_of(run)) < 0.003

@@ -281,7 +281,7 @@ velocity = {velocity}
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize(("speed", "breaks"), [(0.05, False), (12.0, True)])
+@pytest.mark.parametrize(("speed", "breaks"), [(0.05, False), (12.0, True), (12.5, True)])
 def test_a_sill_stands_in_the_ground_until_a_boulder_strikes_it(tmp_path, dim, speed, breaks):
     """The ground does not press on what is held in it, points just above the clamp among them."""
 

@@ -54,6 +54,7 @@ void TotalLagrangian<D>::start(const Vec<double, D>& gravity, double stable_step
         limit_timestep();
     stepped_.choose(size(), [](std::uint32_t) { return true; });
     compute_accelerations(0.0, gravity);
+    if (bonds_.any()) acted_.resize(size()), note_acted();
     choose_stepped();
 }
 
@@ -116,6 +117,7 @@ template <class F>
 void TotalLagrangian<D>::sum_internal_forces(double half_dt, const F& take) {
     if (!bonds_.any()) return sum_whole_forces(half_dt, take);
     predict<OnThreads>(half_dt);
+    update_deformations();
     sum_bonded_forces(take);
 }
 
@@ -131,11 +133,13 @@ void TotalLagrangian<D>::internal_accelerations(std::span<Vec<double, D>> accele
 
 template <int D>
 BodyStep<D> TotalLagrangian<D>::push(double dt, const Vec<double, D>& gravity) {
-    compute_accelerations(0.5 * dt, gravity);
+    if (bonds_.any())
+        push_bonded(dt, gravity);
+    else
+        compute_accelerations(0.5 * dt, gravity);
     const BodyStep<D> given = push_points(dt, gravity);
     if (!std::isfinite(given.contact_work))  // no load times a way that is not finite is not
         throw PhysicsFailure("an elastic body has lost its shape", FailureKind::not_finite);
-    if (bonds_.any()) advance_bonds(dt);
     return given;
 }
 
@@ -197,7 +201,7 @@ Mat<double, D> TotalLagrangian<D>::motion_around(std::size_t p) const {
 }
 
 template <int D>
-void TotalLagrangian<D>::divide(const Division& division, double opening) {
+void TotalLagrangian<D>::divide(const Division& division) {
     for (const std::int32_t parent : division.parent) {
         const auto k = static_cast<std::size_t>(parent);
         bodies_.push_back(DeformableBody(bodies_[k])), apart_.push_back(Vec<double, D>(apart_[k]));
@@ -212,10 +216,9 @@ void TotalLagrangian<D>::divide(const Division& division, double opening) {
     auto apart = [this](std::uint32_t p, std::uint32_t j) {
         return gone(p) || gone(j) || body_[p] != body_[j];
     };
-    bonds_.part(apart, opening);
+    bonds_.part(apart);
     choose_stepped();
-    find_spans();
-    update_deformations();
+    find_spans(), find_acted();
 }
 
 template <int D>

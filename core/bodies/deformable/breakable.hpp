@@ -28,6 +28,8 @@ void TotalLagrangian<D>::make_deformable(std::size_t body, const RigidPlacement<
     }
     rigid_[body] = 0, held_energy_[body] = 0.0;
     choose_stepped();
+    for (const std::uint32_t p : points) acted_[p].x = x[p];
+    find_acted();
 }
 
 /// The shape is held in the frame at rest, Eq. (141).
@@ -46,7 +48,6 @@ void TotalLagrangian<D>::make_rigid(std::size_t body, const RigidMotion<D>& moti
     rigid_[body] = 1;
     choose_stepped();
     const ElasticEnergy after = elastic_energy();
-    bonds_.finish_step(points, before.opening - after.opening);
     held_energy_[body] = before.sum() - after.sum();
     damping_work_ += moved - kinetic_energy() - kinetic;
 }
@@ -58,9 +59,7 @@ double TotalLagrangian<D>::take_out(std::size_t body) {
     for (const std::uint32_t p : points) v[p] = a[p] = {};
     rigid_[body] = left;
     choose_stepped();
-    const ElasticEnergy after = elastic_energy();
-    if (bonds_.any()) bonds_.finish_step(points, before.opening - after.opening);
-    return before.sum() - after.sum();
+    return before.sum() - elastic_energy().sum();
 }
 
 template <int D>

@@ -66,10 +66,18 @@ double TotalLagrangian<D>::weakening(std::size_t p) const {
 /// Point p as its bonds see it in a step.
 template <int D>
 BondPoint<D> TotalLagrangian<D>::bond_point(std::size_t p) const {
-    return {rest_[p],         place_[p].x,      v[p],
-            deformation_[p],  correction_[p],   stress_[p],
-            place_[p].volume, solid_[p].kappa,  number_[p],
-            spans_[p] != 0,   bonds_.settled(p)};
+    return {
+        rest_[p],         place_[p].x,     v[p],       deformation_[p], correction_[p], stress_[p],
+        place_[p].volume, solid_[p].kappa, number_[p], spans_[p] != 0};
+}
+
+/// The same when forces acted last.
+template <int D>
+BondPoint<D> TotalLagrangian<D>::acted_point(std::size_t p) const {
+    BondPoint<D> point = bond_point(p);
+    point.x = acted_[p].x, point.F = acted_[p].F, point.B = acted_[p].B;
+    point.P = point.spans ? body_of(p).stress(point.F) : Mat<double, D>{};
+    return point;
 }
 
 /// As update_point, with the matrix of the bonds that are left. Points whose bonds do not span the
@@ -120,24 +128,54 @@ Array<std::uint32_t> TotalLagrangian<D>::cracked_clusters() const {
 template <int D>
 template <class F>
 void TotalLagrangian<D>::sum_bonded_forces(const F& take) {
-    update_deformations();
     if (springs_damp_) sum_springs(records(), DampSprings<D>{spans()});
     sum_over_pairs<OnThreads>(Bonded<InternalForceTerm<D>>{{records()}, bonds_.rows()}, take);
+}
+
+/// Cracks go on where points are now, and forces act on what they leave: if forces came first, a
+/// crack would resist what opens it as a damper does.
+template <int D>
+void TotalLagrangian<D>::push_bonded(double dt, const Vec<double, D>& gravity) {
+    predict<OnThreads>(0.5 * dt);
+    update_deformations();
+    advance_bonds(dt);
+    sum_bonded_forces(AcceleratePoint<D>{spans(), gravity});
+    note_acted();
+}
+
+template <int D>
+void TotalLagrangian<D>::note_acted() {
+    stepped_.for_each(
+        [this](std::size_t p) { acted_[p] = {place_[p].x, deformation_[p], correction_[p]}; });
+}
+
+/// After bonds or bodies were changed, where forces acted last.
+template <int D>
+void TotalLagrangian<D>::find_acted() {
+    if (!bonds_.any()) return;
+    stepped_.for_each([this](std::size_t p) { place_[p].x = acted_[p].x; });
+    update_deformations();
+    note_acted();
 }
 
 template <int D>
 void TotalLagrangian<D>::advance_bonds(double dt) {
     auto point = [this](std::size_t p) { return bond_point(p); };
     auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
+    Array<std::uint32_t> clusters;
+    auto update = [this, &clusters] {
+        if (clusters.empty()) clusters = cracked_clusters();
+        update_deformations(clusters);
+    };
     bonds_.advance(
-        dt, point, body, [this](std::size_t p) { return tension_[p]; },
-        [this, clusters = Array<std::uint32_t>()]() mutable {
-            if (clusters.empty()) clusters = cracked_clusters();
-            update_deformations(clusters);
-        });
-    bonds_.settle(
-        point, body, [this, dt](std::size_t p, double share) { return x[p] + (share * dt) * v[p]; },
-        [this](std::size_t p, const Mat<double, D>& shape) { take_shape(p, shape); });
+        dt, point, [this](std::size_t p) { return acted_point(p); }, body,
+        [this](std::size_t p) { return tension_[p]; }, update);
+    auto place = [this](std::size_t p, double share) {
+        return acted_[p].x + share * (place_[p].x - acted_[p].x);
+    };
+    bonds_.settle(point, body, place,
+                  [this](std::size_t p, const Mat<double, D>& shape) { take_shape(p, shape); });
+    if (bonds_.change().gone > 0) update();
 }
 
 }  // namespace doseki

@@ -74,7 +74,6 @@ Fragments<D> DeformableBodies<D>::divide(double dt) {
     const Array<std::int32_t> before = solids_.holders();
     const Array<std::uint32_t> crack = crack_points(solids_, before, parts.body);
     const Array<Vec<double, D>> places = surfaces_.places(solids_);
-    const double opening = solids_.elastic_energy(dt).opening;
     fragments.lost = kinetic_energy() + solids_.energy_across(dt);
     for (const auto& points : parts.dust) {
         fragments.dust.push_back(dust_grain(solids_, points));
@@ -83,7 +82,7 @@ Fragments<D> DeformableBodies<D>::divide(double dt) {
     }
     fragments.first_contact_point = surfaces_.first_contact_point();
     fragments.surface_body = surfaces_.bodies(solids_);
-    solids_.divide(parts, opening);
+    solids_.divide(parts);
     fragments.lost -= kinetic_energy() + solids_.energy_across(dt);
     Array<std::int32_t> shown = surfaces_.shown();
     const Array<std::int32_t> number = surfaces_.divide(solids_, parts, before, crack, places);

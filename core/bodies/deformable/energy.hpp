@@ -14,9 +14,8 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
     ElasticEnergy sum;
     for (const double held : held_energy_) sum.strain += held;
     if (!stepped_.any()) return sum;
-    auto& [place, solid, energy, points] = energy_rows_;
+    auto& [place, solid, energy] = energy_rows_;
     place.resize(size()), solid.resize(size()), energy.resize(size());
-    points.resize(bonds_.any() ? size() : 0);
     stepped_.for_each([&](std::size_t p) {
         place[p] = {x[p] + ahead * v[p], place_[p].volume}, solid[p] = solid_[p], energy[p] = {};
     });
@@ -30,13 +29,7 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
         auto bonded = [&](std::size_t p, const BondedDeformation<double, D>& sums) {
             solid[p].F = identity<double, D>(), solid[p].kappa = 0.0;
             const bool spans = spans_[p] && determines_strain(sums.shape);
-            const Mat<double, D> B = spans ? inverse(sums.shape, 0.0) : Mat<double, D>{};
-            if (spans) strain(p, sums.now.place * B);
-            const Mat<double, D>& F = solid[p].F;
-            points[p] = bond_point(p);
-            points[p].x = place[p].x, points[p].F = F, points[p].B = B;
-            points[p].P = body_of(p).stress(F), points[p].kappa = solid[p].kappa;
-            points[p].spans = spans;
+            if (spans) strain(p, sums.now.place * inverse(sums.shape, 0.0));
         };
         sum_over_pairs<OnThreads>(BondedDeformationTerm<D>{{records}, bonds_.rows()}, bonded);
     } else {
@@ -50,8 +43,6 @@ ElasticEnergy TotalLagrangian<D>::elastic_energy(double ahead) const {
     });
     for (const std::uint32_t p : stepped_.points())
         if (!gone(p)) sum.strain += energy[p].strain, sum.springs += energy[p].springs;
-    sum.opening = bonds_.opening([&rows = points](std::size_t p) { return rows[p]; },
-                                 [this](std::size_t p) -> const auto& { return body_of(p); });
     return sum;
 }
 

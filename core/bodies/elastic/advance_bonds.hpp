@@ -7,7 +7,7 @@ namespace doseki {
 
 template <int D>
 void Bonds<D>::index(std::size_t points) {
-    first_bond_.assign(points + 1, 0), settled_.assign(points, 0), tip_.assign(points, {});
+    first_bond_.assign(points + 1, 0), tip_.assign(points, {});
     for (std::size_t n = 1; n < size(); ++n)
         ++first_bond_[pairs_[n].a + 1], ++first_bond_[pairs_[n].b + 1];
     for (std::size_t p = 0; p < points; ++p) first_bond_[p + 1] += first_bond_[p];
@@ -86,60 +86,56 @@ BondStep<D> Bonds<D>::step_of(std::uint32_t n, const Point& point, const Body& b
             body(ends.a), state_[n],     {tip_[ends.a], tip_[ends.b]}};
 }
 
-template <int D>
-template <class F>
-BondChange Bonds<D>::sum_over_cracked(const F& f) {
-    return reduce(cracked_.size(), BondChange{}, std::plus<BondChange>{}, f);
-}
-
 /// A crack relieves its points and those beside it: all move again, with the stress that there is
-/// then, until each bears what it should.
+/// then, until each bears what it should. Forces act on what is then.
 template <int D>
-template <class Point, class Body, class Tension, class Update>
-void Bonds<D>::advance(double dt, const Point& point, const Body& body, const Tension& tension,
-                       Update&& update) {
+template <class Point, class Before, class Body, class Tension, class Update>
+void Bonds<D>::advance(double dt, const Point& point, const Before& before, const Body& body,
+                       const Tension& tension, Update&& update) {
     constexpr int most_passes = 8;
     constexpr double tolerance = 0.005;  // of the strength
     find_tips(point);
     find_cracked(point, body, tension);
-    change_ = begin_cracks(dt, point, body);
+    find_first_pulls(before, body);
+    change_ = move_cracks(dt, 0.0, point, body);
     for (const std::uint32_t n : cracked_) tip_[pairs_[n].a].moment = tip_[pairs_[n].b].moment = {};
     find_moments(cracked_, point);
-    BondChange last = change_;
-    for (int n = 1; n < most_passes && last.moved > 0; ++n) {
+    std::size_t moved = change_.moved;
+    for (int n = 1; n < most_passes && moved > 0; ++n) {
         update();
-        last = sum_over_cracked(
-            [&](std::size_t k) { return step_of(cracked_[k], point, body).move(0.0, tolerance); });
-        change_ = change_ + last;
+        const BondChange further = move_cracks(0.0, tolerance, point, body);
+        change_ = change_ + further, moved = further.moved;
     }
-    change_ = change_ + end_cracks(point, body);
-    work_ += change_.work, broken_ += change_.broken;
-    for (const std::uint32_t n : stepped_) settled_[pairs_[n].a] = settled_[pairs_[n].b] = 0;
+    if (moved > 0) update();
+    change_.gone = find_parting(point, body), broken_ += change_.broken;
 }
 
-/// Counts the second half of what the step before took; first moves.
 template <int D>
-template <class Point, class Body>
-BondChange Bonds<D>::begin_cracks(double dt, const Point& point, const Body& body) {
+template <class Before, class Body>
+void Bonds<D>::find_first_pulls(const Before& before, const Body& body) {
     first_.resize(cracked_.size());
-    return sum_over_cracked([&](std::size_t k) {
-        BondStep<D> bond = step_of(cracked_[k], point, body);
-        first_[k] = bond.pulls();
-        const double work = bond.second_half(first_[k]);
-        state_[cracked_[k]].change = {};
-        return BondChange{work} + bond.move(dt, 0.0);
+    for_each_particle(cracked_.size(), [&](std::size_t k) {
+        first_[k] = step_of(cracked_[k], before, body).pulls();
     });
 }
 
-/// Counts the first half of what this step takes; finds the bonds that go.
 template <int D>
 template <class Point, class Body>
-BondChange Bonds<D>::end_cracks(const Point& point, const Body& body) {
-    return sum_over_cracked([&](std::size_t k) {
-        const BondStep<D> bond = step_of(cracked_[k], point, body);
-        const bool parts = bond.parts();
+BondChange Bonds<D>::move_cracks(double dt, double tolerance, const Point& point,
+                                 const Body& body) {
+    return reduce(cracked_.size(), BondChange{}, std::plus<BondChange>{}, [&](std::size_t k) {
+        return step_of(cracked_[k], point, body).move(dt, tolerance);
+    });
+}
+
+/// Bonds that go in this step.
+template <int D>
+template <class Point, class Body>
+std::size_t Bonds<D>::find_parting(const Point& point, const Body& body) {
+    return doseki::reduce(cracked_.size(), std::size_t{0}, std::plus<>{}, [&](std::size_t k) {
+        const bool parts = step_of(cracked_[k], point, body).parts();
         if (parts) state_[cracked_[k]].whole = -1.0;
-        return BondChange{bond.first_half(first_[k]), 0, parts ? 1u : 0u, 0};
+        return std::size_t{parts};
     });
 }
 
@@ -154,18 +150,6 @@ double Bonds<D>::strength(std::size_t p, const Point& point, const Body& body) c
         least = min(least, bond.strength());
     }
     return least;
-}
-
-template <int D>
-template <class Point, class Body>
-double Bonds<D>::opening(const Point& point, const Body& body) const {
-    return reduce(stepped_.size(), 0.0, std::plus<>{}, [&](std::size_t k) {
-        const BondEnds& ends = pairs_[stepped_[k]];
-        BondState<D> state = state_[stepped_[k]];
-        if (state.whole == 0.0 || !state.cracked()) return 0.0;
-        const BondStep<D> bond(ends, point(ends.a), point(ends.b), body(ends.a), state);
-        return bond.second_half(bond.pulls());
-    });
 }
 
 }  // namespace doseki

@@ -47,17 +47,9 @@ public:
           rest_(a.rest - b.rest),
           share_(ends.weight * a.volume * b.volume) {}
 
-    /// Of what a change of the jump takes, by the trapezoidal rule: half with the pulls before it,
-    double first_half(const BondPulls<D>& before) const {
-        return half_work(before.of_a + before.of_b);
-    }
-    double first_half(std::size_t p, const BondPulls<D>& before) const {
-        return half_work(p == ends_.a ? before.of_a : before.of_b);
-    }
-    /// and half with those of the step after it, but for points that are settled.
-    double second_half(const BondPulls<D>& after) const {
-        return (a_.settled ? 0.0 : half_work(after.of_a)) +
-               (b_.settled ? 0.0 : half_work(after.of_b));
+    /// Half of what the change of its jump takes from points that pull so.
+    double half_work(const Vec<double, D>& pull) const {
+        return 0.5 * share_ * dot(pull, state_.change);
     }
     /// On both of its points.
     BondPulls<D> pulls() const { return {pull_of(a_, at_rest()), pull_of(b_, at_rest())}; }
@@ -75,8 +67,12 @@ public:
         Crack crack{state_.opening, state_.max_opening, state_.damage};
         const CrackSite place = site(state_.normal);
         pull_ = pull(), near_ = tolerance * state_.strength;
+        const bool begins = dt > 0.0;
+        const Vec<double, D> last = state_.change;
+        if (begins) state_.change = {};
         return with_value(body_.law->fracture, [&](const auto& law) {
-            return law.failed(crack) ? slide(place) : widen(law, crack, dt, place);
+            if (!law.failed(crack)) return widen(law, crack, dt, place);
+            return begins && state_.opening > 0.0 ? go_on(last) : slide(place);
         });
     }
     /// Whether its sides are apart for good.
@@ -186,7 +182,17 @@ private:
         const bool moved = set_jump((crack.opening - state_.opening) * normal);
         state_.opening = crack.opening, state_.max_opening = crack.max_opening;
         state_.damage = crack.damage;
-        return {0.0, law.failed(crack) ? 1u : 0u, 0, moved ? 1u : 0u};
+        return {law.failed(crack) ? 1u : 0u, 0, moved ? 1u : 0u};
+    }
+
+    /// A broken bond whose sides are apart goes on as in the step before: what is left is for
+    /// the moves that follow.
+    BondChange go_on(const Vec<double, D>& last) {
+        const double opening = max(0.0, state_.opening + dot(last, state_.normal));
+        const bool moved =
+            set_jump(last + (opening - state_.opening - dot(last, state_.normal)) * state_.normal);
+        state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
+        return {0, 0, moved ? 1u : 0u};
     }
 
     /// A broken bond: its sides go apart without a force, press on each other where they meet, and
@@ -208,14 +214,11 @@ private:
         if (std::abs(opening - before) <= ease * near_) opening = before;
         const bool moved = set_jump(slip + (opening - before) * normal);
         state_.opening = opening, state_.max_opening = max(state_.max_opening, opening);
-        return {0.0, 0, 0, moved ? 1u : 0u};
+        return {0, 0, moved ? 1u : 0u};
     }
     Mat<double, D> mean_deformation() const {
         if (!a_.spans) return b_.F;
         return b_.spans ? 0.5 * (a_.F + b_.F) : a_.F;
-    }
-    double half_work(const Vec<double, D>& pull) const {
-        return 0.5 * share_ * dot(pull, state_.change);
     }
     /// Returns whether it is one.
     bool set_jump(const Vec<double, D>& further) {

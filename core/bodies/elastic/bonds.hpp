@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 #include <span>
 
 #include "base/array.hpp"
@@ -133,17 +134,15 @@ struct BondPoint {
     double volume, kappa;  // at rest; stiffness of the springs
     std::uint32_t number;  // in the order in which points were added
     bool spans;            // whether its bonds span the space, so that it has a stress
-    bool settled;          // whether all is counted that the last step of its bonds took from it
 };
 
-/// What one step did to bonds: energy that went into them [J], 2-D: [J/m], how many ceased to bear
-/// tension, how many are gone, and how often any moved.
+/// What one step did to bonds: how many ceased to bear tension, how many are gone, and how often
+/// any moved.
 struct BondChange {
-    double work = 0.0;
     std::size_t broken = 0, gone = 0, moved = 0;
 
     BondChange operator+(const BondChange& other) const {
-        return {work + other.work, broken + other.broken, gone + other.gone, moved + other.moved};
+        return {broken + other.broken, gone + other.gone, moved + other.moved};
     }
 };
 
@@ -186,7 +185,7 @@ public:
     }
     void clear() {
         pairs_.assign(1, BondEnds{}), state_.assign(1, {}), code_.clear(), first_code_.clear();
-        work_ = 0.0, change_ = {}, broken_ = 0, settled_.clear(), stepped_.clear();
+        work_ = 0.0, change_ = {}, broken_ = 0, stepped_.clear();
     }
     /// From now on only the bonds of points for which moves(p) take part in steps; the others keep
     /// what they are.
@@ -205,13 +204,6 @@ public:
             if (counts(j)) least = min(least, intact);
         });
         return least;
-    }
-    /// Counts for good what the last step did to the bonds of some points: `opening`.
-    void finish_step(std::span<const std::uint32_t> points, double opening) {
-        work_ += opening;
-        for (const std::uint32_t p : points)
-            for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n)
-                state_[bond_[n]].change = {};
     }
     /// Tension [Pa] at which the first of the bonds of point p begins to crack.
     template <class Point, class Body>
@@ -254,51 +246,41 @@ public:
     template <class Point>
     double sharpness(std::size_t p, const Mat<double, D>& shape, const Point& point) const;
     /// Ends for good those bonds between points a and b for which apart(a, b): their points meet
-    /// only as those of two bodies. What the last step did to any bond is counted: `opening`.
+    /// only as those of two bodies.
     template <class Apart>
-    void part(const Apart& apart, double opening) {
-        work_ += opening;
+    void part(const Apart& apart) {
         for (const std::uint32_t n : stepped_) {
-            if (apart(pairs_[n].a, pairs_[n].b)) {
-                broken_ += intactness(n) > 0.0;
-                state_[n].whole = 0.0, state_[n].damage = 1.0;
-            }
-            state_[n].change = {};
+            if (!apart(pairs_[n].a, pairs_[n].b)) continue;
+            broken_ += intactness(n) > 0.0;
+            state_[n].whole = 0.0, state_[n].damage = 1.0;
         }
     }
     /// Bonds that bear no tension.
     std::size_t broken() const { return broken_; }
     /// What the last step did.
     const BondChange& change() const { return change_; }
-    /// Energy that all steps took, the last one by its beginning alone [J], 2-D: [J/m].
+    /// Energy that all steps took [J], 2-D: [J/m].
     double work() const { return work_; }
-    /// What the last step takes beside that, by the points of now; see advance.
-    template <class Point, class Body>
-    double opening(const Point& point, const Body& body) const;
 
-    /// A step of all cracks: point(p) is a BondPoint, body(p) its DeformableBody, tension(p) the
-    /// largest principal value of its material_stress; update() brings points to the
-    /// jumps that their bonds have now: for_each_cracked_point.
-    template <class Point, class Body, class Tension, class Update>
-    void advance(double dt, const Point& point, const Body& body, const Tension& tension,
-                 Update&& update);
-    /// Takes out the bonds that go in this step and counts what that took, Eq. (128), by place(p,
-    /// share), the places after a share of a step; tells of the points that lost some the moment of
-    /// those that are left: take_shape(p, moment).
+    /// A step of all cracks, before forces act: point(p) is a BondPoint now and before(p) the one
+    /// on which forces acted last, body(p) its DeformableBody, tension(p) the largest principal
+    /// value of its material_stress; update() brings points to the jumps that their bonds have now:
+    /// for_each_cracked_point.
+    template <class Point, class Before, class Body, class Tension, class Update>
+    void advance(double dt, const Point& point, const Before& before, const Body& body,
+                 const Tension& tension, Update&& update);
+    /// Counts what the step took, Eqs. (109) and (128), and takes out the bonds that go in it, by
+    /// place(p, share), the places at a share of the way since forces acted last; tells of the
+    /// points that lost some the moment of those that are left: take_shape(p, moment).
     template <class Point, class Body, class Place, class TakeShape>
     void settle(const Point& point, const Body& body, const Place& place,
                 const TakeShape& take_shape);
-    bool settled(std::size_t p) const { return settled_[p] != 0; }
 
     void serialise(Archive& archive) {
         Array<BondState<D>> states(state_.begin() + 1, state_.end());
-        Array<std::uint8_t> settled = settled_;
         archive("bond_state", states), archive("bond_work", work_);
-        archive("bond_settled", settled);
         if (!archive.loads()) return;
         expect_fit(states.size() + 1 == size() && std::isfinite(work_), "bond_state");
-        expect_fit(settled.size() == settled_.size(), "bond_settled");
-        settled_ = settled;
         for (const BondState<D>& s : states) expect_state(s);
         std::copy(states.begin(), states.end(), state_.begin() + 1);
         broken_ = 0;
@@ -326,14 +308,15 @@ private:
     void find_cracked(const Point& point, const Body& body, const Tension& tension);
     template <class Point, class Body>
     BondStep<D> step_of(std::uint32_t n, const Point& point, const Body& body);
-    template <class F>
-    BondChange sum_over_cracked(const F& f);
+    template <class Before, class Body>
+    void find_first_pulls(const Before& before, const Body& body);
     template <class Point, class Body>
-    BondChange begin_cracks(double dt, const Point& point, const Body& body);
+    BondChange move_cracks(double dt, double tolerance, const Point& point, const Body& body);
     template <class Point, class Body>
-    BondChange end_cracks(const Point& point, const Body& body);
+    std::size_t find_parting(const Point& point, const Body& body);
+    std::set<std::uint32_t> parting_points() const;
     template <class Point, class Body>
-    double first_halves(std::size_t p, const Point& point, const Body& body);
+    double work_of_step(const std::set<std::uint32_t>& but, const Point& point, const Body& body);
     static void expect_state(const BondState<D>& s) {
         bool good = (s.whole == 0.0 || s.whole == 1.0) && s.damage >= 0.0 && s.damage <= 1.0 &&
                     s.opening >= 0.0 && s.max_opening >= s.opening &&
@@ -351,10 +334,11 @@ private:
     Array<std::uint32_t> code_;
     Array<std::size_t> first_code_;
     Array<std::uint32_t> stepped_;  // numbers of bonds, rising
-    Array<std::uint8_t> settled_;   // see BondPoint
-    Array<CrackTip<D>> tip_;        // of the points of stepped bonds, in a step
-    Array<std::uint32_t> cracked_;  // of stepped_, in a step
-    Array<BondPulls<D>> first_;     // of cracked_, before they move
+    // In a step: of the points of stepped bonds, numbers of those with cracks, rising, and the
+    // pulls of these when forces acted last.
+    Array<CrackTip<D>> tip_;
+    Array<std::uint32_t> cracked_;
+    Array<BondPulls<D>> first_;
     double work_ = 0.0;
     BondChange change_;
     std::size_t broken_ = 0;

@@ -1,7 +1,5 @@
 #pragma once
-// What it takes to end bonds.
-
-#include <set>
+// What a step of cracks took, and the end of bonds.
 
 #include "bodies/elastic/advance_bonds.hpp"
 
@@ -78,22 +76,6 @@ double Bonds<D>::energy(std::size_t p, Moment moment, const Point& point, const 
     return own.volume * (body(p).energy(F) + 0.5 * own.kappa * springs);
 }
 
-/// What is counted already of what the step takes from point p alone.
-template <int D>
-template <class Point, class Body>
-double Bonds<D>::first_halves(std::size_t p, const Point& point, const Body& body) {
-    double sum = 0.0;
-    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-        const BondEnds& ends = pairs_[bond_[k]];
-        BondState<D>& state = state_[bond_[k]];
-        if (state.whole == 0.0 || !state.cracked()) continue;
-        const auto at = std::ranges::lower_bound(cracked_, bond_[k]) - cracked_.begin();
-        sum += BondStep<D>(ends, point(ends.a), point(ends.b), body(ends.a), state)
-                   .first_half(p, first_[at]);
-    }
-    return sum;
-}
-
 /// What the forces of the step find of the energy of a point, Eq. (128): between the places at
 /// which they act they follow the trapezoidal rule, so that the curvature on the way is not in it.
 template <int D>
@@ -107,26 +89,50 @@ double Bonds<D>::energy_across(std::size_t p, Moment moment, const Point& point,
     return across_step(at(0.0), at(0.5), at(1.0));
 }
 
+/// Points that lose bonds in this step.
+template <int D>
+std::set<std::uint32_t> Bonds<D>::parting_points() const {
+    std::set<std::uint32_t> points;
+    if (change_.gone == 0) return points;
+    for (const std::uint32_t n : cracked_)
+        if (state_[n].whole < 0.0) points.insert({pairs_[n].a, pairs_[n].b});
+    return points;
+}
+
+/// By the trapezoidal rule between the pulls when forces acted last and now, on all points but
+/// some.
+template <int D>
+template <class Point, class Body>
+double Bonds<D>::work_of_step(const std::set<std::uint32_t>& but, const Point& point,
+                              const Body& body) {
+    return reduce(cracked_.size(), 0.0, std::plus<>{}, [&](std::size_t k) {
+        const std::uint32_t n = cracked_[k];
+        const BondStep<D> bond = step_of(n, point, body);
+        const BondPulls<D> last = bond.pulls();
+        double work = 0.0;
+        if (!but.contains(pairs_[n].a)) work += bond.half_work(first_[k].of_a + last.of_a);
+        if (!but.contains(pairs_[n].b)) work += bond.half_work(first_[k].of_b + last.of_b);
+        return work;
+    });
+}
+
 template <int D>
 template <class Point, class Body, class Place, class TakeShape>
 void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
                       const TakeShape& take_shape) {
-    if (change_.gone == 0) return;
     const auto all = [](std::uint32_t) { return true; };
-    std::set<std::uint32_t> points;
-    for (const std::uint32_t n : stepped_)
-        if (state_[n].whole < 0.0) points.insert({pairs_[n].a, pairs_[n].b});
-    for (const std::uint32_t p : points) {
-        settled_[p] = 1;
+    const std::set<std::uint32_t> parting = parting_points();
+    work_ += work_of_step(parting, point, body);
+    for (const std::uint32_t p : parting) {
         if (!point(p).spans) continue;
         const Mat<double, D> shape = moment(p, point, all);
-        work_ += energy_across(p, Moment::before, point, body, place, all) -
-                 first_halves(p, point, body);
+        work_ += energy_across(p, Moment::before, point, body, place, all);
         if (spans_space(shape)) work_ -= energy_across(p, Moment::now, point, body, place, all);
         take_shape(p, shape);
     }
-    for (const std::uint32_t n : stepped_)
-        if (state_[n].whole < 0.0) state_[n].whole = 0.0, state_[n].change = {};
+    if (parting.empty()) return;
+    for (const std::uint32_t n : cracked_)
+        if (state_[n].whole < 0.0) state_[n].whole = 0.0;
 }
 
 }  // namespace doseki

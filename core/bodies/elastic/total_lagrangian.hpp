@@ -31,10 +31,9 @@ struct SolidPoints {
     Array<std::uint8_t> clamped;
 };
 
-/// Of strain, and of the springs of Eq. (83); and what the last step of cracks takes beside what
-/// Bonds::work has of it [J], 2-D: [J/m].
+/// Of strain, and of the springs of Eq. (83) [J], 2-D: [J/m].
 struct ElasticEnergy {
-    double strain = 0.0, springs = 0.0, opening = 0.0;
+    double strain = 0.0, springs = 0.0;
 
     double sum() const { return strain + springs; }
 };
@@ -46,6 +45,14 @@ struct RigidPlacement {
     Vec<double, D> rest_centre, centre, velocity;
     Vec3 angular_momentum;  // about `centre`
     Mat<double, 3> turn;
+};
+
+/// A point of a body that breaks as it was when forces acted last: its place, deformation gradient
+/// and correction.
+template <int D>
+struct ActedPoint {
+    Vec<double, D> x;
+    Mat<double, D> F, B;
 };
 
 /// Part of a point in a place that points carry along.
@@ -179,8 +186,8 @@ public:
     /// Whether the bonds of a point span the space, so that it has a stress.
     bool spans(std::size_t p) const { return spans_[p] != 0; }
     /// Gives points to new bodies, which are like their parents, or to none. Bonds between points
-    /// of different ones end; what cracks took in this step is counted: `opening`.
-    void divide(const Division& division, double opening);
+    /// of different ones end.
+    void divide(const Division& division);
     Vec<double, D> rest_position(std::size_t p) const {
         return rest_[p] - apart_[static_cast<std::size_t>(body_[p])];
     }
@@ -195,8 +202,7 @@ public:
         return across_step(at(0.0), at(0.5), at(1.0));
     }
     double kinetic_energy() const;
-    /// Energy that cracks, but for ElasticEnergy::opening, and that damping took so far [J], 2-D:
-    /// [J/m].
+    /// Energy that cracks and that damping took so far [J], 2-D: [J/m].
     double fracture_work() const { return bonds_.work(); }
     double damping_work() const { return damping_work_; }
 
@@ -205,8 +211,8 @@ public:
     /// Ends for good the bonds between points a and b for which apart(a, b): those of two bodies.
     template <class Apart>
     void part_bonds(const Apart& apart) {
-        bonds_.part(apart, elastic_energy().opening);
-        find_spans();
+        bonds_.part(apart);
+        find_spans(), find_acted();
     }
 
     /// Restored, bodies go on with the same pairs in the same order: a sort leaves sorted points
@@ -240,14 +246,18 @@ public:
             for (std::size_t k = 0; k < numbers.size(); k += DeformableBody::count)
                 bodies_.push_back(DeformableBody::of(&numbers[k]));
             start(gravity, stable_step);
-            a = accelerations, deformation_ = deformations, slot_ = slots;
+            slot_ = slots;
             number_points();
         }
         bonds_.serialise(archive);
+        archive("elastic_acted", acted_);
         if (archive.loads()) {
             stepped_.choose(size(), [](std::uint32_t) { return true; });
             find_spans();
             choose_stepped();
+            expect_fit(acted_.size() == (bonds_.any() ? size() : 0), "elastic_acted");
+            find_acted();
+            a = accelerations, deformation_ = deformations;
         }
         archive("elastic_damping_work", damping_work_);
         expect_fit(std::isfinite(damping_work_), "elastic_damping_work");
@@ -323,10 +333,14 @@ private:
     BondPoint<D> bond_point(std::size_t p) const;
     template <class F>
     void sum_bonded_forces(const F& take);
+    void push_bonded(double dt, const Vec<double, D>& gravity);
     void update_bonded(std::size_t p, const DeformationAccumulators<double, D>& sums,
                        const Mat<double, D>& shape);
     void update_deformations(const Array<std::uint32_t>& clusters = {});
     Array<std::uint32_t> cracked_clusters() const;
+    BondPoint<D> acted_point(std::size_t p) const;
+    void note_acted();
+    void find_acted();
     void advance_bonds(double dt);
 
     void choose_stepped() {
@@ -342,7 +356,6 @@ private:
         Array<ElasticPlaceRecord<D>> place;
         Array<ElasticRecord<D>> solid;
         Array<ElasticEnergy> energy;
-        Array<BondPoint<D>> points;
     };
 
     Array<DeformableBody> bodies_;
@@ -369,6 +382,7 @@ private:
     Array<double> tension_;                // its largest principal value, of the material
     Array<std::uint8_t> spans_;            // whether the bonds of a point span the space, Eq. (120)
     Array<double> sharpness_;              // of gradients there, where they do, in spacings
+    Array<ActedPoint<D>> acted_;           // of breakable bodies
     double sharpest_whole_ = 0.0;          // while all bonds are whole
     Array<Vec<double, D>> damping_force_;  // on each point, of both dampers [N], 2-D: [N/m]
     double damping_work_ = 0.0;

@@ -345,7 +345,7 @@ void Bodies<D>::change_breakable(const Array<std::size_t>& which, const Fragment
         changed.insert(static_cast<std::int32_t>(breakable_[n].rigid));
         changed.insert(static_cast<std::int32_t>(rigid.size() + breakable_[n].deformable));
     }
-    auto is_new = [&](const ContactPair& pair) {
+    auto is_new = [&](const ContactPair& pair, bool) {
         const auto [a, b] = contact_.bodies(pair);
         return changed.contains(a) || changed.contains(b);
     };

@@ -20,7 +20,7 @@ from ..util.files import clear_errors, write_whole
 from ..util.foreign import read_bytes
 from ..util.hdf5 import open_hdf5
 
-VERSION = 10
+VERSION = 11
 KEPT = 2  # files; the older one serves where the newer one is damaged
 DIGEST_BYTES = 64
 AROUND_STATE = "doseki"  # JSON, as bytes

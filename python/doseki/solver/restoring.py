@@ -59,7 +59,6 @@ PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "ela
 BALL = 0  # the kind of a shape without sides
 OF_METER = re.compile(r"\d+_(load|plane)_")  # arrays of a load meter, or of a plane that counts
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
-LATER = {"through_ground"}  # older checkpoints lack these, and are taken to have none
 # Infinite where nothing limits a step.
 MAY_BE_INFINITE = {"next_timestep"}
 
@@ -71,7 +70,7 @@ def check_state(simulation: CoreSimulation, state: Arrays, materials: int, bodie
     `materials` and `bodies` are the numbers of names that particles index.
     """
     expected = simulation.checkpoint()
-    if missing := sorted(set(expected) - set(state) - LATER):
+    if missing := sorted(set(expected) - set(state)):
         raise ValueError(f"the checkpoint has no {missing[0]}")
     if unknown := sorted(set(state) - set(expected)):
         raise ValueError(f"the checkpoint has {unknown[0]}, which is not part of the state")

@@ -7,7 +7,7 @@ import pytest
 
 from doseki.scenario.materials import ELASTIC_DEFAULTS
 
-from .breaking import GRANITE, LEDGER, ROCK, Bar, bodies_of
+from .breaking import GRANITE, LEDGER, ROCK, Bar, bodies_of, pieces
 from .conftest import lattice
 
 FLAWS = {"fracture": "grady_kipp", "weibull_k": 5e34, "weibull_m": 8.5}
@@ -102,3 +102,58 @@ def test_flaws_do_not_depend_on_the_order_of_storage(core):
     assert len(alone) > 5
     tall = lattice((8, 60), 0.0025) + np.array([0.5, 0.3])
     assert flawed(core, tall) == alone
+
+
+def spinning(core, across: int, stress: float, columns: int = 0, angle: float = 0.0):
+    """A rod of granite, 10 by 2 cm, that spins with this stress in its middle over its strength.
+
+    It is stretched as far as it is in equilibrium, without a notch: nothing says where it breaks
+    but the stress, which is even in its middle.
+    """
+    spacing, turn = 0.02 / across, np.radians(angle)
+    columns = columns or 2 * round(0.05 / spacing)
+    points, length = lattice((columns, across), spacing), columns * spacing
+    table = ELASTIC_DEFAULTS | ROCK | GRANITE | {"poisson_ratio": 0.0, "spacing": spacing}
+    density, young = table["rho0"], table["young_modulus"]
+    spin = np.sqrt(8 * stress * table["tensile_strength"] / density) / length
+    x = points[:, 0]
+    stretched = points + np.outer(
+        density * spin**2 / (2 * young) * (0.25 * length**2 * x - x**3 / 3), [1.0, 0.0]
+    )
+    velocity = spin * np.stack([-stretched[:, 1], stretched[:, 0]], axis=1)
+    matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    bodies = core.ElasticBodies2()
+    rest, position, velocity = (
+        np.ascontiguousarray(array @ matrix.T) for array in (points, stretched, velocity)
+    )
+    bodies.add(
+        table, rest=rest, position=position, velocity=velocity,
+        clamped=np.zeros(len(points), np.uint8),
+    )  # fmt: skip
+    bodies.start()
+    return bodies
+
+
+@pytest.mark.parametrize(
+    ("across", "stress", "angle"), [(8, 1.005, 0), (8, 1.02, 0), (12, 1.005, 0), (8, 1.005, 30)]
+)
+def test_a_fast_crack_takes_its_fracture_energy(core, across, stress, angle):
+    """Also after it is through, while its sides go apart at some m/s: nothing holds them then."""
+    rod = spinning(core, across, stress, angle=angle)
+    start = sum(rod.state()[key] for key in LEDGER)
+    rod.advance(4e-4)
+    state = rod.state()
+    assert pieces(rod)[0] == len(state["mass"]) // 2
+    assert state["fracture_work"] / (0.02 * GRANITE["fracture_energy"]) == pytest.approx(
+        1, abs=0.06
+    )
+    lost = start - sum(state[key] for key in LEDGER if key != "fracture_work")
+    assert lost == pytest.approx(state["fracture_work"], rel=1e-3)
+
+
+def test_two_cracks_share_a_section(core):
+    """An odd number of columns has two planes in its middle: one crack takes half of each."""
+    rod = spinning(core, 12, 1.005, columns=61)
+    rod.advance(4e-4)
+    taken = rod.state()["fracture_work"] / (0.02 * GRANITE["fracture_energy"])
+    assert 1.0 < taken < 1.2
