@@ -87,6 +87,39 @@ def test_grains_under_water(said):
     assert said(MUD, more=WATER_ABOVE) == []
 
 
+WHEEL = """
+[body.wheel]
+shape = "disc"
+material = "basalt"
+centre = [0.5, 0.1]
+radius = 0.05
+"""
+DRUM = """
+[body.drum]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [1.1, 0]
+max = [1.2, 0.1]
+motion = { angular_velocity = 2, pivot = [1, 0] }
+"""
+
+
+@pytest.mark.parametrize(("more", "name"), [(WHEEL, "wheel"), (DRUM, "drum")])
+def test_what_turns_in_a_liquid_with_the_form_of_morris(said, more, name):
+    assert said(GRAINS) == []
+    (found,) = said(GRAINS, more=more)
+    assert found.startswith(f'body.{name}: fluid has viscosity = "morris" (the default here)')
+    assert "0.84 times the rate" in found
+    assert 'set viscosity = "stress"' in found
+    assert said(GRAINS, "viscosity=stress", more=more) == []
+    assert said(MUD, more=more) == []
+    (found,) = said(MUD, "viscosity=morris", more=more)
+    assert "default" not in found
+    still = more.replace("angular_velocity = 2, pivot = [1, 0]", "velocity = [1, 0]")
+    assert bool(said(GRAINS, more=still)) == (name == "wheel")
+
+
 def test_suction_of_another_liquid(said):
     sucks = "air_entry_suction = 5000"
     assert said(sucks) == []

@@ -52,3 +52,17 @@ def test_help_names_defaults_and_neighbours(name, words):
     told = shown(name)
     for word in words:
         assert word in told
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["run", "dambreak"], ["study", "a.toml"], ["trust", "dambreak"], ["export", "a", "--vtu"]],
+    ids=lambda words: words[0],
+)
+@pytest.mark.parametrize("name", ["", " "])
+def test_an_output_folder_without_a_name_is_refused(monkeypatch, tmp_path, words, name):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, [*words, "-o", name])
+    assert done.exit_code == 2
+    assert "the name is empty" in done.output
+    assert list(tmp_path.iterdir()) == []

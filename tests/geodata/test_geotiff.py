@@ -142,6 +142,16 @@ def test_a_file_cut_off_is_refused(tiff, size):
     assert str(path) in str(caught.value)
 
 
+@pytest.mark.parametrize("compress", ["none", "deflate"])
+def test_a_file_without_its_end_is_told_from_others(tiff, compress):
+    path = tiff(np.random.default_rng(1).random((60, 60)), "float64", compress=compress)
+    # The directory stands before the numbers.
+    with path.open("r+b") as file:
+        file.truncate(path.stat().st_size // 2)
+    with pytest.raises(UserError, match=r"cannot be read to its end: .* cut off as it was copied"):
+        read_raster(path)
+
+
 def test_more_cells_than_memory_are_refused(tmp_path, refusal):
     """A few kilobytes may declare 10^12 cells."""
     path = tmp_path / "huge.tif"

@@ -149,6 +149,17 @@ def test_resume_on_the_command_line(channel_file, uninterrupted, tmp_path):
     assert_same_record(tmp_path / "run", uninterrupted)
 
 
+@pytest.mark.parametrize(("until", "told"), [(0.5, True), (0.02, False), (float("inf"), False)])
+def test_a_time_that_the_run_did_not_come_to_is_told(channel_file, tmp_path, until, told):
+    run_channel(channel_file, tmp_path / "run", progress=stop_at(tmp_path / "run", 0.02))
+    reached = load(tmp_path / "run").times[-1]
+    _, notes = resume_run(tmp_path / "run", (), RunOptions(threads=1), until)
+    assert bool(notes) == told
+    if told:
+        start = f"--from 0.5: the run has come to {reached:g} s; it goes on from its last check"
+        assert notes[0].startswith(start)
+
+
 def test_a_run_that_dies_in_its_first_steps_goes_on(channel_file, uninterrupted, tmp_path):
     def die(*_moment):
         raise KeyboardInterrupt

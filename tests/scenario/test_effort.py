@@ -44,6 +44,18 @@ def test_an_endless_speed_is_that_of_the_user(write, error_of):
     assert "speed_max = 1e+300" in text
 
 
+@pytest.mark.parametrize("speed", ["1e-300", "1e-310", "2e-5"])
+def test_a_speed_that_nothing_has_is_refused(write, error_of, speed):
+    text = error_of(write(top=RESOLVED), f"speed_max={speed}")
+    assert f"speed_max = {float(speed):g} makes" in text
+    assert "set speed_max to the fastest flow" in text
+
+
+def test_slow_flows_are_allowed(write):
+    load_scenario(write(top=RESOLVED), ["speed_max=1e-3"])
+    load_scenario(write(top=RESOLVED), ["speed_max=2e-5", "gravity=[0, -1e-6]"])
+
+
 def test_what_takes_long_but_ends_is_allowed(write):
     load_scenario(write(tables=BLOCK), ["cflnumber=1e-6"])
 

@@ -200,6 +200,9 @@ HOSTILE = {
     "open.stl": (stl_of(box().triangles[1:]), "not closed: 3 edges .* set sheet = true"),
     "flat.stl": (stl_of(np.zeros((8, 3, 3))), "no area"),
     "far.stl": (stl_of(1e30 * box().triangles), "beyond"),
+    "end.stl": (box().export(file_type="stl_ascii").encode().rpartition(b"endsolid")[0],
+                "is cut off: no line `endsolid`"),
+    "half.stl": (box().export(file_type="stl_ascii").encode()[:900], "is cut off"),
     "many.ply": (b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999999\n"
                  b"property float x\nend_header\n", "more than it has"),
     "cut.ply": (box().export(file_type="ply", encoding="ascii", vertex_normal=False)[:-20],

@@ -16,7 +16,7 @@ from doseki.record.reader import load
 from doseki.running.runner import run_scenario
 from doseki.scenario.islands import islands_of
 from doseki.scenario.load import load_scenario
-from doseki.scene.checks.terrain import HolesAsHeights, terrain_findings
+from doseki.scene.checks.terrain import HolesAsHeights, TiltedGravity, Weightless, terrain_findings
 
 from .scenes import grid, profile, text
 
@@ -239,11 +239,30 @@ def test_the_ground_may_have_the_number_for_no_data_of_its_file(tmp_path, driver
         (["attraction=1"], "attraction"),
         (["periodic=['y']", "domain_min=[0,0,0]", "domain_max=[6,4,20]"], "not periodic"),
         (["dp=1e-6"], "columns|particles"),
+        (["gravity=[0, -9.8, 0]"], r"90 degrees off the downward z .* gravity = \[0, 0, -9.8\]"),
+        (["gravity=[0, 0, 9.8]"], "gravity = .* 180 degrees off the downward z"),
+        (["gravity=[7, 0, -6.9]"], "45.4 degrees .* at most 45"),
     ],
 )
 def test_what_cannot_be_is_refused_in_a_sentence(path, settings, said):
     with pytest.raises(UserError, match=said):
         load_scenario(path, settings)
+
+
+@pytest.mark.parametrize(
+    ("gravity", "said"),
+    [
+        ("[0, 0, -1e-6]", []),
+        ("[0.1, 0, -9.8]", []),
+        ("[0, 6.9, -7]", ["terrain: gravity is 44.6 degrees off the downward z"]),
+        ("[0, 0, 0]", ["gravity is zero: nothing flows down the terrain"]),
+    ],
+)
+def test_gravity_that_tilts_a_terrain_is_told(path, gravity, said):
+    found = terrain_findings(load_scenario(path, [f"gravity={gravity}"]), {})
+    told = [str(each) for each in found if isinstance(each, TiltedGravity | Weightless)]
+    assert len(told) == len(said)
+    assert all(text.startswith(start) for text, start in zip(told, said, strict=True))
 
 
 def test_a_body_may_not_have_the_name_of_the_bed(path):

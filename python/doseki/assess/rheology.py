@@ -6,9 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..scenario.materials import Material
 from ..scenario.model import Scenario
 from ..scenario.schemes import RESOLVED
+from ..solver.build import viscosity_form
 from ..util.finding import Finding
 from .sound_speed import usual_speed
 
@@ -60,6 +63,22 @@ class SuctionOfAnother(Finding):
         )
 
 
+@dataclass(frozen=True)
+class TurnsTooFast(Finding):
+    """A liquid that sees what turns in it as sheared."""
+
+    liquid: str
+    form: str  # how the scenario has come to it
+
+    def __str__(self) -> str:
+        return (
+            f'{self.place}: {self.liquid} has viscosity = "morris"{self.form}, which resists '
+            "turning as it resists shear: a free disc in a shear flow spins 0.84 times the rate of "
+            'shear in place of 0.5 (0.48 with "stress"), at any dp, and what turns in a liquid at '
+            'rest is braked; set viscosity = "stress"'
+        )
+
+
 def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
     """Fluids whose friction inside or at walls would be another one."""
     for name in scenario.liquids:
@@ -68,6 +87,7 @@ def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
         if material.rheology == "mu_i" and others:
             yield GrainsUnderLiquid(f"material.{name}.rheology", others[0])
     yield from _suction_findings(scenario)
+    yield from _turning_findings(scenario)
     if scenario.turbulence == "none":
         return
     for keys, wall in scenario.walls.items():
@@ -87,6 +107,25 @@ def _suction_findings(scenario: Scenario) -> Iterator[Finding]:
     for name, own in suction.items():
         if own < suction[most]:
             yield SuctionOfAnother(f"material.{name}.air_entry_suction", own, most, suction[most])
+
+
+def _turning_findings(scenario: Scenario) -> Iterator[Finding]:
+    """Bodies that move freely, and walls that turn, in liquids with Morris' form of viscosity."""
+    if scenario.scheme != RESOLVED or viscosity_form(scenario) != "morris":
+        return
+    turning = next((name for name in scenario.body if _may_turn(scenario, name)), None)
+    if turning is None:
+        return
+    form = " (the default here)" if scenario.viscosity is None else ""
+    for name in scenario.liquids:
+        if scenario.materials[name].rheology != "newtonian" or scenario.materials[name].nu > 0:
+            yield TurnsTooFast(f"body.{turning}", name, form)
+
+
+def _may_turn(scenario: Scenario, name: str) -> bool:
+    motion = scenario.body[name].prescribed_motion
+    spin = None if motion is None else motion.angular_velocity
+    return bool(spin is not None and np.any(spin)) or scenario.kinematics_of(name).is_whole
 
 
 def _is_viscous(scenario: Scenario, fluid: Material, ks: float) -> bool:

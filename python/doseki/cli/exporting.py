@@ -9,7 +9,7 @@ import typer
 
 from ..errors import UserError
 from .numbers import number
-from .options import Directory
+from .options import Directory, folder
 
 KINDS = ("--vtu", "--surface", "--paraview")
 
@@ -62,6 +62,7 @@ def export(
         typer.Option(
             "-o",
             "--output",
+            parser=folder,
             metavar="DIR",
             help="Output folder.",
             show_default="DIR/vtu, DIR/surface, DIR/paraview",

@@ -6,15 +6,16 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 
 from ..errors import Interrupted
+from ..parallel.launch import is_rank
 
 
 @contextmanager
 def leaving_at_once() -> Iterator[None]:
     """Ctrl-C ends the process: imports, which this is for, would answer it with a traceback."""
-    with _answering(lambda: _leave(Interrupted())):
+    with _asked_to_end(lambda: _leave(Interrupted())):
         yield
 
 
@@ -32,7 +33,16 @@ def interruptible() -> Iterator[None]:
         interrupts.append(Interrupted())
         raise interrupts[0]
 
-    with _answering(answer):
+    with _asked_to_end(answer):
+        yield
+
+
+@contextmanager
+def _asked_to_end(answer: Callable[[], None]) -> Iterator[None]:
+    """Let `answer` answer Ctrl-C; a rank is told of that by SIGTERM (parallel.starter)."""
+    with ExitStack() as answers:
+        for number in (signal.SIGINT, *([signal.SIGTERM] if is_rank() else [])):
+            answers.enter_context(_answering(answer, number))
         yield
 
 

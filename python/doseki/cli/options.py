@@ -12,6 +12,18 @@ from ..util.files import free_directory as free_directory
 from .numbers import number
 
 
+def folder(text: object) -> Path:
+    """What reads the name of an output folder; an empty one, as of a variable that is not set,
+    would be the folder that the command was started in.
+    """
+    if not str(text).strip():
+        raise typer.BadParameter("the name is empty; name a folder, or . for this one")
+    return Path(str(text))
+
+
+folder.__name__ = "path"
+
+
 def _last_counts(settings: list[str] | None) -> list[str] | None:
     """Say which value counts where a key is set twice."""
     seen: dict[str, str] = {}

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
-from .options import Threads, free_directory
+from .options import Threads, folder, free_directory
 
 Tier = StrEnum("Tier", ["coarse", "full"])
 Precision = StrEnum("Precision", ["double", "mixed"])
@@ -135,7 +135,12 @@ def validate(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="DIR", help="Of the report.", show_default="runs/validation"
+            "-o",
+            "--output",
+            parser=folder,
+            metavar="DIR",
+            help="Of the report.",
+            show_default="runs/validation",
         ),
     ] = None,
     threads: Threads = None,

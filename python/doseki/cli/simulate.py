@@ -23,6 +23,7 @@ from .options import (
     ScenarioName,
     Settings,
     Threads,
+    folder,
     free_directory,
 )
 from .ranks import join
@@ -33,7 +34,12 @@ def run(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="DIR", help="Output folder.", show_default="runs/NAME"
+            "-o",
+            "--output",
+            parser=folder,
+            metavar="DIR",
+            help="Output folder.",
+            show_default="runs/NAME",
         ),
     ] = None,
     settings: Settings = None,

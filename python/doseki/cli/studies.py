@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
-from .options import AsJson, Figures, ScenarioName, Settings, Threads, free_directory
+from .options import AsJson, Figures, ScenarioName, Settings, Threads, folder, free_directory
 
 
 def trust(
@@ -20,7 +20,12 @@ def trust(
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="DIR", help="Of the runs.", show_default="runs/NAME-trust"
+            "-o",
+            "--output",
+            parser=folder,
+            metavar="DIR",
+            help="Of the runs.",
+            show_default="runs/NAME-trust",
         ),
     ] = None,
     settings: Settings = None,
@@ -50,6 +55,7 @@ def compare(
             "-o",
             "--out",
             "--output",
+            parser=folder,
             metavar="DIR",
             help="Output folder.",
             show_default="runs/NAME-comparison",
@@ -90,6 +96,7 @@ def study(
         typer.Option(
             "-o",
             "--output",
+            parser=folder,
             metavar="DIR",
             help="Folder of the study; one that was begun is gone on with.",
             show_default="runs/NAME",

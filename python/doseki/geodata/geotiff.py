@@ -76,9 +76,9 @@ def _check(path: Path, dataset: Any) -> None:
 
 
 def _raster(path: Path, dataset: Any) -> Raster:
-    raw = dataset.read(1)
+    raw, unknown = _read_whole(path, dataset)
     values = raw.astype(np.float64) * dataset.scales[0] + dataset.offsets[0]
-    values[_unknown(raw, dataset)] = np.nan
+    values[unknown] = np.nan
     if np.isinf(values).any():
         raise GeodataError(f"{path}: holds infinite values")
     at = dataset.transform
@@ -93,6 +93,19 @@ def _raster(path: Path, dataset: Any) -> Raster:
         "GTiff",
         dataset.nodata,
     )
+
+
+def _read_whole(path: Path, dataset: Any) -> tuple[np.ndarray, np.ndarray]:
+    """The numbers of the file, and where they mean no data."""
+    rasterio = needed("rasterio", path, WHAT)
+    try:
+        raw = dataset.read(1)
+        return raw, _unknown(raw, dataset)
+    except rasterio.errors.RasterioIOError:
+        raise GeodataError(
+            f"{path}: begins as a GeoTIFF but cannot be read to its end: it is damaged, or was cut "
+            "off as it was copied or downloaded; bring a whole one"
+        ) from None
 
 
 def _unknown(raw: np.ndarray, dataset: Any) -> np.ndarray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import subprocess
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -25,6 +24,11 @@ LAUNCHERS = {
     "SLURM_STEP_NUM_TASKS": ("PMIX_RANK", "SLURM_PROCID"),
 }
 MISSING = "several ranks need mpi4py: pip install doseki[mpi]"
+
+
+def is_rank() -> bool:
+    """Whether a launcher of MPI has started this process."""
+    return _launcher() is not None
 
 
 def launched_size() -> int:
@@ -113,5 +117,7 @@ def spawn(ranks: int, arguments: Sequence[str]) -> int:
     """Carry out a command of doseki on `ranks` ranks of this machine; its exit code."""
     if find_spec("mpi4py") is None:
         raise UserError(MISSING)
+    from .starter import Starter
+
     command = [mpiexec(), "-n", str(ranks), sys.executable, "-m", "doseki.cli.main"]
-    return subprocess.run([*command, *without_ranks(arguments)], check=False).returncode
+    return Starter().run([*command, *without_ranks(arguments)])

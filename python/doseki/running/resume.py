@@ -53,6 +53,11 @@ def resume_run(
         if not options.ranks.agree(has_begun):
             return _begun_anew(folder, overrides, options), [f"{directory}: {NOTHING_YET}"]
         checkpoint, notes = checkpoints.read_last(until)
+        if math.isfinite(until) and until > (reached := _reached(folder, checkpoint)):
+            notes.append(
+                f"--from {until:g}: the run has come to {reached:g} s; it goes on from its last "
+                f"checkpoint, at {checkpoint.time:g} s"
+            )
         if is_sealed:
             options.ranks.on_root(lambda: _check_identity(folder, checkpoint))
         scenario = _scenario(folder.scenario, overrides)
@@ -67,6 +72,11 @@ def resume_run(
             options.ranks.on_root(lambda: write_whole_text(folder.scenario, text))
             run.identity = options.ranks.on_root(lambda: identity_of(folder.scenario))
         return carry_out(run, options, fresh=False), notes
+
+
+def _reached(folder: RunFolder, checkpoint: Checkpoint) -> float:
+    """The time that the run has come to, as far as its record tells, s."""
+    return max([checkpoint.time, *load(folder.path).times])
 
 
 def _check_unfinished(folder: RunFolder, time_max: float) -> None:

@@ -17,6 +17,7 @@ from ..geodata.raster import Raster, read_raster
 from .islands import MAX_CELLS, Islands, islands_of
 from .particle_files.columns_csv import numbers_in, read_csv_columns
 from .tables.terrain.terrain import Terrain
+from .terraces import Terraces, terraces_of
 from .values.toml_source import Where
 from .values.units import LENGTH
 
@@ -56,6 +57,21 @@ class Bed:
     def islands(self) -> Islands | None:
         """Cells of the map as it was read that look like holes written as a number."""
         return None if self.as_read is None else islands_of(self.as_read)
+
+    @cached_property
+    def terraces(self) -> Terraces | None:
+        """The steps in which the heights of the map as it was read come."""
+        return None if self.as_read is None else terraces_of(self.as_read)
+
+    @cached_property
+    def evened(self) -> Bed:
+        """The bed without such steps, above which depths are measured; itself where it has none."""
+        if self.terraces is None:
+            return self
+        grid = Raster(np.atleast_2d(self.heights), 0.0, 0.0, self.cell)
+        length = min(self.terraces.length, self.cell * max(self.heights.shape))
+        heights = grid.smoothed(length).values.reshape(self.heights.shape)
+        return Bed(self.origin, self.cell, heights, self.unknown)
 
     @cached_property
     def table(self) -> dict[str, object]:

@@ -74,13 +74,17 @@ def _flow_options(scenario: Scenario, body_names: list[str]) -> dict[str, Any]:
     """What only the resolved scheme has."""
     names = "dp kernel shifting acoustic_damping turbulence smagorinsky".split()
     return {name: getattr(scenario, name) for name in names} | {
-        "viscosity": scenario.viscosity or _viscous_form(scenario),
+        "viscosity": viscosity_form(scenario),
         "walls": [_wall_condition(scenario, _wall_of(scenario, name)) for name in body_names],
     }
 
 
-def _viscous_form(scenario: Scenario) -> str:
-    """What keeps its shape while it slides is braked too much by Voellmy's beds with the stress."""
+def viscosity_form(scenario: Scenario) -> str:
+    """That of the scenario, else what it gets: with the stress, what keeps its shape while it
+    slides is braked too much by Voellmy's beds.
+    """
+    if scenario.viscosity is not None:
+        return scenario.viscosity
     laws = {scenario.materials[name].rheology for name in scenario.liquids}
     beds = {wall.given("wall") for wall in scenario.walls.values()}
     slides = "voellmy" in beds and "herschel_bulkley" in laws

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from ...errors import UserError
 from ..model import Scenario
 
 # More would take weeks even for one particle.
 MAX_STEPS = 1e12
+SOFTEST = 1e-3  # of what carries a particle
 # With which a value is compared, to name the one that is to blame.
 USUAL = {"time_max": 10.0, "sound speed": 100.0, "cflnumber": 0.1, "dp": 0.01}
 
@@ -20,6 +24,8 @@ def check_effort(scenario: Scenario) -> None:
         steps = math.inf
     else:
         steps = scenario.time_max / (scenario.cflnumber * length) * sound
+    if 0 < sound < (least := _least_sound(scenario)):
+        raise _too_slow(scenario, sound, least)
     if steps <= MAX_STEPS:
         _check_contacts(scenario)
         return
@@ -29,6 +35,24 @@ def check_effort(scenario: Scenario) -> None:
         f"{key} = {value:g} makes a run of {steps:.2g} steps (time_max = {scenario.time_max:g} s, "
         f"sound speed {sound:.3g} m/s, dp = {scenario.dp:g} m, cflnumber = "
         f"{scenario.cflnumber:g}); at most {MAX_STEPS:g} are taken",
+    )
+
+
+def _least_sound(scenario: Scenario) -> float:
+    """The speed of sound, m/s, below which nothing is left of a material: it would yield to the
+    weight of one particle, or sound would not pass one in all of the run.
+    """
+    g = float(np.linalg.norm(scenario.gravity))
+    return SOFTEST * max(math.sqrt(g * scenario.dp), scenario.dp / scenario.time_max)
+
+
+def _too_slow(scenario: Scenario, sound: float, least: float) -> UserError:
+    key = _sound_key(scenario)
+    return scenario.where.error(
+        (key,),
+        f"{key} = {getattr(scenario, key):g} makes a speed of sound of {sound:.3g} m/s; at least "
+        f"{least:.3g} is needed for the weight of one particle: set speed_max to the fastest flow "
+        "that you expect",
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..bed import TILE_COLUMNS
@@ -9,6 +11,7 @@ from ..model import Scenario
 from ..tables.terrain.release import Release
 from ..tables.terrain.terrain import TERRAIN
 
+MAX_TILT = 45.0  # degrees: more is a mistake, less a tilted profile
 MAX_COLUMNS = 2**31  # of dp x dp, that particles can number
 
 
@@ -24,6 +27,7 @@ def check_terrain(scenario: Scenario) -> None:
         raise error(
             ("attraction",), "attraction pulls towards the origin, and maps have theirs elsewhere"
         )
+    _check_gravity(scenario)
     horizontal = set("xyz"[: scenario.dim - 1]) & set(scenario.periodic)
     if horizontal:
         axis = sorted(horizontal)[0]
@@ -51,3 +55,25 @@ def check_terrain(scenario: Scenario) -> None:
             f"terrain: {columns:.3g} columns of dp cover the map; at most "
             f"{MAX_COLUMNS:.3g}: give terrain.window, or increase dp",
         )
+
+
+def tilt_of(gravity: np.ndarray) -> float:
+    """The angle from the downward vertical axis, degrees."""
+    return math.degrees(math.atan2(math.hypot(*gravity[:-1]), -gravity[-1]))
+
+
+def _check_gravity(scenario: Scenario) -> None:
+    """Refuse gravity that pulls along a map, or up from it."""
+    gravity = scenario.gravity
+    if not gravity.any() or tilt_of(gravity) <= MAX_TILT:
+        return
+    up = "xyz"[scenario.dim - 1]
+    size = round(float(np.linalg.norm(gravity)), 9)
+    down = [0] * (scenario.dim - 1) + [-size]
+    key = "gravity" if "gravity" in scenario.model_fields_set else "slope"
+    raise scenario.where.error(
+        (key,),
+        f"gravity = {gravity.tolist()} is {tilt_of(gravity):.3g} degrees off the downward {up} of "
+        f"the terrain; at most {MAX_TILT:g} are allowed, for a tilted profile: on a map set "
+        f"gravity = {down}",
+    )

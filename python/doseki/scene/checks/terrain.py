@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...record.units import unit_in
+from ...scenario.checks.terrain import tilt_of
 from ...scenario.model import Scenario
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding, place_text
@@ -24,6 +25,9 @@ VOLUME = 0.01  # by which the particles of a release may miss what is asked for
 STRETCH = 0.01  # by which lengths on a map may differ from those on the ground
 SURGE = 0.1  # by which the layers of a surge may
 FEW_LAYERS = 2.0
+HIGH_STEP = 0.1  # spacings; lower ones are no more than the noise of particles
+EVEN = 0.75  # of the smoothing that evens steps out, and is enough
+LEVEL = 1.0  # degrees by which gravity may be off
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,45 @@ class Coarse(Finding):
             f"{self.place}: cells of {self.cell:g} m are smaller than particles (dp = {self.dp:g} "
             f"m), which cannot follow them; terrain.resample = {self.dp:g} averages them"
         )
+
+
+@dataclass(frozen=True)
+class Terraced(Finding):
+    """A map that is a flight of steps, for want of digits."""
+
+    step: float  # m
+    length: float  # m
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: its heights come in steps of {self.step:g} m, so that a slope is treads"
+            " and risers, which hold a flow up and widen a release; terrain.smoothing ="
+            f" {self.length:.2g} evens them out, and with them what is narrower than twice that,"
+            " as gullies and dams: better is a map with decimals"
+        )
+
+
+@dataclass(frozen=True)
+class TiltedGravity(Finding):
+    """Gravity that is not along the vertical axis of a map."""
+
+    tilt: float  # degrees
+    axis: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place}: gravity is {self.tilt:.3g} degrees off the downward {self.axis} of the"
+            " terrain, as on a profile that is tilted; on a map of heights it has only"
+            f" a part along {self.axis}"
+        )
+
+
+@dataclass(frozen=True)
+class Weightless(Finding):
+    """A terrain without gravity."""
+
+    def __str__(self) -> str:
+        return f"{self.place} is zero: nothing flows down the terrain; is it forgotten?"
 
 
 @dataclass(frozen=True)
@@ -182,6 +225,8 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
     scale = bed.scale
     if scale is not None and abs(scale.factor - 1.0) > STRETCH:
         yield Stretched(f"{TERRAIN}.file", scale.factor, scale.latitude, scale.utm)
+    yield from _terraced(scenario)
+    yield from _gravity(scenario)
     if bed.cell < 0.5 * scenario.dp:
         yield Coarse(TERRAIN, bed.cell, scenario.dp)
     for section in build_inflows(scenario, list(scenario.inflow)):
@@ -193,6 +238,23 @@ def terrain_findings(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> Ite
             yield WrongVolume(name, body.asked, body.volume, unit_in("m3", scenario.dim))
         if body.layers < FEW_LAYERS:
             yield ThinRelease(name, body.layers, scenario.dp * body.layers / 4)
+
+
+def _terraced(scenario: Scenario) -> Iterator[Finding]:
+    """Doubts about heights in steps, unless they are smoothed."""
+    terraces, terrain = scenario.bed and scenario.bed.terraces, scenario.terrain
+    if not terraces or terrain is None or terraces.step < HIGH_STEP * scenario.dp:
+        return
+    if (terrain.smoothing or 0.0) < EVEN * terraces.length:
+        yield Terraced(f"{TERRAIN}.file", terraces.step, terraces.length)
+
+
+def _gravity(scenario: Scenario) -> Iterator[Finding]:
+    """Doubts about where it pulls."""
+    if not scenario.gravity.any():
+        yield Weightless("gravity")
+    elif (tilt := tilt_of(scenario.gravity)) > LEVEL:
+        yield TiltedGravity(TERRAIN, tilt, "xyz"[scenario.dim - 1])
 
 
 def _inflow_findings(scenario: Scenario, section: InflowSection) -> Iterator[Finding]:

@@ -15,6 +15,7 @@ def readable_stl(file: Path, content: bytes) -> bytes:
     Of a text, names come in any encoding: what is no UTF-8 is replaced.
     """
     if b"\0" not in content:  # both kinds may begin with the word solid
+        _check_end(file, content.lower())
         return in_utf8(content)
     count = int.from_bytes(content[BEFORE - 4 : BEFORE], "little")
     held = max(len(content) - BEFORE, 0) / TRIANGLE
@@ -24,6 +25,14 @@ def readable_stl(file: Path, content: bytes) -> bytes:
             "no STL"
         )
     return content
+
+
+def _check_end(file: Path, text: bytes) -> None:
+    """Refuse a text that stops within a solid, of which a reader takes nothing."""
+    if text.rfind(b"facet") > text.rfind(b"endsolid"):
+        raise UserError(
+            f"{file}: is cut off: no line `endsolid` ends its last solid; write or copy it again"
+        )
 
 
 def in_utf8(text: bytes) -> bytes:

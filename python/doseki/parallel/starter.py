@@ -1,0 +1,100 @@
+"""The launcher of MPI as a process that ends with ours: what would stop us stops all ranks."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+
+from ..errors import Interrupted
+
+SAME = 0.5  # s within which signals are one: `timeout` sends each to a process and to its group
+LAST = 10.0  # s for killed processes to be gone
+DEATH_SIGNAL = 1  # of prctl(2): what a process gets when its parent ends
+
+
+class Starter:
+    """Starts the launcher, and hands signals on to the ranks.
+
+    The launcher has a session of its own, as a terminal's Ctrl-C would have it kill ranks. SIGTERM
+    is what launchers pass on without a word, however often it comes.
+    """
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._asked: float | None = None  # when the first signal came
+        self._killed = False
+
+    def run(self, command: Sequence[str]) -> int:
+        """Carry out a command; its exit code, with which all its processes have ended.
+
+        Raises Interrupted when a second Ctrl-C has killed them.
+        """
+        ours, theirs = os.pipe()
+        try:
+            with _answering(self._answer):
+                self._start(command, theirs)
+                assert self._process is not None
+                code = self._process.wait()
+                # All that were started hold the other end.
+                select.select([ours], [], [], LAST)
+        finally:
+            os.close(ours)
+        unready = self._asked is not None and code in (signal.SIGTERM, 128 + signal.SIGTERM)
+        if self._killed or unready:  # or had not come to listen yet
+            raise Interrupted
+        return code
+
+    def _start(self, command: Sequence[str], pipe: int) -> None:
+        try:
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+                pass_fds=[pipe],
+                preexec_fn=_with_parent(),
+            )
+        finally:
+            os.close(pipe)
+        if self._asked is not None:  # meanwhile
+            self._process.send_signal(signal.SIGTERM)
+
+    def _answer(self, number: int, _frame: FrameType | None) -> None:
+        now = time.monotonic()
+        again = self._asked is not None and now - self._asked > SAME
+        self._asked = now if self._asked is None else self._asked
+        if self._process is None:
+            return
+        if number == signal.SIGINT and again:
+            self._killed = True
+            self._process.kill()
+        else:
+            self._process.send_signal(signal.SIGTERM)
+
+
+@contextmanager
+def _answering(answer: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Let `answer` answer what ends a run; SIGHUP only where it is not ignored, as nohup has it."""
+    hangs_up = signal.getsignal(signal.SIGHUP) != signal.SIG_IGN
+    numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hangs_up else [])]
+    old = {number: signal.signal(number, answer) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in old.items():
+            signal.signal(number, handler)
+
+
+def _with_parent() -> Callable[[], object] | None:
+    """What lets a new process get SIGTERM should ours be killed, where the system can do that."""
+    if sys.platform != "linux":
+        return None
+    prctl = ctypes.CDLL(None).prctl
+    return lambda: prctl(DEATH_SIGNAL, int(signal.SIGTERM), 0, 0, 0)
