@@ -129,8 +129,10 @@ void Bodies<D>::accept_overlaps(const Fragments<D>& fragments, std::size_t first
         if (now >= 0) is_old[static_cast<std::size_t>(now)] = 1;
     }
     const Array<std::int32_t> was = bodies_before(fragments, first_dust);
-    auto is_part = [&was](std::int32_t body) {
-        return was[static_cast<std::size_t>(body)] != body;
+    const auto first_deformable = static_cast<std::int32_t>(rigid.size());
+    auto is_part = [&](std::int32_t body) {
+        const std::int32_t parent = was[static_cast<std::size_t>(body)] - first_deformable;
+        return parent >= 0 && fragments.divided[static_cast<std::size_t>(parent)] != 0;
     };
     contacts_.accept_overlaps(contact_, [&](const ContactPair& pair, bool touches) {
         if (!is_old[pair.first()] || (!pair.with_shape() && !is_old[pair.second()])) return true;

@@ -239,7 +239,10 @@ void Contacts<D>::accept_overlaps(ContactBodies<D>& bodies, const NewPair& is_ne
     const ContactRows<D> all = rows(bodies);
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
         const std::size_t rows = all.run_from(k);
-        const bool touches = dot(normals_[k], normals_[k]) > 0.0;
+        const bool touches =
+            std::any_of(normals_.begin() + static_cast<std::ptrdiff_t>(k),
+                        normals_.begin() + static_cast<std::ptrdiff_t>(k + rows),
+                        [](const Vec<double, D>& normal) { return dot(normal, normal) > 0.0; });
         if (rows == 0 || !is_new(pairs_[k], touches)) continue;
         const Overlaps<D> overlaps = all.overlaps(k);
         for (std::size_t n = 0; n < std::min(overlaps.size(), rows); ++n) {

@@ -179,8 +179,10 @@ struct NarrowGap {
 /// contacts yield.
 struct FullCover {
     static constexpr int steps = 16;
-    double nearest = 0.0, step = 1.0;    // [m]
-    double farthest = 0.0, below = 0.0;  // of the first row, of that below, which sees no farther
+    double nearest = 0.0, step = 1.0;  // [m]
+    // Where c_min is meant [m]: nothing fits into a gap of one spacing; the second row sees no
+    // farther.
+    double farthest = 0.0, farthest_below = 0.0;
     std::array<double, steps + 1> weight{};
 
     DOSEKI_DEVICE_FN double at(double distance) const {
@@ -192,7 +194,7 @@ struct FullCover {
     template <class Kernel, int D>
     static FullCover of(double dp, double support) {
         FullCover cover{dp, 0.0, 2.0 * dp, 0.92 * support, {}};
-        cover.step = (std::max(cover.farthest, cover.below) - dp) / steps;
+        cover.step = (std::max(cover.farthest, cover.farthest_below) - dp) / steps;
         for (int k = 0; k <= steps; ++k)
             cover.weight[k] = weight_of_row<Kernel, D>(dp, support, dp + k * cover.step);
         return cover;

@@ -113,7 +113,7 @@ private:
 
     DOSEKI_DEVICE_FN double farthest(std::size_t p) const {
         const FullCover& full = model_.full_cover;
-        return state_.wall.face[p] > Face::none ? full.farthest : full.below;
+        return state_.wall.face[p] > Face::none ? full.farthest : full.farthest_below;
     }
     DOSEKI_DEVICE_FN double least_cover(std::size_t p) const {
         return model_.full_cover.at(farthest(p));
@@ -161,7 +161,7 @@ private:
         for (int k = 0; k < D; ++k) {
             const Vec<double, D> n = row(wall.edge_normals[p], k);
             const double air = 1.0 - met(p, n, sums);
-            pressed = pressed - (air * std::max(0.0, dot(hidden, n))) * n;
+            pressed = pressed - (air * std::max(0.0, dot(pressed, n))) * n;
         }
         return pressed;
     }

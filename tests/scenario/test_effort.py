@@ -48,7 +48,7 @@ def test_an_endless_speed_is_that_of_the_user(write, error_of):
 def test_a_speed_that_nothing_has_is_refused(write, error_of, speed):
     text = error_of(write(top=RESOLVED), f"speed_max={speed}")
     assert f"speed_max = {float(speed):g} makes" in text
-    assert "set speed_max to the fastest flow" in text
+    assert "raise it (speed_max is the fastest flow" in text
 
 
 def test_slow_flows_are_allowed(write):

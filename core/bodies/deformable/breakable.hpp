@@ -23,8 +23,6 @@ void TotalLagrangian<D>::make_deformable(std::size_t body, const RigidPlacement<
     for (const std::uint32_t p : points) {
         v[p] = placement.velocity + turning_velocity(spin, x[p] - still.centre);
         a[p] = load[p] = steady[p] = {};
-        for (int i = 0; i < D; ++i)
-            for (int j = 0; j < D; ++j) deformation_[p](i, j) = placement.turn(i, j);
     }
     rigid_[body] = 0, held_energy_[body] = 0.0;
     choose_stepped();
@@ -46,6 +44,7 @@ void TotalLagrangian<D>::make_rigid(std::size_t body, const RigidMotion<D>& moti
         v[p] = a[p] = {};
     }
     rigid_[body] = 1;
+    bonds_.stop(points);
     choose_stepped();
     const ElasticEnergy after = elastic_energy();
     held_energy_[body] = before.sum() - after.sum();

@@ -205,6 +205,12 @@ public:
         });
         return least;
     }
+    /// Cracks of these points do not go on from what they did in the last step.
+    void stop(std::span<const std::uint32_t> points) {
+        for (const std::uint32_t p : points)
+            for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n)
+                state_[bond_[n]].change = {};
+    }
     /// Tension [Pa] at which the first of the bonds of point p begins to crack.
     template <class Point, class Body>
     double strength(std::size_t p, const Point& point, const Body& body) const;

@@ -250,12 +250,15 @@ public:
             number_points();
         }
         bonds_.serialise(archive);
-        archive("elastic_acted", acted_);
+        Array<Vec<double, D>> acted;
+        for (const ActedPoint<D>& point : acted_) acted.push_back(point.x);
+        archive("elastic_acted", acted);
         if (archive.loads()) {
             stepped_.choose(size(), [](std::uint32_t) { return true; });
             find_spans();
             choose_stepped();
-            expect_fit(acted_.size() == (bonds_.any() ? size() : 0), "elastic_acted");
+            expect_fit(acted.size() == acted_.size(), "elastic_acted");
+            for (std::size_t p = 0; p < acted_.size(); ++p) acted_[p].x = acted[p];
             find_acted();
             a = accelerations, deformation_ = deformations;
         }

@@ -47,7 +47,7 @@ class Starter:
                 select.select([ours], [], [], LAST)
         finally:
             os.close(ours)
-        unready = self._asked is not None and code in (signal.SIGTERM, 128 + signal.SIGTERM)
+        unready = self._asked is not None and code in (-signal.SIGTERM, 128 + signal.SIGTERM)
         if self._killed or unready:  # or had not come to listen yet
             raise Interrupted
         return code
@@ -69,8 +69,9 @@ class Starter:
     def _answer(self, number: int, _frame: FrameType | None) -> None:
         now = time.monotonic()
         again = self._asked is not None and now - self._asked > SAME
+        doubled = self._asked is not None and not again
         self._asked = now if self._asked is None else self._asked
-        if self._process is None:
+        if self._process is None or doubled:
             return
         if number == signal.SIGINT and again:
             self._killed = True

@@ -55,7 +55,10 @@ NOT_NEGATIVE = {
     "surface_radius", "surface_share", "rigid_origin_born", "deformable_origin_born",
     "body_numbers", "breakable_deforms_for", "bodies_at_start", "through_ground",
 }  # fmt: skip
-PLACES = {"position", "lists_position", "elastic_position", "elastic_rest", "elastic_apart"}  # m
+PLACES = {
+    "position", "lists_position", "elastic_position", "elastic_acted", "elastic_rest",
+    "elastic_apart",
+}  # m  # fmt: skip
 BALL = 0  # the kind of a shape without sides
 OF_METER = re.compile(r"\d+_(load|plane)_")  # arrays of a load meter, or of a plane that counts
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given

@@ -11,7 +11,7 @@ from ..model import Scenario
 
 # More would take weeks even for one particle.
 MAX_STEPS = 1e12
-SOFTEST = 1e-3  # of what carries a particle
+SOFTEST = 1e-3  # of the speed that a particle gains as it falls by its own size
 # With which a value is compared, to name the one that is to blame.
 USUAL = {"time_max": 10.0, "sound speed": 100.0, "cflnumber": 0.1, "dp": 0.01}
 
@@ -39,11 +39,8 @@ def check_effort(scenario: Scenario) -> None:
 
 
 def _least_sound(scenario: Scenario) -> float:
-    """The speed of sound, m/s, below which nothing is left of a material: it would yield to the
-    weight of one particle, or sound would not pass one in all of the run.
-    """
-    g = float(np.linalg.norm(scenario.gravity))
-    return SOFTEST * max(math.sqrt(g * scenario.dp), scenario.dp / scenario.time_max)
+    """The speed of sound, m/s, of a material that gives way to the weight of one particle."""
+    return SOFTEST * math.sqrt(float(np.linalg.norm(scenario.gravity)) * scenario.dp)
 
 
 def _too_slow(scenario: Scenario, sound: float, least: float) -> UserError:
@@ -51,8 +48,8 @@ def _too_slow(scenario: Scenario, sound: float, least: float) -> UserError:
     return scenario.where.error(
         (key,),
         f"{key} = {getattr(scenario, key):g} makes a speed of sound of {sound:.3g} m/s; at least "
-        f"{least:.3g} is needed for the weight of one particle: set speed_max to the fastest flow "
-        "that you expect",
+        f"{least:.3g} is needed for the weight of one particle: raise it (speed_max is the fastest "
+        "flow that you expect)",
     )
 
 

@@ -93,7 +93,7 @@ class Weightless(Finding):
     """A terrain without gravity."""
 
     def __str__(self) -> str:
-        return f"{self.place} is zero: nothing flows down the terrain; is it forgotten?"
+        return f"{self.place} is zero: nothing flows down the terrain; was it forgotten?"
 
 
 @dataclass(frozen=True)

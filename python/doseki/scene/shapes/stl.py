@@ -29,7 +29,7 @@ def readable_stl(file: Path, content: bytes) -> bytes:
 
 def _check_end(file: Path, text: bytes) -> None:
     """Refuse a text that stops within a solid, of which a reader takes nothing."""
-    if text.rfind(b"facet") > text.rfind(b"endsolid"):
+    if text.rfind(b"facet normal") > text.rfind(b"endsolid"):
         raise UserError(
             f"{file}: is cut off: no line `endsolid` ends its last solid; write or copy it again"
         )
