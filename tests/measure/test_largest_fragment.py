@@ -10,7 +10,7 @@ from doseki.record.reader import load
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 
-SPEEDS = (2.0, 4.0, 12.0)  # m/s
+SPEEDS = (2.0, 3.0, 12.0)  # m/s
 TURNS = (10, 27, 44)  # of the lattice of the disc, degrees: the largest part of one scatters by 2
 
 pytestmark = pytest.mark.minutes
