@@ -217,7 +217,7 @@ def test_the_scheme_of_the_paper_has_no_terrain(slide):
 
 
 def test_what_has_gone_through_the_ground_is_taken_out_and_told(slide):
-    """Not what is within the walls; a checkpoint from before there was this account goes on."""
+    """Not what is within the walls; a checkpoint goes on with this account."""
     simulation, names = simulation_of(slide)
     step(simulation, 20)
     saved = {name: np.array(values) for name, values in simulation.checkpoint().items()}
@@ -226,7 +226,6 @@ def test_what_has_gone_through_the_ground_is_taken_out_and_told(slide):
     for below, gone in ((0.05, 0), (5.0, 2)):
         state = {name: values.copy() for name, values in saved.items()}
         state["position"][free[:2], 1] -= below
-        del state["through_ground"]
         other = empty_simulation(load_scenario(slide), names)
         check_state(other, state, 2, len(names))
         other.restore(state)
