@@ -144,6 +144,38 @@ def test_ctrl_c_on_a_terminal_stops_in_order(launcher, tmp_path):
     assert_stopped(tmp_path / "run", code)
 
 
+DEAF = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); {} time.sleep(900)"
+SAYS = "from doseki.parallel.starter import say_listening; say_listening();"
+STARTER = """
+import sys
+from doseki.errors import Interrupted
+from doseki.parallel.starter import Starter
+try:
+    Starter().run([sys.executable, "-c", sys.argv[1]])
+except Interrupted:
+    sys.exit(130)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("listening", [False, True])
+def test_a_launcher_that_passes_nothing_on_yet_is_ended(tmp_path, number, listening):
+    process = subprocess.Popen(
+        [sys.executable, "-c", STARTER, DEAF.format(SAYS if listening else "")],
+        env=environment(DOSEKI_TEST=str(tmp_path)),
+        preexec_fn=heard,
+    )
+    wait_until(lambda: len(marked(tmp_path)) > 1)
+    time.sleep(1.0)
+    process.send_signal(number)
+    if listening:  # an order to stop is under way, which takes a while
+        time.sleep(1.0)
+        assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+    assert process.wait(SECONDS) == 130
+    wait_until(lambda: not marked(tmp_path))
+
+
 @pytest.mark.parametrize("seconds", [0.0, 0.3])
 def test_an_interrupt_while_ranks_start_is_one_line(launcher, tmp_path, seconds):
     mark = environment(DOSEKI_TEST=str(tmp_path))

@@ -89,7 +89,11 @@ def join_ranks() -> OneRank:
             f" MPI ({MPI.Get_library_version().split(',')[0].strip()}); start with its own mpiexec"
         )
     from .many_ranks import ManyRanks
+    from .starter import say_listening
 
+    MPI.COMM_WORLD.Barrier()
+    if launched_rank() == 0:
+        say_listening()
     return ManyRanks(MPI.COMM_WORLD, watchdog)
 
 

@@ -10,7 +10,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType
 
 from ..errors import Interrupted
@@ -18,28 +20,40 @@ from ..errors import Interrupted
 SAME = 0.5  # s within which signals are one: `timeout` sends each to a process and to its group
 LAST = 10.0  # s for killed processes to be gone
 DEATH_SIGNAL = 1  # of prctl(2): what a process gets when its parent ends
+FOLDER = "DOSEKI_STARTER"  # the variable that names the folder in which rank 0 says that it listens
+LISTENING = "listening"  # the file that it makes there
+
+
+def say_listening() -> None:
+    """Tell the starter, if there is one on this machine, that all ranks answer signals."""
+    if folder := os.environ.get(FOLDER):
+        with suppress(OSError):
+            (Path(folder) / LISTENING).touch()
 
 
 class Starter:
     """Starts the launcher, and hands signals on to the ranks.
 
     The launcher has a session of its own, as a terminal's Ctrl-C would have it kill ranks. SIGTERM
-    is what launchers pass on without a word, however often it comes.
+    is what launchers pass on without a word, however often it comes; but one that comes while they
+    start processes may reach nobody. Until all ranks listen, signals end everything at once.
     """
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._asked: float | None = None  # when the first signal came
         self._killed = False
+        self._folder = Path()
 
     def run(self, command: Sequence[str]) -> int:
         """Carry out a command; its exit code, with which all its processes have ended.
 
-        Raises Interrupted when a second Ctrl-C has killed them.
+        Raises Interrupted when a second Ctrl-C has killed them, or a signal before they listened.
         """
         ours, theirs = os.pipe()
         try:
-            with _answering(self._answer):
+            with TemporaryDirectory(prefix="doseki-") as folder, _answering(self._answer):
+                self._folder = Path(folder)
                 self._start(command, theirs)
                 assert self._process is not None
                 code = self._process.wait()
@@ -47,8 +61,7 @@ class Starter:
                 select.select([ours], [], [], LAST)
         finally:
             os.close(ours)
-        unready = self._asked is not None and code in (-signal.SIGTERM, 128 + signal.SIGTERM)
-        if self._killed or unready:  # or had not come to listen yet
+        if self._killed:
             raise Interrupted
         return code
 
@@ -56,6 +69,7 @@ class Starter:
         try:
             self._process = subprocess.Popen(
                 command,
+                env=os.environ | {FOLDER: str(self._folder)},
                 stdin=subprocess.DEVNULL,
                 start_new_session=True,
                 pass_fds=[pipe],
@@ -64,7 +78,7 @@ class Starter:
         finally:
             os.close(pipe)
         if self._asked is not None:  # meanwhile
-            self._process.send_signal(signal.SIGTERM)
+            self._kill()
 
     def _answer(self, number: int, _frame: FrameType | None) -> None:
         now = time.monotonic()
@@ -73,11 +87,15 @@ class Starter:
         self._asked = now if self._asked is None else self._asked
         if self._process is None or doubled:
             return
-        if number == signal.SIGINT and again:
-            self._killed = True
-            self._process.kill()
+        if (number == signal.SIGINT and again) or not (self._folder / LISTENING).exists():
+            self._kill()
         else:
             self._process.send_signal(signal.SIGTERM)
+
+    def _kill(self) -> None:
+        assert self._process is not None
+        self._killed = True
+        self._process.kill()
 
 
 @contextmanager
