@@ -74,7 +74,9 @@ def test_it_closes(dropped):
 
 @pytest.mark.parametrize("name", [*BODY_ENERGIES, "contact_work", "kinetic_energy"])
 def test_every_part_of_it_matters(dropped, name):
-    assert gap(without(dropped, name)) > 0.005
+    """Parts that are not pressed take little along."""
+    least = 1.2 * gap(ledger_of(dropped)) if name == "parting_work" else 0.005
+    assert gap(without(dropped, name)) > least
 
 
 def test_contacts_and_cracks_make_no_energy(dropped):

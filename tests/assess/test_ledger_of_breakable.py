@@ -157,7 +157,7 @@ def test_the_account_goes_on_from_a_checkpoint(dropped, tmp_path):
 
 def test_a_mirrored_drop_has_the_same_account(tmp_path):
     """Until it shatters, which tells the sides of the disc apart by rounding."""
-    short = ("time_max=0.0022", "time_out=0.0022")
+    short = ("time_max=0.0018", "time_out=0.0018")
     left, right = (drop(tmp_path / s, s, -1.8, CHALK, 1, *short).history for s in ("-", "+"))
     assert right["fracture_work"][-1] > 0.01
     for name in ("elastic_energy", "fracture_work", "damping_work"):

@@ -71,6 +71,15 @@ BondPoint<D> TotalLagrangian<D>::bond_point(std::size_t p) const {
         place_[p].volume, solid_[p].kappa, number_[p], spans_[p] != 0};
 }
 
+template <int D>
+template <class Counts>
+double TotalLagrangian<D>::energy_with(std::size_t p, const Counts& counts) const {
+    return bonds_.energy_left(
+        p, [this](std::size_t k) { return bond_point(k); },
+        [this](std::size_t k) -> const DeformableBody& { return body_of(k); },
+        [this](std::size_t k) { return x[k]; }, counts);
+}
+
 /// The same when forces acted last.
 template <int D>
 BondPoint<D> TotalLagrangian<D>::acted_point(std::size_t p) const {

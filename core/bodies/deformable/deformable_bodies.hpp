@@ -151,9 +151,10 @@ public:
     const TotalLagrangian<D>& solids() const { return solids_; }
     std::int32_t body_of_point(std::size_t k) const { return solids_.body(k); }
 
-    /// Whether parts may have come off: the last push has broken bonds or ended broken ones.
+    /// Whether parts may come off: the last push has broken bonds or ended broken ones, or some
+    /// were pressed too hard before.
     bool has_cracked() const {
-        return solids_.bonds().change().broken > 0 || solids_.bonds().change().gone > 0;
+        return waits_ || solids_.bonds().change().broken > 0 || solids_.bonds().change().gone > 0;
     }
     /// Makes bodies of the parts of those that do not hold together any more, where there are any,
     /// in a step `dt` whose forces have acted.
@@ -263,7 +264,7 @@ public:
 
 private:
     TotalLagrangian<D> solids_;
-    Division division() const;
+    Division division();
     void find_sudden_forces();
 
     Array<Vec<double, D>> normal_;          // at rest
@@ -274,6 +275,7 @@ private:
     Array<Vec<double, D>> sudden_;  // of flow_force_, see SuddenForces
     Array<Vec<double, D>> owed_;    // impulse of it, within a step the force that gives it
     double step_ = 0.0;             // the last one [s]
+    bool waits_ = true;             // a part for its pressure to go, as far as is known
     Array<ShownPoint<D>> shown_;
     DeformableSurfaces<D> surfaces_;
 };

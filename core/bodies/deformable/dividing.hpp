@@ -4,6 +4,7 @@
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/deformable/surface_division.hpp"
 #include "bodies/fragments/components.hpp"
+#include "bodies/fragments/pressed_bodies.hpp"
 
 namespace doseki {
 
@@ -22,15 +23,30 @@ bool has_room(const TotalLagrangian<D>& solids, const Array<std::uint32_t>& poin
     return true;
 }
 
+/// The component of each point, one for all points of a body that waits.
+inline Array<std::uint32_t> together(Array<std::uint32_t> component,
+                                     const Array<std::int32_t>& body,
+                                     const Array<std::uint8_t>& waits) {
+    Array<std::int64_t> label(waits.size(), -1);
+    for (std::uint32_t p = 0; p < component.size(); ++p) {
+        if (body[p] < 0 || waits[static_cast<std::size_t>(body[p])] == 0) continue;
+        std::int64_t& of_body = label[static_cast<std::size_t>(body[p])];
+        if (of_body < 0) of_body = component[p];
+        component[p] = static_cast<std::uint32_t>(of_body);
+    }
+    return component;
+}
+
 /// A bond holds while it bears tension: it is intact and one of its points has a stress. Points of
 /// a part that the others of it do not span are none of its surface, and points of dust that would
 /// be a ball in the way of others none of one grain: they hold to nothing. Bodies that do not fall
 /// apart keep theirs, such as the sharp corners that they begin with. In 2-D only those count
 /// to which a point holds, and well enough: outlines go with the points around a vertex, Eq. (121).
+/// What is pressed too hard stays together.
 template <int D>
-Division DeformableBodies<D>::division() const {
+Division DeformableBodies<D>::division() {
     const Array<std::int32_t> before = solids_.holders();
-    Array<std::uint8_t> loose(size(), 0);
+    Array<std::uint8_t> loose(size(), 0), waits(bodies(), 0);
     auto for_each_bond = [&](std::uint32_t p, auto&& f) {
         if (before[p] < 0 || loose[p]) return;
         if (!solids_.body_of(p).breaks())
@@ -48,9 +64,10 @@ Division DeformableBodies<D>::division() const {
         return spans_space(solids_.shape_around(
             p, [&](std::uint32_t j) { return std::ranges::find(held, j) != held.end(); }));
     };
+    waits_ = false;
     for (;;) {
-        Division found =
-            divided(components(size(), for_each_bond), before, bodies(), fewest_points<D>);
+        Division found = divided(together(components(size(), for_each_bond), before, waits), before,
+                                 bodies(), fewest_points<D>);
         auto falls_apart = [&](std::uint32_t p) {
             return found.body[p] >= 0 && found.divides[static_cast<std::size_t>(before[p])];
         };
@@ -62,6 +79,10 @@ Division DeformableBodies<D>::division() const {
                 for (const std::uint32_t p : points) loose[p] = 1;
                 more = true;
             }
+        if (more) continue;
+        const Array<std::uint8_t> pressed = pressed_bodies(solids_, before, found);
+        for (std::size_t body = 0; body < pressed.size(); ++body)
+            if (pressed[body] != 0) waits[body] = 1, waits_ = more = true;
         if (!more) return found;
     }
 }

@@ -32,6 +32,16 @@ inline double least_strength(const DeformableBody& body) {
     return with_value(body.law->fracture, [](const auto& law) { return law.least_strength(); });
 }
 
+/// What the end of bonds may add to the energy of points, Eq. (176): a part of what they have when
+/// a crack begins, at this strength or what every bond bears. Open cracks add some hundredths of
+/// that.
+inline double negligible_gain(double volume, double strength, const DeformableBody& body) {
+    constexpr double part = 0.1, least_strain = 1e-6;  // less is rounding
+    const double E = body.young_modulus(),
+                 tension = std::max({strength, least_strength(body), least_strain * E});
+    return part * volume * tension * tension / (2.0 * E);
+}
+
 /// One bond, its points, and what happens to it in a step.
 template <int D>
 class BondStep {
@@ -80,8 +90,10 @@ public:
         const bool failed = with_value(body_.law->fracture, [&](const auto& law) {
             return law.failed(Crack{state_.opening, state_.max_opening, state_.damage});
         });
-        return failed && norm(now() - mean_deformation() * rest_) >= reach * norm(rest_);
+        return failed && displacement() >= reach;
     }
+    /// Whether they are so far apart that the bond says nothing of the body any more.
+    bool is_far() const { return displacement() >= far; }
 
 private:
     /// Of the length of a bond: below this part of it along the normal, a crack does not cross it.
@@ -93,11 +105,14 @@ private:
     static constexpr double crowding = 0.4;
     /// Of the length of a bond: sides of a crack farther apart than this part for good.
     static constexpr double reach = 0.03;
+    static constexpr double far = 0.3;
     /// Of the sides of a crack: that of rock (Byerlee, Pure Appl. Geophys. 116, 1978).
     static constexpr double friction = 0.6;
 
     Vec<double, D> at_rest() const { return rest_ + state_.jump; }
     Vec<double, D> now() const { return a_.x - b_.x; }
+    /// Of its sides, over its length.
+    double displacement() const { return norm(now() - mean_deformation() * rest_) / norm(rest_); }
 
     /// Force over the weight with which point i resists a change of the jump, Eq. (109).
     Vec<double, D> pull_of(const BondPoint<D>& i, const Vec<double, D>& at_rest) const {

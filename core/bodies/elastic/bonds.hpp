@@ -232,6 +232,22 @@ public:
             f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]));
         }
     }
+    /// Calls f(j, strength) for those that are left, with the tension at which their crack began,
+    /// 0 where there is none.
+    template <class F>
+    void for_each_left(std::size_t p, const F& f) const {
+        if (p + 1 >= first_bond_.size()) return;
+        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
+            const BondEnds& ends = pairs_[bond_[n]];
+            const BondState<D>& state = state_[bond_[n]];
+            if (state.whole != 0.0) f(ends.a == p ? ends.b : ends.a, state.strength);
+        }
+    }
+    /// Energy of point p at place(k) with those bonds that are left to points j for which
+    /// counts(j); none where these do not span the space.
+    template <class Point, class Body, class Place, class Counts>
+    double energy_left(std::size_t p, const Point& point, const Body& body, const Place& place,
+                       const Counts& counts) const;
     /// Eq. (127): the share of the bonds of point p that is broken, by the weights of the fit (80).
     double damage(std::size_t p) const {
         if (p + 1 >= first_bond_.size()) return 0.0;
@@ -305,6 +321,8 @@ private:
     template <class Point, class Body, class Place, class Counts>
     double energy_across(std::size_t p, Moment moment, const Point& point, const Body& body,
                          const Place& place, const Counts& counts) const;
+    template <class Point, class Body, class Place>
+    void keep_pressed(const Point& point, const Body& body, const Place& place);
     /// Of the cracks around each point.
     template <class Point>
     void find_moments(std::span<const std::uint32_t> bonds, const Point& point);

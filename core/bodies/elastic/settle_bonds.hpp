@@ -89,6 +89,43 @@ double Bonds<D>::energy_across(std::size_t p, Moment moment, const Point& point,
     return across_step(at(0.0), at(0.5), at(1.0));
 }
 
+template <int D>
+template <class Point, class Body, class Place, class Counts>
+double Bonds<D>::energy_left(std::size_t p, const Point& point, const Body& body,
+                             const Place& place, const Counts& counts) const {
+    if (!point(p).spans || !spans_space(moment(p, point, counts))) return 0.0;
+    return energy(p, Moment::now, point, body, place, counts);
+}
+
+/// Eq. (176): a bond whose end would leave more energy in its points than they have stays, as a
+/// crack that bears pressure. Those that release most go first.
+template <int D>
+template <class Point, class Body, class Place>
+void Bonds<D>::keep_pressed(const Point& point, const Body& body, const Place& place) {
+    if (change_.gone == 0) return;
+    const auto all = [](std::uint32_t) { return true; };
+    const auto now = [&](std::size_t k) { return place(k, 1.0); };
+    const auto energy = [&](std::uint32_t n, double whole) {
+        state_[n].whole = whole;
+        return energy_left(pairs_[n].a, point, body, now, all) +
+               energy_left(pairs_[n].b, point, body, now, all);
+    };
+    const auto gain = [&](std::uint32_t n) { return energy(n, -1.0) - energy(n, 1.0); };
+    Array<std::pair<double, std::uint32_t>> parting;
+    for (const std::uint32_t n : cracked_)
+        if (state_[n].whole < 0.0) state_[n].whole = 1.0, parting.emplace_back(0.0, n);
+    for (auto& [gained, n] : parting) gained = gain(n);
+    std::stable_sort(parting.begin(), parting.end());
+    for (const auto& [first, n] : parting) {
+        const double volume = point(pairs_[n].a).volume + point(pairs_[n].b).volume;
+        const double most = negligible_gain(volume, state_[n].strength, body(pairs_[n].a));
+        if (step_of(n, point, body).is_far() || gain(n) <= most)
+            state_[n].whole = -1.0;
+        else
+            --change_.gone;
+    }
+}
+
 /// Points that lose bonds in this step.
 template <int D>
 std::set<std::uint32_t> Bonds<D>::parting_points() const {
@@ -121,6 +158,7 @@ template <class Point, class Body, class Place, class TakeShape>
 void Bonds<D>::settle(const Point& point, const Body& body, const Place& place,
                       const TakeShape& take_shape) {
     const auto all = [](std::uint32_t) { return true; };
+    keep_pressed(point, body, place);
     const std::set<std::uint32_t> parting = parting_points();
     work_ += work_of_step(parting, point, body);
     for (const std::uint32_t p : parting) {

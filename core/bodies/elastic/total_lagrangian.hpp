@@ -169,9 +169,8 @@ public:
     bool clamped(std::size_t p) const { return clamped_[p] != 0; }
     /// Where the point that was added as number k is stored.
     std::uint32_t slot(std::size_t k) const { return slot_[k]; }
-    /// Points within the support of one at rest, itself among them.
+    /// Points within the support of one at rest, itself among them; those of the same body.
     Array<std::uint32_t> pairs_of(std::size_t p) const;
-    /// Those of the same body.
     Array<std::uint32_t> neighbours_of(std::size_t p) const;
     /// How the points of its body around point p have moved, as its deformation gradient says
     /// where all bonds are whole.
@@ -179,8 +178,7 @@ public:
     /// The place that goes with point p by this, from `offset` at rest: shares of points, which add
     /// up to 1.
     Array<PointShare> carriers(std::size_t p, const Vec<double, D>& offset) const;
-    /// Moment of the pairs of point p with those neighbours for which holds(j), as they were at
-    /// rest.
+    /// At rest, moment of the pairs of point p with those neighbours for which holds(j).
     template <class Holds>
     Mat<double, D> shape_around(std::size_t p, const Holds& holds) const;
     /// Whether the bonds of a point span the space, so that it has a stress.
@@ -201,6 +199,8 @@ public:
         auto at = [&](double share) { return elastic_energy(share * dt).sum(); };
         return across_step(at(0.0), at(0.5), at(1.0));
     }
+    template <class Counts>  // of point p with those of its bonds to points j for which counts(j)
+    double energy_with(std::size_t p, const Counts& counts) const;
     double kinetic_energy() const;
     /// Energy that cracks and that damping took so far [J], 2-D: [J/m].
     double fracture_work() const { return bonds_.work(); }

@@ -155,7 +155,7 @@ def test_mass_and_momenta_are_kept_through_the_change(build, dim, spin, share):
         assert now[0] == pytest.approx(mass, rel=1e-13)
         np.testing.assert_allclose(now[1], momentum, rtol=0, atol=1e-12 * scale)
         np.testing.assert_allclose(now[2], turning, rtol=0, atol=1e-12 * scale)
-        assert energy(simulation) <= start * (1 + 1e-3)
+        assert energy(simulation) <= start * (1 + 3e-3)  # the error of steps, Eq. (129)
     assert changed
 
 
