@@ -9,7 +9,7 @@ from doseki.record.particles import FIXED, FREE
 from doseki.scenario.load import load_scenario
 from doseki.scenario.particle_files.reader import read_particles
 from doseki.scene.build import build_bodies
-from doseki.scene.wall_normals import wall_geometry
+from doseki.scene.walls.normals import wall_geometry
 
 HEADER = "x,y,vx,vy,mass,density,material"
 ROW = "0,0,0,0,1,1000,water"

@@ -6,7 +6,7 @@ import pytest
 
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
-from doseki.scene.wall_normals import wall_geometry
+from doseki.scene.walls.normals import wall_geometry
 
 from ..scene.test_wall_geometry import built
 from ..small_scenarios import BLOCK

@@ -9,7 +9,7 @@ from doseki.errors import UserError
 from doseki.record.particles import FIXED
 from doseki.scenario.load import load_scenario
 from doseki.scene.build import build_bodies, build_scene
-from doseki.scene.wall_normals import wall_geometry
+from doseki.scene.walls.normals import wall_geometry
 
 BALL = """
 [body.water]

@@ -26,7 +26,7 @@ from ..scene.checks.structures import structure_findings
 from ..scene.contact_faces import contact_faces
 from ..scene.inflow_sections import InflowSection, build_inflows
 from ..scene.lattices import ROUNDING
-from ..scene.wall_normals import wall_geometry
+from ..scene.walls.normals import wall_geometry
 from ..util.finding import Finding
 from ..util.telling import Tell, say_nothing
 from .placed import Placed, origin_of
@@ -290,11 +290,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
         simulation.set_stresses(scene.stress)
     if scenario.scheme != RESOLVED:
         return []
-    normal, depth, edges = wall_geometry(scenario, particles, body_names)
-    normal[bodies.shaped] = bodies.normal[bodies.shaped]
-    depth[bodies.shaped] = bodies.depth[bodies.shaped]
-    edges.normals[bodies.shaped] = bodies.edge_normals[bodies.shaped]
-    edges.depths[bodies.shaped] = bodies.edge_depths[bodies.shaped]
+    normal, depth, edges = wall_geometry(scenario, particles, body_names, bodies)
     surface = {"normal": normal, "depth": depth, "curvature": bodies.curvature}
     simulation.set_walls(**{name: np.ascontiguousarray(v) for name, v in surface.items()})
     simulation.set_edges(

@@ -14,7 +14,7 @@ from ...scenario.values.expressions import ExpressionError, evaluate_at, is_expr
 from ...util.finding import Finding
 from ..bodies import ElasticBody
 from ..groups import Group, inside_bodies
-from ..shapes import Edges, Particles, no_edges
+from ..shapes import Edges, Particles, PlaneFaces, no_edges
 
 T = TypeVar("T", bound=BodyTable)
 
@@ -121,6 +121,10 @@ class Body(Generic[T]):
         They are triangles, in 2-D segments, seen anticlockwise from outside.  None where it has no
         faces, or particles lie along them as on a lattice.
         """
+        return None
+
+    def plane_faces(self) -> PlaneFaces | None:
+        """The sides of a fixed body before it moves, where fluid may meet each of them."""
         return None
 
     def encloses(self, position: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from ...record.particles import ParticleSet
 from ...scenario.tables.bodies import Box
 from ..groups import Group
 from ..lattices import box_counts, box_lattice
-from ..shapes import Edges, box_shape
+from ..shapes import Edges, PlaneFaces, box_shape
 from ..wetting import covered_share
 from .box_walls import BoxWalls
 from .lattice import Lattice
@@ -65,6 +65,14 @@ class BoxBody(Lattice[Box]):
         """See Body."""
         whole = self.table.fixed and self.table.where is None and not self.table.count
         return self.group() if whole else None
+
+    def plane_faces(self) -> PlaneFaces | None:
+        """See Body: of a block that does not itself say where the fluid is."""
+        if self.table.normal is not None or self.table.where is not None:
+            return None
+        if self.is_of_bodies or self._walls(ParticleSet.empty(self.dim)).thin_axis is not None:
+            return None
+        return self._sides_of(self.group())
 
     def shape_wall(
         self, position: np.ndarray, particles: ParticleSet

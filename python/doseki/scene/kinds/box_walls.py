@@ -10,7 +10,7 @@ import numpy as np
 from ...record.particles import FIXED, ParticleSet
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box
-from ..periodic import nearest_image, periods
+from ..periodic import periods
 from ..shapes import EDGE, Edges, beside_edges, nearest_faces
 
 SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab with one wet face
@@ -48,51 +48,27 @@ class BoxWalls:
     def _side(self, axis: int) -> float:
         """+1 if what moves lies on the upper side of the slab, else -1."""
         middle = 0.5 * (self.box.min[axis] + self.box.max[axis])
-        seen = np.array([self._upright(x) for x in self._movers()])
+        seen = np.array([self._upright(x) for x in movers(self.scenario, self.particles)])
         return 1.0 if len(seen) == 0 or seen[:, axis].mean() >= middle else -1.0
 
-    def _movers(self) -> Iterator[np.ndarray]:
-        """The middle of what moves, and where it enters; without any, the middle of everything."""
-        free = self.particles.position[self.particles.motion != FIXED]
-        if len(free):
-            yield free.mean(axis=0)
-        gravity = self.scenario.gravity
-        down = gravity / max(float(np.linalg.norm(gravity)), 1e-300)
-        for inflow in self.scenario.inflow.values():
-            yield inflow.position - 1e-3 * inflow.height * down
-        if not len(free) and not self.scenario.inflow:
-            yield self.particles.position.mean(axis=0)
-
     def nearest_face(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normal and depth at each position below the nearest face that no wall covers."""
+        """Normal and depth at each position below the nearest face."""
         return nearest_faces(*self._below_faces(position), EDGE * self.scenario.dp)
 
     def edges(self, position: np.ndarray) -> Edges:
-        """The nearest faces that no wall covers."""
+        """The nearest faces."""
         return beside_edges(*self._below_faces(position), EDGE * self.scenario.dp)
 
     def _below_faces(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Depths (N, m) below the m faces that no wall covers, and their normals (m, dim)."""
-        dim = self.scenario.dim
+        """Depths (N, m) below the m faces, and their normals (m, dim)."""
         upright = self._upright(position)
-        faces = [(a, s) for a in range(dim) for s in (-1.0, 1.0) if not self._is_covered(a, s)]
-        faces = faces or [(dim - 1, 1.0)]
+        faces = [(a, s) for a in range(self.scenario.dim) for s in (-1.0, 1.0)]
         low, high = self.box.min, self.box.max
         gaps = np.stack(
             [high[a] - upright[:, a] if s > 0 else upright[:, a] - low[a] for a, s in faces], axis=1
         )
         normals = np.array([s * self.matrix[:, a] for a, s in faces])
         return gaps, normals
-
-    def _is_covered(self, axis: int, side: float) -> bool:
-        """Whether other walls lie against the middle of a face."""
-        centre = 0.5 * (self.box.min + self.box.max)
-        centre[axis] = (self.box.max if side > 0 else self.box.min)[axis]
-        centre[axis] += 0.5 * side * self.scenario.dp
-        centre = self._pivot + self.matrix @ (centre - self._pivot)
-        fixed = self.particles.position[self.particles.motion == FIXED]
-        away = np.abs(nearest_image(fixed - centre, periods(self.scenario)))
-        return bool((away.max(axis=1) < 0.76 * self.scenario.dp).any())
 
     def _upright(self, position: np.ndarray) -> np.ndarray:
         """Positions as they would be in the box before its rotation."""
@@ -101,3 +77,16 @@ class BoxWalls:
     @property
     def _pivot(self) -> np.ndarray:
         return self.box.min if self.box.pivot is None else self.box.pivot
+
+
+def movers(scenario: Scenario, particles: ParticleSet) -> Iterator[np.ndarray]:
+    """The middle of what moves, and where it enters; without any, the middle of everything."""
+    free = particles.position[particles.motion != FIXED]
+    if len(free):
+        yield free.mean(axis=0)
+    gravity = scenario.gravity
+    down = gravity / max(float(np.linalg.norm(gravity)), 1e-300)
+    for inflow in scenario.inflow.values():
+        yield inflow.position - 1e-3 * inflow.height * down
+    if not len(free) and not scenario.inflow:
+        yield particles.position.mean(axis=0)

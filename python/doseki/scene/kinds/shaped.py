@@ -14,7 +14,7 @@ from ..bodies import ElasticBody, ElasticSurface, balls_around
 from ..groups import UPRIGHT, Group, matrices
 from ..meshes.cells import Cells, cells_of
 from ..periodic import wrapped
-from ..shapes import Convex, Edges, Particles, Shape
+from ..shapes import Convex, Edges, Particles, PlaneFaces, Shape
 from ..shapes.surface import shared_among
 from .body import Body
 
@@ -102,6 +102,17 @@ class Shaped(Body[S], Generic[S]):
         turn = matrices(group.orientation, self.dim)[0]
         corners: np.ndarray = shape.vertices[shape.faces]
         return np.asarray(group.centre[0] + corners @ turn.T)
+
+    def plane_faces(self) -> PlaneFaces | None:
+        """See Body: those of a convex body."""
+        return self._sides_of(self.group()) if self.is_of_bodies else None
+
+    def _sides_of(self, group: Group) -> PlaneFaces | None:
+        """Of one convex body."""
+        shape = group.shapes[0]
+        if not isinstance(shape, Convex) or len(group) != 1:
+            return None
+        return PlaneFaces.of(shape, group.centre[0], matrices(group.orientation, self.dim)[0])
 
     def particles_of_bodies(
         self, group: Group, names: list[str], placed: Particles, owner: np.ndarray

@@ -10,6 +10,7 @@ from .convex import Convex
 from .making import ShapeError, box_shape, mesh_shape, polygon_shape
 from .mesh import MeshShape, Triangles, core_mesh
 from .particles import EDGE, Edges, Particles, beside_edges, nearest_faces, no_edges
+from .plane_faces import PlaneFaces
 
 Shape = Ball | Convex | MeshShape
 
@@ -20,6 +21,7 @@ __all__ = [
     "Edges",
     "MeshShape",
     "Particles",
+    "PlaneFaces",
     "Shape",
     "ShapeError",
     "Triangles",

@@ -58,9 +58,9 @@ def nearest_faces(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Normal (N, dim) and depth (N,) below the nearest of faces.
 
-    `gaps` (N, m) to the faces, `normals` (m, dim) of them.  Those that are as near count as much:
-    along an edge the normal is the mean of two, in a corner of three.  One that is farther by
-    `width` counts no more.
+    `gaps` (N, m) to the faces, infinite for those that do not count, `normals` (m, dim) of them.
+    Those that are as near count as much: along an edge the normal is the mean of two, in a corner
+    of three.  One that is farther by `width` counts no more.
     """
     return _mean(_nearness(gaps, width), normals), gaps.min(axis=1)
 
@@ -83,7 +83,8 @@ def beside_edges(gaps: np.ndarray, normals: np.ndarray, width: float) -> Edges:
     number = np.ones(rows, int)
     for face in order[:, 1:].T:
         lean = np.einsum("nkd,nd->nk", found, normals[face])
-        new = np.flatnonzero((lean.max(axis=1) < SMOOTH) & (number <= most))
+        there = (number <= most) & np.isfinite(gaps[np.arange(rows), face])
+        new = np.flatnonzero((lean.max(axis=1) < SMOOTH) & there)
         found[new, number[new]] = normals[face[new]]
         depths[new, number[new]] = gaps[new, face[new]]
         number[new] += 1

@@ -1,0 +1,111 @@
+"""A stream without friction passes joints of its bed as if they were none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ..flows import Flows
+
+# Water 8 particles deep on a bed without friction that is periodic along it.
+STREAM = """\
+dim = 2
+scheme = "resolved"
+speed_max = 3
+dp = 0.01
+time_max = 1
+time_out = 1
+gravity = [0, -9.81]
+periodic = ["x"]
+domain_min = [0, -9]
+domain_max = [0.4, 9]
+
+[body.stream]
+shape = "box"
+material = "water"
+pressure = "= 9810*(0.08 - y)"
+min = [0, 0]
+max = [0.4, 0.08]
+velocity = [2.5, 0]
+"""
+WALL = '\n[body.{}]\nmaterial = "aluminium"\nfixed = true\nwall = "free_slip"\n{}\n'
+
+
+def polygon(name, left, right, depth=0.04):
+    corners = [[left, -depth], [right, -depth], [right, 0], [left, 0]]
+    return WALL.format(name, f'shape = "polygon"\nvertices = {corners}')
+
+
+def box(name, left, right, depth=0.04):
+    return WALL.format(name, f'shape = "box"\nmin = [{left}, -{depth}]\nmax = [{right}, 0]')
+
+
+BEDS = {
+    "one box": box("a", 0, 0.4),
+    "polygons": polygon("a", 0, 0.2) + polygon("b", 0.2, 0.4),
+    "polygon and box": polygon("a", 0, 0.2) + box("b", 0.2, 0.4),
+    "thick beside thin": box("a", 0, 0.2, 0.12) + box("b", 0.2, 0.4, 0.03),
+}
+
+
+@pytest.mark.parametrize("bed", BEDS)
+def test_a_stream_keeps_its_speed_over_joints(tmp_path, bed):
+    simulation = Flows(tmp_path)(STREAM + BEDS[bed])
+    simulation.advance(limit=0.2, pause=0.2, max_steps=10**6)
+    state = simulation.state()
+    moving = np.asarray(state["motion"]) == 0
+    speed, height = state["velocity"][moving, 0], state["position"][moving, 1]
+    assert speed[height < 0.02].mean() > 0.998 * 2.5
+    assert speed.mean() > 0.999 * 2.5
+
+
+# The same in space, in a channel whose walls are without friction too.
+CHANNEL = """\
+dim = 3
+scheme = "resolved"
+speed_max = 3
+dp = 0.01
+time_max = 1
+time_out = 1
+gravity = [0, 0, -9.81]
+periodic = ["x"]
+domain_min = [0, -9, -9]
+domain_max = [0.08, 9, 9]
+
+[body.stream]
+shape = "box"
+material = "water"
+pressure = "= 9810*(0.04 - z)"
+min = [0, 0, 0]
+max = [0.08, 0.06, 0.04]
+velocity = [2.5, 0, 0]
+"""
+THICK = 0.03  # m, of its walls: as the kernel reaches
+
+
+@pytest.mark.parametrize("kind", ["box", "stl"])
+@pytest.mark.parametrize("stands", ["on the floor", "beside the floor"])
+def test_a_stream_keeps_its_speed_along_a_corner(tmp_path, kind, stands):
+    import trimesh
+
+    foot, beyond = (0.0, 0.1) if stands == "on the floor" else (-THICK, 0.0)
+    sides = {
+        "floor": [(0, -beyond, -THICK), (0.08, 0.06 + beyond, 0)],
+        "left": [(0, -0.1, foot), (0.08, 0, 0.1)],
+        "right": [(0, 0.06, foot), (0.08, 0.16, 0.1)],
+    }
+    text = CHANNEL
+    for name, (low, high) in sides.items():
+        keys = f'shape = "box"\nmin = {list(low)}\nmax = {list(high)}'
+        if kind == "stl":
+            trimesh.creation.box(bounds=[low, high]).export(tmp_path / f"{name}.stl")
+            keys = f'shape = "stl"\nfile = "{name}.stl"'
+        text += WALL.format(name, keys)
+    simulation = Flows(tmp_path)(text)
+    simulation.advance(limit=0.1, pause=0.1, max_steps=10**6)
+    state = simulation.state()
+    place, speed = state["position"], state["velocity"][:, 0]
+    moving = np.asarray(state["motion"]) == 0
+    corner = moving & (place[:, 2] < 0.02) & (np.abs(place[:, 1] - 0.03) > 0.01)
+    assert speed[corner].mean() > 0.998 * 2.5
+    assert speed[moving].mean() > 0.999 * 2.5
