@@ -44,8 +44,8 @@ dim = 3
 dp = 0.0125
 scheme = "resolved"
 speed_max = 10
-time_max = 0.0016
-time_out = 0.0008
+time_max = 0.002
+time_out = 0.001
 gravity = [0, 0, 0]
 
 [body.a]
