@@ -269,9 +269,7 @@ def _takers(scenario: Scenario, name: str, groups: list[Group], whole: set[str])
 
 def _outside(scenario: Scenario, particles: ParticleSet, takers: list[Group]) -> ParticleSet:
     """The particles of a body without the free ones that lie inside others."""
-    inside = np.zeros(len(particles), bool)
-    for group in takers:
-        inside |= inside_bodies(scenario, group, particles.position)
+    inside = inside_bodies(scenario, takers, particles.position)
     keep = ~inside | (particles.motion != FREE)
     if keep.all():
         return particles

@@ -156,8 +156,8 @@ def boxes(group: Group) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.ndarray:
-    """Whether each position (N, dim) lies inside a body of the group."""
+def inside_bodies(scenario: Scenario, groups: list[Group], position: np.ndarray) -> np.ndarray:
+    """Whether each position (N, dim) lies inside a body of one of the groups."""
     from scipy.spatial import cKDTree
 
     inside = np.zeros(len(position), bool)
@@ -167,12 +167,11 @@ def inside_bodies(scenario: Scenario, group: Group, position: np.ndarray) -> np.
     low = np.zeros(scenario.dim) if scenario.domain_min is None else scenario.domain_min
     origin = np.where(period > 0, low, 0.0)  # the tree's box begins at zero
     tree = cKDTree(wrapped(scenario, position) - origin, boxsize=period)
-    middle = 0.5 * np.add(*boxes(group))  # the centre of mass of what spans a period is elsewhere
-    for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
-        shape = group.shapes[group.shape[k]]
-        near = np.array(
-            tree.query_ball_point(group.centre[k] - origin, shape.reach), dtype=np.int64
-        )
-        offset = nearest_image(position[near] - group.centre[k] - middle[k], period) + middle[k]
-        inside[near[shape.contains(offset @ turned)]] = True
+    for group in groups:
+        middle = 0.5 * np.add(*boxes(group))  # a body that spans a period has its mass elsewhere
+        for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
+            shape, centre = group.shapes[group.shape[k]], group.centre[k]
+            near = np.array(tree.query_ball_point(centre - origin, shape.reach), dtype=np.int64)
+            offset = nearest_image(position[near] - centre - middle[k], period) + middle[k]
+            inside[near[shape.contains(offset @ turned)]] = True
     return inside

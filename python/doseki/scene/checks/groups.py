@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +13,7 @@ from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding, no_less_than
 from ..ground import ground_of
 from ..groups import Group, boxes, matrices
+from ..meeting import meeting_pairs
 from ..periodic import periods
 from ..shapes import Ball, Convex, MeshShape
 
@@ -214,19 +214,42 @@ Overlap = tuple[str, str, float, float]  # of a body that moves, with, by m, its
 
 
 def _overlaps(balls: list[_Ball], blocks: list[_Block]) -> Iterator[Overlap]:
-    for k, one in enumerate(balls):
-        for other in balls[k:]:
-            if not (one.fixed and other.fixed):
-                yield from _of_balls(one, other)
-        for block in blocks:
-            if not (one.fixed and block.fixed):
-                yield from _of_ball_and_block(one, block)
-    for first, second in combinations(blocks, 2):
-        apart = float(np.linalg.norm(first.centre - second.centre)) > first.reach + second.reach
-        if not (apart or (first.fixed and second.fixed)):
-            moving, other_name = (second, first.name) if first.fixed else (first, second.name)
-            size = min(block.reach for block in (first, second) if not block.fixed)
-            yield moving.name, other_name, _common_width(first, second), 2 * size
+    for ball in balls:
+        if not ball.fixed:
+            yield from _of_balls(ball, ball)
+    for one, other in _near(balls, blocks):
+        if one.fixed and other.fixed:
+            continue
+        if isinstance(one, _Block):
+            assert isinstance(other, _Block)
+            yield from _of_blocks(one, other)
+        elif isinstance(other, _Block):
+            yield from _of_ball_and_block(one, other)
+        else:
+            yield from _of_balls(one, other)
+
+
+def _near(
+    balls: list[_Ball], blocks: list[_Block]
+) -> Iterator[tuple[_Ball | _Block, _Ball | _Block]]:
+    """Pairs that may overlap, balls first."""
+    if not balls and not blocks:
+        return
+    ends = [(ball.centre.min(axis=0), ball.centre.max(axis=0), ball.radius) for ball in balls]
+    ends += [(block.centre, block.centre, block.reach) for block in blocks]
+    low, high = (np.array([end[k] for end in ends]) for k in (0, 1))
+    reach = np.array([end[2] for end in ends])[:, None]
+    solids: list[_Ball | _Block] = [*balls, *blocks]
+    for first, second in meeting_pairs(low - reach, high + reach):
+        yield solids[first], solids[second]
+
+
+def _of_blocks(first: _Block, second: _Block) -> Iterator[Overlap]:
+    if float(np.linalg.norm(first.centre - second.centre)) > first.reach + second.reach:
+        return
+    moving, other_name = (second, first.name) if first.fixed else (first, second.name)
+    size = min(block.reach for block in (first, second) if not block.fixed)
+    yield moving.name, other_name, _common_width(first, second), 2 * size
 
 
 def _balls(group: Group) -> Iterator[_Ball]:

@@ -58,7 +58,7 @@ def _taken(scenario: Scenario, position: np.ndarray, groups: Sequence[Group]) ->
     held = np.zeros(len(position), bool)
     counts = {"": 0}
     for group in groups:
-        inside = inside_bodies(scenario, group, position)
+        inside = inside_bodies(scenario, [group], position)
         counts[group.name] = counts.get(group.name, 0) + int(inside.sum())
         held |= inside
     return max(counts, key=counts.__getitem__), float(held.mean())

@@ -135,7 +135,7 @@ class Body(Generic[T]):
         group = self.group() if self.is_of_bodies else self.contact_shape()
         if group is None:
             return np.zeros(len(position), bool)
-        return inside_bodies(self.scenario, group, position)
+        return inside_bodies(self.scenario, [group], position)
 
     def findings(self) -> list[Finding]:
         """What is doubtful about it."""

@@ -69,7 +69,7 @@ class Lattice(Turned[L], Generic[L]):
         where = self.table.where
         if where is None or self.table.given("count"):
             return super().encloses(position)
-        inside = inside_bodies(self.scenario, self.group(), position)
+        inside = inside_bodies(self.scenario, [self.group()], position)
         inside[inside] = self.values_at("where", where, position[inside]) > 0
         return inside
 
