@@ -100,12 +100,15 @@ public:
     }
 
 private:
-    /// Whether faces may meet, on any rank: those of walls that do not move never do.
-    bool faces_meet(const State& state) const {
+    /// Whether faces may meet with water around them, on any rank: those of walls that do not move
+    /// never do.
+    bool faces_meet(const State& state, std::span<const std::uint8_t> fixed) const {
         const auto faces = state.wall.face.stored();
-        const bool own = std::any_of(faces.begin(), faces.end(),
-                                     [](std::int32_t face) { return face >= Face::first_body; });
-        return halo_.ranks.largest(own ? 1.0 : 0.0) > 0.0;
+        const bool moving = std::any_of(faces.begin(), faces.end(),
+                                        [](std::int32_t face) { return face >= Face::first_body; });
+        const bool wet = std::ranges::find(fixed, 0) != fixed.end();
+        const Ranks& ranks = halo_.ranks;
+        return ranks.largest(moving ? 1.0 : 0.0) > 0.0 && ranks.largest(wet ? 1.0 : 0.0) > 0.0;
     }
     Field<std::int32_t> faces_with_ghosts(const State& state);
     double cheapest_skin(double min_support, std::int64_t steps) const;
@@ -165,7 +168,7 @@ void RunLists<Lists>::rebuild(State& state, const Supports& supports, double lea
     Array<double> support = supports();
     const Array<std::uint8_t> fixed = wall_flags(state);
     min_support_ = halo_.ranks.smallest(range_of(support).smallest);
-    const bool faces_meet = this->faces_meet(state);
+    const bool faces_meet = this->faces_meet(state, fixed);
     skin_ = cheapest_skin(min_support_, steps);
     skin_width_ = max(skin_ * min_support_, least);
     if (!halo_.alone()) {

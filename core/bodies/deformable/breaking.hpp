@@ -98,7 +98,7 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     const DeformableBody& body = body_of(p);
     if (!spans_[p] || !determines_strain(shape)) {
         correction_[p] = {}, deformation_[p] = identity<double, D>();
-        stress_[p] = {}, tension_[p] = 0.0;
+        stress_[p] = {};
         solid_[p].Q = solid_[p].Q_damping = solid_[p].F_rate = solid_[p].spin = {},
         solid_[p].F = deformation_[p];
         solid_[p].kappa = solid_[p].kappa_rate = 0.0;
@@ -109,7 +109,6 @@ void TotalLagrangian<D>::update_bonded(std::size_t p,
     solid_[p].kappa_rate = body.hourglass * body.viscosity();
     spans().update(p, sums);
     stress_[p] = stress(p);
-    tension_[p] = largest_principal(material_stress(deformation_[p], stress_[p])).value;
 }
 
 /// For the places and velocities in the records, of the points in these clusters; none: of all.
@@ -171,6 +170,9 @@ template <int D>
 void TotalLagrangian<D>::advance_bonds(double dt) {
     auto point = [this](std::size_t p) { return bond_point(p); };
     auto body = [this](std::size_t p) -> const DeformableBody& { return body_of(p); };
+    stepped_.for_each([this](std::size_t p) {
+        tension_[p] = largest_principal(material_stress(deformation_[p], stress_[p])).value;
+    });
     Array<std::uint32_t> clusters;
     auto update = [this, &clusters] {
         if (clusters.empty()) clusters = cracked_clusters();

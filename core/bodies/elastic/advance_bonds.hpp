@@ -23,11 +23,9 @@ template <int D>
 void Bonds<D>::add_code(std::size_t p, std::size_t points, std::uint32_t j) {
     std::uint32_t code = 0;
     if (p < points)
-        for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-            const BondEnds& ends = pairs_[bond_[k]];
-            if (ends.a == p && ends.b == j) code = 2 * bond_[k];
-            if (ends.b == p && ends.a == j) code = 2 * bond_[k] + 1;
-        }
+        walk(p, [&](std::uint32_t n, std::uint32_t other) {
+            if (other == j) code = 2 * n + (pairs_[n].b == p);
+        });
     code_.push_back(code);
 }
 
@@ -143,12 +141,12 @@ template <int D>
 template <class Point, class Body>
 double Bonds<D>::strength(std::size_t p, const Point& point, const Body& body) const {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-        const BondEnds& ends = pairs_[bond_[k]];
-        BondState<D> state = state_[bond_[k]];
+    walk(p, [&](std::uint32_t n, std::uint32_t) {
+        const BondEnds& ends = pairs_[n];
+        BondState<D> state = state_[n];
         const BondStep<D> bond(ends, point(ends.a), point(ends.b), body(ends.a), state);
         least = min(least, bond.strength());
-    }
+    });
     return least;
 }
 

@@ -208,8 +208,7 @@ public:
     /// Cracks of these points do not go on from what they did in the last step.
     void stop(std::span<const std::uint32_t> points) {
         for (const std::uint32_t p : points)
-            for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n)
-                state_[bond_[n]].change = {};
+            walk(p, [&](std::uint32_t n, std::uint32_t) { state_[n].change = {}; });
     }
     /// Tension [Pa] at which the first of the bonds of point p begins to crack.
     template <class Point, class Body>
@@ -226,22 +225,15 @@ public:
     /// Calls f(j, intactness) for the bonds of point p: 1 whole, 0 where it bears no tension.
     template <class F>
     void for_each_bond(std::size_t p, const F& f) const {
-        if (p + 1 >= first_bond_.size()) return;
-        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
-            const BondEnds& ends = pairs_[bond_[n]];
-            f(ends.a == p ? ends.b : ends.a, intactness(bond_[n]));
-        }
+        walk(p, [&](std::uint32_t n, std::uint32_t j) { f(j, intactness(n)); });
     }
     /// Calls f(j, strength) for those that are left, with the tension at which their crack began,
     /// 0 where there is none.
     template <class F>
     void for_each_left(std::size_t p, const F& f) const {
-        if (p + 1 >= first_bond_.size()) return;
-        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
-            const BondEnds& ends = pairs_[bond_[n]];
-            const BondState<D>& state = state_[bond_[n]];
-            if (state.whole != 0.0) f(ends.a == p ? ends.b : ends.a, state.strength);
-        }
+        walk(p, [&](std::uint32_t n, std::uint32_t j) {
+            if (state_[n].whole != 0.0) f(j, state_[n].strength);
+        });
     }
     /// Energy of point p at place(k) with those bonds that are left to points j for which
     /// counts(j); none where these do not span the space.
@@ -250,12 +242,10 @@ public:
                        const Counts& counts) const;
     /// Eq. (127): the share of the bonds of point p that is broken, by the weights of the fit (80).
     double damage(std::size_t p) const {
-        if (p + 1 >= first_bond_.size()) return 0.0;
         double whole = 0.0, left = 0.0;
-        for (std::size_t n = first_bond_[p]; n < first_bond_[p + 1]; ++n) {
-            const double weight = pairs_[bond_[n]].weight;
-            whole += weight, left += weight * intactness(bond_[n]);
-        }
+        walk(p, [&](std::uint32_t n, std::uint32_t) {
+            whole += pairs_[n].weight, left += pairs_[n].weight * intactness(n);
+        });
         return whole > 0.0 ? 1.0 - left / whole : 0.0;
     }
     /// Moment of the bonds of point p that are left, as they were at rest, Eq. (120).
@@ -312,6 +302,15 @@ public:
 private:
     enum class Moment { before, now };  // of a step in which bonds go
 
+    /// Calls f(n, j) for each bond n of point p, to point j.
+    template <class F>
+    void walk(std::size_t p, const F& f) const {
+        if (p + 1 >= first_bond_.size()) return;
+        for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
+            const BondEnds& ends = pairs_[bond_[k]];
+            f(bond_[k], ends.a == p ? ends.b : ends.a);
+        }
+    }
     double intactness(std::size_t n) const {
         return state_[n].whole == 0.0 ? 0.0 : 1.0 - state_[n].damage;
     }

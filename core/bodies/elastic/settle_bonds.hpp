@@ -10,14 +10,12 @@ template <class Point, class Counts>
 Mat<double, D> Bonds<D>::moment(std::size_t p, const Point& point, const Counts& counts) const {
     Mat<double, D> sum{};
     const BondPoint<D> own = point(p);
-    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-        const BondEnds& ends = pairs_[bond_[k]];
-        const std::uint32_t j = ends.a == p ? ends.b : ends.a;
-        if (state_[bond_[k]].whole <= 0.0 || !counts(j)) continue;
+    walk(p, [&](std::uint32_t n, std::uint32_t j) {
+        if (state_[n].whole <= 0.0 || !counts(j)) return;
         const BondPoint<D> other = point(j);
         const Vec<double, D> R = own.rest - other.rest;
-        add_outer(sum, ends.weight * other.volume, R, R);
-    }
+        add_outer(sum, pairs_[n].weight * other.volume, R, R);
+    });
     return sum;
 }
 
@@ -28,13 +26,13 @@ double Bonds<D>::sharpness(std::size_t p, const Mat<double, D>& shape, const Poi
     const BondPoint<D> own = point(p);
     Vec<double, D> at_point{};
     double square = 0.0;
-    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-        const BondEnds& ends = pairs_[bond_[k]];
-        if (state_[bond_[k]].whole <= 0.0) continue;
-        const BondPoint<D> other = point(ends.a == p ? ends.b : ends.a);
-        const Vec<double, D> weight = (ends.weight * other.volume) * (B * (own.rest - other.rest));
+    walk(p, [&](std::uint32_t n, std::uint32_t j) {
+        if (state_[n].whole <= 0.0) return;
+        const BondPoint<D> other = point(j);
+        const Vec<double, D> weight =
+            (pairs_[n].weight * other.volume) * (B * (own.rest - other.rest));
         square += dot(weight, weight), at_point = at_point + weight;
-    }
+    });
     return std::sqrt(square + dot(at_point, at_point));
 }
 
@@ -50,22 +48,20 @@ double Bonds<D>::energy(std::size_t p, Moment moment, const Point& point, const 
     Array<Side> sides;
     const BondPoint<D> own = point(p);
     Mat<double, D> moved{}, shape{};
-    for (std::size_t k = first_bond_[p]; k < first_bond_[p + 1]; ++k) {
-        const BondEnds& ends = pairs_[bond_[k]];
-        const BondState<D>& state = state_[bond_[k]];
-        const std::uint32_t j = ends.a == p ? ends.b : ends.a;
+    walk(p, [&](std::uint32_t n, std::uint32_t j) {
+        const BondState<D>& state = state_[n];
         if ((moment == Moment::before ? state.whole == 0.0 : state.whole <= 0.0) || !counts(j))
-            continue;
+            return;
         const BondPoint<D> other = point(j);
         const Vec<double, D> jump =
             moment == Moment::before ? state.jump - state.change : state.jump;
-        const Side side{ends.weight * other.volume,
-                        own.rest - other.rest + (ends.a == p ? 1.0 : -1.0) * jump,
+        const Side side{pairs_[n].weight * other.volume,
+                        own.rest - other.rest + (pairs_[n].a == p ? 1.0 : -1.0) * jump,
                         place(p) - place(j)};
         add_outer(moved, side.weight, side.r, side.R),
             add_outer(shape, side.weight, side.R, side.R);
         sides.push_back(side);
-    }
+    });
     if (!determines_strain(shape)) return 0.0;
     const Mat<double, D> F = moved * inverse(shape, 0.0);
     double springs = 0.0;
