@@ -9,11 +9,12 @@
 namespace doseki {
 
 /// What went wrong with a run.
-enum class FailureKind { density, speed, timestep, outside, not_finite, empty };
+enum class FailureKind { density, speed, timestep, outside, not_finite, empty, unresolved };
 
 /// Its name, as Python has it.
 inline const char* name_of(FailureKind kind) {
-    constexpr std::array names{"density", "speed", "timestep", "outside", "not_finite", "empty"};
+    constexpr std::array names{"density",    "speed", "timestep",  "outside",
+                               "not_finite", "empty", "unresolved"};
     return names[static_cast<std::size_t>(kind)];
 }
 

@@ -125,6 +125,10 @@ public:
             if (!bodies_[k].fixed) least = std::min(least, length(k));
         return least;
     }
+    /// Mass that meets others [kg], 2-D: [kg/m]: infinite where it is fixed.
+    double striking_mass(std::size_t k) const {
+        return bodies_[k].fixed ? std::numeric_limits<double>::infinity() : bodies_[k].mass;
+    }
     /// Radius of gyration [m]: how far the mass of a body reaches, in 2-D and of balls.
     double gyration(std::size_t k) const {
         return std::sqrt(bodies_[k].inertia(2, 2) / bodies_[k].mass);

@@ -260,7 +260,7 @@ def test_outline_in_plan():
 
 def test_particles_are_grains_where_there_is_no_table(flow_folder):
     run = load(flow_folder)
-    found = grains_of(run[0], fluid_names(run))
+    found = grains_of(run[0], fluid_names(run), set())
     assert len(found.id) == 3
     np.testing.assert_allclose(found.diameter, 0.1 * math.sqrt(4 / math.pi))
     assert np.isnan(found.spin).all()

@@ -29,7 +29,7 @@ def broken(folder, speed, turn):
     settings = [f"speed={speed}", f"turn={turn}", "across=24", "time_max=0.0004"]
     scenario = load_scenario("drop-weight", [*settings, "time_out=0.0004"])
     run_scenario(scenario, folder / "run", RunOptions(threads=1))
-    return grading_of(load(folder / "run")[-1])
+    return grading_of(load(folder / "run")[-1], set())
 
 
 def test_it_falls_with_the_speed(gradings):

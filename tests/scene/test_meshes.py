@@ -297,3 +297,16 @@ def test_the_printed_scheme_has_meshes_too(tmp_path):
     assert fixed.sum() > 1000
     assert np.array_equal(before["position"][fixed], after["position"][fixed])
     assert np.isfinite(after["velocity"]).all()
+
+
+def test_parts_of_a_file_are_one_body(tmp_path):
+    """A gauge that asks for one of them is told what to do."""
+    parts = [box().apply_translation((0.5 * k, 0, 0)) for k in range(2)]
+    written(tmp_path, trimesh.util.concatenate(parts))
+    gauge = '[gauge.load]\nkind = "load"\nbodies = ["wall{}"]\n'
+    load_scenario(scenario(tmp_path, body=gauge.format("")))
+    for name in (".1", ".2"):
+        with pytest.raises(UserError, match=r"\[body\.wall\] is one body .* a file and a"):
+            load_scenario(scenario(tmp_path, body=gauge.format(name)))
+    with pytest.raises(UserError, match="did you mean wall"):
+        load_scenario(scenario(tmp_path, body=gauge.format("s")))

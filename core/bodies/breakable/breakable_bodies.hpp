@@ -39,6 +39,7 @@ struct BreakableBody {
     double strength = 0.0;                   // tension at which the first crack begins [Pa]
     double bears = 0.0;                      // the same with the cracks that it has
     double impedance = 0.0, diameter = 0.0;  // see Touch
+    double bar_impedance = 0.0;              // see blow_tension
     Vec<double, D> middle{};                 // of its points at rest
     Sections sections{};                     // about it
 
@@ -60,6 +61,12 @@ struct BreakableBody {
             forces.push_back({in_space(solids.rest_position(p) - middle),
                               rotated_back(turn, in_space(solids.load[p]))});
         return sections.tension(forces);
+    }
+    /// Tension of bending by what it meets at this speed, as heavy as `other` [kg], 2-D: [kg/m].
+    double blown(double speed, double density, double other) const {
+        if (!sections.any()) return 0.0;
+        const double share = 1.0 / (1.0 + density * sections.cube() / other);
+        return blow_tension(speed, bar_impedance, sections.fibre(), share);
     }
     /// Time for which it remembers how it vibrated [s].
     double lately(const DeformableBodies<D>& bodies) const { return 5.0 * crossing(bodies); }
@@ -182,6 +189,7 @@ void BreakableBodies<D>::measure(BreakableBody<D>& body,
                                  const DeformableBodies<D>& deformable) const {
     const DeformableBody& material = deformable.solids().material(body.deformable);
     body.impedance = material.rho0 * material.wave_speed();
+    body.bar_impedance = std::sqrt(material.rho0 * material.young_modulus());
     const Array<std::uint32_t> points = deformable.solids().points_of(body.deformable);
     body.diameter = diameter_of<D>(material, points.size());
     body.middle = rigid_motion<D>(deformable.solids(), points).rest_centre;
@@ -274,6 +282,11 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
         const BreakableBody<D>* body = of_rigid(other);
         return body ? body->impedance : std::numeric_limits<double>::infinity();
     };
+    auto mass = [&](std::int32_t k) {
+        const auto other = static_cast<std::size_t>(k);
+        return other < rigid.size() ? rigid.striking_mass(other)
+                                    : std::numeric_limits<double>::infinity();
+    };
     Array<double> force(size(), 0.0), tension(size(), 0.0);
     auto feel = [&](std::int32_t k, std::int32_t other, double push, double approach) {
         const BreakableBody<D>* body = waiting(k, deformable);
@@ -281,9 +294,10 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
         const auto n = static_cast<std::size_t>(body - bodies_.data());
         force[n] += 0.5 * push;
         if (is_dust(other)) approach = 0.0;
-        tension[n] =
-            std::max(tension[n], expected_tension<D>({approach, body->impedance, impedance(other),
-                                                      force[n], body->diameter}));
+        const double density = deformable.solids().material(body->deformable).rho0;
+        tension[n] = std::max({tension[n], body->blown(approach, density, mass(other)),
+                               expected_tension<D>({approach, body->impedance, impedance(other),
+                                                    force[n], body->diameter})});
     };
     contacts.for_each_touch(kind,
                             [&](std::int32_t a, std::int32_t b, double push, double approach) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "base/array.hpp"
@@ -95,6 +96,10 @@ public:
     }
 
     bool any() const { return !sections_.empty(); }
+    /// Outermost distance over the radius of gyration, the most of all cuts.
+    double fibre() const { return fibre_; }
+    /// Volume of what is as long as thick, the least of all cuts [m^3], 2-D: [m^2].
+    double cube() const { return cube_; }
     /// A bound on tension(), for forces of which the sizes have this sum.
     double most_tension(double force) const { return most_per_force_ * force; }
     /// The largest tension of bending and of pulling.
@@ -140,6 +145,8 @@ private:
             sections_.push_back(section);
             const double arm = std::max(std::min(at - low, high - at), outermost),
                          fibre = std::max(section.fibre[0], section.fibre[1]);
+            fibre_ = std::max(fibre_, std::sqrt(fibre * outermost * section.area));
+            cube_ = std::min(cube_, 2.0 * outermost * section.area);
             most_per_force_ = std::max(most_per_force_, 2.0 * (1.0 / section.area + arm * fibre));
         }
     }
@@ -174,6 +181,7 @@ private:
     MassMoments all_;
     Array<Section> sections_;
     double most_per_force_ = 0.0;  // [1/m^2], 2-D: [1/m]
+    double fibre_ = 0.0, cube_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace doseki

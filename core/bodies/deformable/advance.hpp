@@ -96,7 +96,7 @@ void TotalLagrangian<D>::correct_gradients() {
             throw PhysicsFailure("an elastic body is too thin for its spacing of " +
                                      std::to_string(body_of(p).spacing) +
                                      " m: neighbours of a point do not span it",
-                                 FailureKind::empty);
+                                 FailureKind::unresolved);
 }
 
 /// Over springs, those of bonds where there are any.

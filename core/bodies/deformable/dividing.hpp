@@ -55,6 +55,7 @@ Division DeformableBodies<D>::division() {
             if (intactness > 0.0 && !loose[j] && (solids_.spans(p) || solids_.spans(j))) f(j);
         });
     };
+    auto is_clamped = [this](std::uint32_t p) { return solids_.clamped(p); };
     auto is_spanned = [&](std::uint32_t p, const Division& found) {
         if constexpr (D == 3)
             return determines_strain(solids_.shape_around(
@@ -67,7 +68,7 @@ Division DeformableBodies<D>::division() {
     waits_ = false;
     for (;;) {
         Division found = divided(together(components(size(), for_each_bond), before, waits), before,
-                                 bodies(), fewest_points<D>);
+                                 is_clamped, bodies(), fewest_points<D>);
         auto falls_apart = [&](std::uint32_t p) {
             return found.body[p] >= 0 && found.divides[static_cast<std::size_t>(before[p])];
         };

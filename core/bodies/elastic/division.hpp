@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 
 #include "base/array.hpp"
 
@@ -25,26 +26,29 @@ struct Division {
 template <int D>
 inline constexpr std::size_t fewest_points = D == 2 ? 4 : 8;
 
-/// From the components of points to bodies. The largest part of a body stays that body; the others
-/// are new ones, or dust where they have fewer than `fewest` points. `body` is that of each point
-/// so far, below 0 where it is dust already.
-inline Division divided(std::span<const std::uint32_t> component,
-                        std::span<const std::int32_t> body, std::size_t bodies,
-                        std::size_t fewest) {
+/// From the components of points to bodies. The largest part of a body stays that body, or of a
+/// structure the largest that is clamped; the others are new ones, or dust where they have fewer
+/// than `fewest` points. `body` is that of each point so far, below 0 where it is dust already.
+template <class IsClamped>
+Division divided(std::span<const std::uint32_t> component, std::span<const std::int32_t> body,
+                 const IsClamped& is_clamped, std::size_t bodies, std::size_t fewest) {
     Division division;
     division.body.assign(body.begin(), body.end());
     division.divides.assign(bodies, 0);
     std::map<std::uint32_t, Array<std::uint32_t>> parts;
     for (std::uint32_t p = 0; p < component.size(); ++p)
         if (body[p] >= 0) parts[component[p]].push_back(p);
-    Array<const Array<std::uint32_t>*> largest(bodies, nullptr);
+    const auto rank = [&](const Array<std::uint32_t>& points) {
+        return std::pair{std::ranges::any_of(points, is_clamped), points.size()};
+    };
+    Array<const Array<std::uint32_t>*> first(bodies, nullptr);
     for (const auto& [label, points] : parts) {
-        auto& most = largest[static_cast<std::size_t>(body[label])];
-        if (!most || points.size() > most->size()) most = &points;
+        auto& most = first[static_cast<std::size_t>(body[label])];
+        if (!most || rank(points) > rank(*most)) most = &points;
     }
     for (const auto& [label, points] : parts) {
         const std::int32_t parent = body[label];
-        const bool stays = &points == largest[static_cast<std::size_t>(parent)];
+        const bool stays = &points == first[static_cast<std::size_t>(parent)];
         if (stays && points.size() >= fewest) continue;
         division.divides[static_cast<std::size_t>(parent)] = 1;
         std::int32_t number;

@@ -29,6 +29,15 @@ double pressed_tension(double force, double diameter) {
     return 2.8 * force / (std::numbers::pi * diameter * diameter);
 }
 
+/// Largest tension in a beam of which a blow stops a part, Eq. (177): with a bar's impedance rho c
+/// [Pa s/m] and the outermost distance of a cut over its radius of gyration, `fibre`. An infinite
+/// one has a curvature there that lasts; what comes back from the ends adds to it. `share` is that
+/// of the speed which the part loses.
+inline double blow_tension(double speed, double impedance, double fibre, double share) {
+    constexpr double ends = 1.3;
+    return ends * impedance * speed * share * fibre;
+}
+
 /// Eq. (139a) and (139b): the tension that is to be expected at most in a compact body.
 template <int D>
 double expected_tension(const Touch& touch) {

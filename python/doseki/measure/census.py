@@ -19,6 +19,7 @@ from ..record.particles import FIXED, FREE
 from ..record.reader import Run, Snapshot
 from ..scenario.kinematics import DEFORM
 from . import numbers as measure
+from .grading import is_structure, structure_names
 from .views import View, flow_direction, fluid_names, way_of_flow
 
 CLASSES = ("waiting", "preceding", "carried", "floating", "rolling", "deposited")
@@ -66,10 +67,13 @@ class Surroundings:
     fixed_spacing: np.ndarray  # (k,)
 
 
-def grains_of(snapshot: Snapshot, fluids: set[str]) -> Grains:
-    """The grains of a snapshot; those that have left the run are not among them."""
+def grains_of(snapshot: Snapshot, fluids: set[str], structures: set[str]) -> Grains:
+    """The grains of a snapshot; those that have left the run are not among them.
+
+    Nor are `structures`, see structure_names; what has come off one is a grain.
+    """
     if table := snapshot.grains:
-        kept = table["removed"] == 0
+        kept = (table["removed"] == 0) & ~is_structure(snapshot, structures)
         t = {name: values[kept] for name, values in table.items()}
         return Grains(
             np.flatnonzero(kept), t["position"], t["velocity"], t["spin"], t["contacts"],
@@ -251,14 +255,14 @@ class Census:
 
 def take_census(run: Run) -> Census:
     """The census of all snapshots; raises UserError for a run without grains or snapshots."""
-    fluids, way = fluid_names(run), way_of_flow(run) or 1
+    fluids, structures, way = fluid_names(run), structure_names(run), way_of_flow(run) or 1
     first: dict[int, np.ndarray] = {}
     parts: list[dict[str, np.ndarray]] = []
     fronts: list[float] = []
     times = np.unique(run.times)
     for time in times:  # a run that was stopped has its last time twice
         snapshot = run.at(time)
-        grains = grains_of(snapshot, fluids)
+        grains = grains_of(snapshot, fluids, structures)
         start = np.array(
             [
                 first.setdefault(k, x)

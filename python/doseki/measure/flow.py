@@ -10,7 +10,9 @@ import numpy as np
 
 from ..record.reader import Run, Snapshot
 from . import numbers as measure
+from .advance import Advance, goes_along_x
 from .census import Grains, grains_of
+from .grading import structure_names
 from .views import (
     View,
     flow_direction,
@@ -42,11 +44,16 @@ class WindowFlow:
 
 @dataclass
 class Flow:
-    """The flow of a run: times (s), position of the front (m), and its windows by name."""
+    """The flow of a run: times (s), position of the front (m), and its windows by name.
+
+    The front is the x of the foremost fluid where the flow goes along x, else how far it has come
+    on the map (Advance).
+    """
 
     times: np.ndarray
     front: np.ndarray
     windows: dict[str, WindowFlow]
+    along_x: bool = True
 
 
 def measure_flow(run: Run) -> Flow | None:
@@ -55,22 +62,25 @@ def measure_flow(run: Run) -> Flow | None:
     Fluid is every material with the law "fluid"; grains are those of the census, so that a body
     of many particles is one.
     """
-    fluids = fluid_names(run)
+    fluids, structures = fluid_names(run), structure_names(run)
     everywhere = whole_space(run.scenario["dim"])
     direction, way = flow_direction(run), way_of_flow(run) or 1
     seen = {name: WindowFlow(view) for name, view in windows(run).items()}
     passed = {name: _section(entry.view, direction) for name, entry in seen.items()}
-    front = []
+    front, advance = [], None if goes_along_x(run) else Advance(run)
     for snapshot in run:
         is_fluid = select(snapshot, everywhere, fluids)
-        front.append(measure.front(snapshot["position"][is_fluid, 0], way))
-        grains = grains_of(snapshot, fluids)
+        if advance is None:
+            front.append(measure.front(snapshot["position"][is_fluid, 0], way))
+        else:
+            front.append(advance.look(snapshot, is_fluid))
+        grains = grains_of(snapshot, fluids, structures)
         for name, entry in seen.items():
             _look(entry, snapshot, is_fluid, grains)
             entry.passed_mass.append(_passed(passed[name], grains))
     if not np.any(np.isfinite(front)):
         return None
-    return Flow(run.times, np.array(front), seen)
+    return Flow(run.times, np.array(front), seen, advance is None)
 
 
 def _look(entry: WindowFlow, snapshot: Snapshot, is_fluid: np.ndarray, grains: Grains) -> None:

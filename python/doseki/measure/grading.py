@@ -1,6 +1,7 @@
 """Grading curves: how much of the mass of all bodies that move is finer than a size.
 
-The size of a body is the diameter of the ball (2-D: disc) of the volume of its particles.
+Structures, which are clamped, are none of them, but what has come off one is.  The size of a body
+is the diameter of the ball (2-D: disc) of the volume of its particles.
 """
 
 from __future__ import annotations
@@ -23,9 +24,25 @@ class Grading:
     finer: np.ndarray  # (n,) share of the mass of bodies of this size and finer ones
 
 
-def grading_of(snapshot: Snapshot) -> Grading:
-    """Of the particles in the snapshot that are of bodies that move."""
-    own = snapshot["grain"] >= 0
+def structure_names(run: Run) -> set[str]:
+    """The bodies of a scenario that are clamped."""
+    tables = run.scenario.get("body", {})
+    return {name for name, table in tables.items() if table.get("clamped") is not None}
+
+
+def is_structure(snapshot: Snapshot, structures: set[str]) -> np.ndarray:
+    """Which rows (n,) of the table of bodies are what is left of these bodies."""
+    table = snapshot.grains
+    if not table:
+        return np.zeros(0, bool)
+    return np.isin(table["body"], sorted(structures)) & (table["parent"] < 0)
+
+
+def grading_of(snapshot: Snapshot, structures: set[str]) -> Grading:
+    """Of the particles in the snapshot that are of bodies that move, but of `structures`."""
+    own = (snapshot["grain"] >= 0) & ~np.isin(
+        snapshot["grain"], np.flatnonzero(is_structure(snapshot, structures))
+    )
     grain, index = np.unique(snapshot["grain"][own], return_inverse=True)
     mass = np.bincount(index, snapshot["mass"][own], len(grain))
     volume = np.bincount(index, (snapshot["mass"] / snapshot["density"])[own], len(grain))
@@ -43,7 +60,8 @@ def has_parts(run: Run) -> bool:
 
 def gradings(run: Run) -> dict[float, Grading]:
     """By time, s."""
-    return {float(time): grading_of(run.at(time)) for time in np.unique(run.times)}
+    structures = structure_names(run)
+    return {float(time): grading_of(run.at(time), structures) for time in np.unique(run.times)}
 
 
 def grading_table(run: Run) -> dict[str, np.ndarray]:

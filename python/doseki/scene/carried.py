@@ -159,6 +159,12 @@ class CarriedOver:
             raise self._error(
                 name, f"the earlier run has {len(rows)} particles of it, expected {len(particles)}"
             )
+        if (self._snapshot["damage"][rows] > 0).any():
+            raise self._error(
+                name,
+                "it has cracks, which a snapshot does not hold; resume the earlier run, start "
+                "before it cracks, or leave it out",
+            )
         position, velocity = self.fields["position"][rows], self.fields["velocity"][rows]
         first, period, moved = min(b.members.min() for b in bodies), periods(self._scenario), []
         for body in bodies:

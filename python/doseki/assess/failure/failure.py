@@ -39,6 +39,7 @@ KINDS = {
     "outside": "it is far outside the domain",
     "not_finite": "its state, acceleration or density rate is not a finite number",
     "empty": "no particle is left in the domain",
+    "unresolved": "too few particles lie beside one of a body that deforms",
 }
 
 

@@ -21,6 +21,8 @@ def remedy(report: dict[str, Any], scenario: Scenario, warnings: Sequence[Findin
 
     `warnings` are those that came up when the scene was built.
     """
+    if report["kind"] == "unresolved":
+        return "Make dp smaller, or the body thicker where it is thinnest."
     if "particle" not in report:
         return "Check the outflows: every particle has left or was removed."
     said = (

@@ -11,9 +11,11 @@ import numpy as np
 from .frame import own_frame
 from .outline import BULGE, FLAT, Outline, outline_of
 from .particles import EDGE, Curve, Particles, alike, beside_edges, nearest_faces, no_edges
+from .spanned import spanned
 from .surface import SurfaceVertices, on_triangles
 
 SAME_DEPTH = 1e-6  # dp
+LEAST_DEPTH = 0.25  # dp below its sides, of the points of a body that deforms
 LEAST = 0.3  # of a particle's volume: particles that would have less are left out
 
 
@@ -76,18 +78,35 @@ class Convex:
         lattice = (low + (steps.reshape(-1, self.dim) + 0.5) * cell) @ self.axes.T
         number = self.measure / float(np.prod(cell))
         share = _innermost(self._gaps(lattice).min(axis=1) / dp, number)
-        position, share = lattice[share > 0], share[share > 0] / share.sum()
+        return self._around_centre(lattice[share > 0], share[share > 0] / share.sum(), dp)
+
+    def elastic_particles(self, dp: float) -> Particles:
+        """Those of a rigid body with equal shares, whose edges bend and are not known.
+
+        All lie inside: some of a rigid one may be outside by a part of dp.  In a sharp corner there
+        are only those that others hold from more than one side.
+        """
+        position = spanned(self._drawn_in(self.particles(dp).position, LEAST_DEPTH * dp), dp)
+        n = len(position)
+        return self._around_centre(position, alike(n), dp)._replace(edges=no_edges(n, self.dim))
+
+    def _drawn_in(self, position: np.ndarray, depth: float) -> np.ndarray:
+        """The positions, those less deep than `depth`, m, moved to it, as far as corners let."""
+        normals = self.planes[0]
+        for _ in range(self.dim):
+            gaps = self._gaps(position)
+            nearest = gaps.argmin(axis=1)
+            lack = np.maximum(depth - gaps.min(axis=1), 0.0)
+            position = position - lack[:, None] * normals[nearest]
+        return position
+
+    def _around_centre(self, position: np.ndarray, share: np.ndarray, dp: float) -> Particles:
+        """Moved so that the mean of all, by their shares, is the centre."""
         position = position - share @ position
         gaps, normals = self._gaps(position), self.planes[0]
         normal, depth = nearest_faces(gaps, normals, EDGE * dp)
         plane, edges = np.zeros(len(depth)), beside_edges(gaps, normals, EDGE * dp)
         return Particles(position, normal, depth, plane, share, edges)
-
-    def elastic_particles(self, dp: float) -> Particles:
-        """Those of a rigid body with equal shares, whose edges bend and are not known."""
-        rigid = self.particles(dp)
-        n = len(rigid.share)
-        return rigid._replace(share=alike(n), edges=no_edges(n, self.dim))
 
     def curve(self, dp: float) -> Curve:
         """The corners of a polygon, and vertices above the middles of particles along its sides."""

@@ -41,6 +41,8 @@ def polygon_shape(corners: np.ndarray) -> tuple[Convex, np.ndarray]:
 
     Raises ShapeError where the corners are not those of a convex polygon.
     """
+    origin = corners[0]  # coordinates of a map are large against a body
+    corners = corners - origin
     x, y = corners.T
     after = np.roll(corners, -1, axis=0)
     cross = x * after[:, 1] - y * after[:, 0]
@@ -48,7 +50,7 @@ def polygon_shape(corners: np.ndarray) -> tuple[Convex, np.ndarray]:
     if abs(area) < FLAT * size**2 or (after == corners).all(axis=1).any():
         raise ShapeError("its corners enclose no area, or two of them are the same")
     if area < 0:
-        return polygon_shape(corners[::-1])
+        return polygon_shape(corners[::-1] + origin)
     centre = ((corners + after) * cross[:, None]).sum(axis=0) / (6 * area)
     vertices = corners - centre
     after = np.roll(vertices, -1, axis=0)
@@ -62,7 +64,7 @@ def polygon_shape(corners: np.ndarray) -> tuple[Convex, np.ndarray]:
     inertia = np.diag([0, 0, float((cross * square).sum() / 12 / area)])
     index = np.arange(len(vertices))
     faces = np.stack([index, np.roll(index, -1)], axis=1).astype(np.int32)
-    return Convex(vertices, faces, float(area), inertia), centre
+    return Convex(vertices, faces, float(area), inertia), centre + origin
 
 
 def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:

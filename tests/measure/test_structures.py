@@ -1,0 +1,90 @@
+"""Structures, which are clamped, are no grains; what breaks off them is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doseki.measure.census import grains_of, take_census
+from doseki.measure.grading import grading_of, gradings, structure_names
+from doseki.record.reader import load
+from doseki.running.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
+from doseki.solver.build import build_simulation
+
+from ..small_scenarios import CHALK
+
+POST = (
+    """
+schema = 1
+dim = 2
+dp = 0.01
+scheme = "resolved"
+speed_max = 20
+time_max = 0.012
+time_out = 0.012
+gravity = [0, 0]
+
+[body.post]
+shape = "box"
+material = "chalk"
+kinematics = "elastic"
+min = [0, 0]
+max = [0.08, 0.4]
+clamped = "= 0.1 - y"
+
+[body.stone]
+shape = "disc"
+material = "basalt"
+centre = [-0.055, 0.3]
+radius = 0.05
+velocity = [15, 0]
+"""
+    + CHALK
+)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A post that is struck: its top flies off."""
+    folder = tmp_path_factory.mktemp("post")
+    (folder / "post.toml").write_text(POST, encoding="utf-8")
+    run_scenario(load_scenario(str(folder / "post.toml")), folder / "run", RunOptions(threads=1))
+    return load(folder / "run")
+
+
+@pytest.mark.parametrize("height", [0.15, 0.3])
+def test_the_clamped_part_stays_the_structure(tmp_path, height):
+    """Whichever part is larger."""
+    alone = POST[: POST.index("[body.stone]")] + CHALK
+    (tmp_path / "post.toml").write_text(alone, encoding="utf-8")
+    simulation, _ = build_simulation(load_scenario(str(tmp_path / "post.toml")))
+    core = getattr(simulation, "_core", simulation)
+    core.cut_bodies(np.ascontiguousarray(simulation.state()["position"][:, 1] > height, np.int32))
+    simulation.advance(limit=1.0, pause=1.0, max_steps=1)
+    parts = simulation.fragments()
+    np.testing.assert_allclose(parts["centre"][:, 1], [height / 2, 0.2 + height / 2], atol=1e-3)
+    assert parts["parent"].tolist() == [-1, 0]
+
+
+def test_it_is_no_grain_and_what_came_off_is(run):
+    names = structure_names(run)
+    assert names == {"post"}
+    first, last = (grains_of(run[k], {"water"}, names) for k in (0, -1))
+    assert len(first.mass) == 1  # the stone
+    assert last.is_part.sum() == len(last.mass) - 1 > 5
+    table = run[-1].grains
+    (kept,) = np.flatnonzero((table["body"] == "post") & (table["parent"] < 0))
+    there = table["mass"][table["removed"] == 0].sum()
+    assert last.mass.sum() == pytest.approx(there - table["mass"][kept], rel=1e-12)
+    assert take_census(run).table["mass"].sum() == pytest.approx(last.mass.sum() + first.mass[0])
+
+
+def test_nor_is_it_in_the_grading(run):
+    """The control: without its name it is the largest there."""
+    table = run[-1].grains
+    (post,) = np.flatnonzero((table["body"] == "post") & (table["parent"] < 0))
+    for grading in gradings(run).values():
+        assert post not in grading.grain
+        assert len(grading.grain) > 0
+    assert post in grading_of(run[-1], set()).grain
