@@ -229,7 +229,7 @@ def test_a_run_without_sensors_takes_no_single_steps(tmp_path):
         def advance(self, limit, pause, max_steps):
             self.steps = max_steps
 
-    run = SimpleNamespace(sensors={}, simulation=Simulation())
+    run = SimpleNamespace(stride=None, simulation=Simulation())
     ActiveRun._step(run, 1.0, 1.0, 1000)
     assert run.simulation.steps == 1000
 

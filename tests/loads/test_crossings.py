@@ -133,6 +133,10 @@ def test_masses_close(tmp_path, name):
     residual = upstream[0] + record["mass_supplied"] - record["mass_passed"] - upstream
     assert np.abs(residual).max() < 1e-9 * upstream[0]
     assert np.ptp(record["mass_passed"]) > 1
+    # All of it goes above the position, which lies below everything.
+    np.testing.assert_allclose(record["mass_over"], record["mass_passed"], atol=1e-9 * upstream[0])
+    over, passed = record["volume_over"], record["volume_passed"]
+    np.testing.assert_allclose(over, passed, rtol=1e-3, atol=1e-5 * record["volume_upstream"][0])
     (dam,) = dam_balances(run)
     assert abs(dam.residual) < 1e-9 * upstream[0]
 

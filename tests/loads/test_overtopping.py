@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from doseki.assess.loads import AgainstFlow
+from doseki.assess.loads import AgainstFlow, load_lines, loads_of
 from doseki.cli.app import app
 from doseki.driver.gauges import outside_everything
 from doseki.errors import UserError
 from doseki.measure import design
 from doseki.measure.loads import body_loads, comes_from_behind, expected_loads
 from doseki.measure.overtopping import dam_balances
+from doseki.record.reader import GaugeRecord
 from doseki.scene.build import build_bodies
 from doseki.solver.build import build_simulation
 
@@ -59,6 +60,114 @@ position = [0.5, 0]
 direction = [1, 0]
 interval = 0.01
 """
+
+
+# Blocks of water that fly over two crests side by side, and through a slit in one.
+CRESTS = """
+dim = 3
+dp = 0.05
+scheme = "resolved"
+speed_max = 4
+time_max = 0.2
+time_out = 0.1
+gravity = [0, 0, 0]
+[body.over]
+shape = "box"
+material = "water"
+velocity = [2, 0, 0]
+min = [0, 0, 0.5]
+max = [0.3, 0.2, 0.7]
+[body.through]
+shape = "box"
+material = "water"
+velocity = [2, 0, 0]
+min = [0, 0, 0]
+max = [0.3, 0.2, 0.2]
+[body.aside]
+shape = "box"
+material = "water"
+velocity = [2, 0, 0]
+min = [0, 0.6, 0.4]
+max = [0.25, 0.8, 0.6]
+[gauge.all]
+kind = "overtopping"
+position = [0.35, -0.05, 0.35]
+direction = [1, 0, 0]
+interval = 0.05
+[gauge.dam]
+kind = "overtopping"
+position = [0.35, -0.05, 0.35]
+direction = [1, 0, 0]
+width = 0.4
+interval = 0.05
+[gauge.slanted]
+kind = "overtopping"
+position = [0.35, -0.05, 0.35]
+direction = [1, -0.4, 0]
+interval = 0.05
+[gauge.long]
+kind = "overtopping"
+position = [-1.65, -5.05, 0.35]
+direction = [1, -0.4, 0]
+width = 99
+interval = 0.05
+"""
+
+
+@pytest.fixture(scope="module")
+def crests(tmp_path_factory):
+    return run_of(tmp_path_factory.mktemp("crests"), CRESTS)
+
+
+def test_a_crest_has_ends_and_a_height(crests):
+    """What goes by beside it is none of its, what goes through a slit goes not over it."""
+    mass = {"over": 12.0, "through": 12.0, "aside": 10.0}
+    dam, everything = crests.gauges["dam"], crests.gauges["all"]
+    own = mass["over"] + mass["through"]
+    assert dam["mass_upstream"][0] == pytest.approx(own)
+    assert dam["mass_passed"][-1] == pytest.approx(own)
+    assert dam["mass_over"][-1] == pytest.approx(mass["over"])
+    assert dam["volume_over"][-1] == pytest.approx(mass["over"] / 1000, rel=0.01)
+    assert everything["mass_passed"][-1] == pytest.approx(own + mass["aside"])
+    assert everything["mass_over"][-1] == pytest.approx(mass["over"] + mass["aside"])
+    for record in (dam, everything):
+        residual = record["mass_upstream"][0] + record["mass_supplied"] - record["mass_passed"]
+        np.testing.assert_allclose(residual, record["mass_upstream"], atol=1e-9)
+    said = dict(load_lines(loads_of(crests)))["dam dam"]
+    assert f"{mass['over']:.5g} kg" in said
+    assert "of it over the crest" in said
+
+
+def test_a_crest_as_long_as_the_scene_counts_as_its_plane(crests):
+    """Whose crossings the core counts in every step; the plane is aslant."""
+    plane, crest = crests.gauges["slanted"], crests.gauges["long"]
+    assert np.ptp(plane["mass_passed"]) > 5
+    for name in ("mass_passed", "volume_passed", "mass_upstream", "mass_over"):
+        np.testing.assert_allclose(crest[name], plane[name], rtol=1e-3, atol=1e-9)
+
+
+def test_a_record_without_what_went_over_is_read(crests, monkeypatch):
+    record = crests.gauges["all"]
+    keep = [name for name in record if "over" not in name]
+    older = GaugeRecord(
+        [f"{name} [{record.units[name]}]" for name in keep],
+        [[repr(float(x)) for x in row] for row in zip(*(record[n] for n in keep), strict=True)],
+        "all.csv",
+    )
+    monkeypatch.setattr("doseki.measure.overtopping.gauge_record", lambda *_: older)
+    dam = dam_balances(crests)[0]
+    assert np.isnan(dam.mass_over)
+    assert dam.mass_passed == record["mass_passed"][-1]
+
+
+def test_a_crest_beside_the_scene_is_named(tmp_path):
+    for width in (0.4, 0.3):
+        keys = (f"gauge.dam.width={width}", "gauge.dam.position=[0.2, -0.38, 0.35]")
+        scenario = scenario_of(tmp_path, CRESTS, *keys)
+        outside = outside_everything(scenario, vars(build_bodies(scenario)[0]))
+        assert ("dam" in outside) is (width == 0.3)
+    with pytest.raises(UserError, match=r"gauge\.dam\.width = 0\.01 m is smaller than a particle"):
+        scenario_of(tmp_path, CRESTS, "gauge.dam.width=0.01")
 
 
 @pytest.fixture(scope="module")

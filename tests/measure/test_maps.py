@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,8 +12,8 @@ from doseki.geodata.grid import Raster
 from doseki.measure.maps.columns import columns_over
 from doseki.measure.maps.files import rasters_of, read_maps, write_maps
 from doseki.measure.maps.grid import MapSettings, few_particles, map_grid
-from doseki.measure.maps.peaks import Peaks, deposit
-from doseki.measure.maps.profile import along_path
+from doseki.measure.maps.peaks import Peaks, beside_deposit, deposit
+from doseki.measure.maps.profile import along_path, path_lines
 from doseki.measure.maps.runout import runout, runout_lines
 from doseki.record.folder import RunFolder
 
@@ -295,23 +297,117 @@ def test_the_runout():
 def test_there_is_no_runout_before_the_flow_has_left_its_beginning():
     """An inflow 6 m wide that has come 1 m is as long as it is wide, and no run-out."""
     grid = bed(slope=0.5)
-    states = [slab((2, 2, 0), (k, 8, 1), 0.25) for k in (3, 4, 12)]
+    states = [slab((2, 2, 0), (k, 8, 1), 0.25, velocity=(1, 0, 0)) for k in (3, 4, 12)]
     for count, reach in ((1, None), (2, None), (3, np.hypot(9, 5))):
         peaks = peaks_of(grid, *states[:count])
         found = runout(rasters_of(peaks, states[count - 1], MapSettings(0.25)), grid)
         assert found.distance == (reach and pytest.approx(reach))
         assert (found.angle is None) == (reach is None)
-        _, line = runout_lines(found)
+        _, line = runout_lines(found, MapSettings(0.25))
         assert line.startswith("no run-out: the flow" if reach is None else "run-out 10.3 m at")
 
 
 def test_what_flows_upwards_has_no_angle():
     grid = bed(slope=-0.5)
-    states = [slab((k, 3, 0), (k + 2, 5, 1), 0.25) for k in (2, 14)]
+    states = [slab((k, 3, 0), (k + 2, 5, 1), 0.25, velocity=(12, 0, 0)) for k in (2, 14)]
     found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
     assert found.distance > 10
     assert found.angle is None
-    assert "not downhill" in list(runout_lines(found))[1]
+    assert "not downhill" in list(runout_lines(found, MapSettings(0.25)))[1]
+
+
+def spread(x, y, lengths):
+    """That flow at each look; it leaves a film behind."""
+    return [slab((x, y, 0), (x + k, y + 2, 1), 0.25, velocity=(4.0, 0, 0)) for k in lengths]
+
+
+def test_still_water_is_no_part_of_a_flow():
+    """A lake farther down than the flow comes is neither covered nor its toe."""
+    grid = bed(rows=20, cols=60, slope=0.5)
+    flow = spread(2, 8, (3, 6, 9, 12))
+    lake = slab((40, 2, 0), (55, 18, 2), 0.5, velocity=(0.02, 0, 0))
+    alone = peaks_of(grid, *flow)
+    both = peaks_of(grid, *(joined(each, lake) for each in flow))
+    found = runout(rasters_of(both, joined(flow[-1], lake), MapSettings(0.25)), grid)
+    without = runout(rasters_of(alone, flow[-1], MapSettings(0.25)), grid)
+    same = [(f.top, f.toe, f.distance, f.angle, f.area) for f in (found, without)]
+    assert same[0] == same[1]
+    assert found.distance == pytest.approx(np.hypot(11, 1))
+    assert (found.still_area, found.still_volume) == pytest.approx((240.0, 480.0))
+    assert (
+        "480 m3 of what lies never moved: still water on 240 m2"
+        in list(runout_lines(found, MapSettings(0.25)))[1]
+    )
+    assert (without.still_area, len(list(runout_lines(without, MapSettings(0.25))))) == (0.0, 2)
+
+
+def test_a_lake_that_is_hit_and_moves_is_reached():
+    """The control: the flow runs into it and all of it moves."""
+    grid = bed(rows=20, cols=60, slope=0.5)
+    lake = slab((12, 8, 0), (20, 10, 2), 0.5)
+    moving = lake | {"velocity": np.tile((0.5, 0, 0), (len(lake["mass"]), 1))}
+    states = [joined(each, lake) for each in spread(2, 8, (3, 6, 9))]
+    states.append(joined(*spread(2, 8, (10,)), moving))
+    found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
+    assert found.distance == pytest.approx(np.hypot(17, 1))
+    assert found.still_area == 0.0
+
+
+def test_the_runout_of_two_releases():
+    """Of flows in two valleys it is the longer one; of flows that meet it begins at the upper."""
+    grid = bed(rows=40, cols=80, slope=0.5)
+    upper, lower = spread(2, 2, (3, 6, 9, 12)), spread(30, 34, (3, 8, 16, 24))
+    states = [joined(*pair) for pair in zip(upper, lower, strict=True)]
+    found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
+    assert found.top[0] == WEST + 30.5
+    assert found.distance == pytest.approx(np.hypot(23, 1))
+    below = spread(20, 2, (3, 8, 16, 24))
+    states = [joined(*pair) for pair in zip(spread(2, 2, (3, 6, 12, 20)), below, strict=True)]
+    found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
+    assert found.top[0] == WEST + 2.5
+    assert found.distance == pytest.approx(np.hypot(41, 1))
+    assert found.angle == pytest.approx(np.degrees(np.arctan2(20.5, np.hypot(41, 1))))
+
+
+def test_an_inflow_above_a_lake_begins_where_it_enters():
+    """Nothing of it is there at the first look; the lake, which trembles at its rim, is."""
+    grid = bed(rows=20, cols=60, slope=0.5)
+    lake, rim = slab((40, 2, 0), (54, 18, 2), 0.5), slab((54, 2, 0), (55, 18, 1), 0.5)
+    rim["velocity"][:, 0] = 0.3
+    flow = [[], *([each] for each in spread(2, 8, (3, 6, 9)))]
+    states = [joined(lake, rim, *each) for each in flow]
+    found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
+    assert found.top[0] == WEST + 2.5
+    assert found.distance == pytest.approx(np.hypot(8, 1))
+
+
+@pytest.mark.parametrize(
+    ("length", "hole", "said"),
+    [
+        (18, None, "at the edge of the map: the flow may go on there"),
+        (8, 10, "at cells without data: the flow may go on there"),
+        (8, None, None),
+    ],
+)
+def test_a_runout_that_ends_with_the_map_is_a_least_one(length, hole, said):
+    grid = bed(slope=0.5)
+    if hole is not None:
+        grid.values[:, hole] = np.nan
+    states = spread(2, 4, (3, length))
+    found = runout(rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25)), grid)
+    line = list(runout_lines(found, MapSettings(0.25)))[1]
+    assert ("at least " in line) == (said is not None)
+    assert line.endswith(said or " m")
+
+
+def test_a_path_that_runs_uphill_is_called_that():
+    grid = bed(slope=0.5)
+    states = spread(2, 4, (3, 12))
+    maps = rasters_of(peaks_of(grid, *states), states[-1], MapSettings(0.25))
+    path = np.array([[WEST + 1, SOUTH + 4.5], [WEST + 18, SOUTH + 4.5]])
+    for points, said in ((path, "m, at 26.6 degrees"), (path[::-1], "26.6 degrees uphill: ")):
+        (line,) = path_lines(along_path(maps, grid, points))
+        assert said in line
 
 
 @pytest.mark.parametrize("driver", ["AAIGrid", "GTiff"])
@@ -368,3 +464,28 @@ def test_a_path_that_is_none_is_refused(path, word):
     maps = rasters_of(peaks_of(bed(), state), state, MapSettings(0.25))
     with pytest.raises(UserError, match=word):
         along_path(maps, bed(), np.array(path, float))
+
+
+def test_what_is_not_in_the_deposit_is_told_with_why():
+    """Half a metre of 16 m2 lies, and 0.2 m; a cube is fast, and a strip lies beside the map."""
+    grid = bed(slope=0.5)
+    parts = [
+        slab((0, 0, 0), (4, 4, 1), 0.5),
+        slab((8, 0, 0), (12, 4, 0.2), 0.2),
+        slab((14, 4, 0), (16, 6, 1), 0.5, velocity=(0.2, 0, 0)),
+        slab((-4, 0, 0), (-1, 2, 1), 0.5),
+    ]
+    state, settings = joined(*parts), MapSettings(0.5)
+    beside = beside_deposit(grid, state, settings.speed_deposit, settings.dry_below)
+    assert beside == pytest.approx({"moving": 4.0, "thin": 3.2, "beside": 6.0})
+    found = runout(rasters_of(peaks_of(grid, state), state, settings), grid)
+    assert found.deposit_volume == pytest.approx(16.0)
+    first, second, *_ = runout_lines(replace(found, beside_deposit=beside), settings)
+    assert first.endswith("16 m3 lie on 16 m2")
+    assert second == (
+        "not in the deposit: 4 m3 faster than 0.1 m/s, "
+        "3.2 m3 in cells less than 0.25 m deep (maps.min_depth), 6 m3 beside the map"
+    )
+    whole = beside_deposit(grid, parts[0], settings.speed_deposit, settings.dry_below)
+    lines = list(runout_lines(replace(found, beside_deposit=whole), settings))
+    assert not any("not in the deposit" in line for line in lines)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
 from doseki.scenario.hydrographs import keulegan_rate, normal_depth
 from doseki.scenario.load import load_scenario
@@ -101,6 +102,32 @@ def test_wrong_hydrographs(write, error_of, old, new, parts):
     assert "case.toml" in message
     for part in parts:
         assert part in message
+
+
+@pytest.mark.parametrize(("mark", "word"), [(";", "semicolons"), ("\t", "tabs")])
+@pytest.mark.parametrize("row", ["2{}0.003", "2,0{}0,003"])
+def test_another_separator_is_named(write, tmp_path, mark, word, row):
+    (tmp_path / "q.csv").write_text(f"t{mark}Q\n{row.format(mark)}\n", encoding="utf-8")
+    with pytest.raises(UserError, match=rf"q\.csv: its columns are separated by {word}; expected"):
+        load_scenario(write(tables=INFLOW.replace(LIST, '"q.csv"')))
+
+
+def test_the_volume_that_enters_is_that_of_the_rows(write):
+    """Of a surge the product of thickness and speed, both linear in time."""
+    inflow = load_scenario(write(tables=INFLOW)).inflow["i"]
+    assert inflow.volume_between(0, 99) == pytest.approx(0.0105)
+    assert inflow.volume_between(0, 1.0) == pytest.approx(0.003 / 8)
+    assert inflow.volume_between(9, 99) == 0.0
+    surge = INFLOW.replace(f"hydrograph = {LIST}", "surge = [[0, 0, 0], [1, 0.4, 3], [2, 0, 0]]")
+    surge = surge.replace("depth = 0.4\n", "")
+    inflow = load_scenario(write(tables=surge)).inflow["i"]
+    assert inflow.volume_between(0, 99) == pytest.approx(2 * 0.4 * 3 / 3 * 0.1)
+    assert inflow.volume_between(0, 1.0) == pytest.approx(0.4 * 3 * 0.5**3 / 3 * 0.1)
+
+
+def test_a_check_tells_the_volume(write):
+    told = check_scenario(load_scenario(write(tables=INFLOW)))
+    assert "inflow i          0." in told
 
 
 @pytest.mark.parametrize("setting", ["rate=3", "duration=3"])

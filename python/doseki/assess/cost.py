@@ -19,6 +19,7 @@ from ..solver.protocol import Simulation
 from .estimates import step_ends
 from .ground.sliding import Sliding
 from .ground.spreading import ground_to_come
+from .sampling import sampling_seconds
 
 BURST_SECONDS = 1.0  # of wall time
 HISTORY_BYTES = 430  # a row
@@ -42,6 +43,7 @@ class Estimate:
     steps: float
     shortened: float  # of the steps, those that are there because outputs end steps
     seconds: float
+    sampling: float  # of the seconds, those that reading gauges takes
     timestep: float
 
 
@@ -66,7 +68,7 @@ def estimate(
     if not len(simulation):
         unknown = (math.nan,) * 4
         counts = start, most, ground, scattered
-        return Estimate(*counts, *unknown, steps, steps - unhindered, math.nan, timestep)
+        return Estimate(*counts, *unknown, steps, steps - unhindered, *unknown[:2], timestep)
     snapshot_bytes, snapshot_seconds = _snapshot(scenario, simulation, body_names)
     per_particle = simulation.bytes_per_particle
     length = scenario.time_max - scenario.begins_at
@@ -74,7 +76,8 @@ def estimate(
     checkpoint = sum(array.nbytes for array in simulation.checkpoint().values()) / len(simulation)
     rows = min(length / scenario.time_history, steps) + 1
     samples = sum(length / interval + 1 for interval in scenario.sampled_intervals[1:])
-    seconds = steps * mean / rate + snapshots * mean * snapshot_seconds
+    sampling = sampling_seconds(scenario, simulation, body_names, steps)
+    seconds = steps * mean / rate + snapshots * mean * snapshot_seconds + sampling
     checkpoints = 1 if seconds < CHECKPOINT_SECONDS else 2
     return Estimate(
         particles=start,
@@ -92,6 +95,7 @@ def estimate(
         steps=steps,
         shortened=steps - unhindered,
         seconds=seconds,
+        sampling=sampling,
         timestep=timestep,
     )
 

@@ -1,15 +1,13 @@
-"""Fluid over a terrain: what of it lies above the ground, and what of that particles make."""
+"""Boxes of fluid over a terrain: what lies above the ground, and what of that particles make."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..record.particles import FREE
-from ..record.units import unit_in
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
-from ..scene.build import LEAST_HEIGHT
-from ..scene.ground import ground_of
+from ..scene.ground import LEAST_HEIGHT, ground_of
 from ..scene.kinds.registry import body_of
 
 PARTS = 4  # along each side of a cell, by which its share above the ground is counted
@@ -17,9 +15,10 @@ NEAR = 0.9  # spacings from the ground beyond which a cell is on one side of it
 
 
 def filled_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
-    """Of each box of particles that the ground cuts: volume above it, and in particles, m3.
+    """Of each box of particles on a terrain: volume above the ground, and in particles, m3.
 
-    What other bodies take of it is not counted.
+    They are the same where the ground does not cut it. What other bodies take of it is not left
+    out.
     """
     found: dict[str, tuple[float, float]] = {}
     if scenario.bed is None:
@@ -43,12 +42,6 @@ def filled_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
             places = position[near, None] + parts.reshape(-1, scenario.dim)
             above = ground.height_above(places.reshape(-1, scenario.dim)) * PARTS / dp
             share[near] = np.clip(0.5 + above, 0, 1).reshape(len(places), -1).mean(axis=1)
-            cell = dp**scenario.dim
-            found[name] = float(share.sum() * cell), float(kept.sum() * cell)
+        cell = dp**scenario.dim
+        found[name] = float(share.sum() * cell), float(kept.sum() * cell)
     return found
-
-
-def filled_text(asked: float, volume: float, dim: int) -> str:
-    """One line about such a box."""
-    unit = unit_in("m3", dim)
-    return f"{volume:.5g} {unit} in particles; above the ground it has {asked:.5g} {unit}"

@@ -123,9 +123,12 @@ def _peaks_text(body: BodyLoad) -> str:
 
 def _dam_lines(dam: DamBalance, dim: int) -> Iterator[tuple[str, str]]:
     mass, volume = unit_in("kg", dim), unit_in("m3", dim)
+    over = ""
+    if math.isfinite(dam.mass_over):
+        over = f"{dam.mass_over:.5g} {mass} ({dam.volume_over:.4g} {volume}) of it over the crest, "
     yield (
         f"dam {dam.name}",
-        f"past the plane {dam.mass_passed:.5g} {mass} ({dam.volume_passed:.4g} {volume}), "
+        f"past the plane {dam.mass_passed:.5g} {mass} ({dam.volume_passed:.4g} {volume}), {over}"
         f"upstream {dam.mass_upstream:.5g} {mass} ({dam.volume_upstream:.4g} {volume}), "
         f"residual {dam.residual:.2g}",
     )

@@ -11,9 +11,9 @@ import numpy as np
 from ..driver.schedule import steps_between
 from ..errors import PhysicsError, ResourceError
 from ..record.particles import FIXED
+from ..record.units import unit_in
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
-from ..scene.kinds.release import released_volumes, volume_text
 from ..solver.build import filled_simulation, load_core
 from ..solver.protocol import SimulationView
 from ..util.finding import Finding, rounded_up, sentences
@@ -29,10 +29,11 @@ from .estimates import (
     step_ends,
 )
 from .ground.sliding import Sliding
-from .lakes import filled_text, filled_volumes
+from .ground.volumes import volume_lines, volumes_at_start
 from .summary import duration_text
 from .warnings import findings, thorough_findings
 
+TOLD_SAMPLING = 0.1  # of the wall time; more is told of
 WIDTH = 18
 
 
@@ -135,15 +136,22 @@ def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str
         if count:
             material = scenario.material_names[state["material"][state["body"] == body][0]]
             counts.setdefault((_copied(name), material), []).append(count)
-    released, filled = released_volumes(scenario), filled_volumes(scenario)
+    volumes = volume_lines(volumes_at_start(scenario, state, names).table, scenario.dim)
     for (name, material), each in counts.items():
         copies = f" in {len(each)} copies" if len(each) > 1 else ""
         yield _line(f"  {name}", f"{sum(each):,} {material}{copies}")
         yield from (_line("", size) for size in _resized(scenario, name))
-        if name in released:
-            yield _line("", volume_text(*released[name], scenario.dim))
-        if name in filled:
-            yield _line("", filled_text(*filled[name], scenario.dim))
+        if name in volumes:
+            yield _line("", volumes[name])
+    for name, inflow in scenario.inflow.items():
+        across = 1.0 if scenario.dim == 3 else inflow.width
+        unit = unit_in("m3", scenario.dim)
+        volume = inflow.volume_between(scenario.begins_at, scenario.time_max) / across
+        most = inflow.peak_rate / across
+        yield _line(
+            f"inflow {name}",
+            f"{volume:.4g} {unit} {inflow.material} to enter, {most:.4g} {unit}/s at most",
+        )
 
 
 def _copied(name: str) -> str:
@@ -185,7 +193,10 @@ def _costs(scenario: Scenario, expected: Estimate) -> Iterator[str]:
     yield _line("steps", f"{expected.steps:,.0f}{shown}")
     yield from _solid_steps(scenario, expected)
     yield _line("updates", f"{expected.updates:.2g} of particles")
-    yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second")
+    gauges = ""
+    if expected.sampling > TOLD_SAMPLING * expected.seconds:
+        gauges = f"; {duration_text(expected.sampling)} of it to read gauges"
+    yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second{gauges}")
 
 
 def _solid_steps(scenario: Scenario, expected: Estimate) -> Iterator[str]:

@@ -9,16 +9,17 @@ import numpy as np
 
 from ..measure.flow import Flow, WindowFlow, measure_flow
 from ..measure.hydrographs import Passage, passage
+from ..measure.maps.grid import MapSettings
 from ..measure.maps.runout import Runout, runout_lines
 from ..measure.numbers import speed
 from ..measure.views import with_flow
 from ..record.reader import Run
 from ..record.units import unit_in
 from ..scenario.gauges.section import DRY
-from ..scene.kinds.release import volume_text
 from ..util.files import write_whole_text
 from .estimates import solid_steps_text
-from .lakes import filled_text
+from .ground.leaving import left_text
+from .ground.volumes import volume_lines
 from .loads import load_lines, loads_of
 from .trust.report import trust_lines
 
@@ -135,18 +136,15 @@ def _ledger(run: Run) -> Iterator[Row]:
     residual = initial + entered - left - inside
     yield _line("mass", f"{initial:.6g} {unit} initial + {entered:.6g} entered")
     yield _line("", f"= {inside:.6g} inside + {left:.6g} left, residual {residual:.2g}")
+    if text := left_text(said.get("left") or {}, run.scenario["dim"]):
+        yield _line("", text)
     if through := said.get("mass_through_ground", 0.0):
         yield _line("", f"{through:.3g} {unit} of that went through the ground")
 
 
 def _released(run: Run) -> Iterator[Row]:
     """What lay on a terrain at the start."""
-    for name, volumes in run.summary.get("released", {}).items():
-        asked, volume = (float(number) for number in volumes)
-        yield _line(name, volume_text(asked, volume, run.scenario["dim"]))
-    for name, volumes in run.summary.get("filled", {}).items():
-        asked, volume = (float(number) for number in volumes)
-        yield _line(name, filled_text(asked, volume, run.scenario["dim"]))
+    yield from volume_lines(run.summary, run.scenario["dim"]).items()
 
 
 def _results(run: Run) -> Iterator[Row]:
@@ -155,8 +153,9 @@ def _results(run: Run) -> Iterator[Row]:
     if flow is None:
         return
     front = flow.front[-1]
-    place = f"x = {_place(front)} m" if math.isfinite(front) else "no fluid is left"
-    yield _line("front", f"{place} at {flow.times[-1]:.4g} s")
+    place = f"x = {_place(front)} m" if flow.along_x else f"{front:.4g} m from where it began"
+    said = place if math.isfinite(front) else "no fluid is left"
+    yield _line("front", f"{said} at {flow.times[-1]:.4g} s")
     for name, entry in flow.windows.items():
         yield _line(f"window {name}", _window(run, flow, entry))
 
@@ -205,7 +204,8 @@ def _runout(run: Run) -> Iterator[Row]:
     """How far the flow went, where the run kept maps."""
     said = run.summary.get("runout")
     if said:
-        for k, line in enumerate(runout_lines(Runout(**said))):
+        settings = MapSettings.of(run.scenario.get("maps"), run.scenario["dp"])
+        for k, line in enumerate(runout_lines(Runout(**said), settings)):
             yield _line("" if k else "maps", line)
 
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from ..record.folder import RunFolder
 from ..record.history import BODY_ENERGIES, BROKEN
 from ..record.writer import Recorder
+from ..scenario.gauges.loads.overtopping import LOOKS
 from ..scenario.model import Scenario
 from ..solver.protocol import Simulation
 from ..solver.rigid_bodies import grain_table
@@ -104,6 +105,7 @@ class ActiveRun:
             **build_meters(readers),
             **build_counts(readers),
         }
+        self.stride = self._steps_between_looks()
         self._started = time.perf_counter()
 
     @property
@@ -284,19 +286,33 @@ class ActiveRun:
         return self.ranks.agree(max(1, min(LAST_BURST, int(rate * BURST_SECONDS))))
 
     def _step(self, limit: float, pause: float, steps: int) -> None:
-        """Steps of the simulation, of which sensors see each."""
-        if not self.sensors:
-            self.simulation.advance(limit=limit, pause=pause, max_steps=steps)
+        """Steps of the simulation, of which sensors see each, and planes as many as they need."""
+        simulation = self.simulation
+        if self.stride is None:
+            simulation.advance(limit=limit, pause=pause, max_steps=steps)
             return
-        for _ in range(steps):
-            if self.simulation.time >= min(limit, pause):
-                return
-            self.simulation.advance(limit=limit, pause=pause, max_steps=1)
+        last = simulation.steps + steps
+        while simulation.steps < last and simulation.time < min(limit, pause):
+            until_look = self.stride - simulation.steps % self.stride
+            most = min(last - simulation.steps, until_look)
+            simulation.advance(limit=limit, pause=pause, max_steps=most)
             self._follow()
+
+    def _steps_between_looks(self) -> int | None:
+        """Of what follows the run; None where nothing does."""
+        if self.sensors or (self._counts and self.scenario.has_bodies_alone):
+            return 1
+        return LOOKS if self._counts else None
+
+    @property
+    def _counts(self) -> list[Counts]:
+        return [each for each in self.means.values() if isinstance(each, Counts)]
 
     def _follow(self) -> None:
         for sensor in self.sensors.values():
             sensor.follow(self.simulation)
+        for counts in self._counts:
+            counts.follow(self.simulation)
 
     def step_back(self) -> bool:
         """After a failed step, go back to the state before it and put that safely on the disk.

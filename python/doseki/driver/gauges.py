@@ -11,7 +11,7 @@ import numpy as np
 from ..scenario.gauges.gauge import Gauge, Rows, Sampled, Setting, State
 from ..scenario.gauges.loads.force import Force
 from ..scenario.gauges.loads.load import Load
-from ..scenario.gauges.loads.overtopping import Overtopping
+from ..scenario.gauges.loads.overtopping import NOTHING, Overtopping
 from ..scenario.gauges.loads.panels import Panels
 from ..scenario.model import Scenario
 from ..solver.faces import faces_of
@@ -99,9 +99,14 @@ class PlaneReader(GaugeReader):
 
     plane: int  # its number
 
-    def read(self, simulation: Sampled) -> Rows:
-        """A sample; all ranks must take part."""
-        return cast(Overtopping, self.gauge).rows(simulation, self.plane)
+    @property
+    def overtopping(self) -> Overtopping:
+        """The gauge."""
+        return cast(Overtopping, self.gauge)
+
+    def read(self, simulation: Sampled, seen: np.ndarray = NOTHING) -> Rows:
+        """A sample; `seen` is what was seen to go over the crest.  All ranks must take part."""
+        return self.overtopping.rows(simulation, self.setting, self.plane, seen)
 
 
 def build_gauges(scenario: Scenario, body_names: list[str]) -> list[GaugeReader]:
@@ -129,5 +134,5 @@ def outside_everything(scenario: Scenario, state: State) -> dict[str, np.ndarray
     return {
         name: gauge.place
         for name, gauge in scenario.gauge.items()
-        if gauge.place is not None and gauge.is_outside(low, high)
+        if gauge.place is not None and gauge.is_outside(low, high, scenario.gravity)
     }

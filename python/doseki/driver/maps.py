@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..measure.maps.files import rasters_of, write_maps
 from ..measure.maps.grid import MapSettings, few_particles, map_grid
-from ..measure.maps.peaks import Peaks, gravity_of
+from ..measure.maps.peaks import Peaks, beside_deposit, gravity_of
 from ..measure.maps.runout import runout
 from ..measure.maps.standing import clamped_bodies, flowing
 from ..record.folder import RunFolder
@@ -86,9 +86,12 @@ class RunningMaps:
 
     def _write(self, state: Mapping[str, np.ndarray], time: float) -> None:
         assert self._peaks is not None
-        rasters = rasters_of(self._peaks, flowing(state, self._clamped), self.settings)
-        write_maps(self._folder, rasters, self.settings, time)
-        self.runout = asdict(runout(rasters, self._peaks.grid))
+        grid, settings, flow = self._peaks.grid, self.settings, flowing(state, self._clamped)
+        rasters = rasters_of(self._peaks, flow, settings)
+        write_maps(self._folder, rasters, settings, time)
+        beside = beside_deposit(grid, flow, settings.speed_deposit, settings.dry_below)
+        found = runout(rasters, grid, settings.speed_deposit)
+        self.runout = asdict(replace(found, beside_deposit=beside))
 
     @property
     def state(self) -> dict[str, np.ndarray]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..scenario.gauges.gauge import Rows, Sampled
 from ..scenario.gauges.loads.load import Load
+from ..scenario.gauges.loads.standing_water import Known
 from ..scenario.gauges.loads.surface import Box, surface_of
 from .gauges import GaugeReader, MeterReader
 from .means import Means
@@ -25,6 +26,8 @@ class LoadMeans:
         self._time = math.nan
         self._before: np.ndarray = np.zeros((0, 3))  # flow, contacts, standing water, as rows
         self._box: Box | None = None  # around the bodies
+        self._moves = bool(reader.setting.moving & set(self._load.bodies))
+        self._known = Known()  # of bodies that stand still
 
     @property
     def state(self) -> list[float]:
@@ -43,7 +46,8 @@ class LoadMeans:
         """A sample; the means of the first one are nan. All ranks must take part."""
         setting = self.gauge.setting
         row = self.gauge.row(simulation)
-        static = self._load.static(simulation, setting, self._box_around(simulation))
+        box, known = self._box_around(simulation), None if self._moves else self._known
+        static = self._load.static(simulation, setting, box, known)
         now = np.vstack([self._load.sums(row, setting.dim), static])
         if not len(self._before):
             self._before = np.full_like(now, math.nan)
@@ -58,7 +62,7 @@ class LoadMeans:
         """That of bodies that stand still is found once."""
         setting = self.gauge.setting
         everywhere = np.full(setting.dim, math.inf)
-        if setting.moving & set(self._load.bodies):
+        if self._moves:
             return -everywhere, everywhere
         if self._box is None:
             found = surface_of(simulation, setting, self._load.bodies, (-everywhere, everywhere))

@@ -23,7 +23,8 @@ MEASURES = (  # attribute of WindowFlow, what it is, its unit in 3-D
 
 def draw_flow(run: Run, flow: Flow) -> Figure:
     """One panel for the front, and one for each thing that windows show."""
-    panels = {"front of the fluid (m)": {"": flow.front}} | _window_panels(run, flow)
+    label = "front of the fluid (m)" if flow.along_x else "way of the front (m)"
+    panels = {label: {"": flow.front}} | _window_panels(run, flow)
     figure, grid = chart_grid(len(panels), 1, PANEL, "The flow over time")
     for axes, (label, curves) in zip(grid[:, 0], panels.items(), strict=True):
         draw_curves(axes, flow.times, curves)

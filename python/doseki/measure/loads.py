@@ -76,6 +76,8 @@ class DamBalance:
     volume_upstream: float
     mass_passed: float
     volume_passed: float
+    mass_over: float  # of that, what passed above the position; nan: not known
+    volume_over: float
     most_upstream: Peak  # kg
     residual: float  # kg: of the mass that was upstream, came and went
 

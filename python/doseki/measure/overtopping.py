@@ -10,6 +10,8 @@ from ..scenario.gauges.loads.overtopping import Overtopping
 from .loads import DamBalance, Peak
 from .views import gauge_record, tables
 
+OVER = ("mass_over", "volume_over")  # which older records do not have
+
 
 def dam_balances(run: Run) -> list[DamBalance]:
     """One for each gauge of kind overtopping that has a sample."""
@@ -21,6 +23,7 @@ def dam_balances(run: Run) -> list[DamBalance]:
         if not len(record["time"]):
             continue
         upstream = record["mass_upstream"]
+        over = {key: record[key][-1] if key in record else np.nan for key in OVER}
         highest = int(np.argmax(upstream))
         found.append(
             DamBalance(
@@ -29,6 +32,7 @@ def dam_balances(run: Run) -> list[DamBalance]:
                 volume_upstream=float(record["volume_upstream"][-1]),
                 mass_passed=float(record["mass_passed"][-1]),
                 volume_passed=float(record["volume_passed"][-1]),
+                **{key: float(value) for key, value in over.items()},
                 most_upstream=Peak(float(upstream[highest]), float(record["time"][highest])),
                 residual=float(
                     upstream[0]

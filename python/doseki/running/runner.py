@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ..assess.estimates import solid_timestep
 from ..assess.failure.failure import Failure, explain_failure
-from ..assess.lakes import filled_volumes
+from ..assess.ground.leaving import leaving_findings
+from ..assess.ground.volumes import volumes_of
 from ..assess.loads import sections_turned_round, write_loads
 from ..assess.preflight import brief_doubts
 from ..assess.summary import write_summary
@@ -23,12 +24,12 @@ from ..driver.schedule import CheckpointClock, StopRequests
 from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError, UserError
 from ..geodata.ground import write_ground
+from ..measure.maps.leaving import what_left
 from ..record.beginning import check_free
 from ..record.reader import Run, load
 from ..record.writer import Recorder
 from ..scenario.gauges.loads.approach import Approach
 from ..scenario.model import Scenario
-from ..scene.kinds.release import released_volumes
 from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.cores import chosen_threads
@@ -82,8 +83,8 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
     simulation, scenario = run.simulation, run.scenario
     last = run.history_row()
     solid = solid_timestep(scenario)
-    released = run.ranks.on_root(lambda: released_volumes(scenario))
-    filled = run.ranks.on_root(lambda: filled_volumes(scenario))
+    last |= {"mass_through_ground": simulation.totals()["mass_through_ground"]}
+    recorded, doubts = run.ranks.on_root(lambda: _recorded(run, last)) if scenario.bed else ({}, [])
     balance = last["mass_initial"] + last["mass_entered"] - last["mass_left"] - last["mass_inside"]
     return {
         "status": status,
@@ -101,15 +102,27 @@ def _summary(run: ActiveRun, status: str) -> dict[str, Any]:
         "bytes_per_particle": simulation.bytes_per_particle,
         "list_entries_per_particle": simulation.entries_per_particle,
         "ledger_residual": balance,
-        "mass_through_ground": simulation.totals()["mass_through_ground"],
         "largest_overlap": simulation.grains()["worst_overlap"],
-        "warnings": list(dict.fromkeys(_warnings(run))),
+        "warnings": list(dict.fromkeys([*_warnings(run), *doubts])),
         **({} if solid is None else {"solid_timestep": solid}),
-        **({"released": released} if released else {}),
-        **({"filled": filled} if filled else {}),
+        **recorded,
         **({"runout": run.maps.runout} if run.maps else {}),
         **last,
     }
+
+
+def _recorded(run: ActiveRun, last: Mapping[str, float]) -> tuple[dict[str, Any], list[str]]:
+    """What the record of a run on a terrain says of its releases and lakes, and of what left it,
+    with what is doubtful; `last` are the masses at its end, kg.  What cannot be read harms no run.
+    """
+    try:
+        record = load(run.folder.path)
+        found = what_left(record, last["mass_left"] - last["mass_through_ground"])
+        left = {} if found is None else {"left": asdict(found)}
+        table = volumes_of(run.scenario, record).table | left
+    except (Exception, Interrupted) as error:
+        return {}, [f"what left the terrain is not known: {error or repr(error)}"]
+    return table, sentences(leaving_findings({**last, **left}))
 
 
 def _warnings(run: ActiveRun) -> Iterator[str]:

@@ -260,6 +260,7 @@ class Scenario(ScenarioTable):
             body_names=body_names,
             named={name: self.names_of_bodies(name) for name in self.body},
             support=self.support,
+            has_bodies_alone=self.has_bodies_alone,
             moving=frozenset(name for name, body in self.body.items() if body.prescribed_motion),
         )
 

@@ -31,7 +31,7 @@ from .checks.room import room_findings
 from .checks.terrain import terrain_findings
 from .checks.times import late_findings
 from .contacts import contact_groups
-from .ground import ground_of
+from .ground import LEAST_HEIGHT, ground_of
 from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
@@ -39,7 +39,6 @@ from .meshes.meeting import without_common
 from .shapes import no_edges
 
 BURIED = 0.5  # spacings in the ground that no flow gets to
-LEAST_HEIGHT = 0.25  # spacings above a bed; what rests on it lies at a half
 
 
 class Settled(NamedTuple):

@@ -10,6 +10,8 @@ from ..compiled import HeightField, load_core
 from ..geodata.outlines import Polygon
 from ..scenario.bed import TILE_COLUMNS, Bed
 
+LEAST_HEIGHT = 0.25  # spacings above a bed; what rests on it lies at a half
+
 
 class Ground:
     """The surface of a bed, and layers that follow it."""

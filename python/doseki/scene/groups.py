@@ -9,9 +9,11 @@ import numpy as np
 
 from ..scenario.kinematics import BREAKABLE, ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
+from .meshes.evening import evened
 from .periodic import nearest_image, periods, wrapped
 from .shapes import Ball, Convex, Edges, MeshShape, Particles, Shape
 
+WALL_DEPTH = 4.0  # spacings below the sides of a wall, within which particles act on a flow
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
@@ -134,7 +136,15 @@ def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
         raise TypeError("particles of a mesh are no parts of a body")
     if group.single:
         return shape.single()
-    return shape.elastic_particles(spacing) if group.deforms else shape.particles(spacing)
+    if group.deforms:
+        return shape.elastic_particles(spacing)
+    own = shape.particles(spacing)
+    if not isinstance(shape, Convex):
+        return own
+    position = evened(shape, own.position, spacing, WALL_DEPTH * spacing)
+    if not group.fixed:
+        position = position - own.share @ position
+    return shape.beneath(position, own.share, spacing)
 
 
 def boxes(group: Group) -> tuple[np.ndarray, np.ndarray]:

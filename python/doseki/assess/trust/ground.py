@@ -1,15 +1,19 @@
-"""Whether the ground of a terrain holds what flows on it."""
+"""Whether the ground of a terrain holds what flows on it, and its map shows it."""
 
 from __future__ import annotations
 
 from ...record.reader import Run
+from ..ground.leaving import LOST, lost_share
 from .verdicts import Check, judged
 
 THROUGH = (1e-12, 0.01)  # share of the mass
+LEFT = (LOST, 0.1)
 
 
 def ground_check(run: Run) -> list[Check]:
-    """What went through the ground, over all the mass; nothing without a terrain."""
+    """What went through the ground and beyond the map, over all the mass; nothing without a
+    terrain.
+    """
     said = run.summary
     if "terrain" not in run.scenario or "mass_through_ground" not in said:
         return []
@@ -17,4 +21,9 @@ def ground_check(run: Run) -> list[Check]:
     share = said["mass_through_ground"] / mass if mass else 0.0
     counted = "mass that went through the ground, where it was taken out, over that of the run"
     remedy = "raise speed_max, lower dp, or smooth the map: it has pits that particles do not fill"
-    return [judged("ground", share, THROUGH, counted, remedy)]
+    through = judged("ground", share, THROUGH, counted, remedy)
+    counted = "mass that went over the edge of the map and into cells without data, over that of"
+    counted += " the run; what outflows take does not count"
+    remedy = "take a larger map, fill its cells without data, or give an [outflow] where it may"
+    remedy += " leave: run-out, maps and deposit are without it"
+    return [through, judged("left the map", lost_share(said), LEFT, counted, remedy)]

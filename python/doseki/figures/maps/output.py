@@ -17,10 +17,11 @@ from ...geodata.features import read_on_map
 from ...geodata.grid import Raster
 from ...measure.maps.files import read_maps, write_maps
 from ...measure.maps.grid import MapSettings, few_particles, map_grid
+from ...measure.maps.peaks import beside_deposit
 from ...measure.maps.profile import COLUMNS, along_path, path_lines
 from ...measure.maps.quantities import QUANTITIES
 from ...measure.maps.runout import runout, runout_lines
-from ...measure.maps.snapshots import maps_from_snapshots
+from ...measure.maps.snapshots import flowing_in, maps_from_snapshots
 from ...record.beginning import refuse_links
 from ...record.reader import Run, load
 from ...record.writer import jsonable
@@ -63,8 +64,11 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
         drawn.pictures.append(_write_profile(run, profile))
         title = str(run.scenario.get("title", ""))
         drawn.add(run.folder.maps / "profile.png", lambda: draw_profile(profile, title))
-    found = runout(maps, bed)
-    told = [*runout_lines(found), *(path_lines(profile) if profile is not None else ())]
+    settings = MapSettings.of(run.scenario.get("maps"), run.scenario["dp"])
+    found = replace(
+        runout(maps, bed, settings.speed_deposit), beside_deposit=_beside(run, bed, settings)
+    )
+    told = [*runout_lines(found, settings), *(path_lines(profile) if profile is not None else ())]
     write_whole_text(run.folder.maps / "runout.json", json.dumps(jsonable(asdict(found))) + "\n")
     return [*said, *map(str, drawn.pictures), *told, *(f"warning: {t}" for t in drawn.remarks)]
 
@@ -98,6 +102,14 @@ def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, lis
     if warning := few_particles(bed, settings.dp):
         said.append(f"warning: {warning}")
     return maps, bed, said
+
+
+def _beside(run: Run, bed: Raster, settings: MapSettings) -> Mapping[str, float] | None:
+    """What is not in the deposit: as a run that kept maps told, else by its last snapshot."""
+    if run.scenario.get("maps") is not None:
+        return (run.summary.get("runout") or {}).get("beside_deposit")
+    state = flowing_in(run, run[-1])
+    return beside_deposit(bed, state, settings.speed_deposit, settings.dry_below)
 
 
 def map_makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:

@@ -123,6 +123,18 @@ def deposit(
     return found.reshape(grid.shape)
 
 
+def beside_deposit(
+    grid: Raster, state: Mapping[str, np.ndarray], speed: float, depth: float
+) -> dict[str, float]:
+    """Volumes, m3, that are in no cell of such a deposit, by why: what is faster than `speed`, m/s,
+    what lies in cells below `depth`, m, and what lies beside the map.
+    """
+    everything, slow = columns_over(grid, state), columns_over(grid, state, slower_than=speed)
+    total, lying = (float(c.volume.sum()) + c.outside for c in (everything, slow))
+    thin = slow.volume[slow.volume / grid.cell**2 < depth]
+    return {"moving": max(total - lying, 0.0), "thin": float(thin.sum()), "beside": slow.outside}
+
+
 def cos2_of_slope(bed: Raster) -> np.ndarray:
     """Squared cosine (rows, cols) of the inclination of the bed; 1 where that is not known."""
     square = np.zeros(bed.shape)

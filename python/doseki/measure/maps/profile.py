@@ -54,5 +54,15 @@ def path_lines(profile: Mapping[str, np.ndarray]) -> Iterator[str]:
     length = end[0] - start[0]
     text = f"along the path: reached from {start[0]:.4g} to {end[0]:.4g} m"
     if length > 0 and np.isfinite(start[1] - end[1]):
-        text += f", at {np.degrees(np.arctan2(start[1] - end[1], length)):.3g} degrees"
+        text += _angle_text(float(np.degrees(np.arctan2(start[1] - end[1], length))))
     yield text
+
+
+def _angle_text(angle: float) -> str:
+    """What is said of an angle below the horizontal, degrees."""
+    if angle >= 0:
+        return f", at {angle:.3g} degrees"
+    return (
+        f", which lies {-angle:.3g} degrees uphill: the angle of a run-out is that of a path drawn "
+        "from the release down to the deposit"
+    )

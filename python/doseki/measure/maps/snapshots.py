@@ -30,14 +30,15 @@ def maps_from_snapshots(run: Run, grid: Raster, settings: MapSettings) -> dict[s
         raise UserError(f"{run.directory}: the run has no snapshot yet")
     gravity = gravity_of(np.array(run.scenario.get("gravity", [0.0])))
     peaks = Peaks(grid, settings.dry_below, gravity, run.periods())
-    tables = run.scenario.get("body", {})
     state: Mapping[str, np.ndarray] = {}
     for snapshot in run:
-        state = flowing(_fields(snapshot), clamped_bodies(snapshot.body_names, tables))
+        state = flowing_in(run, snapshot)
         peaks.look(snapshot.time, state)
     return rasters_of(peaks, state, settings)
 
 
-def _fields(snapshot: Snapshot) -> dict[str, np.ndarray]:
+def flowing_in(run: Run, snapshot: Snapshot) -> dict[str, np.ndarray]:
+    """What of a snapshot maps show."""
     snapshot.prefetch(KEYS)
-    return {key: snapshot.stored(key) for key in KEYS}
+    fields = {key: snapshot.stored(key) for key in KEYS}
+    return flowing(fields, clamped_bodies(snapshot.body_names, run.scenario.get("body", {})))

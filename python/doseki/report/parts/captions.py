@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ...measure.advance import goes_along_x
 from ...measure.maps.quantities import QUANTITIES
 from ...measure.views import tables
 from ...record.reader import Run
@@ -24,6 +25,7 @@ GENERAL = {
     "mass": "Mass over time",
     "flow": "The front of the flow and what windows show, over time",
 }
+WAY = "How far the front has come from where the flow began, and what windows show, over time"
 Captions = Mapping[str, str]  # by the names of pictures
 
 
@@ -32,7 +34,8 @@ def of_figures(run: Run) -> Captions:
     gauges = tables(run, "gauge", Gauge)
     requested = tables(run, "figure", Figure)
     shown = {name: each.title or _shown(each, gauges) for name, each in requested.items()}
-    return GENERAL | shown
+    general = GENERAL if goes_along_x(run) else GENERAL | {"flow": WAY}
+    return {**general, **shown}
 
 
 def of_maps() -> Captions:

@@ -9,6 +9,7 @@ from ...util.spelling import suggestion
 from ..materials import Material
 from ..particle_files.reader import ParticleTable
 from ..table import Table
+from ..tables.mesh import Mesh
 from ..tables.root import ScenarioTable
 from ..tables.sections import SECTIONS, SINGLE_TABLES
 from ..values.toml_source import Where
@@ -86,5 +87,16 @@ def _check_known(
         raise where.error(keys, message)
     for name in value if isinstance(value, list) else ():
         if name not in known:
-            message = f'{path}: "{name}" is not a known {section}{suggestion(name, known)}'
+            message = f'{path}: "{name}" is not a known {section}{_remedy(name, known)}'
             raise where.error(keys, message)
+
+
+def _remedy(name: str, known: Mapping[str, object]) -> str:
+    """What may have been meant by a name; a mesh of several parts is one body."""
+    whole, _, part = name.rpartition(".")
+    if part.isdigit() and isinstance(known.get(whole), Mesh):
+        return (
+            f"; [body.{whole}] is one body with all parts of its file: give each part a file and a "
+            "[body.NAME] of its own"
+        )
+    return suggestion(name, known)

@@ -55,6 +55,7 @@ class Setting:
     body_names: Sequence[str]  # that the field `body` indexes
     named: Mapping[str, Sequence[str]]  # bodies that a table stands for
     support: float = 0.0  # how far a particle acts, m
+    has_bodies_alone: bool = False  # no wave limits a step
     moving: frozenset[str] = frozenset()  # fixed bodies with a motion, by table
     faces: Mapping[str, FacesAt] = field(default_factory=dict)  # by table, where a body has faces
 
@@ -96,7 +97,7 @@ class Gauge(Part):
         """The point (dim,) at which it looks, if it is a point."""
         return None
 
-    def is_outside(self, low: np.ndarray, high: np.ndarray) -> bool:
+    def is_outside(self, low: np.ndarray, high: np.ndarray, gravity: np.ndarray) -> bool:
         """Whether it looks at nothing within a box, by its corners (dim,), m."""
         place = self.place
         return place is not None and bool(np.any(place < low) or np.any(place > high))

@@ -20,6 +20,8 @@ ROWS_AT_ONCE = 100_000
 MAX_COLUMNS = 64
 MAX_FIELD = 200  # characters; a wrong file (a binary, an essay) fails here, not in memory
 
+SEPARATORS = {";": "semicolons", "\t": "tabs"}  # of spreadsheets
+
 
 def read_csv_columns(path: Path) -> dict[str, np.ndarray]:
     """Column name -> array (N,) of strings; spaces around fields are dropped.
@@ -95,6 +97,12 @@ def _read(path: Path, lines: _Lines) -> dict[str, np.ndarray]:
 def _check_header(path: Path, names: list[str]) -> None:
     if not names:
         raise UserError(f"{path}: the file is empty; expected a CSV header such as x,y,vx,vy,...")
+    for mark, word in SEPARATORS.items():
+        if len(names) == 1 and mark in names[0]:
+            raise UserError(
+                f"{path}: its columns are separated by {word}; expected commas, and points in "
+                "decimal numbers"
+            )
     if len(names) > MAX_COLUMNS:
         raise UserError(f"{path}: {len(names)} columns; at most {MAX_COLUMNS} are allowed")
     if any("\0" in name for name in names):

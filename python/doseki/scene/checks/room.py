@@ -9,16 +9,20 @@ import numpy as np
 
 from ...record.particles import FREE, ParticleSet
 from ...scenario.model import Scenario
+from ...scenario.tables.bodies import Box
+from ...scenario.tables.terrain.release import Release
 from ...scenario.tables.terrain.terrain import TERRAIN
 from ...util.finding import Finding
+from ..ground import LEAST_HEIGHT, ground_of
 from ..groups import Group, inside_bodies
 
 MOST = 0.5  # share of a body that fixed ones may take without a word
+NOTABLE = 0.05  # the same of one whose volume is told: a release, a lake on a terrain
 
 
 @dataclass(frozen=True)
 class Displaced(Finding):
-    """A body of which little is left beside fixed ones."""
+    """A body of which fixed ones take much."""
 
     share: float  # that is gone
     taker: str
@@ -36,21 +40,38 @@ def room_findings(
     after: Mapping[str, ParticleSet],
     takers: Mapping[str, Sequence[Group]],
 ) -> Iterator[Finding]:
-    """A doubt about each body of which less than half is left, `after` others have taken room.
+    """A doubt about each body of which others take much, `after` they have taken room.
 
+    Much is more than half; of a body whose volume is told, NOTABLE of what the ground leaves of it.
     What bodies that move take is meant: water in the pores of grains.  `takers` are those that each
     makes room for.  Raises UserError where nothing is left of a body.
     """
     for name, particles in before.items():
         there, left = _free(particles), _free(after[name])
-        if len(left) > (1 - MOST) * len(there) or not len(there):
+        most = NOTABLE if _is_told(scenario, name) else MOST
+        if len(left) > (1 - most) * len(there) or not len(there):
             continue
         if not len(left):
             taker, _ = _taken(scenario, there, takers[name])
             _refuse(scenario, name, taker or TERRAIN)
+        if most < MOST:
+            there = _above_ground(scenario, there)
         taker, share = _taken(scenario, there, [group for group in takers[name] if group.fixed])
-        if share > MOST:
+        if share > most:
             yield Displaced(_place(scenario, name), share, taker)
+
+
+def _is_told(scenario: Scenario, name: str) -> bool:
+    """Whether `check` and the summary tell the volume of a body."""
+    if scenario.bed is None or name in scenario.carried:
+        return False
+    return isinstance(scenario.body.get(name), Release | Box)
+
+
+def _above_ground(scenario: Scenario, position: np.ndarray) -> np.ndarray:
+    assert scenario.bed is not None
+    height = ground_of(scenario.bed).height_above(position)
+    return position[height > LEAST_HEIGHT * scenario.dp]
 
 
 def _taken(scenario: Scenario, position: np.ndarray, groups: Sequence[Group]) -> tuple[str, float]:

@@ -14,7 +14,6 @@ from ...geodata.crs import same_crs, why_not_compared
 from ...geodata.features import Polygon
 from ...geodata.raster import Raster, read_raster
 from ...record.particles import FREE, ParticleSet, check_size
-from ...record.units import unit_in
 from ...scenario.model import Scenario, file_of
 from ...scenario.releases import NotCompared
 from ...scenario.tables.terrain.release import THICKEST, Release
@@ -311,16 +310,13 @@ def _distance(place: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
 
 
 def released_volumes(scenario: Scenario) -> dict[str, tuple[float, float]]:
-    """Of each release that a run begins with: volume asked for, and in particles, m3."""
+    """Of each release that a run begins with: volume asked for, and in particles, m3.
+
+    What other bodies take of it is not left out.
+    """
     found = {}
     for name, table in scenario.body.items():
         if isinstance(table, Release) and name not in scenario.carried:
             body = ReleaseBody(scenario, name, table)
             found[name] = body.asked, body.volume
     return found
-
-
-def volume_text(asked: float, volume: float, dim: int) -> str:
-    """One line about a release."""
-    unit = unit_in("m3", dim)
-    return f"{volume:.5g} {unit} released; area times thickness is {asked:.5g} {unit}"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..shapes import MeshShape
+from ..shapes import Convex, MeshShape
 
 REACH = 2.0  # dp: how far particles repel each other
 OFF = 0.05  # dp: a particle so far from its layer is out of place
@@ -22,8 +22,8 @@ OUTSIDE = 0.9  # of a lattice beyond the surface: particles without order press 
 SHALLOWEST = 0.35  # dp below the surface
 
 
-def evened(shape: MeshShape, position: np.ndarray, dp: float, depth: float) -> np.ndarray:
-    """Positions (N, 3), the deepest of which stay where they are; `depth` is that of the wall."""
+def evened(shape: MeshShape | Convex, position: np.ndarray, dp: float, depth: float) -> np.ndarray:
+    """Positions (N, dim), the deepest of which stay where they are; `depth` is that of the wall."""
     below = shape.wall(position, dp)[1]
     moving = _out_of_place(position, below, dp) & (below < depth - 0.5 * dp)
     if not moving.any():
@@ -45,12 +45,13 @@ def _out_of_place(position: np.ndarray, below: np.ndarray, dp: float) -> np.ndar
     return np.asarray(cKDTree(position[off]).query(position, 1)[0] < 1.5 * dp)
 
 
-def _shifted(shape: MeshShape, x: np.ndarray, moving: np.ndarray, dp: float) -> np.ndarray:
+def _shifted(shape: MeshShape | Convex, x: np.ndarray, moving: np.ndarray, dp: float) -> np.ndarray:
     own = np.flatnonzero(moving)
     start = x[own].copy()
     normal, below = shape.wall(start, dp)
     for _ in range(STEPS):
-        force = _repulsion(x, moving, dp)[own] - _inwards(below / dp)[:, None] * normal
+        inwards = _inwards(below / dp, x.shape[1])[:, None] * normal
+        force = _repulsion(x, moving, dp)[own] - inwards
         shift = GAIN * dp * force
         length = np.linalg.norm(shift, axis=1)
         shift *= np.minimum(1.0, LONGEST * dp / np.maximum(length, 1e-300))[:, None]
@@ -65,27 +66,27 @@ def _shifted(shape: MeshShape, x: np.ndarray, moving: np.ndarray, dp: float) -> 
 
 
 def _repulsion(x: np.ndarray, moving: np.ndarray, dp: float) -> np.ndarray:
-    """Sums (N, 3) of (1 - r/reach)^2 along the way from each neighbour."""
+    """Sums (N, dim) of (1 - r/reach)^2 along the way from each neighbour."""
     pairs = cKDTree(x).query_pairs(REACH * dp, output_type="ndarray")
     i, j = pairs[moving[pairs].any(axis=1)].T
     apart = x[i] - x[j]
     r = np.linalg.norm(apart, axis=1)
     pull = ((1 - r / (REACH * dp)) ** 2 / np.maximum(r, 1e-9 * dp))[:, None] * apart
     force = np.zeros_like(x)
-    for a in range(3):
+    for a in range(x.shape[1]):
         force[:, a] = np.bincount(i, pull[:, a], len(x)) - np.bincount(j, pull[:, a], len(x))
     return force
 
 
-def _inwards(depth: np.ndarray) -> np.ndarray:
+def _inwards(depth: np.ndarray, dim: int) -> np.ndarray:
     """Force from the surface: of what would lie beyond it, and towards the first row's place."""
-    return OUTSIDE * _of_outside(depth) + FIRST_ROW * np.where(depth < 1, 0.5 - depth, 0.0)
+    return OUTSIDE * _of_outside(depth, dim) + FIRST_ROW * np.where(depth < 1, 0.5 - depth, 0.0)
 
 
-def _of_outside(depth: np.ndarray) -> np.ndarray:
+def _of_outside(depth: np.ndarray, dim: int) -> np.ndarray:
     """What a lattice does that begins half a spacing outside; depths in spacings."""
     steps = np.arange(-REACH, REACH + 1)
-    u, v = np.meshgrid(steps, steps)
+    u, v = np.meshgrid(steps, steps if dim == 3 else [0.0])
     table = np.linspace(0, REACH, 81)
     planes = table[:, None] + 0.5 + np.arange(0, REACH)[None, :]
     z = planes[:, :, None, None]

@@ -102,7 +102,10 @@ class Convex:
 
     def _around_centre(self, position: np.ndarray, share: np.ndarray, dp: float) -> Particles:
         """Moved so that the mean of all, by their shares, is the centre."""
-        position = position - share @ position
+        return self.beneath(position - share @ position, share, dp)
+
+    def beneath(self, position: np.ndarray, share: np.ndarray, dp: float) -> Particles:
+        """Particles at positions (N, dim), m, with what there is to know of their sides."""
         gaps, normals = self._gaps(position), self.planes[0]
         normal, depth = nearest_faces(gaps, normals, EDGE * dp)
         plane, edges = np.zeros(len(depth)), beside_edges(gaps, normals, EDGE * dp)
@@ -128,6 +131,10 @@ class Convex:
         depth = self._gaps(zero).min(axis=1)
         none = no_edges(1, self.dim)
         return Particles(zero, zero.copy(), depth, np.zeros(1), np.ones(1), none)
+
+    def wall(self, position: np.ndarray, dp: float) -> tuple[np.ndarray, np.ndarray]:
+        """Outward normals (N, dim), means beside edges, and depths (N,) below the sides."""
+        return nearest_faces(self._gaps(position), self.planes[0], EDGE * dp)
 
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""

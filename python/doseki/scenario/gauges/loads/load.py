@@ -13,7 +13,7 @@ from ...values.types import BodyNames, Length, RefersTo
 from ..gauge import Rows, Sampled, Setting
 from .force_meter import ForceMeter, about_axes, force_columns, impulse_of
 from .metered import Row
-from .standing_water import standing_water
+from .standing_water import Known, standing_water
 from .surface import Box
 
 PARTS = ("static", "dynamic", "contact")
@@ -52,10 +52,12 @@ class Load(ForceMeter):
         if self.approach is not None and self.width is None and setting.dim == 3:
             yield "width", " is missing: that of the structure, for the formulas of `approach`"
 
-    def static(self, run: Sampled, setting: Setting, box: Box) -> np.ndarray:
+    def static(
+        self, run: Sampled, setting: Setting, box: Box, known: Known | None = None
+    ) -> np.ndarray:
         """Force and moment (m,) of the water that stands against the bodies, Eq. (96)."""
         about = self.pole(setting.dim)
-        return np.concatenate(standing_water(run, setting, self.bodies, about, box))
+        return np.concatenate(standing_water(run, setting, self.bodies, about, box, known))
 
     def sums(self, row: Row, dim: int) -> np.ndarray:
         """Impulses (2, m) of flow and contacts since the start, of force and moment."""

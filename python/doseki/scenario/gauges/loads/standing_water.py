@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ....record.particles import FIXED
 from ..gauge import Sampled, Setting, State
 from ..near import REACH, particles_in
-from .outside_walls import CLEAR, DEEPEST, clear_of_walls, left_by_walls
+from .outside_walls import CLEAR, DEEPEST, WALL, clear_of_walls, left_by_walls
 from .profiles import STEP, Profiles, profiles
 from .surface import Box, Elements, surface_of
 
@@ -21,23 +21,34 @@ FAR = OFF + CLEAR + DEEPEST + CELL + REACH + STEP  # spacings; what is farther o
 
 
 def standing_water(
-    run: Sampled, setting: Setting, bodies: Sequence[str], about: np.ndarray, box: Box
+    run: Sampled,
+    setting: Setting,
+    bodies: Sequence[str],
+    about: np.ndarray,
+    box: Box,
+    known: Known | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (dim,) and moment (1,) or (3,) about a point of water at rest, N, N m (Eq. 96).
 
     It stands in front of each piece of the surface as high as the flow does now, without a gap;
-    its pressure is that of its depth.  The bodies lie within `box`.
+    its pressure is that of its depth.  The bodies lie within `box`; `known` is what was found out
+    about bodies that stand still.
     """
     dim, g = setting.dim, float(np.linalg.norm(setting.gravity))
-    if not _is_anything_near(run, setting, box):
-        return np.zeros(dim), np.zeros(1 if dim == 2 else 3)
-    elements = surface_of(run, setting, bodies, box)
-    force = np.zeros_like(elements.place)
-    if g > 0 and len(force):
-        up = -setting.gravity / g
-        around = _around(run, setting, elements, up)
-        elements, probe = _outside_of_walls(elements, around, setting.dp)
-        force = -g * _depths(elements, probe, around, setting, up)[:, None] * elements.area
+    nothing = np.zeros(dim), np.zeros(1 if dim == 2 else 3)
+    if g == 0.0 or not _is_anything_near(run, setting, box):
+        return nothing
+    known, up = known or Known(), -setting.gravity / g
+    around = None if known.surface is None else _around(run, setting, known.surface, up)
+    if around is None or not known.is_of(around):
+        surface = surface_of(run, setting, bodies, box)
+        if not len(surface.place):
+            return nothing
+        around = _around(run, setting, surface, up)
+        known.learn(surface, around, setting.dp, up)
+    assert known.outside is not None
+    elements = known.outside.elements
+    force = -g * _depths(known.outside, around, setting, up)[:, None] * elements.area
     return force.sum(axis=0), moment_of(elements.place - about, force)
 
 
@@ -84,25 +95,60 @@ class _Lines:
         return cls(plan, of)
 
 
-def _depths(
-    elements: Elements, probe: np.ndarray, around: State, setting: Setting, up: np.ndarray
-) -> np.ndarray:
+@dataclass(frozen=True)
+class _Outside:
+    """The parts of a surface that no other wall covers."""
+
+    elements: Elements
+    probe: np.ndarray  # (n, dim) points in front of them, m
+    lines: _Lines  # through these
+
+
+@dataclass
+class Known:
+    """What walls alone decide about bodies that stand still: it is worked out once, and anew where
+    walls near them have changed, as those that come with a flow over a terrain.
+    """
+
+    surface: Elements | None = None
+    outside: _Outside | None = None
+    _walls: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def is_of(self, around: State) -> bool:
+        """Whether it was learnt from the walls that are around the bodies now."""
+        now = _walls_of(around)
+        return all(np.array_equal(values, self._walls[key]) for key, values in now.items())
+
+    def learn(self, surface: Elements, around: State, dp: float, up: np.ndarray) -> None:
+        """Take in a surface and the particles around it."""
+        self.surface, self._walls = surface, _walls_of(around)
+        elements, probe = _outside_of_walls(surface, around, dp)
+        self.outside = _Outside(elements, probe, _Lines.through(probe, up, CELL * dp))
+
+
+def _walls_of(around: State) -> dict[str, np.ndarray]:
+    """What is asked about walls, of those in `around`."""
+    fixed = around["motion"] == FIXED
+    return {key: around[key][fixed] for key in (*WALL, "body")}
+
+
+def _depths(outside: _Outside, around: State, setting: Setting, up: np.ndarray) -> np.ndarray:
     """Density times depth (n,) of the water above each element, kg/m2.
 
-    Points `probe` (n, dim) are in front of them.  Where a body hangs over one, the water is that of
-    the nearest column that none caps.
+    Where a body hangs over the point in front of one, the water is that of the nearest column that
+    none caps.
     """
-    weight = np.zeros(len(elements.place))
+    place, probe, lines = outside.elements.place, outside.probe, outside.lines
+    weight = np.zeros(len(place))
     if not len(weight):
         return weight
-    lines = _Lines.through(probe, up, CELL * setting.dp)
     some, of = _lines_in_flow(lines, probe @ up, around, setting, up)
     if not len(some):
         return weight
     along = profiles(lines.plan[of], around, setting, up, (probe @ up).min())
     number = np.searchsorted(of, lines.of[some])
     weight[some] = _weights(
-        along, number, lines.plan[lines.of[some]], (elements.place @ up)[some], (probe @ up)[some]
+        along, number, lines.plan[lines.of[some]], (place @ up)[some], (probe @ up)[some]
     )
     return weight
 
@@ -121,8 +167,10 @@ def _lines_in_flow(
         return np.array([], int), np.array([], int)
     point = lines.plan[lines.of] + np.outer(probed, up)
     reach = (REACH + STEP) * setting.dp * (1 + 1e-6)
-    near = np.isfinite(cKDTree(moving).query(point, distance_upper_bound=reach)[0])
-    return np.flatnonzero(near), np.unique(lines.of[near])
+    low, high = moving.min(axis=0) - reach, moving.max(axis=0) + reach
+    some = np.flatnonzero(((point > low) & (point < high)).all(axis=1))
+    near = np.isfinite(cKDTree(moving).query(point[some], distance_upper_bound=reach)[0])
+    return some[near], np.unique(lines.of[some[near]])
 
 
 def _weights(
