@@ -39,7 +39,8 @@ Division divided(std::span<const std::uint32_t> component, std::span<const std::
     for (std::uint32_t p = 0; p < component.size(); ++p)
         if (body[p] >= 0) parts[component[p]].push_back(p);
     const auto rank = [&](const Array<std::uint32_t>& points) {
-        return std::pair{std::ranges::any_of(points, is_clamped), points.size()};
+        const bool holds = points.size() >= fewest && std::ranges::any_of(points, is_clamped);
+        return std::pair{holds, points.size()};
     };
     Array<const Array<std::uint32_t>*> first(bodies, nullptr);
     for (const auto& [label, points] : parts) {
