@@ -86,7 +86,8 @@ def run_with(through: float | None, **scenario: Any) -> Any:
 
 @pytest.mark.parametrize(("through", "verdict"), [(0, "good"), (0.1, "doubtful"), (20, "bad")])
 def test_mass_that_went_through_the_ground_is_judged(through, verdict):
-    (check,) = ground_check(run_with(through, terrain={"file": "map.tif"}))
+    check, left = ground_check(run_with(through, terrain={"file": "map.tif"}))
+    assert left.verdict == "good"
     assert check.verdict == verdict
     assert check.value == pytest.approx(through / 200)
     assert ("speed_max" in check.remedy) is (verdict != "good")
