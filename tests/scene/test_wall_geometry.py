@@ -68,18 +68,32 @@ def geometry(write):
 @pytest.mark.parametrize(
     ("low", "high", "normal", "surface"),
     [
-        ((0, -0.3), (2, 0), (0, 1), 0.0),  # a floor
-        ((0, 1), (2, 1.3), (0, -1), -1.0),  # a lid
-        ((-0.3, 0), (0, 1.5), (1, 0), 0.0),  # a wall on the left
-        ((2, 0), (2.3, 1.5), (-1, 0), -2.0),  # and on the right
+        ((0, -0.1), (2, 0), (0, 1), 0.0),  # a floor
+        ((0, 1), (2, 1.1), (0, -1), -1.0),  # a lid
+        ((-0.1, 0), (0, 1.5), (1, 0), 0.0),  # a wall on the left
+        ((2, 0), (2.1, 1.5), (-1, 0), -2.0),  # and on the right
     ],
 )
-def test_a_slab_faces_the_water(geometry, low, high, normal, surface):
+def test_one_row_faces_the_water(geometry, low, high, normal, surface):
+    """Both of its faces are as near."""
     x, n, depth = geometry("slab", WATER + wall("slab", low, high))
     np.testing.assert_array_equal(n, np.broadcast_to(normal, x.shape))
     np.testing.assert_allclose(depth, surface - x @ np.array(normal), atol=1e-12)
-    assert depth.min() == pytest.approx(0.05)
-    assert depth.max() == pytest.approx(0.25)
+    np.testing.assert_allclose(depth, 0.05)
+
+
+@pytest.mark.parametrize("rows", [2, 3, 8])
+def test_a_thin_wall_has_two_faces_and_a_crest(geometry, rows):
+    """Water goes over it."""
+    x, n, depth = geometry("wall", WATER + wall("wall", (3, 0), (3 + 0.1 * rows, 1)))
+    top = x[:, 1] > 0.94
+    assert (n[top, 1] > 0.7).all()
+    middle = np.abs(x[:, 1] - 0.5) < 0.06
+    left = middle & (x[:, 0] < 3.05 + 1e-9)
+    right = middle & (x[:, 0] > 2.95 + 0.1 * rows - 1e-9)
+    assert (n[left] == [-1, 0]).all()
+    assert (n[right] == [1, 0]).all()
+    np.testing.assert_allclose(depth[left | right | top], 0.05)
 
 
 def test_a_block_faces_outwards_on_every_side(geometry):
@@ -136,8 +150,8 @@ def test_a_fixed_ball_is_as_large_as_one_that_moves(write, dim, measure):
 
 
 @pytest.mark.parametrize("angle", [30, -70])
-def test_a_rotated_slab_faces_along_its_rotated_axis(geometry, angle):
-    floor = wall("floor", (0, -0.3), (2, 0), f"rotate = {angle}\npivot = [0, 0]")
+def test_a_rotated_row_faces_along_its_rotated_axis(geometry, angle):
+    floor = wall("floor", (0, -0.1), (2, 0), f"rotate = {angle}\npivot = [0, 0]")
     x, n, depth = geometry(
         "floor", WATER.replace("min", f"rotate = {angle}\npivot = [0, 0]\nmin") + floor
     )
@@ -192,7 +206,7 @@ def test_a_normal_of_no_face_is_refused(geometry, rotate):
         geometry("block", WATER + wall("block", (3, 0), (5, 1), keys))
 
 
-def test_a_slab_of_a_flow_that_enters_faces_the_inflow(geometry):
+def test_a_row_faces_the_flow_that_enters(geometry):
     """Before anything has entered there is no water to face."""
     inflow = """
 [inflow.i]
@@ -204,12 +218,12 @@ direction = [-1, 0]
 depth = 0.4
 duration = 1
 """
-    _, n, _ = geometry("floor", wall("floor", (0, -0.3), (2, 0)) + inflow)
+    _, n, _ = geometry("floor", wall("floor", (0, -0.1), (2, 0)) + inflow)
     assert (n == [0, 1]).all()
 
 
 def test_walls_in_3d(write):
-    """A slab turned about y, and a sphere."""
+    """A row turned about y."""
     tables = """
 [body.water]
 shape = "box"
@@ -221,7 +235,7 @@ max = [1, 1, 1]
 shape = "box"
 material = "basalt"
 fixed = true
-min = [0, 0, -0.3]
+min = [0, 0, -0.1]
 max = [1, 1, 0]
 rotate = 20
 rotate_axis = [0, 1, 0]

@@ -13,7 +13,7 @@ from ...scenario.tables.bodies import Box
 from ..periodic import periods
 from ..shapes import EDGE, Edges, beside_edges, nearest_faces
 
-SLAB = 8  # spacings; a box thinner than this along one axis alone is a slab with one wet face
+SLAB = 1  # rows; both faces of so thin a box are as near, so that it has one, which is wet
 
 
 @dataclass(frozen=True)
