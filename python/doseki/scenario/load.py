@@ -18,6 +18,7 @@ from .checks.references import check_names, check_references
 from .checks.tables import check_scenario
 from .earlier import earlier_run
 from .hydrographs import completed_inflows
+from .light_bodies import stable_cflnumber
 from .materials import Material, MaterialError, complete_materials, equation_of_state
 from .model import Found, Scenario, file_of, min_sound_speed, names_in_use, terrain_file
 from .named_files import read_in_full
@@ -91,9 +92,10 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
         "inflow": completed_inflows(tables.inflow, gravity, where),
         "xi": tables.xi or _reduction_factor(tables, gravity, materials, read),
     }
-    doubts: list[Finding] = []
+    completed["cflnumber"], doubts = stable_cflnumber(tables, materials)
     if any(isinstance(body, Release) for body in tables.body.values()):
-        completed["body"], doubts = _with_releases(tables, bed, where)
+        completed["body"], own = _with_releases(tables, bed, where)
+        doubts += own
     earlier = None if tables.start is None else earlier_run(tables.start, where)
     taken_in = read_in_full(where.named)
     found = Found(constants, read, earlier, bed, doubts, taken_in)
