@@ -56,9 +56,12 @@ class DosekiWarning(UserWarning):
 
 
 class Interrupted(BaseException):
-    """Ctrl-C outside the steps of a run, which end in good order; not for `except Exception`."""
+    """Ctrl-C outside the steps of a run, which end in good order, or within one of several runs.
+
+    Not for `except Exception`.
+    """
 
     exit_code = 130  # as shells say
 
-    def __init__(self) -> None:
-        super().__init__("interrupted")
+    def __init__(self, message: str = "interrupted") -> None:
+        super().__init__(one_line(message))

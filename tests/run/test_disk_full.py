@@ -33,6 +33,9 @@ def assert_stopped_cleanly(done, folder):
         assert len(snapshot["position"]) > 0
     assert len(run.history["time"]) > 0
     assert not list(folder.rglob("*.part"))
+    told = doseki_command("explain", folder)
+    assert told.returncode == 0
+    assert "was stopped after step" in told.stdout or "disk ran out" in told.stdout
 
 
 @pytest.mark.parametrize("size", [100_000, 200_000, 300_000])

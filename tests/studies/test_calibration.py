@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from doseki.studies.calibration import METHODS, calibrated
 from doseki.studies.plan.axes import Axis
+from doseki.studies.plan.file import read_plan
 from doseki.studies.plan.tables import Calibrate
 from doseki.studies.runs.row import DONE, FAILED, Row
+from doseki.studies.study import _calibration_lines
+
+from .small_study import write_study
 
 KS = Axis("ks", low=0.002, high=0.02, log=True)
 TAU = Axis("tau_y", low=5.0, high=60.0)
@@ -90,4 +95,14 @@ def test_runs_of_a_sample_may_be_the_best():
     how = Calibrate(method="differential_evolution", max_runs=8)
     found = calibrated([KS], Bowl([KS]), how, sample)
     assert found.point == sample[0]
-    assert found.runs == 9
+    assert (found.runs, found.sampled) == (9, 1)
+
+
+def test_runs_of_a_sample_are_told_apart(tmp_path):
+    """They are not counted against max_runs."""
+    sample = [(0.0083,), (0.004,), (0.0083,)]
+    how = Calibrate(method="dual_annealing", max_runs=5)
+    found = calibrated([KS], Bowl([KS]), how, sample)
+    plan = read_plan(write_study(tmp_path))
+    said = next(_calibration_lines(replace(found, point=(0.0083,)), plan))
+    assert "after 5 runs and 2 of the sample; max_runs = 5 were made" in said

@@ -127,6 +127,27 @@ def test_units_go_to_the_scenario(tmp_path):
     assert plan.units() == {"speed": "m/s"}
 
 
+@pytest.mark.parametrize(
+    ("vary", "label", "setting"),
+    [
+        ("[vary.pull]\nvalues = [5, 10]", "pull [m/s2]", "pull=5"),
+        ("[vary.pull]\nmin = 5\nmax = 10\ncount = 2", "pull [m/s2]", "pull=5.0"),
+        ('[vary.pull]\nvalues = ["500 cm/s2"]', "pull [m/s2]", 'pull="500 cm/s2"'),
+        ('[vary."parameters.pull.value"]\nvalues = [5]', "parameters.pull.value [m/s2]", None),
+        ("[vary.dp]\nvalues = [0.1, 0.05]", "dp [m]", "dp=0.1"),
+        ("[vary.cfl_force]\nvalues = [0.1]", "cfl_force", "cfl_force=0.1"),
+        ('[vary.scheme]\nvalues = ["resolved"]', "scheme", 'scheme="resolved"'),
+    ],
+)
+def test_numbers_have_the_unit_that_the_scenario_declares(tmp_path, vary, label, setting):
+    text = STUDY.replace("[vary.pull]\nvalues = [5, 10, 20]", vary)
+    plan = read_plan(write_study(tmp_path, text))
+    assert plan.axes[0].label == label
+    if setting is not None:  # the scenario is told what the study says, no more
+        assert plan.settings_of(plan.points()[0]) == [setting]
+
+
+
 AXES = [Axis("a", low=1.0, high=100.0, log=True), Axis("b", choices=("x", "y"))]
 
 

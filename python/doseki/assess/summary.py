@@ -95,8 +95,8 @@ def _solid_steps(run: Run) -> Iterator[Row]:
     """Those of bodies that deform, where they are shorter than those of the run."""
     time, step = (run.history[column] for column in ("time", "step"))
     duration, steps = time[-1] - time[0], step[-1] - step[0]
-    solid = run.summary.get("solid_timestep", math.inf)
-    if solid * steps < duration:
+    solid = run.summary.get("solid_timestep")
+    if solid is not None and solid * steps < duration:
         yield _line("", solid_steps_text(solid, duration))
 
 

@@ -42,8 +42,7 @@ def plot(
         typer.echo(str(make_movie(load(directory), movie, colour=colour or "material")))
     for remark in drawn.remarks:
         typer.echo(f"warning: {remark}", err=True)
-    if drawn.failures:
-        raise UserError(f"{len(drawn.failures)} of the figures could not be drawn")
+    drawn.check(f"{len(drawn.failures)} of the figures could not be drawn")
 
 
 def report(

@@ -228,7 +228,7 @@ def resume(
 
 
 def explain(directory: Directory) -> None:
-    """Say why a run failed, and what to change.
+    """Say why a run failed or ended early, and what to change.
 
     See also: doseki check says before a run what is doubtful about a scenario.
     """

@@ -130,7 +130,7 @@ class StopRequests:
         # Other threads may not handle signals: whoever started them does.
         if threading.current_thread() is threading.main_thread():
             terminals = [stream for stream in (0, 1, 2) if os.isatty(stream)]
-            old = {number: signal.signal(number, self._collect) for number in _answered()}
+            old = {number: signal.signal(number, self._collect) for number in answered()}
             if signal.SIGHUP in old:
                 signal.signal(signal.SIGHUP, lambda *said: self._hang_up(terminals, *said))
         try:
@@ -153,7 +153,7 @@ class StopRequests:
         self._collect(number, frame)
 
 
-def _answered() -> list[signal.Signals]:
+def answered() -> list[signal.Signals]:
     """Signals that end a run; SIGHUP only where it is not ignored, as nohup has it."""
     hangs_up = signal.getsignal(signal.SIGHUP) != signal.SIG_IGN
     return [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hangs_up else [])]

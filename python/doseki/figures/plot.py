@@ -48,10 +48,12 @@ def draw_run(directory: str | Path) -> Drawn:
 
 
 def plot_run(directory: str | Path) -> list[Path]:
-    """The same; returns the pictures, or raises UserError where one could not be drawn."""
+    """The same; returns the pictures, or raises UserError where one could not be drawn.
+
+    ResourceError where memory or disk ran out.
+    """
     drawn = draw_run(directory)
-    if drawn.failures:
-        raise UserError(drawn.failures[0])
+    drawn.check("".join(drawn.failures[:1]))
     return drawn.pictures
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from ..errors import DosekiError, one_line
+from ..errors import DosekiError, ResourceError, UserError, one_line
 from ..util.files import clear_errors, write_whole
 from .nothing import NothingToDrawError
 from .text import missing_text, plain_text
@@ -21,12 +21,18 @@ class Drawn:
     pictures: list[Path] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # of those that would be empty
+    is_full: bool = False  # memory or disk ran out for one that failed
     _missing: list[str] = field(default_factory=list)  # characters that no font has
 
     @property
     def remarks(self) -> list[str]:
         """All that is wrong: what failed, and once for all pictures what no font has."""
         return [*self.failures, *missing_text(self._missing)]
+
+    def check(self, message: str) -> None:
+        """Raise ResourceError or UserError with a message where a picture failed."""
+        if self.failures:
+            raise (ResourceError if self.is_full else UserError)(message)
 
     def add(self, path: Path, make: Callable[[], Figure]) -> None:
         """Draw one figure into a PNG file, or say why there is none."""
@@ -40,6 +46,7 @@ class Drawn:
             self.notes.append(one_line(f"figure {name} is not drawn: {reason}"))
         except Exception as error:
             # Whatever a picture stumbles over: the run, and the other pictures, do not.
+            self.is_full |= isinstance(error, ResourceError | MemoryError)
             said = str(error) if isinstance(error, DosekiError) else repr(error)
             self.failures.append(one_line(f"figure {name} could not be drawn: {said}"))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..assess.estimates import solid_timestep
-from ..assess.failure.failure import Failure, explain_failure
+from ..assess.failure.failure import Failure, explain_failure, note_exhausted
 from ..assess.ground.leaving import leaving_findings
 from ..assess.ground.volumes import volumes_of
 from ..assess.loads import sections_turned_round, write_loads
@@ -232,6 +232,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
             status = "done" if run.advance(clock, options.progress, stop) else "stopped"
             reason = _reason(options.watch, stop) if status == "stopped" else ""
     except core.ResourceFailure as failure:
+        note_exhausted(run, str(failure))
         raise ResourceError(str(failure)) from failure
     except core.PhysicsFailure as failure:
         try:
@@ -248,6 +249,7 @@ def carry_out(run: ActiveRun, options: RunOptions, fresh: bool) -> dict[str, Any
             explained.position,
         ) from failure
     except ResourceError as error:
+        note_exhausted(run, str(error))
         raise ResourceError(f"{error}; what was written before is whole, in {directory}") from None
     finally:
         core.set_threads(before)

@@ -39,6 +39,7 @@ class Calibration:
         point: the values, one for each axis; None where no run has a score.
         score: there.
         runs: how many different ones were looked at.
+        sampled: how many of these were those of a sample, which max_runs does not count.
         converged: whether the optimiser ended by itself, before max_runs.
         message: what it says.
 
@@ -47,6 +48,7 @@ class Calibration:
     point: Point | None
     score: float
     runs: int
+    sampled: int
     converged: bool
     message: str
 
@@ -100,8 +102,8 @@ def calibrated(
     axes: Sequence[Axis], source: Rows, how: Calibrate, before: Sequence[Point] = ()
 ) -> Calibration:
     """Search all axes; the points `before` of a sample, beyond max_runs, may be the best, too."""
-    scores = _Scores(axes, source, how.max_runs + len(before))
     start = dict(zip(before, map(score_of, source.rows(before)), strict=True)) if before else {}
+    scores = _Scores(axes, source, how.max_runs + len(start))
     scores.seen |= start
     try:
         found = METHODS[how.method](len(axes), scores, how)
@@ -112,7 +114,8 @@ def calibrated(
     best = math.nan if point is None else scores.seen[point]
     if best >= WORST:
         point, best = None, math.nan
-    return Calibration(point, best, len(scores.seen), converged, " ".join(message.split()))
+    words = " ".join(message.split())
+    return Calibration(point, best, len(scores.seen), len(start), converged, words)
 
 
 def _evolved(dimensions: int, scores: _Scores, how: Calibrate) -> OptimizeResult:

@@ -25,7 +25,7 @@ from ..measure.moments import Moment
 from ..measure.views import before_flow, named_window, with_flow
 from ..record.reader import Run, load
 from ..record.writer import jsonable
-from ..running.runner import RunOptions, run_scenario
+from ..running.runner import RunOptions
 from ..scenario.load import load_scenario
 from ..scenario.schemes import RESOLVED, UETA2022
 from ..util.files import clear_errors, write_whole_text
@@ -41,6 +41,7 @@ from .flume_criteria import (
     measure_flume,
     verdicts,
 )
+from .in_turn import run_in_turn
 
 COMPARISONS = ("flume",)
 SCHEMES = (UETA2022, RESOLVED)
@@ -99,14 +100,16 @@ def run_both(
     options: RunOptions,
     tell: Callable[[str], None],
 ) -> list[Path]:
-    """Run the scenario in both schemes into DIR/SCHEME; nothing is run where one has a mistake."""
+    """Run the scenario in both schemes into DIR/SCHEME; nothing is run where one has a mistake.
+
+    Raises Interrupted where one of them is stopped.
+    """
     scenarios = [load_scenario(name, [*settings, f"scheme={scheme}"]) for scheme in SCHEMES]
     folders = [directory / scheme for scheme in SCHEMES]
     with clear_errors(directory):
         directory.mkdir(parents=True, exist_ok=True)
-    for scheme, scenario, folder in zip(SCHEMES, scenarios, folders, strict=True):
-        tell(f"{name}: {scheme}")
-        run_scenario(scenario, folder, options)
+    runs = dict(zip(folders, scenarios, strict=True))
+    run_in_turn(runs, options, lambda folder: tell(f"{name}: {folder.name}"))
     return folders
 
 

@@ -156,7 +156,7 @@ def _write_calibration(found: Calibration, plan: Plan, directory: Path) -> Path:
     best = {} if found.point is None else dict(zip(_names(plan), found.point, strict=True))
     about = {**asdict(found), "score": None if found.point is None else found.score}
     del about["point"]
-    units = {axis.name: axis.unit for axis in plan.axes}
+    units = {axis.name: axis.own_unit for axis in plan.axes}
     text = json.dumps({"values": best, "units": units, **about}, indent=1)
     write_whole_text(path, text + "\n")
     return path
@@ -212,14 +212,20 @@ def _calibration_lines(found: Calibration, plan: Plan) -> Iterator[str]:
     if found.point is None:
         yield _line("calibration", "no run has a score")
         return
-    yield _line("calibration", f"score {found.score:.4g} after {found.runs} runs; {found.message}")
+    yield _line("calibration", f"score {found.score:.4g} after {_looked_at(found)}; {found.message}")
     for text in _values(plan, found.point):
         yield _line("", text)
 
 
+def _looked_at(found: Calibration) -> str:
+    """How many runs, those of a sample among them."""
+    own = found.runs - found.sampled
+    return f"{own} runs" + (f" and {found.sampled} of the sample" if found.sampled else "")
+
+
 def _values(plan: Plan, point: Point) -> list[str]:
     return [
-        f"{axis.name} = {value}{' ' + axis.unit if axis.unit else ''}"
+        f"{axis.name} = {axis.text(value)}"
         for axis, value in zip(plan.axes, point, strict=True)
     ]
 

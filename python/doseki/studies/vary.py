@@ -16,9 +16,10 @@ from ..measure.numbers import mean_velocity, speed
 from ..record.particles import BOUND, FREE
 from ..record.reader import Run, Snapshot, load
 from ..record.units import unit_in
-from ..running.runner import RunOptions, run_scenario
+from ..running.runner import RunOptions
 from ..scenario.load import load_scenario
 from ..scenario.model import Scenario
+from .in_turn import run_in_turn
 
 FACTORS = {"half": 0.5, "base": 1.0, "double": 2.0}  # folder of each run, and what xi is times
 NEGLIGIBLE = 1e-9  # of its scale: rounding
@@ -41,20 +42,22 @@ class Movement:
 def vary(
     name: str, settings: Sequence[str], key: str, directory: Path, threads: int | None
 ) -> dict[str, Any]:
-    """Run a scenario at half, given and double `key`, in folders inside `directory`."""
+    """Run a scenario at half, given and double `key`, in folders inside `directory`.
+
+    Raises Interrupted where one of them is stopped.
+    """
     if key not in VARIABLE:
         raise UserError(f"--vary {key}: only {', '.join(VARIABLE)} can be varied")
     scenarios = _scenarios(name, settings)
-    runs = {}
-    for part, scenario in scenarios.items():
-        run_scenario(scenario, directory / part, RunOptions(threads))
-        runs[part] = load(directory / part)
+    folders = {directory / part: scenario for part, scenario in scenarios.items()}
+    run_in_turn(folders, RunOptions(threads))
+    runs = [load(folder) for folder in folders]
     return {
         "vary": key,
         "values": [scenario.xi for scenario in scenarios.values()],
-        "directories": [str(run.directory) for run in runs.values()],
-        "verdicts": [run.trust["verdict"] for run in runs.values()],
-        "quantities": [asdict(entry) for entry in movements([measured(r) for r in runs.values()])],
+        "directories": [str(run.directory) for run in runs],
+        "verdicts": [run.trust["verdict"] for run in runs],
+        "quantities": [asdict(entry) for entry in movements([measured(run) for run in runs])],
     }
 
 

@@ -186,9 +186,31 @@ def test_a_failed_run_goes_on_after_a_change(fail, block, monkeypatch):
     assert not (folder / "failure.json").exists()
 
 
-def test_a_run_that_did_not_fail_has_nothing_to_explain(tmp_path):
-    with pytest.raises(UserError, match="has not failed"):
-        explanation(RunFolder(tmp_path))
+def test_a_run_that_did_not_fail_has_nothing_to_explain(run_folder):
+    with pytest.raises(UserError, match="has not failed: it came to its end"):
+        explanation(RunFolder(run_folder))
+
+
+@pytest.mark.parametrize(
+    ("summary", "words"),
+    [
+        ({"status": "stopped", "stopped_by": "SIGINT"}, "has not failed: it was stopped by SIGINT"),
+        (None, "killed, or memory or disk ran out"),
+    ],
+)
+def test_a_run_that_ended_early_is_told_of(tmp_path, record_run, summary, words):
+    recorder, _ = record_run(tmp_path / "run")
+    if summary:
+        recorder.close(summary)
+    told = explanation(RunFolder(tmp_path / "run"))
+    assert words in told
+    assert "doseki resume" in told
+
+
+def test_a_run_that_is_going_on_is_called_that(tmp_path, record_run):
+    record_run(tmp_path / "run")
+    with OneRank().holding(tmp_path / "run"), pytest.raises(UserError, match="it is going on"):
+        explanation(RunFolder(tmp_path / "run"))
 
 
 def test_good_states_are_checkpoints(fail, block):

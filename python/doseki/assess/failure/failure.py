@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...driver.active_run import ActiveRun
-from ...errors import UserError
+from ...errors import DosekiError, UserError
 from ...record.folder import RunFolder
+from ...record.lock import holder_of
 from ...record.reader import load
 from ...record.writer import jsonable
 from ...solver.protocol import ForceTerms
@@ -20,6 +22,7 @@ from ...util.finding import place_text
 from .neighbours import neighbours_of
 from .remedy import remedy
 
+EXHAUSTED = "exhausted"  # memory or disk: no failure of the core
 NEIGHBOURS = 6  # listed, nearest first
 PARTICLE_FIELDS = (
     "position",
@@ -139,18 +142,52 @@ def _neighbours(run: ActiveRun, state: dict[str, np.ndarray], k: int) -> list[di
     ]
 
 
+def note_exhausted(run: ActiveRun, message: str) -> None:
+    """Keep what ran out and ended a run, if there is room for that."""
+    if not run.ranks.is_root:
+        return
+    report = {
+        "kind": EXHAUSTED,
+        "message": message,
+        "advice": f"Make room, then doseki resume {run.folder.path} goes on.",
+        "time": run.simulation.time,
+        "step": run.simulation.steps,
+    }
+    with suppress(DosekiError):
+        write_whole_text(run.folder.failure, json.dumps(jsonable(report), indent=1) + "\n")
+
+
 def explanation(folder: RunFolder) -> str:
-    """The failure of a recorded run as one paragraph; raises UserError if it did not fail."""
+    """Why a recorded run failed, or ended early, as one paragraph; raises UserError if neither."""
     if not folder.failure.is_file():
-        raise UserError(f"{folder.path}: this run has not failed")
+        return _without_failure(folder)
     try:
         return paragraph(json.loads(folder.failure.read_text(encoding="utf-8")))
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(f"{folder.failure}: cannot be read: {error}") from None
 
 
+def _without_failure(folder: RunFolder) -> str:
+    """Why a run that did not fail ended early; raises UserError if it did not."""
+    summary = load(folder.path).summary
+    status = summary.get("status")
+    if status == "done":
+        raise UserError(f"{folder.path}: this run has not failed: it came to its end")
+    if holder := holder_of(folder.path):
+        raise UserError(f"{folder.path}: this run has not failed: it is going on, in {holder}")
+    if status is None:
+        how = "ended before it could say why: it was killed, or memory or disk ran out"
+    else:
+        by = summary.get("stopped_by")
+        how = f"has not failed: it was {status}{f' by {by}' if by else ''}"
+    return f"The run {how}. doseki resume {folder.path} goes on."
+
+
 def paragraph(report: dict[str, Any]) -> str:
     """A report in words."""
+    if report["kind"] == EXHAUSTED:
+        when = f"after step {report['step']}, at t = {report['time']:.6g} s"
+        return f"The run was stopped {when}: {report['message']}. {report['advice']}"
     if report["kind"] == "rank":
         return f"{report['who']} failed: {report['message']}. {report['advice']}"
     said = [f"The run failed after step {report['step']}, at t = {report['time']:.6g} s."]

@@ -15,8 +15,6 @@ from ...figures.saving import Drawn
 from ...figures.studies.bands import draw_band
 from ...figures.studies.responses import Column, grid_images, parallel_coordinates, responses
 from ...measure.maps.quantities import MapQuantity
-from ...scenario.reading.units import unit_of
-from ..plan.axes import Axis
 from ..plan.file import Plan
 from ..reading.bands import CurveBand, MapBand, SeriesBand
 from ..reading.observations import ObservedSeries
@@ -104,7 +102,7 @@ def inputs_of(table: Table) -> list[Column]:
     """What varies, of the runs that were done."""
     return [
         Column(
-            _label(axis.name, _unit(axis, table.plan.scenario.dim)), table.values(k), axis.log,
+            _label(axis.name, axis.own_unit), table.values(k), axis.log,
             () if axis.is_numeric else tuple(str(choice) for choice in axis.choices),
         )
         for k, axis in enumerate(table.plan.axes)
@@ -114,11 +112,6 @@ def inputs_of(table: Table) -> list[Column]:
 def _label(name: str, unit: str) -> str:
     """Name and unit at an axis, as those of all figures."""
     return f"{name} ({unit})" if unit and unit != "1" else name
-
-
-def _unit(axis: Axis, dim: int) -> str:
-    """That of its values, or of the key where they are numbers without one."""
-    return axis.own_unit or (unit_of(axis.name, dim) if axis.is_numeric else "")
 
 
 def outputs_of(table: Table) -> list[Column]:

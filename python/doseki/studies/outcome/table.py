@@ -116,7 +116,7 @@ def _about(table: Table, columns: dict[str, list[Any]]) -> dict[str, Any]:
         "title": plan.top.title,
         "scenario": plan.top.scenario,
         "set": plan.settings,
-        "values": {axis.name: {"unit": axis.unit} for axis in plan.axes},
+        "values": {axis.name: {"unit": axis.own_unit} for axis in plan.axes},
         "results": {name: {"unit": unit} for name, unit in plan.units().items()},
         "observations": list(plan.observations),
         "columns": columns,

@@ -12,6 +12,7 @@ import tomli_w
 
 from ...scenario.values.units import quantity
 
+NO_UNIT = ("", "1")  # of plain numbers
 DIGITS = 6  # of a value that lies somewhere in a range: what a run is known by
 
 Value = float | int | str | bool
@@ -28,6 +29,7 @@ class Axis:
         low, high: ends of a range, in `unit`.
         log: whether equal shares of the range are equal ratios.
         count: points on a grid; None where the file does not say.
+        key_unit: that of the key in the scenario, in which numbers without a unit are; or empty.
 
     """
 
@@ -38,6 +40,7 @@ class Axis:
     high: float = 1.0
     log: bool = False
     count: int | None = None
+    key_unit: str = ""
 
     def at(self, share: float) -> Value:
         """The value at a share (0 to 1) of the range, or the choice that lies there."""
@@ -80,16 +83,23 @@ class Axis:
 
     @property
     def own_unit(self) -> str:
-        """The unit that its values name; empty where they name none."""
+        """The unit of its values: the one that they name, else that of the key; empty for words."""
         units = {
             found[1].own for v in self.choices if isinstance(v, str) and (found := quantity(v))
         }
-        return self.unit or ("".join(units) if len(units) == 1 else "")
+        if self.unit or len(units) == 1:
+            return self.unit or units.pop()
+        return self.key_unit if self.is_numeric and not units else ""
+
+    def text(self, value: Value) -> str:
+        """A value with its unit, as people read it."""
+        is_bare = self.own_unit in NO_UNIT or isinstance(value, str)
+        return f"{value}" if is_bare else f"{value} {self.own_unit}"
 
     @property
     def label(self) -> str:
         """Name and unit, as a column of a table has it."""
-        return f"{self.name} [{self.own_unit}]" if self.own_unit else self.name
+        return self.name if self.own_unit in NO_UNIT else f"{self.name} [{self.own_unit}]"
 
     def _scaled(self, value: float) -> float:
         return math.log(value) if self.log else value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,6 +15,7 @@ from ...scenario.load import load_scenario
 from ...scenario.model import Scenario
 from ...scenario.reading.messages import to_user_error
 from ...scenario.reading.resolve import CHOICES
+from ...scenario.reading.units import unit_of
 from ...scenario.table import Table
 from ...scenario.values.toml_source import KeyPath, TomlSource, Where, dotted, read_toml
 from ...scenario.values.units import Unit, quantity
@@ -104,6 +105,7 @@ def read_plan(path: Path, folder: Path | None = None) -> Plan:
     settings = [f"{name}={written(value)}" for name, value in given.items()]
     reader.check_settings(given, axes)
     scenario = _middle(scenario_name, settings, axes, reader.where)
+    axes = [replace(axis, key_unit=_unit_of_key(axis.name, scenario)) for axis in axes]
     warnings = _checked_parts(parts, scenario, home, reader)
     return Plan(
         source.text, home.resolve(), top, scenario_name, settings, axes, sample,
@@ -111,6 +113,14 @@ def read_plan(path: Path, folder: Path | None = None) -> Plan:
         parts["bands"], scenario,
         warnings + ([] if sample is None else remarks(sample)),
     )  # fmt: skip
+
+
+def _unit_of_key(name: str, scenario: Scenario) -> str:
+    """The unit of numbers at a key: that which a parameter declares, or that of all scenarios."""
+    parameter = name.removeprefix("parameters.").removesuffix(".value")
+    if parameter in scenario.parameters:
+        return scenario.parameters[parameter].unit
+    return unit_of(name, scenario.dim)
 
 
 class _Reader:

@@ -44,7 +44,10 @@ class Calibrate(Table):
     method: Literal["differential_evolution", "dual_annealing", "shgo"] = Field(
         description="of scipy.optimize"
     )
-    max_runs: int = Field(100, ge=1, le=MOST_RUNS, description="after which it ends")
+    max_runs: int = Field(
+        100, ge=1, le=MOST_RUNS,
+        description="after which it ends; those of [sample] come before and are not counted",
+    )  # fmt: skip
     population: int | None = Field(
         None, ge=5, le=10_000, description="differential_evolution: runs of a generation; default 8"
     )
