@@ -40,6 +40,13 @@ def test_summary_of_a_flow(flow_folder):
     assert len(text.splitlines()) <= 25
 
 
+def test_a_run_without_a_step_has_no_length_of_steps(tmp_path, record_run, recwarn):
+    """A full disk ended it: it has no summary."""
+    record_run(tmp_path / "run", times=(0.0,), state_at=flow_state)
+    assert "steps             0, the last one" in summary_text(load(tmp_path / "run"))
+    assert not recwarn.list
+
+
 SECTION = """
 [gauge.down]
 kind = "section"

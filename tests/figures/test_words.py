@@ -249,6 +249,17 @@ def test_a_disk_that_is_full_for_pictures_loses_no_run(scenario, tmp_path, capsy
     assert "status            done" in said.out
 
 
+@pytest.mark.parametrize(("error", "code"), [(OSError(28, "No space left"), 4), (ValueError(), 2)])
+def test_plot_tells_a_full_disk_from_other_failures(flow_folder, monkeypatch, error, code):
+    def fail(*_arguments, **_options):
+        raise error
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", fail)
+    with pytest.raises(SystemExit) as ended:
+        main(["plot", str(flow_folder)])
+    assert ended.value.code == code
+
+
 def test_movies_have_axes_a_scale_bar_and_their_title(scenario, tmp_path):
     file = scenario(title="5 $ and 7 $")
     run_scenario(load_scenario(str(file)), tmp_path / "run", RunOptions(threads=1))

@@ -147,7 +147,6 @@ def test_numbers_have_the_unit_that_the_scenario_declares(tmp_path, vary, label,
         assert plan.settings_of(plan.points()[0]) == [setting]
 
 
-
 AXES = [Axis("a", low=1.0, high=100.0, log=True), Axis("b", choices=("x", "y"))]
 
 

@@ -20,7 +20,6 @@ from doseki.errors import UserError
 from doseki.studies.outcome import pictures
 from doseki.studies.outcome.pictures import Pictures
 from doseki.studies.outcome.table import Entry, Table
-from doseki.studies.plan.axes import Axis
 from doseki.studies.plan.file import read_plan
 from doseki.studies.runs.folder import StudyFolder, StudyRuns
 from doseki.studies.runs.row import DONE, FAILED, LOST, Row, read_row, write_row

@@ -212,7 +212,9 @@ def _calibration_lines(found: Calibration, plan: Plan) -> Iterator[str]:
     if found.point is None:
         yield _line("calibration", "no run has a score")
         return
-    yield _line("calibration", f"score {found.score:.4g} after {_looked_at(found)}; {found.message}")
+    yield _line(
+        "calibration", f"score {found.score:.4g} after {_looked_at(found)}; {found.message}"
+    )
     for text in _values(plan, found.point):
         yield _line("", text)
 
@@ -225,8 +227,7 @@ def _looked_at(found: Calibration) -> str:
 
 def _values(plan: Plan, point: Point) -> list[str]:
     return [
-        f"{axis.name} = {axis.text(value)}"
-        for axis, value in zip(plan.axes, point, strict=True)
+        f"{axis.name} = {axis.text(value)}" for axis, value in zip(plan.axes, point, strict=True)
     ]
 
 

@@ -8,6 +8,7 @@ import pytest
 from doseki.assess.failure.failure import explanation
 from doseki.driver import rewind
 from doseki.driver.checkpoint import CheckpointFolder, from_bytes
+from doseki.driver.ranks import OneRank
 from doseki.errors import UserError
 from doseki.record.folder import RunFolder
 from doseki.running.resume import resume_run

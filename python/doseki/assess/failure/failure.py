@@ -143,8 +143,8 @@ def _neighbours(run: ActiveRun, state: dict[str, np.ndarray], k: int) -> list[di
 
 
 def note_exhausted(run: ActiveRun, message: str) -> None:
-    """Keep what ran out and ended a run, if there is room for that."""
-    if not run.ranks.is_root:
+    """Keep what ran out and ended a run, if there is room for that; of ranks these tell it."""
+    if run.ranks.count > 1:
         return
     report = {
         "kind": EXHAUSTED,
