@@ -338,7 +338,8 @@ def test_a_colour_without_a_movie_is_refused(flow_folder):
 def test_coordinates_of_a_map_are_drawn_in_full(flow_folder):
     """Without an offset or an exponent, which a reader would have to add."""
     times = [0.0, 1.0, 2.0]
-    flow = SimpleNamespace(times=times, front=[5211020.0, 5211030.0, 5211040.0], windows={})
+    fronts = [5211020.0, 5211030.0, 5211040.0]
+    flow = SimpleNamespace(times=times, front=fronts, windows={}, along_x=True)
     figure = draw_flow(load(flow_folder), flow)
     figure.canvas.draw()
     axis = figure.axes[0].yaxis

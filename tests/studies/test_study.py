@@ -320,7 +320,7 @@ def test_a_table_goes_to_parquet(tmp_path, monkeypatch):
     path = write_study(tmp_path, STUDY.replace("[vary", "parquet = true\n[vary", 1))
     make_rows(path, tmp_path / "out", monkeypatch)
     found = parquet.read_table(tmp_path / "out" / "results.parquet").to_pydict()
-    assert found["pull"] == [5.0, 10.0, 20.0]
+    assert found["pull [m/s2]"] == [5.0, 10.0, 20.0]
     assert found["speed [m/s]"] == [-5.0, -10.0, -20.0]
 
 

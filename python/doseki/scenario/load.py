@@ -14,11 +14,11 @@ from ..errors import UserError
 from ..util.finding import Finding
 from ..util.input_file import digest_of
 from .bed import Bed, read_bed
+from .checks.light_bodies import stable_cflnumber
 from .checks.references import check_names, check_references
 from .checks.tables import check_scenario
 from .earlier import earlier_run
 from .hydrographs import completed_inflows
-from .light_bodies import stable_cflnumber
 from .materials import Material, MaterialError, complete_materials, equation_of_state
 from .model import Found, Scenario, file_of, min_sound_speed, names_in_use, terrain_file
 from .named_files import read_in_full

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ..util.finding import Finding
-from .kinematics import ELASTIC
-from .materials.material import Material
-from .schemes import RESOLVED
-from .tables.body import BodyTable
-from .tables.root import ScenarioTable
+from ...util.finding import Finding
+from ..kinematics import ELASTIC
+from ..materials.material import Material
+from ..schemes import RESOLVED
+from ..tables.body import BodyTable
+from ..tables.root import ScenarioTable
 
 
 @dataclass(frozen=True)
