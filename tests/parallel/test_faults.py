@@ -60,6 +60,14 @@ def test_a_rank_that_throws_ends_the_run_with_one_report(command, tmp_path):
     assert "Rank 1 failed" in explanation(RunFolder(folder))
 
 
+def test_a_rank_that_fails_before_it_joins_ends_the_run(command, tmp_path):
+    """The launcher would wait for ever for the other one."""
+    folder = tmp_path / "run"
+    done = command(2, "run", "collision", "-o", folder, *CASE, script="failing_early.py")
+    assert done.returncode != 0
+    assert "doseki.driver.ranks" in done.stderr
+
+
 def rank_process(mark: str, rank: int) -> int:
     """The id of a rank's process, among those whose environment has the mark of this test."""
     for entry in Path("/proc").iterdir():

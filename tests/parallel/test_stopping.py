@@ -105,8 +105,10 @@ def test_what_stops_the_starter_stops_its_ranks_in_order(started, tmp_path, stop
 
 
 def test_a_second_interrupt_ends_all_at_once(started, tmp_path):
-    for rank in range(2):  # so that they cannot end in order
-        os.kill(rank_process(str(tmp_path), rank), signal.SIGSTOP)
+    ranks = [rank_process(str(tmp_path), rank) for rank in range(2)]
+    assert all(ranks)  # a signal to 0 would be one to the tests themselves
+    for rank in ranks:  # so that they cannot end in order
+        os.kill(rank, signal.SIGSTOP)
     started.send_signal(signal.SIGINT)
     time.sleep(1)
     assert started.poll() is None

@@ -7,12 +7,14 @@ what they need, come later.
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
-from ..errors import Interrupted
+from ..errors import DosekiError, Interrupted
+from ..parallel.launch import is_rank
 from .exits import drop_output, flushed_output, prepare_output, said
 from .interrupts import interruptible, leaving_at_once
 
@@ -43,10 +45,22 @@ def main(arguments: list[str] | None = None) -> Any:
         with suppress(OSError):
             print(f"doseki: {text}", file=sys.stderr)
         drop_output()
+        if is_rank() and not joined() and not isinstance(error, DosekiError | Interrupted):
+            _leave_the_others(text, error_stream)
         sys.exit(exit_code)
     finally:
         if ranks := joined():
             ranks.done()
+
+
+def _leave_the_others(text: str, stream: TextIO) -> None:
+    """End a rank that has failed by itself, before it joined the others, by a signal.
+
+    MPICH's launcher waits for ever where a rank exits and others wait for it to join them.
+    """
+    with suppress(OSError):
+        print(f"doseki: a rank failed before it joined the others: {text}", file=stream, flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def _forget_absurd_terminal() -> None:
