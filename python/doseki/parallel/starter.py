@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
 
+from ..driver.schedule import answered
 from ..errors import Interrupted
 
 SAME = 0.5  # s within which signals are one: `timeout` sends each to a process and to its group
@@ -100,10 +101,8 @@ class Starter:
 
 @contextmanager
 def _answering(answer: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Let `answer` answer what ends a run; SIGHUP only where it is not ignored, as nohup has it."""
-    hangs_up = signal.getsignal(signal.SIGHUP) != signal.SIG_IGN
-    numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hangs_up else [])]
-    old = {number: signal.signal(number, answer) for number in numbers}
+    """Let `answer` answer what ends a run."""
+    old = {number: signal.signal(number, answer) for number in answered()}
     try:
         yield
     finally:

@@ -138,13 +138,13 @@ def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
         return shape.single()
     if group.deforms:
         return shape.elastic_particles(spacing)
-    own = shape.particles(spacing)
     if not isinstance(shape, Convex):
-        return own
-    position = evened(shape, own.position, spacing, WALL_DEPTH * spacing)
+        return shape.particles(spacing)
+    position, share = shape.filling(spacing)
+    position = evened(shape, position, spacing, WALL_DEPTH * spacing)
     if not group.fixed:
-        position = position - own.share @ position
-    return shape.beneath(position, own.share, spacing)
+        position = position - share @ position
+    return shape.beneath(position, share, spacing)
 
 
 def boxes(group: Group) -> tuple[np.ndarray, np.ndarray]:

@@ -36,9 +36,9 @@ def stable_cflnumber(
     """The cflnumber that is asked for, or the greatest that is stable; and what is to be said."""
     asked = tables.cflnumber
     limits = {} if tables.scheme != RESOLVED else dict(_limits(tables, materials))
-    if not limits or min(limits.values()) >= asked:
+    name = min(limits, key=limits.__getitem__, default=None)
+    if name is None or limits[name] >= asked:
         return asked, []
-    name = min(limits, key=limits.__getitem__)
     body = tables.body[name]
     assert body.material is not None
     density, across = materials[body.material].rho0, _across(body, tables.dp)

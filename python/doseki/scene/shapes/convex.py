@@ -65,10 +65,15 @@ class Convex:
         return float(np.linalg.norm(self.vertices, axis=1).max())
 
     def particles(self, dp: float) -> Particles:
-        """The innermost points of a lattice along its own axes, as many as fill the shape.
+        """Those of `filling`, with what there is to know of their sides."""
+        return self.beneath(*self.filling(dp), dp)
 
-        Points of the same depth are all in or all out, and share what of the shape is left for
-        them. The mean of all is the centre.
+    def filling(self, dp: float) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (N, dim), m, of the particles, and their shares (N,) of the measure.
+
+        The innermost points of a lattice along its own axes, as many as fill the shape. Points of
+        the same depth are all in or all out, and share what of the shape is left for them. The mean
+        of all is the centre.
         """
         upright = self.outline.corners @ self.axes
         low, high = upright.min(axis=0), upright.max(axis=0)
@@ -78,7 +83,8 @@ class Convex:
         lattice = (low + (steps.reshape(-1, self.dim) + 0.5) * cell) @ self.axes.T
         number = self.measure / float(np.prod(cell))
         share = _innermost(self._gaps(lattice).min(axis=1) / dp, number)
-        return self._around_centre(lattice[share > 0], share[share > 0] / share.sum(), dp)
+        position, share = lattice[share > 0], share[share > 0] / share.sum()
+        return position - share @ position, share
 
     def elastic_particles(self, dp: float) -> Particles:
         """Those of a rigid body with equal shares, whose edges bend and are not known.
@@ -86,9 +92,11 @@ class Convex:
         All lie inside: some of a rigid one may be outside by a part of dp.  In a sharp corner there
         are only those that others hold from more than one side.
         """
-        position = spanned(self._drawn_in(self.particles(dp).position, LEAST_DEPTH * dp), dp)
+        position = spanned(self._drawn_in(self.filling(dp)[0], LEAST_DEPTH * dp), dp)
         n = len(position)
-        return self._around_centre(position, alike(n), dp)._replace(edges=no_edges(n, self.dim))
+        share = alike(n)
+        own = self.beneath(position - share @ position, share, dp)
+        return own._replace(edges=no_edges(n, self.dim))
 
     def _drawn_in(self, position: np.ndarray, depth: float) -> np.ndarray:
         """The positions, those less deep than `depth`, m, moved to it, as far as corners let."""
@@ -99,10 +107,6 @@ class Convex:
             lack = np.maximum(depth - gaps.min(axis=1), 0.0)
             position = position - lack[:, None] * normals[nearest]
         return position
-
-    def _around_centre(self, position: np.ndarray, share: np.ndarray, dp: float) -> Particles:
-        """Moved so that the mean of all, by their shares, is the centre."""
-        return self.beneath(position - share @ position, share, dp)
 
     def beneath(self, position: np.ndarray, share: np.ndarray, dp: float) -> Particles:
         """Particles at positions (N, dim), m, with what there is to know of their sides."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-SUPPORT = 1.6  # spacings: the kernel of elastic solids, a Wendland C2
+from .balance import SUPPORT
+
 # Determinant of the moment of the neighbours: 1 inside, 0.5 at a side, 0 where they lie in a line
 # or plane.  With less than this, gradients would be so sharp that they set the time step.
 LEAST = 0.02
@@ -26,8 +28,6 @@ def spanned(position: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def _determinants(position: np.ndarray, spacing: float) -> np.ndarray:
-    from scipy.spatial import cKDTree
-
     dim = position.shape[1]
     norm = 7 / math.pi if dim == 2 else 21 / (2 * math.pi)
     i, j = cKDTree(position).query_pairs(SUPPORT * spacing, output_type="ndarray").T
