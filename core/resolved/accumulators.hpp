@@ -79,6 +79,18 @@ struct WallAccumulators {
     }
 };
 
+/// The same against the normal of one face, over the wall particle's volume, see FacePush.
+template <class T, int D>
+struct FaceAccumulators {
+    T all{}, front{};
+    Vec<T, D> lever;
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.all...), f(self.front...), f(self.lever...);
+    }
+};
+
 /// Force of pressure on a fluid particle i over V_i: -sum_j V_j (p_i B_j + p_j B_i) grad W, with
 /// B_i and 2 p* in front of walls (reverse kernel gradient correction: Zhang, Adams and Hu,
 /// arXiv:2406.02576). Pairs conserve momentum, and an arrangement of particles under pressure
@@ -245,6 +257,48 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     sums.viscosity += share * j.mu;
     sums.height += share * contact.height;
     sums.pressure += share * (j.p + forces.excess);
+}
+
+/// What part of a particle, as wide as a spacing, is above a plane.
+template <class T>
+DOSEKI_FN T part_above(const T& height, double dp) {
+    return min(T(1), max(T(0), height * number<T>(1.0 / dp) + number<T>(0.5)));
+}
+
+/// How much of a fluid particle pushes on the plane with the normal n, `below` above w: all of what
+/// is in front of it. Past an edge, above another face of w, what is near the plane counts by its
+/// part in front.
+template <class T, int D>
+DOSEKI_FN T share_in_front(const FacedPoint<T, D>& w, const Vec<T, D>& n, const Vec<T, D>& r_jw,
+                           double dp) {
+    const T half = number<T>(0.5);
+    T beside(0);
+    for (int k = 0; k < D; ++k) {
+        const Vec<T, D> face = row(w.wall.faces, k);
+        const T is_face = select(dot(face, face) > half, T(1), T(0)),
+                is_other = select(dot(face, n) < half, is_face, T(0));
+        beside = max(beside, is_other * part_above(dot(face, r_jw) - w.wall.depths[k], dp));
+    }
+    const T height = dot(n, r_jw) - w.below, front = part_above(height, dp);
+    return front + select(height > T(0), (T(1) - front) * (T(1) - beside), T(0));
+}
+
+/// What it adds of that to the push on a face.
+template <class Kernel, class T, int D>
+DOSEKI_FN void add_fluid_to_face(FaceAccumulators<T, D>& sums, const FlowConstants& constants,
+                                 const Vec<double, D>& normal, const T& inverse_support,
+                                 const Pair<T, D>& pair, const FacedPoint<T, D>& w,
+                                 const FluidPoint<T, D>& j) {
+    const T F = gradient_factor<Kernel>(constants, inverse_support, pair.r);
+    const Vec<T, D> r_jw = T(-1) * pair.r_ij;
+    const auto contact = wall_contact(constants, r_jw, pair.r, j, w.wall);
+    const auto forces = wall_forces(constants, contact, r_jw, pair.r, F, j, w.wall);
+    Vec<T, D> n;
+    for (int a = 0; a < D; ++a) n[a] = number<T>(normal[a]);
+    const T push = j.volume * dot(n, forces.pressure + forces.viscous),
+            front = share_in_front(w, n, r_jw, constants.dp) * push;
+    sums.all += push, sums.front += front;
+    for (int a = 0; a < D; ++a) sums.lever[a] += front * r_jw[a];
 }
 
 /// What a face v of another body adds to a face w: the pressure of the film between them, and their

@@ -161,6 +161,50 @@ void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
         WallEpilogue<real, D>(*model_, wall_, fluid_count_, summary_, state, dt));
 }
 
+/// Keeps the sums of wall particles for a face; those of others in their clusters mean nothing.
+template <int D>
+struct KeepPush {
+    std::size_t first_wall;
+    std::span<FacePush<D>> pushes;
+
+    DOSEKI_DEVICE_FN void operator()(std::size_t p, const FaceAccumulators<double, D>& sums) const {
+        if (p >= first_wall) pushes[p - first_wall] = {sums.all, sums.front, sums.lever};
+    }
+};
+
+template <int D, class real, class Backend>
+void Resolved<D, real, Backend>::push_on(const State& state, const Lists& lists,
+                                         const FacePlane<D>& face,
+                                         std::span<const std::uint32_t> walls,
+                                         Array<FacePush<D>>& pushes) {
+    face_depth_.resize(state.size() - fluid_count_), face_push_.resize(face_depth_.size());
+    Array<std::uint32_t> clusters;
+    for (const std::uint32_t p : walls) {
+        face_depth_[p - fluid_count_].below = static_cast<real>(face.depth(state.position[p]));
+        const std::uint32_t cluster = p / static_cast<std::uint32_t>(Backend::width);
+        if (clusters.empty() || clusters.back() != cluster) clusters.push_back(cluster);
+    }
+    if (clusters.empty()) return pushes.clear();
+    if (model_->options.flow.wide_kernel)
+        sum_face<WendlandC6<D>>(state, lists, face, clusters);
+    else
+        sum_face<WendlandC2<D>>(state, lists, face, clusters);
+    pushes.clear();
+    for (const std::uint32_t p : walls) pushes.push_back(face_push_[p - fluid_count_]);
+}
+
+template <int D, class real, class Backend>
+template <class Kernel>
+void Resolved<D, real, Backend>::sum_face(const State& state, const Lists& lists,
+                                          const FacePlane<D>& face,
+                                          const Array<std::uint32_t>& clusters) {
+    const auto timing = phases_.measure(Phase::pass_1);
+    Backend::sum_pairs(
+        lists, {lists.clusters(), motion_, frame_, {.only = &clusters}},
+        FaceTerm<Kernel, real, D>{records(state), model_->constants, face.normal, face_depth_},
+        KeepPush<D>{fluid_count_, face_push_});
+}
+
 template <int D, class real, class Backend>
 template <class Term, class Epilogue>
 void Resolved<D, real, Backend>::sum_fluid(Phase phase, const Lists& lists, Halo<D>& halo,

@@ -125,4 +125,45 @@ struct WallTerm {
     }
 };
 
+/// What a wall particle sums of the fluid that pushes on a face of its body, see FacePush.
+template <class Kernel, class real, int D>
+struct FaceTerm {
+    using Real = real;
+    static constexpr int dim = D;
+    template <class T>
+    using Accumulators = FaceAccumulators<T, D>;
+
+    FlowRecords<real, D> records;
+    FlowConstants constants;
+    Vec<double, D> normal;
+    std::span<const FaceDepth<real>> depths;
+
+    DOSEKI_DEVICE_FN real reach() const { return records.reach(); }
+
+    template <class Rows>
+    DOSEKI_FN auto load(Rows rows) const {
+        using T = typename Rows::Number;
+        const auto walls = rows.within(records.first_wall(), records.count - 1);
+        const auto depth = take<FaceDepth<T>>(depths, walls.counted_from(records.first_wall()));
+        return FacedPoint<T, D>{records.wall(walls), depth.below};
+    }
+    template <class Rows>
+    DOSEKI_FN auto load_moving(Rows j) const {
+        return records.fluid(j);
+    }
+    template <class Rows>
+    DOSEKI_FN auto load_fixed(Rows j) const {
+        return records.wall(j);
+    }
+
+    template <class T>
+    DOSEKI_FN void add(Accumulators<T>& sums, const Pair<T, D>& pair, const FacedPoint<T, D>& w,
+                       const FluidPoint<T, D>& j) const {
+        add_fluid_to_face<Kernel>(sums, constants, normal, T(records.inverse_support), pair, w, j);
+    }
+    template <class T>
+    DOSEKI_FN void add_fixed(Accumulators<T>&, const Pair<T, D>&, const FacedPoint<T, D>&,
+                             const WallPoint<T, D>&) const {}
+};
+
 }  // namespace doseki

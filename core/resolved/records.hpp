@@ -77,4 +77,20 @@ struct FluidPoint : MotionPoint<T, D>, FluidFields<T, D> {};
 template <class T, int D>
 struct WallPoint : MotionPoint<T, D>, WallFields<T, D> {};
 
+/// How far a wall particle is below the plane of a face [m].
+template <class T>
+struct FaceDepth {
+    T below;
+
+    template <class F, class... Self>
+    DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
+        f(self.below...);
+    }
+};
+template <class T, int D>
+struct FacedPoint {
+    WallPoint<T, D> wall;
+    T below;
+};
+
 }  // namespace doseki

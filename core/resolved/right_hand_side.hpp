@@ -3,6 +3,7 @@
 
 #include "base/array.hpp"
 #include "base/phase_timer.hpp"
+#include "boundaries/face_push.hpp"
 #include "cells/list_wear.hpp"
 #include "device/backend_of_build.hpp"
 #include "model/force_terms.hpp"
@@ -60,6 +61,11 @@ public:
     ForceTerms<D> force_terms(const State& state, const Lists& lists, Halo<D>&,
                               std::int64_t p) const;
 
+    /// What the fluid gives to these wall particles, in rising order, against the normal of a face:
+    /// as of the last evaluation.
+    void push_on(const State& state, const Lists& lists, const FacePlane<D>& face,
+                 std::span<const std::uint32_t> walls, Array<FacePush<D>>& pushes);
+
     void end_step(State&) { steps_since_depths_ = (steps_since_depths_ + 1) % depth_interval; }
 
     /// Wall particles are in the first phase, fluid particles in the second.
@@ -95,7 +101,7 @@ public:
 
     std::size_t bytes() const {
         return motion_.bytes_held() + fluid_.bytes_held() + wall_.bytes_held() +
-               summary_.bytes_held();
+               summary_.bytes_held() + face_depth_.bytes_held() + face_push_.bytes_held();
     }
 
 private:
@@ -116,6 +122,9 @@ private:
     template <class Kernel>
     void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records,
                    double dt);
+    template <class Kernel>
+    void sum_face(const State& state, const Lists& lists, const FacePlane<D>& face,
+                  const Array<std::uint32_t>& clusters);
     template <class Term, class Epilogue>
     void sum_fluid(Phase phase, const Lists& lists, Halo<D>& halo, const Term& term,
                    const Epilogue& epilogue);
@@ -128,6 +137,9 @@ private:
     Field<FluidRecord<real, D>> fluid_;
     Field<WallRecord<real, D>> wall_;  // the first is that of particle fluid_count_
     Field<FlowSummary<D>> summary_;
+    // Of the face that is looked at, of wall particles:
+    Field<FaceDepth<real>> face_depth_;
+    Field<FacePush<D>> face_push_;
     PhaseTimer phases_;
     std::size_t fluid_count_ = 0;
     double timestep_ = 0.0, power_ = 0.0;

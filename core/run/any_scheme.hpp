@@ -9,6 +9,7 @@
 
 #include "base/array.hpp"
 #include "base/phase_timer.hpp"
+#include "boundaries/face_push.hpp"
 #include "cells/list_wear.hpp"
 #include "model/archive.hpp"
 #include "model/fault.hpp"
@@ -68,6 +69,17 @@ public:
     virtual void advance_density(const Lists& lists, Halo<D>& halo, double dt) = 0;
     virtual void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) = 0;
     virtual void end_step() = 0;
+    /// What fluid gives to wall particles against the normal of a face.
+    virtual void push_on(const Lists& lists, const FacePlane<D>& face,
+                         std::span<const std::uint32_t> walls, Array<FacePush<D>>& pushes) = 0;
+    /// The same as a function of the last three, which is false where forces are not `known`.
+    auto pushes(const Lists& lists, bool known) {
+        return [this, &lists, known](const auto& face, std::span<const std::uint32_t> walls,
+                                     auto& pushes) {
+            if (known) push_on(lists, face, walls, pushes);
+            return known;
+        };
+    }
     virtual ForceTerms<D> force_terms(const Lists& lists, Halo<D>& halo, std::int64_t p) = 0;
     virtual double timestep() const = 0;
     virtual double dissipated_power() const = 0;

@@ -78,6 +78,13 @@ public:
         scheme_.evaluate(state_, lists, halo, half_dt, new_lists);
     }
     void end_step() override { scheme_.end_step(state_); }
+    void push_on(const Lists& lists, const FacePlane<D>& face, std::span<const std::uint32_t> walls,
+                 Array<FacePush<D>>& pushes) override {
+        if constexpr (requires { scheme_.push_on(state_, lists, face, walls, pushes); })
+            scheme_.push_on(state_, lists, face, walls, pushes);
+        else
+            pushes.assign(walls.size(), {});
+    }
     ForceTerms<D> force_terms(const Lists& lists, Halo<D>& halo, std::int64_t p) override {
         return scheme_.force_terms(state_, lists, halo, p);
     }

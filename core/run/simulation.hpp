@@ -202,6 +202,7 @@ private:
         return support_radii(particles, materials(), options_, scheme_->kernel_support());
     }
 
+    auto pushes() { return scheme_->pushes(lists_.lists(), evaluated_at_ == time_); }
     template <class Work>
     void timed(Phase phase, const Work& work) {
         const auto timing = phases().measure(phase);
@@ -231,9 +232,8 @@ private:
     Domain<D> domain_;
     RunLists<Lists> lists_;
     TerrainLooks<D> terrain_looks_;
-    double time_ = 0.0, last_dt_ = 0.0;
+    double time_ = 0.0, last_dt_ = 0.0, dissipation_ = 0.0;
     double evaluated_at_ = std::numeric_limits<double>::quiet_NaN();  // time [s]
-    double dissipation_ = 0.0;
     Account<D> account_;
     double moved_since_outflow_ = 0.0;  // the fastest of each step, summed [m]
     double sound_speed_ = 0.0;          // of the stiffest material at rest [m/s]
@@ -249,7 +249,7 @@ void Simulation<Lists>::step(double limit) {
     const double before = time_, longest = next_timestep(), end = next_end(limit, longest),
                  dt = before + longest < almost * end ? longest : end - before,
                  power = scheme_->dissipated_power();
-    bodies.loads.begin_step(particles, ranks());
+    bodies.loads.begin_step(particles, ranks(), pushes());
     kick(0.5 * dt);
     account_.add_forces(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
     const double own_moved = drift(dt), moved = ranks().largest(own_moved);
@@ -259,7 +259,7 @@ void Simulation<Lists>::step(double limit) {
     open_boundaries.impose_velocity(particles, time_);
     update_lists(before, moved);
     evaluate(0.5 * dt);
-    bodies.loads.end_step(particles, ranks(), dt, time_);
+    bodies.loads.end_step(particles, ranks(), pushes(), dt, time_);
     account_.add_evaluated(scheme_->wall_push(), scheme_->work(), 0.5 * dt);
     kick(0.5 * dt);
     scheme_->end_step();

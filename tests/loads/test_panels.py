@@ -11,8 +11,7 @@ from doseki.figures.kinds.registry import draw
 from doseki.measure.views import tables
 from doseki.record.reader import GaugeRecord
 from doseki.scenario.tables.figure import Figure
-from doseki.scene.checks.panels import LOST, PanelsAtEdges
-from doseki.solver.build import build_simulation, filled_simulation
+from doseki.solver.build import build_simulation
 
 from .scenes import DAM, DAM_3D, run_of, scenario_of
 
@@ -67,49 +66,6 @@ def test_a_figure_of_something_else_is_refused(tmp_path):
     text += '[figure.f]\nkind = "load"\ngauge = "p"\n'
     with pytest.raises(UserError, match='is of kind "pressure", not "load" or "panels"'):
         scenario_of(tmp_path, text)
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "count", "at_edges"),
-    [(0.1, 0.4, 3, ()), (0.1, 0.52, 3, (2,)), (0.0, 0.4, 4, (0,)), (0.0, 0.52, 4, (0, 3))],
-)
-def test_panels_at_edges_are_named(tmp_path, low, high, count, at_edges):
-    """At the crest, and where another wall begins; not where the face goes on."""
-    face = f"origin = [0.4, {low}]\nedges = [[0, {high - low}]]\npanels = [{count}]\n"
-    text = f"{DAM}\n[gauge.some]\n{FACE}{face}direction = [-1, 0]\n"
-    scenario = scenario_of(tmp_path, text, "particles=20")
-    found = [
-        each
-        for each in filled_simulation(scenario)[2]
-        if isinstance(each, PanelsAtEdges) and each.place == "gauge.some.panels"
-    ]
-    assert [each.panels for each in found] == ([at_edges] if at_edges else [])
-    if found:
-        wide = (high - low) / count
-        assert found[0].most == pytest.approx(LOST * scenario.dp / wide)
-        assert f"{len(at_edges)} of {count} panels lie at an edge" in str(found[0])
-
-
-@pytest.mark.minutes
-def test_panels_at_edges_read_no_lower_than_is_said(tmp_path):
-    """Water at rest: panels away from edges read its pressure, those at the floor less."""
-    face = "origin = [0.6, 0.1, 0.1]\nedges = [[0, 0.2, 0], [0, 0, 0.2]]\npanels = [2, 2]\n"
-    inner = f"[gauge.inner]\n{FACE}{face}direction = [-1, 0, 0]\ninterval = 0.02\n"
-    keys = "particles=8", "time_max=0.1", "relax=0.3"
-    run = run_of(tmp_path, DAM_3D + inner, *keys)
-    found = filled_simulation(scenario_of(tmp_path, DAM_3D + inner, *keys))[2]
-    (said,) = (each for each in found if isinstance(each, PanelsAtEdges))
-    assert said.place == "gauge.face.panels"
-    shares = {}
-    for name, count in (("inner", 4), ("face", 8)):
-        record = run.gauges[name]
-        read, low = record["flow_pressure"][-count:], record["along_2"][-count:]
-        height = low + (0.1 if name == "inner" else 0.0)
-        shares[name] = read / (9810 * (0.4 - height))
-    np.testing.assert_allclose(shares["inner"], 1, atol=0.03)
-    bottom = shares["face"][:2]
-    assert (bottom < 0.9).all()
-    assert (bottom > 1 - said.most).all()
 
 
 @pytest.fixture(scope="module")

@@ -51,21 +51,24 @@ public:
     }
 
     /// Forces of the flow on the wall particles of this rank; `sum` adds those of other ranks.
-    template <class SumOverRanks>
-    void measure(const Particles<D>& particles, const SumOverRanks& sum) {
+    template <class Pushes, class SumOverRanks>
+    void measure(const Particles<D>& particles, const Pushes& pushes, const SumOverRanks& sum) {
         std::fill(flow_now_.begin(), flow_now_.end(), 0.0);
-        for (const std::uint32_t p : members_)
-            if (dot(particles.wall.normal[p], grid.normal) > backwards)
-                add(flow_now_, flow_on(particles, p), 1.0);
-            else
-                add_whole(flow_now_, flow_on(particles, p), 1.0);
+        for (const std::uint32_t p : members_) add_whole(flow_now_, flow_on(particles, p), 1.0);
+        if (grid.panels() > 0) add_to_panels(particles, pushes);
         sum(std::span<double>(flow_now_));
+        has_forces_ = true;
     }
+    bool has_forces() const { return has_forces_; }
     /// Finds the wall particles of its bodies, anew where particles have been sorted.
     void find_members(const Particles<D>& particles) {
-        members_.clear();
-        for (std::uint32_t p = 0; p < particles.size(); ++p)
-            if (particles.is_fixed(p) && is_on(particles.tag[p].body)) members_.push_back(p);
+        members_.clear(), near_face_.clear();
+        for (std::uint32_t p = 0; p < particles.size(); ++p) {
+            if (!particles.is_fixed(p)) continue;
+            const bool own = is_on(particles.tag[p].body);
+            if (own) members_.push_back(p);
+            if (grid.is_near(particles.position[p], own)) near_face_.push_back(p);
+        }
     }
 
     void begin_step() { contact_before_ = contact_impulse_; }
@@ -75,10 +78,13 @@ public:
         if (hit.is_harder_than(hit_)) hit_ = hit;
     }
     /// The flow goes on from its forces before the step to those after it. Takes them over.
-    template <class SumOverRanks>
-    void end_step(const Particles<D>& particles, const SumOverRanks& sum, double dt, double time) {
+    template <class Pushes, class SumOverRanks>
+    void end_step(const Particles<D>& particles, const Pushes& pushes, const SumOverRanks& sum,
+                  double dt, double time) {
         Array<double> mean = flow_now_;
-        measure(particles, sum);
+        const bool known = knows_panels_;
+        measure(particles, pushes, sum);
+        if (!known) std::ranges::copy(panels_of(flow_now_), mean.begin() + first_panel);
         for (std::size_t k = 0; k < mean.size(); ++k) {
             mean[k] = 0.5 * (mean[k] + flow_now_[k]);
             flow_impulse_[k] += dt * mean[k];
@@ -108,11 +114,18 @@ public:
     std::span<const double> panels_of_contacts() const { return panels_of(contact_impulse_); }
 
     void serialise(Archive& archive) {
+        // Panels take sums over pairs, which a run that goes on has not made yet; the rest follows
+        // from the particles.
+        if (grid.panels() > 0)
+            archive("flow_now", flow_now_), archive("has_forces", has_forces_);
+        else if (archive.loads())
+            has_forces_ = false;
         archive("flow_impulse", flow_impulse_), archive("contact_impulse", contact_impulse_);
         archive("hit_speed", hit_.speed), archive("hit_radius", hit_.radius);
         archive("peak_force", peak_.force), archive("peak_moment", peak_.moment);
         archive("peak_time", peak_.time);
-        expect_fit(flow_impulse_.size() == numbers() && contact_impulse_.size() == numbers(),
+        expect_fit(flow_now_.size() == numbers() && flow_impulse_.size() == numbers() &&
+                       contact_impulse_.size() == numbers(),
                    "load_flow_impulse");
     }
 
@@ -148,15 +161,38 @@ private:
     }
     void add(Array<double>& sum, const WallForce<D>& at, double factor) const {
         add_whole(sum, at, factor);
-        const double pressing = -factor * dot(at.force, grid.normal);
-        grid.for_each_share(at.place, at.width, [&](std::size_t panel, double share) {
+        press(sum, at.place, at.width, -factor * dot(at.force, grid.normal));
+    }
+    /// What is `wide` at x presses on the panels.
+    void press(Array<double>& sum, const Vec<double, D>& x, double wide, double pressing) const {
+        grid.for_each_share(x, wide, [&](std::size_t panel, double share) {
             sum[first_panel + panel] += share * pressing;
         });
     }
+    /// What fluid in front of the face gives to walls behind its plane, whosever they are: at the
+    /// foot of a wall it presses on the bed below as well. Of the bodies themselves also what comes
+    /// from no fluid particle: films and friction.
+    template <class Pushes>
+    void add_to_panels(const Particles<D>& particles, const Pushes& pushes) {
+        knows_panels_ = pushes(grid.plane(), std::span<const std::uint32_t>(near_face_), pushes_);
+        if (!knows_panels_) return;
+        for (std::size_t k = 0; k < near_face_.size(); ++k) {
+            const std::uint32_t p = near_face_[k];
+            const WallForce<D> at = flow_on(particles, p);
+            const FacePush<D>& push = pushes_[k];
+            press(flow_now_, grid.pressed_place(at.place, push), at.width, push.front);
+            if (is_on(particles.tag[p].body) &&
+                dot(particles.wall.normal[p], grid.normal) > backwards)
+                press(flow_now_, at.place, at.width, -dot(at.force, grid.normal) - push.all);
+        }
+    }
 
-    Array<std::uint32_t> members_;
+    Array<std::uint32_t> members_, near_face_;
+    Array<FacePush<D>> pushes_;  // on those near the face
     // Force, moment and panels in one array each, so that ranks add them up at once.
     Array<double> flow_now_, flow_impulse_, contact_impulse_, contact_before_;
+    bool has_forces_ = false;   // of the flow, now
+    bool knows_panels_ = true;  // a run that starts from a state of another has no pairs yet
     Peak peak_;
     Hit hit_;
 };

@@ -23,20 +23,23 @@ public:
     void lose_members() { has_members_ = false; }
 
     /// Before the forces of the flow act for the first half of a step.
-    void begin_step(const Particles<D>& particles, const Ranks& ranks) {
-        if (empty()) return;
-        if (!has_forces_) {
-            find_members(particles);
-            for (LoadMeter<D>& meter : meters_) meter.measure(particles, sum_over(ranks));
-            has_forces_ = true;
-        }
-        for (LoadMeter<D>& meter : meters_) meter.begin_step();
-    }
-    /// When those of the second half are known.
-    void end_step(const Particles<D>& particles, const Ranks& ranks, double dt, double time) {
+    template <class Pushes>
+    void begin_step(const Particles<D>& particles, const Ranks& ranks, const Pushes& pushes) {
         if (empty()) return;
         find_members(particles);
-        for (LoadMeter<D>& meter : meters_) meter.end_step(particles, sum_over(ranks), dt, time);
+        for (LoadMeter<D>& meter : meters_) {
+            if (!meter.has_forces()) meter.measure(particles, pushes, sum_over(ranks));
+            meter.begin_step();
+        }
+    }
+    /// When those of the second half are known.
+    template <class Pushes>
+    void end_step(const Particles<D>& particles, const Ranks& ranks, const Pushes& pushes,
+                  double dt, double time) {
+        if (empty()) return;
+        find_members(particles);
+        for (LoadMeter<D>& meter : meters_)
+            meter.end_step(particles, pushes, sum_over(ranks), dt, time);
     }
     /// A contact of a wall of this [body.NAME].
     void add_contact(std::int32_t body, const WallForce<D>& force, const Hit& hit, double dt) {
@@ -47,8 +50,7 @@ public:
     void serialise(Archive& archive) {
         for (std::size_t k = 0; k < meters_.size(); ++k)
             archive.nested(std::to_string(k) + "_load_", meters_[k]);
-        // Of the flow they follow from the particles.
-        if (archive.loads()) has_forces_ = has_members_ = false;
+        if (archive.loads()) has_members_ = false;
     }
 
 private:
@@ -62,7 +64,7 @@ private:
     }
 
     Array<LoadMeter<D>> meters_;
-    bool has_members_ = false, has_forces_ = false;
+    bool has_members_ = false;
 };
 
 }  // namespace doseki

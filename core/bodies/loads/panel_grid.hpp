@@ -5,6 +5,7 @@
 
 #include "base/array.hpp"
 #include "bodies/rotation.hpp"
+#include "boundaries/face_push.hpp"
 
 namespace doseki {
 
@@ -27,6 +28,31 @@ struct PanelGrid {
         return n;
     }
 
+    FacePlane<D> plane() const { return {origin, normal}; }
+
+    /// Whether a wall particle at x may bear a part of what presses on the panels: one of the face
+    /// itself or, behind its plane, of another body.
+    bool is_near(const Vec<double, D>& x, bool of_face) const {
+        const double below = plane().depth(x), least = of_face ? -footprint : 0.0;
+        bool near = panels() > 0 && below >= least && below <= reach;
+        for (int e = 0; e < edges; ++e) {
+            const double along = dot(x - origin, edge[e]);
+            near &= along >= -reach && along <= size[e] * count[e] + reach;
+        }
+        return near;
+    }
+
+    /// Where a wall particle at x is pressed: there, unless the fluid that presses it is beside it,
+    /// as at the foot of a wall that goes on below the bed. Then it is where the fluid is.
+    Vec<double, D> pressed_place(const Vec<double, D>& x, const FacePush<D>& push) const {
+        Vec<double, D> place = x;
+        for (const Vec<double, D>& e : edge) {
+            const double way = push.way(e, reach);
+            place = place + (way * beside(std::abs(way) / footprint)) * e;
+        }
+        return place;
+    }
+
     /// Calls f(panel, share) for the panels that what is at x, `wide` along each edge, lies on; not
     /// for what is off the face.
     template <class F>
@@ -44,6 +70,11 @@ struct PanelGrid {
     }
 
 private:
+    /// From 0, the fluid is in front, to 1, beside, by the way to it in spacings.
+    static double beside(double way) {
+        const double s = std::clamp((way - 0.5) / 0.4, 0.0, 1.0);
+        return s * s * (3.0 - 2.0 * s);
+    }
     /// Panels first to end - 1 along one edge lie under [low, high], in panels.
     struct Covered {
         std::int32_t first, end;

@@ -20,7 +20,7 @@ from ..scenario.tables.body import BodyTable
 from ..scenario.tables.terrain.terrain import TERRAIN, Terrain
 from ..scene.build import Scene, build_scene
 from ..scene.checks.grain_numbers import check_grain_numbers
-from ..scene.checks.panels import check_panels, panel_findings
+from ..scene.checks.panels import check_panels
 from ..scene.checks.sensors import sensor_findings
 from ..scene.checks.structures import structure_findings
 from ..scene.contact_faces import contact_faces
@@ -302,7 +302,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     add_bodies(simulation, scenario, bodies, body_names)
     check_panels(scenario, particles, body_names, {"normal": normal, "depth": depth})
     walls = scenario, particles, body_names, normal, depth
-    return [*sensor_findings(*walls), *structure_findings(*walls), *panel_findings(*walls)]
+    return [*sensor_findings(*walls), *structure_findings(*walls)]
 
 
 def build_simulation(

@@ -109,18 +109,10 @@ class Panels(Metered):
         first_row &= np.abs((place - self.origin) @ self.normal) < 0.5 * setting.dp
         return np.asarray(first_row & (state["normal"] @ self.normal > FACING))
 
-    def beside(self, axis: int, side: int, off: float) -> np.ndarray:
-        """Points (panels, dim), m, that far off the middle of one side (-1 or 1) of each panel."""
-        places = np.indices(self.panels[::-1]).reshape(len(self.size), -1)[::-1].T
-        along = (places + 0.5) * self.size
-        along[:, axis] += side * (0.5 * self.size[axis] + off)
-        units = np.array([edge / np.linalg.norm(edge) for edge in self.edges])
-        return np.asarray(self.origin + along @ units)
-
     def covered(self, state: State, setting: Setting) -> np.ndarray:
         """How much (panels,) of each panel is wall, from the wall particles of the run."""
         flat = self.first_row(state, setting)
-        away = state["position"] + state["depth"][:, None] * state["normal"] - self.origin
+        away = state["position"] - self.origin
         covered = np.ones((int(flat.sum()), 1))
         for edge, size, count in zip(self.edges, self.size, self.panels, strict=True):
             along = (away[flat] @ edge / np.linalg.norm(edge))[:, None]
