@@ -67,10 +67,16 @@ def test_a_good_set_up_raises_no_doubt(doubts):
 
 def test_walls_of_a_dry_scene_need_no_thickness(doubts):
     dry = {"layers": 1, "replace": ('"water"', '"basalt"')}
-    assert not any("thinner than the kernel" in doubt for doubt in doubts(**dry, scheme="resolved"))
-    assert any("thinner than the kernel" in doubt for doubt in doubts(**dry))
-    wet = {"layers": 1, "scheme": "resolved"}
-    assert any("thinner than the kernel" in doubt for doubt in doubts(**wet))
+    assert not any("a wall of" in doubt for doubt in doubts(**dry, scheme="resolved"))
+    assert any("a wall of 1 layer" in doubt for doubt in doubts(**dry))
+
+
+def test_two_layers_keep_apart_what_is_on_both_sides(doubts):
+    """As far as the default kernel of the resolved scheme sees."""
+    one, two = (doubts(layers=layers, scheme="resolved") for layers in (1, 2))
+    assert any("a wall of 1 layer has one face" in doubt for doubt in one)
+    assert any("make it 2 layers" in doubt for doubt in one)
+    assert not any("a wall of" in doubt for doubt in two)
 
 
 GAUGE = """
@@ -174,7 +180,7 @@ CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"
     ("changes", "words"),
     [
         ({"top": 0.05}, ["water: 5 particles over its depth", "dp = 0.005 would do"]),
-        ({"layers": 2}, ["floor: a wall of 2 layers", "make it 3 layers (0.03 m) thick"]),
+        ({"layers": 1}, ["floor: a wall of 1 layer", "make it 2 layers (0.02 m) thick"]),
         ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.012 (now 0.001)"]),
         ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
         ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),

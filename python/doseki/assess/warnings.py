@@ -70,17 +70,20 @@ class ShallowFlow(Finding):
 
 @dataclass(frozen=True)
 class ThinWall(Finding):
-    """A wall thinner than the support, which lets particles feel its end, or pass it."""
+    """A wall so thin that fluid on its two sides meets through it, or feels its end."""
 
     layers: int
     needed: int
     dp: float  # m
 
     def __str__(self) -> str:
-        return (
-            f"{self.place}: a wall of {self.layers} layers is thinner than the kernel's reach;"
-            f" make it {self.needed} layers ({self.needed * self.dp:.3g} m) thick"
+        wall = (
+            "1 layer has one face, and lets fluid through where there is fluid on both sides"
+            if self.layers == 1
+            else f"{self.layers} layers is thinner than the kernel's reach"
         )
+        thick = f"{self.needed} layers ({self.needed * self.dp:.3g} m) thick"
+        return f"{self.place}: a wall of {wall}; make it {thick}"
 
 
 @dataclass(frozen=True)
@@ -232,7 +235,7 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     if scenario.has_bodies_alone:
         return  # which meet the shapes of walls, not their particles
-    needed = math.ceil(scenario.support / scenario.dp - 0.5 - 1e-9)
+    needed = math.ceil(scenario.support / scenario.dp - 1 - 1e-9)  # between rows of fluid
     for body, name in names.items():
         table = scenario.body.get(name)
         of_it = (state["body"] == body) & (state["motion"] == FIXED)
