@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..record.particles import BOUND, FREE, ParticleSet, check_size, concatenate
+from ..record.particles import BOUND, FIXED, FREE, ParticleSet, check_size, concatenate
 from ..scenario.model import Scenario
 from ..scenario.tables.terrain.terrain import TERRAIN
 from ..util.finding import Finding
@@ -36,7 +36,9 @@ from .groups import Group, inside_bodies, particles_of
 from .kinds.body import Body
 from .kinds.registry import bodies_of
 from .meshes.meeting import without_common
+from .moved import Displacement
 from .shapes import no_edges
+from .unions.thinning import ways_into_rows
 
 BURIED = 0.5  # spacings in the ground that no flow gets to
 
@@ -85,6 +87,9 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     names = body_names(scenario)
     carried = carried_over(scenario, names)
     built = _loose_particles(scenario, bodies, names)
+    ways = _ways_into_rows(scenario, bodies, built)
+    for name in ways.keys() & built.keys():
+        built[name].position[built[name].motion == FIXED] += ways[name]
     parts = placed_parts(scenario, carried, built)
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
     made = placed_groups(scenario, carried, made)
@@ -111,6 +116,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         parts = {n: _above_ground(scenario, n, part) for n, part in parts.items()}
     warnings += room_findings(scenario, wished, parts, takers)
     particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
+    _put_in_rows(scenario, particles, names, {n: way for n, way in ways.items() if n not in parts})
     check_particles(scenario, particles, names)
     warnings += list(terrain_findings(scenario, bodies))
     warnings += list(placing_findings(scenario, particles, names))
@@ -134,7 +140,31 @@ def particles_at_zero(scenario: Scenario, names: list[str]) -> dict[str, Particl
             made[name] = body.particles_of_bodies(group, names, placed, owner)
         else:
             made[name] = loose[name]
+    for name, way in _ways_into_rows(scenario, bodies, loose).items():
+        made[name].position[made[name].motion == FIXED] += way
     return made
+
+
+def _ways_into_rows(
+    scenario: Scenario, bodies: Mapping[str, Body[Any]], loose: Mapping[str, ParticleSet]
+) -> dict[str, np.ndarray]:
+    """By how much (n, dim) particles of fixed bodies go, from where their tables have them."""
+    walls = {name: part.position[part.motion == FIXED] for name, part in loose.items()}
+    for name, body in bodies.items():
+        if name not in walls and body.table.fixed and body.plane_faces() is not None:
+            walls[name] = particles_of(body.group(), body.spacing, scenario.dim)[0].position
+    return ways_into_rows(
+        scenario, bodies, {name: wall for name, wall in walls.items() if len(wall)}
+    )
+
+
+def _put_in_rows(
+    scenario: Scenario, particles: ParticleSet, names: list[str], ways: Mapping[str, np.ndarray]
+) -> None:
+    """Moves the particles of fixed bodies by so much, turned as the bodies have since."""
+    for name, way in ways.items():
+        turn = Displacement(scenario, name).vectors if name in scenario.carried else np.asarray
+        particles.position[particles.body == names.index(name)] += turn(way)
 
 
 def _loose_particles(

@@ -27,13 +27,14 @@ WALL = '\n[body.{}]\nmaterial = "aluminium"\nfixed = true\nwall = "free_slip"\n{
 RAMPS = {
     "polygon with a level foot": [[0.5, -0.2], [3.5, -0.2], [3.5, 0.3], [0.5, 0]],
     "polygon along the slope": [[0.5, -0.2], [3.5, 0.1], [3.5, 0.3], [0.5, 0]],
+    "polygon that thins to nothing on the bed": [[0.5, 0], [3.5, 0], [3.5, 0.3]],
 }
 
 
 def scene(ramp: str, mirrored: bool) -> str:
     """A stream at 4 m/s on a level bed before a ramp of 1 : 10."""
     low, high = (-0.7, 0.3)
-    end, speed = 0.5, 4.0
+    end, speed = (3.6 if "thins" in ramp else 0.5), 4.0
     corners = [[-x if mirrored else x, y] for x, y in RAMPS[ramp]]
     left, right = (-end, 2.0) if mirrored else (-2.0, end)
     if mirrored:

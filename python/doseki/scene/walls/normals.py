@@ -15,7 +15,7 @@ from ..kinds.body import Body
 from ..kinds.registry import bodies_of
 from ..moved import Displacement
 from ..shapes import EDGE, Edges, beside_edges, nearest_faces, no_edges
-from .covering import Covering
+from ..unions.covering import Covering
 
 
 class WallGeometry(NamedTuple):
@@ -79,7 +79,10 @@ def _leave_out_covered(
     covering: Covering,
     made: _Made,
 ) -> None:
-    """Give the particles of a body that are near covered faces the others alone."""
+    """Give the particles of a body that are near covered faces the others alone.
+
+    Below a slanted side of what lies on them they have that side.
+    """
     faces = body.plane_faces()
     if faces is None:
         return
@@ -89,6 +92,11 @@ def _leave_out_covered(
         given = gaps[changed], faces.normals, EDGE * scenario.dp
         rows = np.flatnonzero(of_it)[changed]
         walls.put(rows, *made.turned(body.name, *nearest_faces(*given), beside_edges(*given)))
+    for slant in covering.slants(body.name, faces):
+        near = slant.below < scenario.support + 0.5 * scenario.dp
+        rows, n = np.flatnonzero(of_it)[slant.rows[near]], int(near.sum())
+        surface = np.tile(slant.normal, (n, 1)), slant.below[near], no_edges(n, scenario.dim)
+        walls.put(rows, *made.turned(body.name, *surface))
 
 
 class _Made:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -20,6 +20,25 @@ AHEAD = (0.01, 0.25, 0.5)  # dp before a face: what is nearer leaves fluid no ro
 BESIDE = 0.76  # dp, along each axis, to the particles of a wall without a shape
 SOME = 100  # particles of a body, which lie in its shape if it has one
 MARGIN = 4.0  # dp by which a shape may reach beyond its particles, as a sharp corner does
+RESTS = 1e-3  # dp between the sides of bodies that lie on each other
+STEEP = 0.64  # cosine of 50 degrees: sides of bodies that meet at less are one smooth surface
+LEVEL = 1 - 1e-6  # cosine of an angle that is none
+
+
+class Slant(NamedTuple):
+    """A slanted side of a body that lies on a side of another, over particles of the latter."""
+
+    over: str  # the body that has the slanted side
+    up: np.ndarray  # (dim,) unit normal of the side on which it lies
+    normal: np.ndarray  # (dim,) of the slanted side
+    rows: np.ndarray  # (n,) of the particles below both
+    depth: np.ndarray  # (n,) below the side on which it lies
+    below: np.ndarray  # (n,) below the slanted side
+
+    @property
+    def lean(self) -> float:
+        """Cosine of the angle between both sides."""
+        return float(self.up @ self.normal)
 
 
 class Covering:
@@ -58,6 +77,30 @@ class Covering:
             known[:, side] |= self._distance(point, places) < nearest
         known |= ~known.any(axis=1)[:, None]
         return np.where(known, gaps, np.inf)
+
+    def slants(self, name: str, faces: PlaneFaces) -> Iterator[Slant]:
+        """Where other bodies lie on sides of this one and thin to nothing there."""
+        point = nearest_image(self._walls[name] - faces.place, self._period)
+        gaps = faces.gaps(point)
+        side, rows = gaps.argmin(axis=1), np.arange(len(point))
+        depth, ups = gaps[rows, side], faces.normals[side]
+        foot = faces.place + point + depth[:, None] * ups
+        for other in self._around(name):
+            over = self._bodies[other].plane_faces()
+            if over is None or other == name:
+                continue
+            below = over.gaps(nearest_image(foot - over.place, self._period))
+            lean = ups @ over.normals.T
+            rests = ((np.abs(below) < RESTS * self._dp) & (lean < -LEVEL)).any(axis=1)
+            rests &= (below > -RESTS * self._dp).all(axis=1)
+            top = np.where(lean > 0, below / np.maximum(lean, 1e-12), np.inf).argmin(axis=1)
+            rests &= (lean[rows, top] > STEEP) & (lean[rows, top] < LEVEL)
+            here = np.flatnonzero(rests)
+            for pair in np.unique(np.stack([side[here], top[here]]), axis=1).T:
+                own = here[(side[here] == pair[0]) & (top[here] == pair[1])]
+                up, normal = faces.normals[pair[0]], over.normals[pair[1]]
+                under = below[own, pair[1]] + depth[own] * (up @ normal)
+                yield Slant(other, up, normal, own, depth[own], under)
 
     def _may_be_wet(self, faces: PlaneFaces, around: ParticleSet) -> np.ndarray:
         """Mask (m,) of faces in front of which something moves, or enters."""

@@ -1,0 +1,1 @@
+"""Walls that several fixed bodies make together."""
