@@ -103,6 +103,30 @@ def test_a_thin_box_is_the_wall_that_a_polygon_is(tmp_path, rows):
     assert energies[0] > (1 - LOSS) * first
 
 
+@pytest.mark.parametrize("turn", [25.0, 180.0])
+def test_a_thin_box_is_the_same_wall_in_a_turned_scene(tmp_path, turn):
+    """All of the scene and gravity, about the foot of the wall."""
+    shores = box("bed", -0.6, 1.2, 0.1)
+    shores += WALL.format("left", 'shape = "box"\nmin = [-0.6, 0]\nmax = [-0.4, 0.5]')
+    scene = POND + shores + WALL.format("wall", 'shape = "box"\nmin = [0, 0]\nmax = [0.03, 0.12]')
+    energies = []
+    for degrees in (0.0, turn):
+        angle = np.radians(degrees)
+        up = np.array([-np.sin(angle), np.cos(angle)])
+        turned = scene.replace(
+            'shape = "box"', f'shape = "box"\nrotate = {degrees}\npivot = [0, 0]'
+        )
+        turned = turned.replace("gravity = [0, -9.81]", f"gravity = {(-9.81 * up).tolist()}")
+        simulation = Flows(tmp_path)(turned)
+        simulation.advance(limit=0.3, pause=0.3, max_steps=10**6)
+        state = simulation.state()
+        moving = np.asarray(state["motion"]) == 0
+        speed = np.linalg.norm(state["velocity"][moving], axis=1)
+        height = state["position"][moving] @ up
+        energies.append(state["mass"][moving] @ (0.5 * speed**2 + 9.81 * height))
+    assert energies[1] == pytest.approx(energies[0], rel=2e-3)
+
+
 # The same in space, in a channel whose walls are without friction too.
 CHANNEL = """\
 dim = 3
