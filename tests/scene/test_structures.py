@@ -89,6 +89,11 @@ def test_banks_count_as_the_bed_does(tmp_path, reach, fewer):
         assert abs(abs(found[0].at[1] - 2.0) - 0.8) < 3 * DP
 
 
+def test_the_edges_of_a_slit_on_a_slope_lead_down(tmp_path):
+    """Along both faces: along one of them the slope leads out of the other."""
+    assert findings("valley", Shallow) == []
+
+
 def mesh_wall(folder, reach):
     """A wall of triangles across a valley, whose back leans, with so many spacings in the banks."""
     grid(folder / "terrain.asc", lambda x, y: np.maximum(np.abs(y - 2.0) - 0.6, 0.0))

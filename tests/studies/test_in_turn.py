@@ -112,3 +112,14 @@ def test_what_stops_a_run_stops_compare(tmp_path, capsys, interrupt, monkeypatch
     assert (code, table) == (130, "")
     assert f"{out / 'ueta2022'}: stopped by" in error
     assert [folder.name for folder in out.iterdir()] == ["ueta2022"]
+
+
+@pytest.mark.parametrize("command", ["trust film --vary xi", "compare flume"])
+def test_a_folder_with_something_in_it_is_left_alone(tmp_path, capsys, command):
+    """Also that of a run, and of runs that were stopped: neither has a way to replace them."""
+    (tmp_path / "letter.txt").touch()
+    with pytest.raises(SystemExit) as ended:
+        main([*command.split(), "-o", str(tmp_path)])
+    assert ended.value.code == 2
+    assert "exists and is not empty; give another folder\n" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["letter.txt"]

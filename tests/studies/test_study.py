@@ -292,6 +292,8 @@ def test_links_are_not_followed(tmp_path, monkeypatch):
      ' "score": 1, "seconds": 1}',
      '{"status": "done", "reading": "", "reason": "", "trust": "", "results": {"a": "b"},'
      ' "misfits": {}, "score": 1, "seconds": 1}',
+     *('{"status": "done", "reading": "", "reason": "", "trust": "", "results": {},'
+       f' "misfits": {odd}, "score": 1, "seconds": 1}}' for odd in ("null", "[]", '"x"', "1")),
      '{"status": "done", "reading": "", "reason": "", "trust": "", "results": {"a": 1e999},'
      ' "misfits": {}, "score": 1, "seconds": 1}'],
 )  # fmt: skip

@@ -98,6 +98,8 @@ def _body_lines(body: BodyLoad) -> Iterator[tuple[str, str]]:
     total = body.parts["total"]
     way = ", ".join(f"{x:.3g}" for x in body.direction)
     yield f"load {body.name}", _peaks_text(body)
+    if math.isnan(body.step_peak.time):
+        return
     shares = ", ".join(
         f"{part} {series.impulse:.4g}" for part, series in body.parts.items() if part != "total"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -52,7 +53,7 @@ def new(
     from ..scenario.start import write_start
 
     write_start(file, int(dim.value), dry)
-    typer.echo(f"{file}: run it with doseki run {file}")
+    typer.echo(f"{file}: run it with doseki run {shlex.quote(str(file))}")
 
 
 def bench(

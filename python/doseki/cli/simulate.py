@@ -119,7 +119,8 @@ def _report(directory: Path, summary: dict[str, Any], figures: bool, as_json: bo
         typer.echo(json.dumps(summary | said))
         return
     typer.echo(text)
-    typer.echo(f"\nIn {directory}: summary.txt, history.csv, snapshots, figures:")
+    drawn = ", figures:" if figures else ""
+    typer.echo(f"\nIn {directory}: summary.txt, history.csv, snapshots{drawn}")
     for line in [*map(str, pictures), *notes]:
         typer.echo(f"  {line}")
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..errors import UserError
+from ..errors import PhysicsError, ResourceError, UserError
 from .options import AsJson, Figures, ScenarioName, Settings, Threads, folder, free_directory
 
 
@@ -117,6 +117,7 @@ def study(
 
     Started again it makes the runs that are missing, and no other.
     """
+    from ..studies.runs.row import LOST
     from ..studies.study import check_study, report_text, run_study
 
     if only_check and (output or retry or as_json or not figures):
@@ -137,3 +138,6 @@ def study(
     typer.echo(f"\nIn {directory}:")
     for path in report.files:
         typer.echo(f"  {path}")
+    if not report.table.done:
+        lost = any(entry.row.status == LOST for entry in report.table.entries)
+        raise typer.Exit((ResourceError if lost else PhysicsError).exit_code)

@@ -31,6 +31,14 @@ def check_free(directory: str | Path, overwrite: bool) -> None:
         refuse_links(folder)
 
 
+def check_vacant(directory: str | Path) -> None:
+    """Raise UserError where several runs may not begin: there is something in the folder."""
+    folder = RunFolder(Path(directory))
+    with clear_errors(folder.path):
+        if folder.path.exists() and not (folder.path.is_dir() and folder.is_vacant()):
+            raise UserError(f"{folder.path}: exists and is not empty; give another folder")
+
+
 def refuse_links(folder: RunFolder) -> None:
     """Raise UserError where writing into the folder would write outside it."""
     if links := folder.links():

@@ -23,6 +23,7 @@ from ..figures.nothing import NothingToDrawError
 from ..figures.saving import Drawn
 from ..measure.moments import Moment
 from ..measure.views import before_flow, named_window, with_flow
+from ..record.beginning import check_vacant
 from ..record.reader import Run, load
 from ..record.writer import jsonable
 from ..running.runner import RunOptions
@@ -89,8 +90,7 @@ def _line(cells: Sequence[str]) -> str:
 def check_name(name: str) -> None:
     """Raise UserError for a comparison that there is not."""
     if name not in COMPARISONS:
-        known = suggestion(name, COMPARISONS)
-        raise UserError(f"{name!r} cannot be compared; there is: {', '.join(COMPARISONS)}{known}")
+        raise UserError(f"{name!r} cannot be compared{suggestion(name, COMPARISONS)}")
 
 
 def run_both(
@@ -106,6 +106,7 @@ def run_both(
     """
     scenarios = [load_scenario(name, [*settings, f"scheme={scheme}"]) for scheme in SCHEMES]
     folders = [directory / scheme for scheme in SCHEMES]
+    check_vacant(directory)
     with clear_errors(directory):
         directory.mkdir(parents=True, exist_ok=True)
     runs = dict(zip(folders, scenarios, strict=True))

@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import UserError
 from ..measure.flow import measure_flow
 from ..measure.numbers import mean_velocity, speed
+from ..record.beginning import check_vacant
 from ..record.particles import BOUND, FREE
 from ..record.reader import Run, Snapshot, load
 from ..record.units import unit_in
@@ -49,6 +50,7 @@ def vary(
     if key not in VARIABLE:
         raise UserError(f"--vary {key}: only {', '.join(VARIABLE)} can be varied")
     scenarios = _scenarios(name, settings)
+    check_vacant(directory)
     folders = {directory / part: scenario for part, scenario in scenarios.items()}
     run_in_turn(folders, RunOptions(threads))
     runs = [load(folder) for folder in folders]

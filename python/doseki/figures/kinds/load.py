@@ -92,7 +92,7 @@ def _draw_panels(record: GaugeRecord, gauge: Panels, title: str) -> Figure:
         part: record[f"{key}_pressure"].reshape(shape)[1:]
         for part, key in (("flow", "flow"), ("contacts", "contact"))
     }
-    shown = [part for part, pressure in parts.items() if part == "flow" or pressure.any()]
+    shown = [part for part, pressure in parts.items() if pressure.any()] or ["flow"]
     figure, grid = chart_grid(2 * len(shown), 1, (7.0, 2.6), title, sharex=False)
     middles = 0.5 * (time[1:] + time[:-1])
     for axes, below, part in zip(grid[::2, 0], grid[1::2, 0], shown, strict=True):

@@ -11,6 +11,7 @@ import numpy as np
 from ...record.particles import FIXED, ParticleSet
 from ...scenario.gauges.loads.load import Load
 from ...scenario.gauges.loads.metered import Metered
+from ...scenario.gauges.loads.panels import Panels
 from ...scenario.model import Scenario
 from ...scenario.tables.bodies import Box
 from ...scenario.tables.mesh import Mesh
@@ -25,6 +26,7 @@ DEPTHS = (0.25, 0.75, 1.25, 1.75, 2.4)  # spacings, at which a structure is look
 SAME = 1e-3  # spacings between two places of one particle
 BESIDE = 1.5  # spacings to the neighbours by which an edge is known
 ASIDE = 0.3  # sine of the angle between its normal and those on both sides of it
+UPWARDS = 0.7  # vertical part of the normal of a crest
 NEAR = 0.87  # spacings from a place at which it is still there: inside a lattice, none is farther
 
 
@@ -130,8 +132,9 @@ def structure_findings(
         place = particles.position[of_it]
         lost = list(_in_walls(scenario, name, gauge, place))
         yield from lost
-        if not lost and not scenario.is_dry:
-            yield from _ends_at_walls(scenario, name, gauges, faces, names)
+        lacking = [each for each in gauges if not isinstance(scenario.gauge[each], Panels)]
+        if lacking and not lost and not scenario.is_dry:
+            yield from _ends_at_walls(scenario, name, lacking, faces, names)
         if scenario.bed is None:
             continue
         yield from _shallow(scenario, name, gauge, place, normal[of_it], first_row)
@@ -256,9 +259,10 @@ def _shallow(
     normal: np.ndarray,
     first_row: np.ndarray,
 ) -> Iterator[Finding]:
-    """Follows the body down into the ground from where its surface comes out of it.
+    """Follows the sides of the body down into the ground from where they come out of it.
 
-    Where the map knows nothing of the ground there is nothing to follow it into.
+    From a crest that ends in a bank the way down leads out of its other faces. Where the map knows
+    nothing of the ground there is nothing to follow it into.
     """
     assert scenario.bed is not None
     from scipy.spatial import cKDTree
@@ -278,11 +282,13 @@ def _shallow(
     if not out.any():
         return
     own, facing = _faces_over(position, normal, np.flatnonzero(out), tree, dp)
-    # Along the face: the ground may slope across it.
+    # Along the face, and along both at an edge: the ground may slope across them.
     down = -found["normal"][own]
-    down = down - (down * facing).sum(axis=1)[:, None] * facing
+    for face in np.moveaxis(facing, 1, 0):
+        down = down - (down * face).sum(axis=1)[:, None] * face
     length = np.linalg.norm(down, axis=1)
-    keep = length > 0.5  # a face that lies on the ground leads nowhere
+    # A face that lies on the ground leads nowhere.
+    keep = (length > 0.5) & (np.abs(facing[:, 0, -1]) < UPWARDS)
     down = down[keep] / length[keep, None]
     own = own[keep]
     foot = position[own] + height[own, None] * down
@@ -299,20 +305,29 @@ def _shallow(
 def _faces_over(
     position: np.ndarray, normal: np.ndarray, chosen: np.ndarray, tree: Any, dp: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The chosen particles (k,) with the normals (k, dim) of the faces over them.
+    """The chosen particles (k,) with the normals (k, 2, dim) of the faces over them.
 
     Along an edge a normal is the mean of those of two faces, so that neighbours lean to either side
-    of it: such a particle comes twice, with theirs.
+    of it: theirs are taken, of crest and foot the other alone.  What there is no second of is zero.
     """
-    own, facing = [], []
-    for each, near in zip(
-        chosen, tree.query_ball_point(position[chosen], BESIDE * dp), strict=True
+    facing = np.zeros((len(chosen), 2, position.shape[1]))
+    facing[:, 0] = normal[chosen]
+    for faces, each, near in zip(
+        facing, chosen, tree.query_ball_point(position[chosen], BESIDE * dp), strict=True
     ):
         aside = normal[near] - np.outer(normal[near] @ normal[each], normal[each])
         length = np.linalg.norm(aside, axis=1)
         along = aside @ (aside[length.argmax()] / max(length.max(), 1e-300))
-        is_edge = length.max() > ASIDE and along.min() < -ASIDE
-        of_it = [near[along.argmin()], near[along.argmax()]] if is_edge else [each]
-        own += [each] * len(of_it)
-        facing.append(normal[of_it])
-    return np.array(own), np.concatenate(facing)
+        if length.max() > ASIDE and along.min() < -ASIDE:
+            both = normal[[near[along.argmin()], near[along.argmax()]]]
+            faces[:] = _alone(both[np.abs(both[:, -1]) < UPWARDS])
+    return chosen, facing
+
+
+def _alone(normals: np.ndarray) -> np.ndarray:
+    """Up to two normals (k, dim), the second without its part along the first, then zeros."""
+    alone = np.zeros((2, normals.shape[1]))
+    alone[: len(normals)] = normals
+    alone[1] -= (alone[1] @ alone[0]) * alone[0]
+    alone[1] /= max(float(np.linalg.norm(alone[1])), 1e-300)
+    return alone

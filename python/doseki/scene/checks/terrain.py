@@ -148,9 +148,15 @@ class WrongVolume(Finding):
     unit: str
 
     def __str__(self) -> str:
+        remedy = (
+            "decrease dp, or if that makes it less, layers fold in hollows that are narrower than "
+            "the release is thick: smooth the terrain, or make the release thinner"
+            if self.volume < self.asked
+            else "decrease dp"
+        )
         return (
             f"{self.place}: its particles have {self.volume:.5g} {self.unit}, and area times "
-            f"thickness is {self.asked:.5g} {self.unit}: decrease dp"
+            f"thickness is {self.asked:.5g} {self.unit}: {remedy}"
         )
 
 

@@ -248,9 +248,9 @@ class _Reader:
         if unit is not other:
             raise refuse("max", "must have the same kind of unit as min")
         if not low < high:
-            raise refuse("max", f"= {high:g} must be greater than min = {low:g}")
+            raise refuse("max", f"must be greater than min: {high:g} is not greater than {low:g}")
         if table.scale == "log" and low <= 0:
-            raise refuse("min", f'= {low:g} must be greater than 0 with scale = "log"')
+            raise refuse("min", f'must be greater than 0 with scale = "log", not {low:g}')
         word = unit.own if unit is not None else ""
         return Axis(name, word, (), low, high, table.scale == "log", table.count)
 

@@ -65,7 +65,9 @@ def read_row(path: Path) -> Row | None:
         return None
 
 
-def _checked(table: dict[str, Any]) -> Row:
+def _checked(table: Any) -> Row:
+    if not all(isinstance(part, dict) for part in (table, table["results"], table["misfits"])):
+        raise TypeError
     words = {name: table[name] for name in ("status", "reading", "reason", "trust")}
     if not all(isinstance(word, str) for word in words.values()):
         raise TypeError
