@@ -60,7 +60,7 @@ struct ForceAccumulators {
 /// Over the fluid around a wall particle, with weights V W but for the force.
 template <class T, int D>
 struct WallAccumulators {
-    Vec<T, D> force;    // of the fluid, over the wall particle's volume
+    Vec<T, D> force;    // of the fluid
     Turn<T, D> moment;  // of it about the wall particle: it acts where the fluid is, Eq. (164)
     T weight{}, height{}, pressure{}, density{}, viscosity{};
     Vec<T, D> velocity;  // against the wall
@@ -79,7 +79,7 @@ struct WallAccumulators {
     }
 };
 
-/// The same against the normal of one face, over the wall particle's volume, see FacePush.
+/// What the fluid around a wall particle gives to it against the normal of a face, see FacePush.
 template <class T, int D>
 struct FaceAccumulators {
     T all{}, front{};

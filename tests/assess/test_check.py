@@ -180,7 +180,7 @@ CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"
     ("changes", "words"),
     [
         ({"top": 0.05}, ["water: 5 particles over its depth", "dp = 0.005 would do"]),
-        ({"layers": 1}, ["floor: a wall of 1 layer", "make it 2 layers (0.02 m) thick"]),
+        ({"layers": 2}, ["floor: a wall of 2 layers", "make it 3 layers (0.03 m) thick"]),
         ({"xi": 0.001}, ["Mach 1", "for Mach 0.1 set xi = 0.012 (now 0.001)"]),
         ({"bottom": 0.03, "top": 0.15}, ["water: touches nothing", "4 dp away"]),
         ({"bottom": 0.2, "top": 0.32}, ["water: touches nothing", "more than 4 dp away"]),

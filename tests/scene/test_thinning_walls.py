@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from doseki.record.particles import FIXED as FIXED_MOTION
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scene import build
@@ -91,6 +92,36 @@ def test_a_ramp_in_space(write, tmp_path):
     assert np.abs(found.normal - found.up).max() < 1e-6
 
 
+@pytest.mark.parametrize("rows", [2, 3])
+def test_a_thin_bed_goes_along(write, rows):
+    """Its lower rows are as near to its other side."""
+    corners = [(0, 0), (4, 0), (4, 0.4)]
+    ramp = Ramp(write, polygon("ramp", corners) + box("bed", (-1, -rows * DP), (5, 0)), 0.1)
+    assert lie_in_rows(ramp)
+    assert np.abs(ramp.normal - ramp.up).max() < 1e-9
+
+
+def test_a_ramp_over_a_seam_is_one_ramp(write):
+    """In a domain of 5 m, from 4 to 6: its particles come in at the other end."""
+    domain = 'periodic = ["x"]\ndomain_min = [0, -9.5]\ndomain_max = [5, 9.5]'
+    parts = []
+    for start in (1.0, 4.0):
+        corners = [(start, 0), (start + 2, 0), (start + 2, 0.2)]
+        tables = polygon("ramp", corners) + box("bed", (0, -0.5), (5, 0))
+        tables += WATER.format(low=[0.5, 8.5], high=[1, 9])
+        scenario = load_scenario(write(top=f"{TOP}\n{domain}", tables=tables), [f"dp={DP}"])
+        scene = build.build_scene(scenario)
+        found = wall_geometry(scenario, scene.particles, scene.names, scene.bodies)
+        x = scene.particles.position[:, 0] - start
+        fixed = scene.particles.motion == FIXED_MOTION
+        table = np.column_stack(
+            [np.round(x % 5, 6), scene.particles.position[:, 1], found.normal, found.depth]
+        )[fixed]
+        parts.append(table[np.lexsort(table[:, 1::-1].T)])
+    assert len(parts[0]) == len(parts[1])
+    np.testing.assert_allclose(parts[1], parts[0], atol=1e-6)
+
+
 def test_a_ramp_that_moves_off_its_bed_leaves_it_as_it_is(write):
     goes = polygon("ramp", [(0, 0), (4, 0), (4, 0.4)], more="motion = { velocity = [1, 0] }")
     assert not lie_in_rows(Ramp(write, goes + box("bed", *BED), 0.1))
@@ -110,3 +141,19 @@ def test_a_run_that_starts_from_another_has_the_same_walls(tmp_path):
         states.append({key: state[key][fixed] for key in ("id", "position", "normal")})
     for key, values in states[0].items():
         np.testing.assert_allclose(states[1][key], values, atol=1e-12)
+
+
+def test_a_ramp_that_is_added_finds_its_bed_where_it_was(tmp_path):
+    bed = box("bed", *BED) + WATER.format(low=[1, 1], high=[1.5, 1.2])
+    (tmp_path / "first.toml").write_text(f"{MINIMAL}{TOP}\n{bed}")
+    first = load_scenario(str(tmp_path / "first.toml"), [f"dp={DP}", "time_max=0.01"])
+    run_scenario(first, tmp_path / "run", RunOptions(threads=1))
+    ramp = polygon("ramp", [(0, 0), (4, 0), (4, 0.4)])
+    (tmp_path / "next.toml").write_text(f'{MINIMAL}{TOP}\n{bed}{ramp}[start]\nfrom = "run"\n')
+    scenario = load_scenario(str(tmp_path / "next.toml"), [f"dp={DP}"])
+    state = build_simulation(scenario)[0].state()
+    x, normal = state["position"], state["normal"]
+    below = (np.asarray(state["motion"]) == 1) & (x[:, 1] > -DP) & (x[:, 1] < 0)
+    below &= (x[:, 0] > 0.2) & (x[:, 0] < 1)
+    assert below.any()
+    assert np.abs(normal[below, 0] + 0.1 / np.hypot(1, 0.1)).max() < 1e-9

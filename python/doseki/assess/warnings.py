@@ -11,7 +11,7 @@ import numpy as np
 from ..driver.gauges import outside_everything
 from ..record.particles import BOUND, DRIVEN, FIXED, FREE
 from ..scenario.model import Scenario
-from ..scenario.schemes import UETA2022
+from ..scenario.schemes import RESOLVED, UETA2022
 from ..scenario.tables.bodies import Grains
 from ..scene.ground import ground_of
 from ..util.finding import Finding, no_more_than
@@ -75,13 +75,12 @@ class ThinWall(Finding):
     layers: int
     needed: int
     dp: float  # m
+    has_faces: bool  # as those of the resolved scheme have
 
     def __str__(self) -> str:
-        wall = (
-            "1 layer has one face, and lets fluid through where there is fluid on both sides"
-            if self.layers == 1
-            else f"{self.layers} layers is thinner than the kernel's reach"
-        )
+        wall = f"{self.layers} layers is thinner than the kernel's reach"
+        if self.layers == 1 and self.has_faces:
+            wall = "1 layer has one face, and lets fluid through where there is fluid on both sides"
         thick = f"{self.needed} layers ({self.needed * self.dp:.3g} m) thick"
         return f"{self.place}: a wall of {wall}; make it {thick}"
 
@@ -235,7 +234,9 @@ def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iter
 def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
     if scenario.has_bodies_alone:
         return  # which meet the shapes of walls, not their particles
-    needed = math.ceil(scenario.support / scenario.dp - 1 - 1e-9)  # between rows of fluid
+    faced = scenario.scheme == RESOLVED
+    # Walls with faces are to keep apart the rows on their sides, others to fill the kernel.
+    needed = math.ceil(scenario.support / scenario.dp - (1 if faced else 0.5) - 1e-9)
     for body, name in names.items():
         table = scenario.body.get(name)
         of_it = (state["body"] == body) & (state["motion"] == FIXED)
@@ -243,7 +244,7 @@ def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[
             continue
         layers = table.layers(scenario.dp)
         if layers is not None and layers < needed:
-            yield ThinWall(name, layers, needed, scenario.dp)
+            yield ThinWall(name, layers, needed, scenario.dp, faced)
 
 
 def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:

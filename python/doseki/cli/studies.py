@@ -133,11 +133,11 @@ def study(
         typer.echo(f"warning: {note}", err=True)
     if as_json:
         typer.echo((directory / "results.json").read_text())
-        return
-    typer.echo(report_text(report))
-    typer.echo(f"\nIn {directory}:")
-    for path in report.files:
-        typer.echo(f"  {path}")
+    else:
+        typer.echo(report_text(report))
+        typer.echo(f"\nIn {directory}:")
+        for path in report.files:
+            typer.echo(f"  {path}")
     if not report.table.done:
         lost = any(entry.row.status == LOST for entry in report.table.entries)
         raise typer.Exit((ResourceError if lost else PhysicsError).exit_code)

@@ -35,7 +35,9 @@ def check_vacant(directory: str | Path) -> None:
     """Raise UserError where several runs may not begin: there is something in the folder."""
     folder = RunFolder(Path(directory))
     with clear_errors(folder.path):
-        if folder.path.exists() and not (folder.path.is_dir() and folder.is_vacant()):
+        if folder.path.exists() and not folder.path.is_dir():
+            raise UserError(f"{folder.path}: is a file, not a folder")
+        if folder.path.is_dir() and not folder.is_vacant():
             raise UserError(f"{folder.path}: exists and is not empty; give another folder")
 
 

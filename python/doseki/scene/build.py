@@ -10,6 +10,8 @@ import numpy as np
 
 from ..record.particles import BOUND, FIXED, FREE, ParticleSet, check_size, concatenate
 from ..scenario.model import Scenario
+from ..scenario.schemes import RESOLVED
+from ..scenario.tables.bodies import Polygon, Polyhedron
 from ..scenario.tables.terrain.terrain import TERRAIN
 from ..util.finding import Finding
 from .bodies import Bodies, ElasticBody
@@ -90,7 +92,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     ways = _ways_into_rows(scenario, bodies, built)
     for name in ways.keys() & built.keys():
         built[name].position[built[name].motion == FIXED] += ways[name]
-    parts = placed_parts(scenario, carried, built)
+    parts = placed_parts(scenario, carried, built, ways)
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
     made = placed_groups(scenario, carried, made)
     groups = sorted(made, key=lambda group: group.fixed)
@@ -149,6 +151,8 @@ def _ways_into_rows(
     scenario: Scenario, bodies: Mapping[str, Body[Any]], loose: Mapping[str, ParticleSet]
 ) -> dict[str, np.ndarray]:
     """By how much (n, dim) particles of fixed bodies go, from where their tables have them."""
+    if not any(_may_thin(body) for body in bodies.values()):
+        return {}
     walls = {name: part.position[part.motion == FIXED] for name, part in loose.items()}
     for name, body in bodies.items():
         if name not in walls and body.table.fixed and body.plane_faces() is not None:
@@ -158,13 +162,19 @@ def _ways_into_rows(
     )
 
 
+def _may_thin(body: Body[Any]) -> bool:
+    """Whether it has sides that slant to each other, and is a wall."""
+    kinds = isinstance(body.table, Polygon | Polyhedron)
+    return body.scenario.scheme == RESOLVED and body.table.fixed and kinds
+
+
 def _put_in_rows(
     scenario: Scenario, particles: ParticleSet, names: list[str], ways: Mapping[str, np.ndarray]
 ) -> None:
     """Moves the particles of fixed bodies by so much, turned as the bodies have since."""
     for name, way in ways.items():
-        turn = Displacement(scenario, name).vectors if name in scenario.carried else np.asarray
-        particles.position[particles.body == names.index(name)] += turn(way)
+        turned = Displacement(scenario, name).vectors(way)
+        particles.position[particles.body == names.index(name)] += turned
 
 
 def _loose_particles(

@@ -95,20 +95,30 @@ class CarriedOver:
     def _names_of(self, name: str) -> list[str]:
         return self._scenario.names_of_bodies(name) if name in self._scenario.body else [name]
 
-    def loose(self, name: str, built: ParticleSet) -> ParticleSet:
-        """Those of [body.NAME], of which `built` are those that it has at time zero."""
+    def loose(self, name: str, built: ParticleSet, way: np.ndarray | None) -> ParticleSet:
+        """Those of [body.NAME], of which `built` are those that it has at time zero.
+
+        The fixed ones have come by a `way` (n, dim) below slants of other bodies, which the earlier
+        run may not have had.
+        """
         found = self.particles(name)
-        fixed, before = found.motion == FIXED, built.motion == FIXED
-        place = Displacement(self._scenario, name).points(built.position[before])
-        if len(place) == int(fixed.sum()):
-            off = nearest_image(found.position[fixed] - place, periods(self._scenario))
-            if (np.abs(off) <= AT_PLACE * self._scenario.dp).all():
+        fixed, place = found.motion == FIXED, built.position[built.motion == FIXED]
+        for before in (place,) if way is None else (place, place - way):
+            if len(before) == int(fixed.sum()) and self._are_at(
+                found.position[fixed], name, before
+            ):
                 return found
         raise self._error(
             name,
             "its fixed particles are not where the earlier run has them; a motion may change only "
-            "from the start of this run on",
+            "from the start of this run on, and what thins to nothing on it cannot be left out",
         )
+
+    def _are_at(self, position: np.ndarray, name: str, before: np.ndarray) -> bool:
+        """Whether particles of a body that were somewhere at time zero have moved as it has."""
+        place = Displacement(self._scenario, name).points(before)
+        off = nearest_image(position - place, periods(self._scenario))
+        return bool((np.abs(off) <= AT_PLACE * self._scenario.dp).all())
 
     def group(self, group: Group) -> Group:
         """The rigid bodies of a table that have not left, where they are."""
@@ -199,16 +209,20 @@ def present(scenario: Scenario, bodies: Mapping[str, Body[Any]]) -> dict[str, Bo
 
 
 def placed_parts(
-    scenario: Scenario, carried: CarriedOver | None, built: Mapping[str, ParticleSet]
+    scenario: Scenario,
+    carried: CarriedOver | None,
+    built: Mapping[str, ParticleSet],
+    ways: Mapping[str, np.ndarray],
 ) -> dict[str, ParticleSet]:
     """Particles that are no parts of bodies where they are when the run begins.
 
-    They are by body, and by inflow where one has brought some; `built` are those of time zero.
+    They are by body, and by inflow where one has brought some; `built` are those of time zero, of
+    which fixed ones have come by `ways` below slants of others.
     """
     if carried is None:
         return dict(built)
     parts = {
-        name: carried.loose(name, particles)
+        name: carried.loose(name, particles, ways.get(name))
         if name in scenario.carried
         else Displacement(scenario, name).particles(particles)
         for name, particles in built.items()

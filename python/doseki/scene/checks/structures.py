@@ -329,5 +329,6 @@ def _alone(normals: np.ndarray) -> np.ndarray:
     alone = np.zeros((2, normals.shape[1]))
     alone[: len(normals)] = normals
     alone[1] -= (alone[1] @ alone[0]) * alone[0]
-    alone[1] /= max(float(np.linalg.norm(alone[1])), 1e-300)
+    length = float(np.linalg.norm(alone[1]))
+    alone[1] *= 1 / length if length > ASIDE else 0.0
     return alone

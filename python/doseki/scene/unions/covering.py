@@ -29,16 +29,23 @@ class Slant(NamedTuple):
     """A slanted side of a body that lies on a side of another, over particles of the latter."""
 
     over: str  # the body that has the slanted side
+    middle: np.ndarray  # (dim,) of its extent
     up: np.ndarray  # (dim,) unit normal of the side on which it lies
     normal: np.ndarray  # (dim,) of the slanted side
     rows: np.ndarray  # (n,) of the particles below both
     depth: np.ndarray  # (n,) below the side on which it lies
-    below: np.ndarray  # (n,) below the slanted side
+    foot: np.ndarray  # (n, dim) places on that side above them, beside `middle` over a period
+    thickness: np.ndarray  # (n,) of the upper body there, along `normal`
 
     @property
     def lean(self) -> float:
         """Cosine of the angle between both sides."""
         return float(self.up @ self.normal)
+
+    @property
+    def below(self) -> np.ndarray:
+        """Depths (n,) of the particles below the slanted side."""
+        return np.asarray(self.thickness + self.depth * self.lean)
 
 
 class Covering:
@@ -53,6 +60,7 @@ class Covering:
         """`walls` are the positions (n, dim) of the particles of each fixed body."""
         self._scenario, self._bodies, self._walls = scenario, bodies, walls
         self._dp, self._period = scenario.dp, periods(scenario)
+        self._faces: dict[str, PlaneFaces | None] = {}
         margin = MARGIN * scenario.dp
         self._ends = {
             name: (wall.min(axis=0) - margin, wall.max(axis=0) + margin)
@@ -79,28 +87,63 @@ class Covering:
         return np.where(known, gaps, np.inf)
 
     def slants(self, name: str, faces: PlaneFaces) -> Iterator[Slant]:
-        """Where other bodies lie on sides of this one and thin to nothing there."""
+        """Where other bodies lie on sides of this one, and their slanted sides over its particles.
+
+        Of those that a kernel reaches from these sides.
+        """
         point = nearest_image(self._walls[name] - faces.place, self._period)
         gaps = faces.gaps(point)
-        side, rows = gaps.argmin(axis=1), np.arange(len(point))
-        depth, ups = gaps[rows, side], faces.normals[side]
-        foot = faces.place + point + depth[:, None] * ups
         for other in self._around(name):
-            over = self._bodies[other].plane_faces()
-            if over is None or other == name:
+            over = None if other == name else self._faces_of(other)
+            if over is None:
                 continue
-            below = over.gaps(nearest_image(foot - over.place, self._period))
-            lean = ups @ over.normals.T
-            rests = ((np.abs(below) < RESTS * self._dp) & (lean < -LEVEL)).any(axis=1)
-            rests &= (below > -RESTS * self._dp).all(axis=1)
-            top = np.where(lean > 0, below / np.maximum(lean, 1e-12), np.inf).argmin(axis=1)
-            rests &= (lean[rows, top] > STEEP) & (lean[rows, top] < LEVEL)
-            here = np.flatnonzero(rests)
-            for pair in np.unique(np.stack([side[here], top[here]]), axis=1).T:
-                own = here[(side[here] == pair[0]) & (top[here] == pair[1])]
-                up, normal = faces.normals[pair[0]], over.normals[pair[1]]
-                under = below[own, pair[1]] + depth[own] * (up @ normal)
-                yield Slant(other, up, normal, own, depth[own], under)
+            lean = faces.normals @ over.normals.T
+            slanted = ((lean > STEEP) & (lean < LEVEL)).any(axis=1)
+            for side in np.flatnonzero(slanted & (lean < -LEVEL).any(axis=1)):
+                near = np.flatnonzero(gaps[:, side] < self._scenario.support + self._dp)
+                foot = faces.place + point[near] + gaps[near, side, None] * faces.normals[side]
+                found = near, gaps[near, side], foot
+                yield from self._on_side((name, other), over, faces.normals[side], *found)
+
+    def _faces_of(self, name: str) -> PlaneFaces | None:
+        if name not in self._faces:
+            self._faces[name] = self._bodies[name].plane_faces()
+        return self._faces[name]
+
+    def _on_side(
+        self, pair: tuple[str, str], over: PlaneFaces, up: np.ndarray, rows: np.ndarray,
+        depth: np.ndarray, foot: np.ndarray,
+    ) -> Iterator[Slant]:  # fmt: skip
+        """The slants of the second body of a pair over places (n, dim) on a side of the first."""
+        offset, lean = nearest_image(foot - over.place, self._period), over.normals @ up
+        low, high = over.low.min(axis=0) - self._dp, over.high.max(axis=0) + self._dp
+        there = ((offset > low) & (offset < high)).all(axis=1)
+        rows, depth, foot, offset = rows[there], depth[there], foot[there], offset[there]
+        below = over.gaps(offset)
+        rests = (np.abs(below[:, lean < -LEVEL]) < RESTS * self._dp).any(axis=1)
+        rests &= (below > -RESTS * self._dp).all(axis=1)
+        height = np.where(lean > 0, below / np.maximum(lean, 1e-12), np.inf)
+        top = height.argmin(axis=1)
+        for side in np.flatnonzero((lean > STEEP) & (lean < LEVEL)):
+            own = np.flatnonzero(rests & (top == side))
+            place = foot[own] + height[own, side, None] * up
+            own = own[~self._is_buried(pair, place, self._dp * over.normals[side])]
+            if len(own):
+                yield Slant(
+                    pair[1], over.place, up, over.normals[side], rows[own], depth[own],
+                    over.place + offset[own], below[own, side],
+                )  # fmt: skip
+
+    def _is_buried(self, pair: tuple[str, str], place: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """Mask (n,) of places on the second of two bodies that a third one covers."""
+        buried = np.zeros(len(place), bool)
+        for third in self._around(pair[1]):
+            if third in pair:
+                continue
+            near = np.flatnonzero(self._may_meet(third, place, place))
+            if len(near):
+                buried[near] |= self._are_within(third, place[near], ahead)
+        return buried
 
     def _may_be_wet(self, faces: PlaneFaces, around: ParticleSet) -> np.ndarray:
         """Mask (m,) of faces in front of which something moves, or enters."""

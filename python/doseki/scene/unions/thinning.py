@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from ...scenario.model import Scenario
 from ..kinds.body import Body
+from ..periodic import nearest_image, periods
 from .covering import Covering, Slant
 
 THIN = 4.0  # dp: where a wall is thinner, its rows are those of its lattice, not evened ones
@@ -29,53 +30,58 @@ def ways_into_rows(
 
     `walls` are the positions (n, dim) of those that each was made with.
     """
-    covering, dp = Covering(scenario, bodies, walls), scenario.dp
-    moved = {name: position.copy() for name, position in walls.items()}
-    for name, position in walls.items():
+    covering, period, dp = Covering(scenario, bodies, walls), periods(scenario), scenario.dp
+    ways = {name: np.zeros_like(position) for name, position in walls.items()}
+    for name in walls:
         faces = bodies[name].plane_faces()
         if faces is None:
             continue
         for slant in covering.slants(name, faces):
-            foot = position[slant.rows] + slant.depth[:, None] * slant.up
-            moved[slant.over] = _in_columns(slant, foot, moved[slant.over], dp)
-            rows = _rows_above(slant, foot, moved[slant.over], dp)
+            over = nearest_image(walls[slant.over] + ways[slant.over] - slant.middle, period)
+            over += slant.middle
+            way = _into_columns(slant, over, dp)
+            ways[slant.over] += way
+            rows = _rows_above(slant, over + way, scenario.support + dp, dp)
             depth = dp * rows + slant.depth
             near = depth < scenario.support + 0.5 * dp
             rise = (slant.below - depth)[near, None] / slant.lean
-            moved[name][slant.rows[near]] = position[slant.rows[near]] + rise * slant.up
-    return {name: moved[name] - position for name, position in walls.items()}
+            ways[name][slant.rows[near]] += rise * slant.up
+    return ways
 
 
-def _in_columns(slant: Slant, foot: np.ndarray, position: np.ndarray, dp: float) -> np.ndarray:
-    """Positions (n, dim) of the upper body, of which thin columns have their rows in their depths.
+def _into_columns(slant: Slant, position: np.ndarray, dp: float) -> np.ndarray:
+    """Ways (n, dim) of the particles of the upper body, so that rows of thin columns are in depth.
 
-    Columns are those over places `foot` on the side on which it lies.
+    Columns are those over the feet of the slant.
     """
-    height = (position - foot[0]) @ slant.up
-    thickness = slant.below[0] - slant.depth[0] * slant.lean  # at the first place
-    below = thickness - (position - foot[0]) @ slant.normal
+    start = slant.foot[0]
+    height = (position - start) @ slant.up
+    below = slant.thickness[0] - (position - start) @ slant.normal
     across = position - height[:, None] * slant.up
-    over_foot = cKDTree(foot).query(across, distance_upper_bound=dp)[0] < dp
+    over_foot = cKDTree(slant.foot).query(across, distance_upper_bound=dp)[0] < dp
     thin = np.flatnonzero(over_foot & (below + height * slant.lean < THIN * dp))
+    way = np.zeros_like(position)
     if not len(thin):
-        return position
+        return way
     across = across[thin]
     near = cKDTree(across).query_ball_point(across, COLUMN * dp)
     above = [(below[thin[each]] < below[k]).sum() for each, k in zip(near, thin, strict=True)]
     rise = (below[thin] - (np.array(above) + 0.5) * dp) / slant.lean
-    moved = position.copy()
-    moved[thin] += rise[:, None] * slant.up
-    return moved
+    way[thin] = rise[:, None] * slant.up
+    return way
 
 
-def _rows_above(slant: Slant, foot: np.ndarray, over: np.ndarray, dp: float) -> np.ndarray:
-    """How many rows (n,) of particles of the upper body are over those of the lower one."""
-    thickness = slant.below - slant.depth * slant.lean
-    tree, rows = cKDTree(over), np.zeros(len(foot))
-    goes_on = np.ones(len(foot), bool)
-    while goes_on.any():
-        height = (thickness - (rows + 0.5) * dp) / slant.lean
-        place = foot + height[:, None] * slant.up
-        goes_on &= (height > -0.5 * dp) & (tree.query(place)[0] < NEAR * dp)
-        rows[goes_on] += 1
+def _rows_above(slant: Slant, over: np.ndarray, deep: float, dp: float) -> np.ndarray:
+    """How many rows (n,) of particles of the upper body are over those of the lower one.
+
+    As far as that is less than `deep`, m.
+    """
+    tree, rows = cKDTree(over), np.zeros(len(slant.foot))
+    left = np.arange(len(rows))
+    while len(left):
+        height = (slant.thickness[left] - (rows[left] + 0.5) * dp) / slant.lean
+        place = slant.foot[left] + height[:, None] * slant.up
+        there = (height > -0.5 * dp) & (tree.query(place)[0] < NEAR * dp)
+        rows[left[there]] += 1
+        left = left[there & (rows[left] * dp < deep)]
     return rows

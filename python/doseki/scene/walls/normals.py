@@ -112,7 +112,8 @@ class _Made:
 
     def position(self, name: str, of_it: np.ndarray) -> np.ndarray:
         """Of the fixed particles of a body, which are those where `of_it`."""
-        if name not in self._at_zero:
+        still = self._scenario.body[name].prescribed_motion is None
+        if name not in self._at_zero or still:
             return self._particles.position[of_it]
         part = self._at_zero[name]
         return part.position[part.motion == FIXED]
