@@ -20,9 +20,7 @@ def check_free(directory: str | Path, overwrite: bool) -> None:
     """Raise UserError where no run may begin: the folder holds something else, or links."""
     folder = RunFolder(Path(directory))
     with clear_errors(folder.path):
-        if folder.path.exists() and not folder.path.is_dir():
-            raise UserError(f"{folder.path}: is a file, not a folder")
-        if not folder.path.is_dir() or folder.is_vacant():
+        if _is_free(folder):
             return
         if not overwrite:
             raise _is_taken(folder.path)
@@ -35,10 +33,15 @@ def check_vacant(directory: str | Path) -> None:
     """Raise UserError where several runs may not begin: there is something in the folder."""
     folder = RunFolder(Path(directory))
     with clear_errors(folder.path):
-        if folder.path.exists() and not folder.path.is_dir():
-            raise UserError(f"{folder.path}: is a file, not a folder")
-        if folder.path.is_dir() and not folder.is_vacant():
+        if not _is_free(folder):
             raise UserError(f"{folder.path}: exists and is not empty; give another folder")
+
+
+def _is_free(folder: RunFolder) -> bool:
+    """Whether it is not there yet, or has nothing in it; raises UserError for a file."""
+    if folder.path.exists() and not folder.path.is_dir():
+        raise UserError(f"{folder.path}: is a file, not a folder")
+    return not folder.path.is_dir() or folder.is_vacant()
 
 
 def refuse_links(folder: RunFolder) -> None:

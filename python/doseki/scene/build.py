@@ -90,8 +90,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     carried = carried_over(scenario, names)
     built = _loose_particles(scenario, bodies, names)
     ways = _ways_into_rows(scenario, bodies, built)
-    for name in ways.keys() & built.keys():
-        built[name].position[built[name].motion == FIXED] += ways[name]
+    _move_fixed(built, ways)
     parts = placed_parts(scenario, carried, built, ways)
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
     made = placed_groups(scenario, carried, made)
@@ -142,9 +141,14 @@ def particles_at_zero(scenario: Scenario, names: list[str]) -> dict[str, Particl
             made[name] = body.particles_of_bodies(group, names, placed, owner)
         else:
             made[name] = loose[name]
-    for name, way in _ways_into_rows(scenario, bodies, loose).items():
-        made[name].position[made[name].motion == FIXED] += way
+    _move_fixed(made, _ways_into_rows(scenario, bodies, loose))
     return made
+
+
+def _move_fixed(parts: Mapping[str, ParticleSet], ways: Mapping[str, np.ndarray]) -> None:
+    """Moves the fixed particles of some bodies by so much, at time zero."""
+    for name in ways.keys() & parts.keys():
+        parts[name].position[parts[name].motion == FIXED] += ways[name]
 
 
 def _ways_into_rows(

@@ -281,7 +281,8 @@ def _shallow(
     )
     if not out.any():
         return
-    own, facing = _faces_over(position, normal, np.flatnonzero(out), tree, dp)
+    own = np.flatnonzero(out)
+    facing = _faces_over(position, normal, own, tree, dp)
     # Along the face, and along both at an edge: the ground may slope across them.
     down = -found["normal"][own]
     for face in np.moveaxis(facing, 1, 0):
@@ -304,8 +305,8 @@ def _shallow(
 
 def _faces_over(
     position: np.ndarray, normal: np.ndarray, chosen: np.ndarray, tree: Any, dp: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """The chosen particles (k,) with the normals (k, 2, dim) of the faces over them.
+) -> np.ndarray:
+    """The normals (k, 2, dim) of the faces over the chosen particles (k,).
 
     Along an edge a normal is the mean of those of two faces, so that neighbours lean to either side
     of it: theirs are taken, of crest and foot the other alone.  What there is no second of is zero.
@@ -321,7 +322,7 @@ def _faces_over(
         if length.max() > ASIDE and along.min() < -ASIDE:
             both = normal[[near[along.argmin()], near[along.argmax()]]]
             faces[:] = _alone(both[np.abs(both[:, -1]) < UPWARDS])
-    return chosen, facing
+    return facing
 
 
 def _alone(normals: np.ndarray) -> np.ndarray:

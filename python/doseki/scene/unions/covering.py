@@ -86,11 +86,14 @@ class Covering:
         known |= ~known.any(axis=1)[:, None]
         return np.where(known, gaps, np.inf)
 
-    def slants(self, name: str, faces: PlaneFaces) -> Iterator[Slant]:
+    def slants(self, name: str) -> Iterator[Slant]:
         """Where other bodies lie on sides of this one, and their slanted sides over its particles.
 
         Of those that a kernel reaches from these sides.
         """
+        faces = self._faces_of(name)
+        if faces is None:
+            return
         point = nearest_image(self._walls[name] - faces.place, self._period)
         gaps = faces.gaps(point)
         for other in self._around(name):

@@ -33,10 +33,7 @@ def ways_into_rows(
     covering, period, dp = Covering(scenario, bodies, walls), periods(scenario), scenario.dp
     ways = {name: np.zeros_like(position) for name, position in walls.items()}
     for name in walls:
-        faces = bodies[name].plane_faces()
-        if faces is None:
-            continue
-        for slant in covering.slants(name, faces):
+        for slant in covering.slants(name):
             over = nearest_image(walls[slant.over] + ways[slant.over] - slant.middle, period)
             over += slant.middle
             way = _into_columns(slant, over, dp)

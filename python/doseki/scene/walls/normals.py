@@ -92,7 +92,7 @@ def _leave_out_covered(
         given = gaps[changed], faces.normals, EDGE * scenario.dp
         rows = np.flatnonzero(of_it)[changed]
         walls.put(rows, *made.turned(body.name, *nearest_faces(*given), beside_edges(*given)))
-    for slant in covering.slants(body.name, faces):
+    for slant in covering.slants(body.name):
         near = slant.below < scenario.support + 0.5 * scenario.dp
         rows, n = np.flatnonzero(of_it)[slant.rows[near]], int(near.sum())
         surface = np.tile(slant.normal, (n, 1)), slant.below[near], no_edges(n, scenario.dim)
