@@ -21,6 +21,7 @@ from .checks import (
     overlap_check,
 )
 from .deformable import deformable_checks
+from .faces import faces_check
 from .ground import ground_check
 from .ledger import ledger_of
 from .snapshots import is_resolved, look
@@ -44,6 +45,7 @@ def trust_checks(run: Run) -> list[Check]:
         contact_check(seen, *given),
         *deformable_checks(run, seen),
         *([tension_check(seen.tension)] if is_resolved(scenario) else []),
+        *(faces_check(run) if is_resolved(scenario) else []),
         *([overlap_check(run, seen)] if seen.bodies_move else []),
     ]
 
