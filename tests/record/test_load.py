@@ -117,8 +117,10 @@ def test_what_is_not_a_run_is_refused(tmp_path, made):
 
 def test_a_damaged_snapshot_is_named(run_folder):
     (run_folder / "snapshots/000001.vtkhdf").write_bytes(b"not HDF5")
-    with pytest.raises(UserError, match=r"000001\.vtkhdf: cannot be read"):
+    with pytest.raises(UserError, match=r"000001\.vtkhdf: cannot be read.*move it away"):
         load(run_folder)[0]
+    (run_folder / "snapshots/000001.vtkhdf").unlink()
+    assert load(run_folder).times.tolist() == [0.0, 2.0]
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..errors import UserError
 from ..util.hdf5 import Hdf5File, open_hdf5
 from .fields import GRAIN_FIELDS, ParticleField
 
@@ -27,9 +29,19 @@ class Header:
     body_names: tuple[str, ...]
 
 
+@contextmanager
+def _snapshot_file(path: Path) -> Iterator[Hdf5File]:
+    """An open snapshot; errors about it say how to read the others."""
+    try:
+        with open_hdf5(path) as file:
+            yield file
+    except UserError as error:
+        raise UserError(f"{error}; move it away to read the rest of the run") from None
+
+
 def read_header(path: Path) -> Header:
     """Read what `write` stored beside the fields; raises UserError for other files."""
-    with open_hdf5(path) as file:
+    with _snapshot_file(path) as file:
         dim = file.attribute(ROOT, "Dimension")
         if dim not in (2, 3):
             raise file.error("Dimension", f"is {dim}; expected 2 or 3")
@@ -48,7 +60,7 @@ def read_fields(path: Path, fields: Sequence[ParticleField], dim: int) -> dict[s
 
     Raises UserError for what `write` does not write.
     """
-    with open_hdf5(path) as file:
+    with _snapshot_file(path) as file:
         count = len(file.dataset(f"{ROOT}/Points"))
         return {field.key: _field(file, field, location(field), count, dim) for field in fields}
 
@@ -63,7 +75,7 @@ def read_grains(
     path: Path, dim: int, fields: Sequence[ParticleField] = GRAIN_FIELDS
 ) -> dict[str, np.ndarray]:
     """Columns of the table of bodies that move, by their keys; empty where there are none."""
-    with open_hdf5(path) as file:
+    with _snapshot_file(path) as file:
         if GRAINS not in file:
             return {}
         count = len(file.dataset(f"{GRAINS}/Position"))
