@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from doseki.geodata.grid import Raster
+from doseki.geodata.ground import Profile, write_ground
 from doseki.geodata.raster import write_raster
 from doseki.record.reader import load
 from doseki.report.report import write_report
@@ -84,6 +85,16 @@ def test_terrain_is_drawn(map_run, tmp_path):
     state = state_of(page, "", tmp_path / "profile")
     assert not state["terrain"]
     assert state["cut"]
+
+
+def test_the_ground_of_a_slice_is_drawn_below_its_flow(drawn_flow, tmp_path):
+    soil = (205, 191, 163)
+    without = picture_of(write_report(drawn_flow).path, "", tmp_path / "without")
+    write_ground(drawn_flow, Profile(np.array([-1.0, 9.0]), np.array([-0.1, -0.1])))
+    page = write_report(drawn_flow).path
+    assert state_of(page, "", tmp_path / "profile")["terrain"]
+    drawn = picture_of(page, "", tmp_path / "with")
+    assert near(drawn, soil, 25) > near(without, soil, 25) + 5000
 
 
 def test_a_flat_run_is_drawn_face_on_in_place(drawn_flow, tmp_path):

@@ -13,7 +13,7 @@ from doseki.report.view.box import box_of
 from doseki.report.view.coding import morton_order, packed, wide
 from doseki.report.view.rigid import rigid_shapes
 from doseki.report.view.scene import make_scene
-from doseki.report.view.terrain import NO_DATA, STEPS, contour_interval, grid_of
+from doseki.report.view.terrain import NO_DATA, STEPS, contour_interval, grid_below, grid_of
 from doseki.report.view.thinning import Thinning, hidden, spread, thinned
 
 from .conftest import CORNER, map_state, record_map
@@ -225,6 +225,20 @@ def test_terrain_is_a_grid_from_the_south_west(map_run):
     assert heights[0, 0] == STEPS
     assert heights[39, 29] == 0
     assert grid_of(Raster(1200, 30)).heights.shape == (400, 10)
+
+
+def test_the_ground_of_a_slice_reaches_from_below_to_its_profile(drawn_flow):
+    x, z = np.array([-2.0, 0.0, 6.0]), np.array([1.0, 0.0, -3.0])
+    scene = make_scene(load(drawn_flow), PLENTY, grid_below(x, z))
+    table = scene.table["terrain"]
+    assert table["upright"]
+    corner = np.array(scene.table["corner"]) + table["origin"]
+    assert np.allclose(corner, [-2.0, -3.0 - 0.05 * 8.0, 0.0])
+    low, surface = unpacked(scene.blocks["terrain"], "w")[0].reshape(2, 3)
+    heights = corner[1] + surface / STEPS * table["spacing"][2]
+    places = corner[0] + table["spacing"][0] * np.arange(3)
+    assert np.all(low == 0)
+    assert np.allclose(heights, np.interp(places, x, z), atol=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..assess.summary import title_of
 from ..errors import UserError, one_line
 from ..figures.plot import draw_run
-from ..geodata.raster import read_raster
+from ..geodata.ground import Profile, ground_files
 from ..measure.views import tables
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
@@ -27,7 +27,7 @@ from .parts.pictures import WIDTHS, Album, gallery
 from .parts.provenance import provenance
 from .parts.tables import tables_of
 from .view.scene import Scene, make_scene
-from .view.terrain import Grid, grid_of
+from .view.terrain import Grid, grid_below, grid_of
 
 MB = 1e6
 DEFAULT_MB = 20.0
@@ -167,15 +167,16 @@ def _draw_missing(run: Run) -> list[str]:
 
 
 def _terrain(run: Run, notes: list[str]) -> Grid | None:
-    """The terrain of a 3-D run as it was used; what cannot be read is left out, with a note."""
-    file = run.folder.terrain
-    if file is None or run.scenario["dim"] != 3:
-        return None
+    """The terrain of a run as it was used; what cannot be read is left out, with a note."""
     try:
-        return grid_of(read_raster(file))
+        ground = run.ground
     except UserError as error:
-        notes.append(one_line(f"{file.name} is left out: {error}."))
+        name = ground_files(run.folder.path)[0].name
+        notes.append(one_line(f"{name} is left out: {error}."))
         return None
+    if isinstance(ground, Profile):
+        return grid_below(ground.x, ground.z)
+    return None if ground is None else grid_of(ground)
 
 
 def _scene(run: Run, room: float, terrain: Grid | None) -> tuple[Scene | None, str]:

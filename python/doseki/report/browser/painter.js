@@ -253,6 +253,7 @@ class Painter {
     gl.bindTexture(gl.TEXTURE_2D, terrain.texture);
     gl.uniform1i(places.heights, 1);
     gl.uniform2i(places.shape, terrain.columns, terrain.rows);
+    gl.uniform1i(places.upright, terrain.upright);
     gl.bindVertexArray(terrain.array);
     gl.drawElements(gl.TRIANGLES, terrain.count, gl.UNSIGNED_INT, 0);
   }

@@ -148,6 +148,7 @@ uniform mat4 view, projection;
 uniform usampler2D heights;      // 16 bits; 65535: no data
 uniform ivec2 shape;             // columns, rows
 uniform vec3 origin, spacing;    // m; the third: of the lowest height, and the range
+uniform bool upright;            // heights are along y: the ground of a 2-D run as it is cut
 out vec3 facing;
 out float height;
 float heightAt(ivec2 node) {
@@ -158,14 +159,17 @@ void main() {
   float dx = heightAt(node + ivec2(1, 0)) - heightAt(node - ivec2(1, 0));
   float dy = heightAt(node + ivec2(0, 1)) - heightAt(node - ivec2(0, 1));
   facing = normalize(vec3(-dx / (2.0 * spacing.x), -dy / (2.0 * spacing.y), 1.0));
-  vec3 p = origin + vec3(vec2(node) * spacing.xy, heightAt(node));
-  height = p.z;
+  if (upright) facing = vec3(0.0, 0.0, 1.0);
+  vec2 place = vec2(node) * spacing.xy;
+  vec3 p = origin + (upright ? vec3(place.x, heightAt(node), 0.0) : vec3(place, heightAt(node)));
+  height = upright ? p.y : p.z;
   gl_Position = projection * view * vec4(p, 1.0);
 }`;
 
 const TERRAIN_FRAGMENT = `${HEAD}
 uniform vec3 soil;
 uniform float interval, base;    // m, of contours; height of the corner of the box
+uniform bool upright;
 in vec3 facing;
 in float height;
 out vec4 pixel;
@@ -177,7 +181,7 @@ float line(float every) {
 void main() {
   float light = dot(normalize(facing), normalize(vec3(-0.5, 0.5, 0.7)));
   vec3 colour = soil * (0.62 + 0.48 * max(light, 0.0));
-  colour *= 1.0 - max(0.14 * line(interval), 0.26 * line(5.0 * interval));
+  if (!upright) colour *= 1.0 - max(0.14 * line(interval), 0.26 * line(5.0 * interval));
   pixel = vec4(colour, 1.0);
 }`;
 
