@@ -41,13 +41,11 @@ struct FlowRecords {
     }
 };
 
-/// Over the neighbours of fluid particles: what Sums adds up.
-template <template <class, int> class Sums, class Kernel, class real, int D>
-struct FluidTerm {
+/// What the terms of this file have in common: their records, and how neighbours are read.
+template <class real, int D>
+struct FlowNeighbours {
     using Real = real;
     static constexpr int dim = D;
-    template <class T>
-    using Accumulators = Sums<T, D>;
 
     FlowRecords<real, D> records;
     FlowConstants constants;
@@ -55,16 +53,25 @@ struct FluidTerm {
     DOSEKI_DEVICE_FN real reach() const { return records.reach(); }
 
     template <class Rows>
-    DOSEKI_FN auto load(Rows rows) const {
-        return records.fluid(rows.within(0, records.fluid_count - 1));
-    }
-    template <class Rows>
     DOSEKI_FN auto load_moving(Rows j) const {
         return records.fluid(j);
     }
     template <class Rows>
     DOSEKI_FN auto load_fixed(Rows j) const {
         return records.wall(j);
+    }
+};
+
+/// Over the neighbours of fluid particles: what Sums adds up.
+template <template <class, int> class Sums, class Kernel, class real, int D>
+struct FluidTerm : FlowNeighbours<real, D> {
+    using FlowNeighbours<real, D>::records, FlowNeighbours<real, D>::constants;
+    template <class T>
+    using Accumulators = Sums<T, D>;
+
+    template <class Rows>
+    DOSEKI_FN auto load(Rows rows) const {
+        return records.fluid(rows.within(0, records.fluid_count - 1));
     }
 
     template <class T>
@@ -86,29 +93,16 @@ using ForceTerm = FluidTerm<ForceAccumulators, Kernel, real, D>;
 
 /// What a wall particle sums of the fluid and the other faces around it.
 template <class Kernel, class real, int D>
-struct WallTerm {
-    using Real = real;
-    static constexpr int dim = D;
+struct WallTerm : FlowNeighbours<real, D> {
+    using FlowNeighbours<real, D>::records, FlowNeighbours<real, D>::constants;
     template <class T>
     using Accumulators = WallAccumulators<T, D>;
 
-    FlowRecords<real, D> records;
-    FlowConstants constants;
     Vec<double, D> gravity;
-
-    DOSEKI_DEVICE_FN real reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
         return records.wall(rows.within(records.first_wall(), records.count - 1));
-    }
-    template <class Rows>
-    DOSEKI_FN auto load_moving(Rows j) const {
-        return records.fluid(j);
-    }
-    template <class Rows>
-    DOSEKI_FN auto load_fixed(Rows j) const {
-        return records.wall(j);
     }
 
     template <class T>
@@ -127,18 +121,13 @@ struct WallTerm {
 
 /// What a wall particle sums of the fluid that pushes on a face of its body, see FacePush.
 template <class Kernel, class real, int D>
-struct FaceTerm {
-    using Real = real;
-    static constexpr int dim = D;
+struct FaceTerm : FlowNeighbours<real, D> {
+    using FlowNeighbours<real, D>::records, FlowNeighbours<real, D>::constants;
     template <class T>
     using Accumulators = FaceAccumulators<T, D>;
 
-    FlowRecords<real, D> records;
-    FlowConstants constants;
     Vec<double, D> normal;
     std::span<const FaceDepth<real>> depths;
-
-    DOSEKI_DEVICE_FN real reach() const { return records.reach(); }
 
     template <class Rows>
     DOSEKI_FN auto load(Rows rows) const {
@@ -146,14 +135,6 @@ struct FaceTerm {
         const auto walls = rows.within(records.first_wall(), records.count - 1);
         const auto depth = take<FaceDepth<T>>(depths, walls.counted_from(records.first_wall()));
         return FacedPoint<T, D>{records.wall(walls), depth.below};
-    }
-    template <class Rows>
-    DOSEKI_FN auto load_moving(Rows j) const {
-        return records.fluid(j);
-    }
-    template <class Rows>
-    DOSEKI_FN auto load_fixed(Rows j) const {
-        return records.wall(j);
     }
 
     template <class T>
