@@ -20,7 +20,7 @@ from doseki.figures.space.surfaces import Camera
 from doseki.figures.space.way import Way, dots_beside, extent_beside
 from doseki.geodata.grid import Raster
 from doseki.geodata.raster import write_raster
-from doseki.measure.moments import Moment
+from doseki.measure.moments import Moment, moments
 from doseki.measure.views import View, whole_space
 from doseki.record.reader import load
 
@@ -54,13 +54,15 @@ def dam_across(angle):
 
 @pytest.fixture
 def slide(tmp_path, record_run):
-    """A function that makes a run of a block that slides 40 m down the channel of that angle."""
+    """A function that makes a run of a block that slides down the channel of that angle: by 40 m,
+    or as far as `way` says, m, at a time.
+    """
 
-    def at(angle, dam=False):
+    def at(angle, dam=False, way=lambda time: 10 * time):
         def state(time):
             axes = [np.arange(-a, a, 1.0) + 0.5 for a in (6, 3, 1)]
             along, across, up = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
-            along = along - 20 + 10 * time
+            along = along - 20 + way(time)
             plan = MIDDLE + np.outer(along, towards(angle)) + np.outer(across, towards(angle + 90))
             position = np.column_stack([plan, 902 - 0.5 * along + up])
             kind = np.zeros(len(position), int)
@@ -102,6 +104,16 @@ def test_the_way_is_that_of_the_flow_whatever_its_direction(slide, angle):
     assert right > 45.5
     assert bottom < clouds[-1].points[:, 1].min()
     assert top > clouds[0].points[:, 1].max()
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_a_flow_arrives_whichever_way_it_goes(slide, angle):
+    run = slide(angle, way=lambda time: min(20 * time, 40))
+    with (run.directory / "scenario.toml").open("a") as file:
+        file.write('[terrain]\nfile = "terrain.asc"\n')
+    run = load(run.directory)
+    found = {moment.index: moment.name for moment in moments(run, whole_space(3))}
+    assert "arrival" in found[1]
 
 
 def test_the_picture_from_in_front_of_a_flow_does_not_turn_with_it(slide):

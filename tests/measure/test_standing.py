@@ -17,7 +17,8 @@ def state_of(*rows):
     velocity = np.zeros((len(rows), 3))
     velocity[:, 0] = speed
     kinds = {"body": body, "grain": grain, "motion": motion}
-    return {key: value.astype(int) for key, value in kinds.items()} | {"velocity": velocity}
+    fields = {"velocity": velocity, "mass": np.ones(len(rows))}
+    return {key: value.astype(int) for key, value in kinds.items()} | fields
 
 
 def test_parts_with_a_clamped_point_stand():
@@ -43,3 +44,12 @@ def test_without_clamped_bodies_nothing_stands():
     state = state_of((0, -1, FREE, 0.0), (3, 0, BOUND, 0.0))
     assert not standing(state, clamped_bodies(NAMES, {})).any()
     assert len(flowing(state, clamped_bodies(NAMES, {}))["motion"]) == 2
+
+
+def test_a_body_that_spins_is_as_fast_as_its_centre():
+    state = state_of((0, -1, FREE, 4.0), (3, 0, BOUND, 0.0), (3, 0, BOUND, 6.0), (3, 1, BOUND, 1.0))
+    state["mass"][2] = 2.0
+    for clamped in (clamped_bodies(NAMES, {}), clamped_bodies(NAMES, TABLES)):
+        shown = flowing(state, clamped)
+        assert shown["velocity"][:, 0].tolist() == [4.0, 4.0, 4.0, 1.0]
+    assert state["velocity"][:, 0].tolist() == [4.0, 0.0, 6.0, 1.0]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..record.reader import Run, Snapshot
+from .advance import Advance, goes_along_x
 from .views import View, select, way_of_flow, what_flows
 
 ARRIVED = 0.95  # of the way that the front ever goes
@@ -29,6 +30,7 @@ class _Look:
     energy: float  # kinetic, of what moves, J (2-D: J/m)
     count: int  # of what flows
     ends: tuple[float, float]  # along the first axis, of what flows, m
+    way: float  # on a map: how far what flows has come, m
 
 
 def moments(run: Run, view: View) -> list[Moment]:
@@ -40,10 +42,11 @@ def moments(run: Run, view: View) -> list[Moment]:
     is shown: bodies meet.
     """
     materials = what_flows(run)
-    looks = [_look(snapshot, view, materials) for snapshot in run]
+    advance = None if goes_along_x(run) else Advance(run)
+    looks = [_look(snapshot, view, materials, advance) for snapshot in run]
     found = {0: ["start"]}
     energies = np.array([look.energy for look in looks])
-    arrival, peak = _arrival(run, view, looks), int(np.argmax(energies))
+    arrival, peak = _arrival(run, view, looks, advance is None), int(np.argmax(energies))
     if arrival is not None and arrival < len(looks) - 1:  # else it may still be on its way
         found.setdefault(arrival, []).append("arrival")
     if peak > 0:
@@ -54,22 +57,28 @@ def moments(run: Run, view: View) -> list[Moment]:
     return [Moment(index, ", ".join(found[index])) for index in sorted(found)]
 
 
-def _look(snapshot: Snapshot, view: View, materials: set[str] | None) -> _Look:
+def _look(
+    snapshot: Snapshot, view: View, materials: set[str] | None, advance: Advance | None
+) -> _Look:
     moving = select(snapshot, view)
     mass, velocity = snapshot["mass"][moving], snapshot["velocity"][moving]
     flows = select(snapshot, view, materials)
     along = snapshot["position"][flows][:, 0]
     ends = np.percentile(along, (100 - AHEAD, AHEAD)) if len(along) else (math.nan, math.nan)
     energy = 0.5 * float(mass @ (velocity**2).sum(axis=1))
-    return _Look(energy, len(along), (ends[0], ends[1]))
+    way = advance.look(snapshot, flows) if advance else math.nan
+    return _Look(energy, len(along), (ends[0], ends[1]), way)
 
 
-def _arrival(run: Run, view: View, looks: list[_Look]) -> int | None:
+def _arrival(run: Run, view: View, looks: list[_Look], along_x: bool) -> int | None:
     if np.isfinite([view.lower[0], view.upper[0]]).all():
         there = np.flatnonzero([look.count for look in looks])
         return int(there[0]) if len(there) else None
-    way = way_of_flow(run)
-    fronts = np.array([way * look.ends[1 if way > 0 else 0] for look in looks])
+    if along_x:
+        way = way_of_flow(run)
+        fronts = np.array([way * look.ends[1 if way > 0 else 0] for look in looks])
+    else:
+        way, fronts = 1, np.array([look.way for look in looks])
     if way == 0 or not np.isfinite(fronts).any():
         return None
     gone = fronts - fronts[np.isfinite(fronts)][0]

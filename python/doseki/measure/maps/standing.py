@@ -1,4 +1,4 @@
-"""Structures that deform: clamped bodies, which no map counts as part of the flow."""
+"""What of a state maps show: not structures that deform, and of bodies how they get along."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from ...record.particles import BOUND
 
-KEYS = ("body", "grain", "motion", "velocity")  # of a state
+KEYS = ("body", "grain", "mass", "motion", "velocity")  # of a state
 
 
 def clamped_bodies(names: Sequence[str], tables: Mapping[str, Mapping[str, Any]]) -> np.ndarray:
@@ -32,8 +32,27 @@ def standing(state: Mapping[str, np.ndarray], clamped: np.ndarray) -> np.ndarray
 
 
 def flowing(state: Mapping[str, np.ndarray], clamped: np.ndarray) -> dict[str, np.ndarray]:
-    """The rest of a state."""
-    if not len(clamped):
-        return dict(state)
-    rest = ~standing(state, clamped)
-    return {key: values[rest] for key, values in state.items() if len(values) == len(rest)}
+    """The rest of a state, where each particle of a body has the velocity of its centre of mass.
+
+    The upper side of a boulder that rolls is twice as fast as the boulder gets along.
+    """
+    rest = dict(state)
+    if len(clamped):
+        flows = ~standing(state, clamped)
+        rest = {key: values[flows] for key, values in state.items() if len(values) == len(flows)}
+    return rest | {"velocity": _of_centres(rest)}
+
+
+def _of_centres(state: Mapping[str, np.ndarray]) -> np.ndarray:
+    velocity = state["velocity"]
+    own = np.flatnonzero((state["motion"] == BOUND) & (state["grain"] >= 0))
+    if not len(own):
+        return velocity
+    grain = state["grain"][own].astype(np.int64)
+    key = state["body"][own].astype(np.int64) * (grain.max() + 1) + grain
+    body, mass = np.unique(key, return_inverse=True)[1], state["mass"][own]
+    total = np.bincount(body, mass)
+    velocity = velocity.copy()
+    for axis in velocity.T:
+        axis[own] = (np.bincount(body, mass * axis[own]) / total)[body]
+    return velocity
