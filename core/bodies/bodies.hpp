@@ -200,9 +200,9 @@ private:
     };
     /// A step of the run, as far as it has come.
     struct Course {
-        BodySums<D> before;  // of rigid bodies at its start, with those that have become one since
-        BodyStep<D> given;   // to deformable bodies
-        double half = 0.0;   // of the step, for which the fluid has kicked bodies in these sums
+        BodySums<D> before;   // of rigid bodies at its start, with those that have become one since
+        BodyStep<D> given{};  // to deformable bodies
+        double half = 0.0;    // of the step, for which the fluid has kicked bodies in these sums
         // Times for which gravity and the fluid have acted on rigid bodies and on deformable ones.
         double on_rigid = 0.0, on_points = 0.0;
     };
@@ -310,6 +310,10 @@ private:
         return std::min(
             {longest_step(PairKind::fast), deformable_step_, deformable.unstrained_timestep()});
     }
+    /// Of the ball around a body, as contacts number them [m].
+    double radius_of(std::size_t k) const {
+        return k < rigid.size() ? rigid.shape(k).radius : deformable.radius(k - rigid.size());
+    }
     /// Contacts that have pressed on fixed bodies for dt.
     void add_loads(PairKind kind, double dt) {
         if (loads.empty()) return;
@@ -319,9 +323,8 @@ private:
                 const Vec<double, D>& force, const Vec3& moment, double approach) {
                 const auto k = static_cast<std::size_t>(on), other = static_cast<std::size_t>(by);
                 if (k >= rigid.size() || !rigid.body(k).fixed) return;
-                const double radius = other < rigid.size() ? rigid.shape(other).radius : 0.0;
-                loads.add_contact(rigid.body(k).group, {place, force, moment}, {approach, radius},
-                                  dt);
+                const Hit hit{approach, approach > 0.0 ? radius_of(other) : 0.0};
+                loads.add_contact(rigid.body(k).group, {place, force, moment}, hit, dt);
             });
     }
     void drift(const MovingWalls<D>& walls, double t, double dt);

@@ -78,8 +78,8 @@ public:
     }
     /// Until a kind is applied again no pair of it has touched.
     void forget_forces() { pushes_.assign(pairs_.size(), {}); }
-    /// Calls f(body, place, force) for each body of each pair that touched when its kind was last
-    /// applied: the force on it there, by the image that is near the first of the pair.
+    /// Calls f(body, other, place, force) for each body of each pair that touched when its kind was
+    /// last applied: the force on it there, by the image that is near the first of the pair.
     template <class F>
     void for_each_force(const ContactBodies<D>& bodies, F&& f) const {
         for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -87,8 +87,8 @@ public:
             if (!push.touches) continue;
             const Vec<double, D> place =
                 bodies.points.position[pairs_[k].first()] + push.overlap.lever_a;
-            f(contacts_[k].body_a, place, push.force);
-            f(contacts_[k].body_b, place, -1.0 * push.force);
+            f(contacts_[k].body_a, contacts_[k].body_b, place, push.force);
+            f(contacts_[k].body_b, contacts_[k].body_a, place, -1.0 * push.force);
         }
     }
     /// Largest overlap there ever was, over the diameter.

@@ -32,13 +32,14 @@ Array<SurfaceVertex<D>> surface_of(const NamedValues& table, const Array<Vec<dou
     const auto carrier = column.numbers<std::int32_t>("carrier");
     const auto crease = column.numbers<std::uint8_t>("crease");
     const auto outward = column.vectors<D>("outward");
-    const auto share = column.numbers<double>("share");
+    const auto share = column.numbers<double>("share"), radius = column.numbers<double>("radius");
     Array<SurfaceVertex<D>> vertices;
     for (std::size_t v = 0; v < place.size(); ++v) {
         const Vec<double, D> point = rest.at(static_cast<std::size_t>(carrier[v]));
         SurfaceVertex<D>& vertex = vertices.emplace_back();
         vertex.point = static_cast<std::uint32_t>(carrier[v]), vertex.offset = place[v] - point;
         vertex.crease = crease[v], vertex.outward = outward[v], vertex.share = share[v];
+        vertex.radius = radius[v];
     }
     return vertices;
 }
@@ -146,9 +147,9 @@ void BodyTables<D>::bind(Bodies<D>& bodies, Particles<D>& particles, const Named
 template <int D>
 void BodyTables<D>::add_elastic(Bodies<D>& bodies, Particles<D>& particles,
                                 const NamedValues& table) {
-    const Array<const char*> own{"material", "particles",  "rest",      "position",   "velocity",
-                                 "clamped",  "vertex",     "carrier",   "crease",     "outward",
-                                 "share",    "cell_count", "cell_node", "rigid_first"};
+    const Array<const char*> own{"material", "particles", "rest",       "position",  "velocity",
+                                 "clamped",  "vertex",    "carrier",    "crease",    "outward",
+                                 "share",    "radius",    "cell_count", "cell_node", "rigid_first"};
     const DeformableBody body = read_elastic_body(table, own);
     if (!particles.wall.in_use) throw std::invalid_argument("the scheme has no bodies");
     std::int32_t material = 0;

@@ -2,77 +2,20 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <span>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
-#include "bodies/breakable/sections.hpp"
+#include "bodies/breakable/breakable_body.hpp"
+#include "bodies/breakable/held_bodies.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
-#include "bodies/fragments/rigid_motion.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "physics/fracture/impact.hpp"
 
 namespace doseki {
 
-/// Diameter of a disc or ball as large as so many points.
-template <int D>
-double diameter_of(const DeformableBody& body, std::size_t points) {
-    const double count = static_cast<double>(points);
-    return body.spacing * (D == 2 ? std::sqrt(4.0 * count / std::numbers::pi)
-                                  : std::cbrt(6.0 * count / std::numbers::pi));
-}
-
-/// One of `breakable` kinematics: the rigid body that it is while nothing strikes it, and the
-/// deformable one that it is while something does. Only one of them takes part in steps. What has
-/// come off, and what has lost parts, has no rigid one until it has come to rest within itself.
-template <int D>
-struct BreakableBody {
-    static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-
-    std::size_t rigid, deformable;
-    Vec<double, D> centre;  // of the rigid one where the points of the other are at rest
-    Quaternion orientation;
-    double deforms_for = 0.0;                // since it was made deformable [s]
-    double loudness = 0.0;                   // energy of its vibration lately [J], 2-D: [J/m]
-    double strength = 0.0;                   // tension at which the first crack begins [Pa]
-    double bears = 0.0;                      // the same with the cracks that it has
-    double impedance = 0.0, diameter = 0.0;  // see Touch
-    double bar_impedance = 0.0;              // see blow_tension
-    Vec<double, D> middle{};                 // of its points at rest
-    Sections sections{};                     // about it
-
-    bool has_rigid() const { return rigid != none; }
-    /// Whether it is deformable now, and not all dust.
-    bool deforms(const DeformableBodies<D>& bodies) const {
-        return diameter > 0.0 && !bodies.solids().is_rigid(deformable);
-    }
-    /// Time in which a wave goes through it once [s].
-    double crossing(const DeformableBodies<D>& bodies) const {
-        return diameter / bodies.solids().material(deformable).wave_speed();
-    }
-    /// Tension of bending by what loads its points; `motion` is theirs.
-    double bent(const TotalLagrangian<D>& solids, const RigidMotion<D>& motion) const {
-        if (!sections.any()) return 0.0;
-        const Mat<double, 3> turn = motion.orientation.matrix();
-        Array<PlacedForce> forces;
-        for (const std::uint32_t p : solids.points_of(deformable))
-            forces.push_back({in_space(solids.rest_position(p) - middle),
-                              rotated_back(turn, in_space(solids.load[p]))});
-        return sections.tension(forces);
-    }
-    /// Tension of bending by what it meets at this speed, as heavy as `other` [kg], 2-D: [kg/m].
-    double blown(double speed, double density, double other) const {
-        if (!sections.any()) return 0.0;
-        const double share = 1.0 / (1.0 + density * sections.cube() / other);
-        return blow_tension(speed, bar_impedance, sections.fibre(), share);
-    }
-    /// Time for which it remembers how it vibrated [s].
-    double lately(const DeformableBodies<D>& bodies) const { return 5.0 * crossing(bodies); }
-};
-
-/// All of them.
+/// All breakable bodies.
 template <int D>
 class BreakableBodies {
 public:
@@ -167,11 +110,15 @@ private:
         const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
         return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
     }
-    /// Adds the tension of bending by all contacts to that of others, where it may be more than
-    /// bodies bear.
+    /// Adds the tension of bending by all contacts and of spin to that of others, where it may be
+    /// more than bodies bear.
     void bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
               const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
               Array<double>& tension) const;
+    /// The same by what comes nearer to a body that others hold.
+    void catch_blows(const Contacts<D>& contacts, const ContactBodies<D>& touching,
+                     const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
+                     Array<double>& tension) const;
 
     Array<BreakableBody<D>> bodies_;
     Array<std::int32_t> of_rigid_, deformable_point_;
@@ -206,37 +153,70 @@ template <int D>
 void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
                               const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
                               Array<double>& tension) const {
-    auto is_slender = [](const BreakableBody<D>& body) { return body.sections.any(); };
-    if (std::ranges::none_of(bodies_, is_slender)) return;
     auto for_each_force = [&](auto&& f) {
-        contacts.for_each_force(touching, [&](std::int32_t k, const Vec<double, D>& place,
-                                              const Vec<double, D>& force) {
-            const BreakableBody<D>* body = waiting(k, deformable);
-            if (body && is_slender(*body))
-                f(static_cast<std::size_t>(body - bodies_.data()), place, force);
-        });
+        contacts.for_each_force(
+            touching, [&](std::int32_t k, std::int32_t, const Vec<double, D>& place,
+                          const Vec<double, D>& force) {
+                if (const BreakableBody<D>* body = waiting(k, deformable))
+                    f(static_cast<std::size_t>(body - bodies_.data()), place, force);
+            });
     };
     Array<double> sum(size(), 0.0);
     for_each_force([&](std::size_t n, const Vec<double, D>&, const Vec<double, D>& force) {
         sum[n] += norm(force);
     });
-    Array<std::uint8_t> may_bend;
+    Array<std::uint8_t> may_bend(size(), 0);
     for (std::size_t n = 0; n < size(); ++n)
-        may_bend.push_back(sum[n] > 0.0 &&
-                           bodies_[n].sections.most_tension(sum[n]) >= bodies_[n].bears);
+        if (bodies_[n].has_rigid() && deformable.solids().is_rigid(bodies_[n].deformable))
+            may_bend[n] = bodies_[n].sections.most_tension(sum[n], rigid.spin(bodies_[n].rigid)) >=
+                          bodies_[n].bears;
     Array<Array<PlacedForce>> forces(size());
     for_each_force([&](std::size_t n, const Vec<double, D>& place, const Vec<double, D>& force) {
         if (!may_bend[n]) return;
         const BreakableBody<D>& body = bodies_[n];
-        const Mat<double, 3> turn =
-            rigid.orientation(body.rigid).matrix() * transposed(body.orientation.matrix());
         const Vec<double, D> r =
             nearest_image(contacts.domain(), place - rigid.state(body.rigid).centre);
+        const Mat<double, 3> turn = body.turned(rigid);
         forces[n].push_back({rotated_back(turn, in_space(r)) + in_space(body.centre - body.middle),
                              rotated_back(turn, in_space(force))});
     });
+    for (std::size_t n = 0; n < size(); ++n) {
+        if (!may_bend[n]) continue;
+        const Vec3 spin = rotated_back(bodies_[n].turned(rigid), rigid.spin(bodies_[n].rigid));
+        tension[n] = std::max(tension[n], bodies_[n].sections.tension(forces[n], spin));
+    }
+}
+
+template <int D>
+void BreakableBodies<D>::catch_blows(const Contacts<D>& contacts, const ContactBodies<D>& touching,
+                                     const DeformableBodies<D>& deformable,
+                                     const RigidBodies<D>& rigid, Array<double>& tension) const {
+    auto bends = [](const BreakableBody<D>& body) { return body.sections.bends(); };
+    if (std::ranges::none_of(bodies_, bends)) return;
+    auto number_of = [&](std::int32_t k) {
+        const BreakableBody<D>* body = waiting(k, deformable);
+        return body && bends(*body) ? body - bodies_.data() : -1;
+    };
+    auto is_rigid = [&](std::int32_t k) { return static_cast<std::size_t>(k) < rigid.size(); };
+    auto mass_of = [&](std::int32_t k) {
+        const auto other = static_cast<std::size_t>(k);
+        if (!is_rigid(k)) return deformable.mass(other - rigid.size());
+        return rigid.body(other).fixed ? 0.0 : rigid.body(other).mass;
+    };
+    auto velocity_at = [&](std::int32_t k, const Vec<double, D>& place) {
+        const auto body = static_cast<std::size_t>(k);
+        if (!is_rigid(k)) return deformable.velocity(body - rigid.size());
+        const RigidBodyState<D>& state = rigid.state(body);
+        const Vec<double, D> r = nearest_image(contacts.domain(), place - state.centre);
+        return state.velocity + turning_velocity<D>(rigid.spin(body), r);
+    };
+    const Array<Held> held =
+        held_bodies(size(), contacts, touching, number_of, mass_of, velocity_at);
     for (std::size_t n = 0; n < size(); ++n)
-        tension[n] = std::max(tension[n], bodies_[n].sections.tension(forces[n]));
+        if (held[n].mass > 0.0)
+            tension[n] = std::max(
+                tension[n], bodies_[n].caught(held[n].closing,
+                                              held[n].mass / rigid.body(bodies_[n].rigid).mass));
 }
 
 template <int D>
@@ -304,6 +284,7 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
                                 feel(a, b, push, approach), feel(b, a, push, approach);
                             });
     bend(contacts, touching, deformable, rigid, tension);
+    catch_blows(contacts, touching, deformable, rigid, tension);
     Array<std::size_t> found;
     for (std::size_t n = 0; n < size(); ++n)
         if (tension[n] >= bodies_[n].bears) found.push_back(n);

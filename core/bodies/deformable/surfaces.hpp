@@ -58,8 +58,6 @@ public:
             vertex.key =
                 D == 3 ? vertex.point
                        : VertexKey::of_outline(CellNode::outline | static_cast<std::uint32_t>(v));
-            if (D == 3 && vertex.share == 0.0)
-                vertex.radius = 0.5 * solids.body_of(vertex.point).spacing;
         }
         cells_.start([&](std::uint32_t number) { return solids.slot(number); });
     }

@@ -236,11 +236,9 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
     for (const std::size_t n : struck) {
         BreakableBody<D>& body = breakable_[n];
         RigidBodyState<D>& state = rigid.state(body.rigid);
-        const Quaternion now = rigid.orientation(body.rigid);
-        const Mat<double, 3> turn = now.matrix() * transposed(body.orientation.matrix());
         deformable.make_deformable(
             body.deformable,
-            {body.centre, state.centre, state.velocity, state.angular_momentum, turn},
+            {body.centre, state.centre, state.velocity, state.angular_momentum, body.turned(rigid)},
             state.acceleration);
         rigid.take_out(body.rigid);
         body.deforms_for = body.loudness = 0.0;

@@ -2,6 +2,7 @@
 // What a touch does to a body that might break.
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace doseki {
@@ -36,6 +37,16 @@ double pressed_tension(double force, double diameter) {
 inline double blow_tension(double speed, double impedance, double fibre, double share) {
     constexpr double ends = 1.3;
     return ends * impedance * speed * share * fibre;
+}
+
+/// Largest tension in a beam on supports in the middle of which something lands that has `mass`
+/// times its own mass, Eq. (180); `impedance` and `fibre` as in blow_tension. All of the energy of
+/// the blow bends it. In a block that is about as long as thick most of it goes into shear and into
+/// where it is touched.
+inline double caught_tension(double speed, double impedance, double fibre, double mass,
+                             bool is_long) {
+    const double bends = is_long ? 1.0 : 0.125;  // share of the energy
+    return impedance * speed * fibre * std::sqrt(3.0 * bends * mass);
 }
 
 /// Eq. (139a) and (139b): the tension that is to be expected at most in a compact body.

@@ -9,6 +9,8 @@ import numpy as np
 from .groups import Group
 from .meshes.cells import Cells
 
+LEAST = 0.1  # spacings: the least radius of a ball
+
 
 @dataclass(frozen=True)
 class ElasticSurface:
@@ -23,13 +25,20 @@ class ElasticSurface:
     crease: np.ndarray  # (m,) bool: where smooth parts of the curve end
     outward: np.ndarray  # (m, dim)
     share: np.ndarray  # (m,) the area, over spacing^2
+    radius: np.ndarray  # (m,) m, of balls; 0: of a surface
 
 
-def balls_around(rest: np.ndarray, particles: np.ndarray) -> ElasticSurface:
-    """Of some of the particles of a 3-D body, which are at `rest` (n, 3)."""
+def balls_around(rest: np.ndarray, depth: np.ndarray, spacing: float) -> ElasticSurface:
+    """Of the outermost particles of a 3-D body, which are at `rest` (n, 3), so deep in it (n,).
+
+    Each reaches to the face: where the sides of a body are no whole number of spacings, balls of
+    half a spacing would begin inside what it lies on.
+    """
+    particles = np.flatnonzero(depth < spacing)
     none = np.zeros(len(particles))
+    radius = np.maximum(depth[particles], LEAST * spacing)
     return ElasticSurface(
-        rest[particles], particles, none.astype(bool), np.zeros((len(particles), 3)), none
+        rest[particles], particles, none.astype(bool), np.zeros((len(particles), 3)), none, radius
     )
 
 

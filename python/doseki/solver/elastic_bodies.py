@@ -45,6 +45,7 @@ def elastic_table(scenario: Scenario, body: ElasticBody) -> dict[str, Any]:
             "crease": np.ascontiguousarray(body.surface.crease, np.uint8),
             "outward": np.ascontiguousarray(body.surface.outward),
             "share": np.ascontiguousarray(body.surface.share),
+            "radius": np.ascontiguousarray(body.surface.radius),
             "cell_count": body.cells.count,
             "cell_node": body.cells.node,
             "rigid_first": body.rigid_first,

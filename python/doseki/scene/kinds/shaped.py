@@ -190,18 +190,22 @@ class Shaped(Body[S], Generic[S]):
     ) -> ElasticSurface:
         """That of body k, whose particles are at `rest`, so deep in it, and `spacing` apart."""
         if self.dim == 3 and self.breaks:
-            return balls_around(rest, np.flatnonzero(depth < spacing))
+            return balls_around(rest, depth, spacing)
         shape, turn = group.shapes[group.shape[k]], matrices(group.orientation, self.dim)[k]
         centre = group.centre[k]
         if self.dim == 3:
             particles = (rest - centre) @ turn
             (place, normal, area), nearest = shared_among(particles, shape.surface(spacing))
-            crease, share = np.zeros(len(area), bool), area / spacing**2
-            return ElasticSurface(centre + place @ turn.T, nearest, crease, normal @ turn.T, share)
+            none, share = np.zeros(len(area)), area / spacing**2
+            crease = none.astype(bool)
+            return ElasticSurface(
+                centre + place @ turn.T, nearest, crease, normal @ turn.T, share, none
+            )
         place, crease = shape.curve(self.spacing)
         vertex = centre + place @ turn.T
         nearest = cKDTree(rest).query(vertex)[1]
-        return ElasticSurface(vertex, nearest, crease, np.zeros_like(place), np.zeros(len(place)))
+        none = np.zeros(len(place))
+        return ElasticSurface(vertex, nearest, crease, np.zeros_like(place), none, none)
 
     @property
     def rotation(self) -> np.ndarray:
