@@ -56,7 +56,7 @@ def checks_of(folder, text=DAM + BEHIND, turn=0.0, normal="normal = [-1, 0]"):
 @pytest.mark.parametrize("turn", [0.0, 25.0, 180.0])
 def test_water_behind_a_dam_of_one_face_is_told_with_its_name(tmp_path, turn):
     (check,) = checks_of(tmp_path, turn=turn)
-    assert check.value == pytest.approx(8 / (8 * 12 + 8 * 8), abs=0.01)
+    assert check.value == pytest.approx(8 / (12 + 8), abs=0.01)
     assert check.verdict == BAD
     assert "dam" in check.remedy
     assert "leave it out" in check.remedy

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -16,14 +15,14 @@ from ...scene.kinds.shaped import Shaped
 from ...scene.moved import Displacement
 from .verdicts import Check, judged
 
-BESIDE = (0.001, 0.02)  # share of the fluid
+BESIDE = (0.02, 0.2)  # share of the fluid that touches a body
 NEAR = 1.2  # spacings: fluid that touches a wall is nearer to its particles
 BELOW = 1.0  # spacings below the face, where fluid is beside the body and not on it
 NAMED = 3  # bodies that a finding names
 
 
 def faces_check(run: Run) -> list[Check]:
-    """How much of the fluid was beside bodies of one face, and which; nothing without any.
+    """How much of the fluid at bodies of one face was beside it, and which; nothing without any.
 
     A `normal` gives a body that one plane face: what fluid does to its other sides is not right.
     """
@@ -31,19 +30,19 @@ def faces_check(run: Run) -> list[Check]:
         return []
     scenario = load_scenario(run.folder.scenario)
     normals = dict(_normals(scenario))
-    shares, of_bodies = [0.0], Counter[str]()
+    worst = dict.fromkeys(normals, 0.0)
     for snapshot in run:
-        fluid = snapshot["motion"] == FREE
-        beside = _beside(scenario, snapshot, snapshot["position"][fluid], normals)
-        shares.append(sum(beside.values()) / max(int(fluid.sum()), 1))
-        of_bodies.update(beside)
-    worst = [name for name, count in of_bodies.most_common(NAMED) if count]
-    counted = f"share of the fluid in {len(shares) - 1} snapshots"
+        fluid = snapshot["position"][snapshot["motion"] == FREE]
+        for name, share in _beside(scenario, snapshot, fluid, normals).items():
+            worst[name] = max(worst[name], share)
+    bodies = sorted((name for name in worst if worst[name] > 0), key=worst.__getitem__)[::-1]
+    counted = f"share of the fluid that touches a body, the most of {len(run)} snapshots"
     remedy = (
-        f"at {', '.join(worst)}: a `normal` gives a body one face; leave it out, so that"
+        f"at {', '.join(bodies[:NAMED])}: a `normal` gives a body one face; leave it out, so that"
         " all of its sides are walls"
     )
-    return [judged("fluid at sides without a face", max(shares), BESIDE, counted, remedy)]
+    value = max(worst.values(), default=0.0)
+    return [judged("fluid at sides without a face", value, BESIDE, counted, remedy)]
 
 
 def _normals(scenario: Scenario) -> Iterator[tuple[str, np.ndarray]]:
@@ -56,8 +55,8 @@ def _normals(scenario: Scenario) -> Iterator[tuple[str, np.ndarray]]:
 
 def _beside(
     scenario: Scenario, snapshot: Snapshot, fluid: np.ndarray, normals: dict[str, np.ndarray]
-) -> dict[str, int]:
-    """How many particles of fluid touch each of these bodies below its face."""
+) -> dict[str, float]:
+    """Of the fluid that touches each of these bodies, the share below its face."""
     from scipy.spatial import cKDTree
 
     position, names = snapshot["position"], np.asarray(snapshot["body"])
@@ -75,6 +74,7 @@ def _beside(
             continue
         now = Displacement(scenario, name, snapshot.time).vectors(normal[None])[0]
         surface = (position[walls[of_it]] @ now).max() + 0.5 * scenario.dp
-        below = fluid @ now < surface - BELOW * scenario.dp
-        found[name] = int(np.count_nonzero(below & np.isin(touched, own)))
+        at_it = np.isin(touched, own)
+        if at_it.any():
+            found[name] = float((fluid[at_it] @ now < surface - BELOW * scenario.dp).mean())
     return found
