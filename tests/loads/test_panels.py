@@ -8,6 +8,7 @@ import pytest
 from doseki.errors import UserError
 from doseki.figures.kinds.load import _draw_parts
 from doseki.figures.kinds.registry import draw
+from doseki.figures.nothing import NothingToDrawError
 from doseki.measure.views import tables
 from doseki.record.reader import GaugeRecord
 from doseki.scenario.tables.figure import Figure
@@ -91,6 +92,15 @@ def test_a_figure_of_a_load_has_its_parts(dam):
     assert names == ["total", "static", "dynamic", "contact", "largest step"]
     record = dam.gauges["dam"]
     np.testing.assert_allclose(figure.axes[0].lines[1].get_ydata(), record["static_force_x"][1:])
+
+
+@pytest.mark.parametrize("name", ["dam", "face"])
+def test_where_nothing_acts_nothing_is_drawn(tmp_path, name):
+    away = DAM_3D.replace('max = [0.6, "= width", "= depth"]', 'max = [0.3, "= width", "= depth"]')
+    assert away != DAM_3D
+    run = run_of(tmp_path, away, "time_max=0.06", "particles=8", "gravity=[0, 0, 0]")
+    with pytest.raises(NothingToDrawError, match=f"nothing acted on what {name} reads"):
+        draw(run, name, tables(run, "figure", Figure)[name])
 
 
 def test_the_map_of_a_face_stands_above_its_curves(dam):

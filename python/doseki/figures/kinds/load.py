@@ -36,6 +36,9 @@ def draw_load(run: Run, name: str, table: LoadFigure) -> Figure:
     record, gauge = gauge_record(run, table.gauge), gauges[table.gauge]
     if len(np.unique(record["time"])) < 2:
         raise NothingToDrawError(f"{table.gauge} has no two samples")
+    acted = [record[name] for name, unit in record.units.items() if unit[:1] in ("N", "P")]  # Pa
+    if not np.nan_to_num(acted).any():
+        raise NothingToDrawError(f"nothing acted on what {table.gauge} reads")
     title = table.title or table.gauge
     if isinstance(gauge, Panels):
         return _draw_panels(record, gauge, title)
