@@ -64,7 +64,8 @@ public:
     }
 
     /// Call once after everything is in.
-    void start(Particles<D>& particles) {
+    void start(Particles<D>& particles, const MovingWalls<D>& walls) {
+        rigid.find_seams(walls.motions(), contacts_.domain());
         deformable.start(particles, gravity_);
         number_bodies();
         breakable_.measure_strengths(deformable);
@@ -161,7 +162,7 @@ public:
         return {kinetic_energy(), deformable.elastic_energy().sum(), contacts_.stored_energy()};
     }
 
-    void serialise(Archive& archive);
+    void serialise(Archive& archive, const MovingWalls<D>& walls);
     /// Throws std::invalid_argument unless restored particles are points of these bodies.
     void expect_points(const Particles<D>& particles) const {
         if (!particles.wall.in_use) return;
@@ -348,7 +349,7 @@ private:
 };
 
 template <int D>
-void Bodies<D>::serialise(Archive& archive) {
+void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
     rigid.serialise(archive);
     rigid_particles_.serialise(archive);
     archive("bodies_moved", moved_);
@@ -369,6 +370,7 @@ void Bodies<D>::serialise(Archive& archive) {
         rigid_particles_.expect_points_of(rigid.size());
         breakable_.expect_bodies_of(rigid.size(), deformable, rigid_particles_.size());
         start_breakable();
+        rigid.find_seams(walls.motions(), contacts_.domain());
         prepare_contacts();
         contacts_.restore(contact_);
         deformable.choose(contact_, contacts_.points_of_deformable());
