@@ -64,7 +64,8 @@ public:
     }
 
     /// Call once after everything is in.
-    void start(Particles<D>& particles) {
+    void start(Particles<D>& particles, const MovingWalls<D>& walls) {
+        rigid.find_seams(walls.motions(), contacts_.domain());
         deformable.start(particles, gravity_);
         number_bodies();
         breakable_.measure_strengths(deformable);
@@ -161,7 +162,7 @@ public:
         return {kinetic_energy(), deformable.elastic_energy().sum(), contacts_.stored_energy()};
     }
 
-    void serialise(Archive& archive);
+    void serialise(Archive& archive, const MovingWalls<D>& walls);
     /// Throws std::invalid_argument unless restored particles are points of these bodies.
     void expect_points(const Particles<D>& particles) const {
         if (!particles.wall.in_use) return;
@@ -206,8 +207,7 @@ private:
         // Times for which gravity and the fluid have acted on rigid bodies and on deformable ones.
         double on_rigid = 0.0, on_points = 0.0;
     };
-    /// Makes bodies of parts that do not hold together any more, in a step `dt` whose forces
-    /// have acted.
+    /// Makes bodies of parts that hold together no more, after the forces of a step `dt`.
     Parted part(double time, double dt, const Course& course);
     void add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>& normals,
                   const Origin& origin);
@@ -351,7 +351,7 @@ private:
 };
 
 template <int D>
-void Bodies<D>::serialise(Archive& archive) {
+void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
     rigid.serialise(archive);
     rigid_particles_.serialise(archive);
     archive("bodies_moved", moved_);
@@ -372,6 +372,7 @@ void Bodies<D>::serialise(Archive& archive) {
         rigid_particles_.expect_points_of(rigid.size());
         breakable_.expect_bodies_of(rigid.size(), deformable, rigid_particles_.size());
         start_breakable();
+        rigid.find_seams(walls.motions(), contacts_.domain());
         prepare_contacts();
         contacts_.restore(contact_);
         deformable.choose(contact_, contacts_.points_of_deformable());

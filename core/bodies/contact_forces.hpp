@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -88,13 +89,16 @@ template <int D>
 void Contacts<D>::restore(const ContactBodies<D>& bodies) {
     expect_pairs_of(bodies);
     contacts_.clear(), pushes_.clear();
-    std::map<std::pair<std::int32_t, std::int32_t>, double> points;  // where two bodies may touch
+    using Two = std::pair<std::int32_t, std::int32_t>;
+    std::map<Two, double> points;                  // where two bodies may touch
+    std::set<std::pair<Two, std::int32_t>> known;  // of walls: one may be near several bodies
     auto at = [&points](const PairContact& contact) -> double& {
-        return points[std::minmax(contact.body_a, contact.body_b)];
+        return points[contact.between()];
     };
     for (const ContactPair& pair : pairs_) {
         contacts_.push_back(contact_of(bodies, pair));
-        at(contacts_.back()) += 1.0;
+        const PairContact& contact = contacts_.back();
+        if (contact.wall < 0 || known.emplace(contact.between(), pair.a).second) at(contact) += 1.0;
     }
     // Those that were near when pairs were found, and may not be the nearest now.
     for (std::size_t k = 0; k < vertices_.size(); ++k) contacts_[k].vertex = vertices_[k];
@@ -135,7 +139,7 @@ void Contacts<D>::select(const ContactBodies<D>& bodies, PairKind kind) {
         if (bodies.solid(pairs_[k])) on_solids.push_back(k);
         if (bodies.surface(pairs_[k])) selection.on_surfaces.push_back(k);
     }
-    selection.joint = JointContacts(selection.rows, contacts_);
+    selection.joint = JointContacts(selection.rows, contacts_, pairs_);
     selection.on_solids = PushesOnSolids(std::move(on_solids), pairs_);
     selection.points = ShownPoints(points_of(pairs), bodies.points);
     list_pushes(selection);
@@ -196,6 +200,11 @@ auto Contacts<D>::contact_of(const ContactBodies<D>& bodies, const ContactPair& 
         PairContact contact{first, solid.body, laws_.between(a, solid.side()), 0.0};
         // A ball pushes a fixed solid at one place, in line with its centre.
         contact.joint = contact.law.rigid && (a.radius == 0.0 || !solid.fixed);
+        if (!contact.joint || points.solid[pair.first()] < 0) return contact;
+        const ContactSolid<D>& own =
+            bodies.solids[static_cast<std::size_t>(points.solid[pair.first()])];
+        contact.wall_first = own.wall >= 0;
+        contact.wall = contact.wall_first ? own.wall : solid.wall;
         return contact;
     }
     return {first, points.body[pair.second()], laws_.between(a, points.side(pair.second())), 0.0};

@@ -34,6 +34,7 @@ struct RowsOfContactPoints {
     Row<Vec<double, D>> offset;  // of rigid bodies, in the frame of the body
     Row<std::int32_t> solid;     // the body, in ContactBodies; -1: none
     Row<std::uint8_t> corner;    // whether it is one of a convex body
+    Row<std::uint8_t> hidden;    // whether the surface goes on there in other bodies, see Seams
     // Normal of the surface that a sample is of, in that frame and in space; zero: unknown.
     Row<Vec<double, D>> own_outward, outward;
     // What the contacts do to them; torque about their own centre.
@@ -46,8 +47,8 @@ struct RowsOfContactPoints {
         f(self.mass...), f(self.diameter...), f(self.share...), f(self.body...);
         f(self.material...), f(self.fixed...), f(self.removed...), f(self.deformable...);
         f(self.dust...), f(self.surface...), f(self.offset...), f(self.solid...);
-        f(self.corner...), f(self.own_outward...), f(self.outward...), f(self.force...),
-            f(self.torque...);
+        f(self.corner...), f(self.hidden...), f(self.own_outward...), f(self.outward...);
+        f(self.force...), f(self.torque...);
     }
 };
 
@@ -87,6 +88,15 @@ struct ContactPoints : RowsOfContactPoints<D, Array> {
     }
 };
 
+/// A plane face of a fixed body that goes on in others which stand together with it: those with one
+/// number of `surface` make one.
+template <int D>
+struct WallFace {
+    std::int32_t solid = -1, surface = -1;
+    Vec<double, D> normal{};  // in the frame of the body
+    double height = 0.0;      // of the plane above its centre
+};
+
 /// A rigid body with a surface that contact points of others may touch.
 template <int D>
 struct ContactSolid {
@@ -95,6 +105,8 @@ struct ContactSolid {
     double mass = 0.0, diameter = 0.0;
     Mat<double, 3> inverse_inertia{};  // in its own frame; zero of what is fixed
     bool fixed = false, removed = false;
+    std::int32_t wall = -1;                    // fixed ones that hang together have one number
+    std::size_t first_face = 0, end_face = 0;  // of those that go on in others
     Vec<double, D> middle{};  // in its own frame, of one that is fixed and may span a period
     Vec<double, D> centre{}, velocity{};
     Mat<double, 3> rotation{};
@@ -152,6 +164,7 @@ struct ContactBodySpans {
     ContactPointSpans<D> points;
     std::span<ContactSolid<D>> solids;
     std::span<Surface<D>> surfaces;
+    std::span<const WallFace<D>> faces;
 
     DOSEKI_DEVICE_FN ContactSolid<D>* solid(const ContactPair& pair) const {
         return solid_of(*this, pair);
@@ -167,8 +180,9 @@ struct ContactBodies {
     ContactPoints<D> points;
     Array<ContactSolid<D>> solids;
     Array<Surface<D>> surfaces;
+    Array<WallFace<D>> faces;  // by their solids
 
-    ContactBodySpans<D> spans() { return {points.spans(), solids, surfaces}; }
+    ContactBodySpans<D> spans() { return {points.spans(), solids, surfaces, faces}; }
 
     /// The two bodies of a pair.
     std::pair<std::int32_t, std::int32_t> bodies(const ContactPair& pair) const {

@@ -149,7 +149,7 @@ void find_solid_pairs(const ContactBodies<D>& bodies, const Domain<D>& domain, d
         const ContactSolid<D>& solid = bodies.solids[s];
         if (solid.removed) continue;
         for (const std::uint32_t c : space.near(solid.centre, solid.surface->radius() + margin)) {
-            if (points.removed[c] || points.body[c] == solid.body ||
+            if (points.removed[c] || points.hidden[c] || points.body[c] == solid.body ||
                 (points.fixed[c] && solid.fixed) || is_not_needed(bodies, c, solid))
                 continue;
             const Vec<double, D> r = solid.place_of(points.position[c], domain);

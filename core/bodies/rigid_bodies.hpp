@@ -4,6 +4,7 @@
 #include <span>
 
 #include "base/array.hpp"
+#include "bodies/contact/seams.hpp"
 #include "bodies/contact/shown_points.hpp"
 #include "bodies/rigid_body.hpp"
 #include "bodies/rigid_spans.hpp"
@@ -62,6 +63,8 @@ public:
     /// Adds a body within a step, with a shape of its own and the angular momentum of its state.
     void add(RigidBody<D> body, const RigidBodyState<D>& state, const Shape<D>& own);
 
+    /// Finds which surfaces fixed bodies make that never part; call once the bodies are in.
+    void find_seams(const MotionsOfBodies<D>& motions, const Domain<D>& domain);
     /// Adds the bodies to those that may touch; the first that are added.
     void add_to(ContactBodies<D>& contact);
     /// Shows the contacts where the bodies are, and those of their contact points, which have no
@@ -164,6 +167,7 @@ private:
     Array<Vec3> ball_turn_;
     Array<BodyPose> poses_;  // of bodies that were shown
     Array<std::uint32_t> fixed_;
+    Seams<D> seams_;
     std::size_t moving_ = 0;
 };
 
@@ -250,6 +254,28 @@ void RigidBodies<D>::add_to(ContactBodies<D>& contact) {
         if (body.fixed) solid.middle = rotated_back(turn, shape(k).middle(turn));
         contact.solids.push_back(solid);
     }
+    seams_.show(contact);
+}
+
+template <int D>
+void RigidBodies<D>::find_seams(const MotionsOfBodies<D>& motions, const Domain<D>& domain) {
+    auto part_never = [&](std::size_t a, std::size_t b) {
+        const WallMotion<D>*one = motions.of(bodies_[a].group),
+              *other = motions.of(bodies_[b].group);
+        return one && other ? one->is_that_of(*other) : one == other;
+    };
+    ContactBodies<D> contact;
+    seams_ = {};
+    add_to(contact), show(contact, ShownPoints::all_of(contact.points));
+    Array<Standing<D>> standing(contact.solids.size());
+    for (std::size_t s = 0; s < standing.size(); ++s) {
+        const auto k = static_cast<std::size_t>(contact.solids[s].body);
+        if (!bodies_[k].fixed) continue;
+        standing[s].with = static_cast<std::int32_t>(*std::ranges::find_if(
+            fixed_, [&](std::uint32_t first) { return part_never(first, k); }));
+        if (shape(k).thickness == 0.0) standing[s].facets = &shape(k).facets;
+    }
+    seams_ = {contact, standing, domain};
 }
 
 template <int D>

@@ -44,7 +44,9 @@ DOSEKI_DEVICE_FN SurfacePoints<D> touched_places(const ContactBodySpans<D>& bodi
         const double step = beyond * solid.surface->radius();
         const Vec<double, D> out =
             solid.fixed ? (step - places[0].distance) * n : -step * (n + outward);
-        if (!is_covered(bodies, points.position[a] + out, solid.body, points.body[a], domain))
+        // The next image of a wall may cover its end; itself it does not reach as far as that.
+        const std::int32_t other = solid.fixed ? points.body[a] : solid.body;
+        if (!is_covered(bodies, points.position[a] + out, other, points.body[a], domain))
             return places;
         outward = outward - dot(n, outward) * n;
         if (const double size = norm(outward); size > 0.0) outward = (1.0 / size) * outward;

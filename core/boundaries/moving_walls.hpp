@@ -22,6 +22,12 @@ struct WallMotion {
     double start = 0.0, stop = 0.0, removed_at = 0.0;  // [s]
 
     DOSEKI_DEVICE_FN bool moves(double t) const { return start <= t && t < stop; }
+    /// Whether a body with the other motion never parts from one with this.
+    bool is_that_of(const WallMotion& other) const {
+        return velocity.component == other.velocity.component && spin == other.spin &&
+               pivot.component == other.pivot.component && start == other.start &&
+               stop == other.stop && removed_at == other.removed_at;
+    }
 
     Vec<double, 3> spin_at(double t) const {
         Vec<double, 3> w;

@@ -77,7 +77,7 @@ public:
             if (particles.is_counted(p)) open_boundaries.ledger.initial += particles.mass[p];
         moving_walls.set_velocities(particles, time_);
         open_boundaries.inject(particles, time_);
-        bodies.start(particles);
+        bodies.start(particles, moving_walls);
         bodies.set_velocities(particles, 0.0);
         remove_outflow(0.0);
         look_at_terrain();
@@ -114,7 +114,7 @@ public:
         open_boundaries.serialise(archive);
         terrain.serialise(archive);
         if (archive.loads()) terrain.expect_groups(particles);
-        bodies.serialise(archive);
+        bodies.serialise(archive, moving_walls);
         if (archive.loads()) bodies.expect_points(particles);
         scheme_->serialise(archive);
         lists_.serialise_lists(archive, particles);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "bodies/contact_points.hpp"
 #include "bodies/overlap.hpp"
@@ -24,6 +25,16 @@ struct PairContact {
     std::uint32_t vertex = 0;  // of the second one's surface, near the first one's point
     double gap = 0.0;          // at least, when pairs were found [m]
     bool joint = false;        // pushes with others of its two bodies, Eq. (157)
+    // Of fixed bodies that hang together, where one of them is the first or the second; -1: no.
+    std::int32_t wall = -1;
+    bool wall_first = false;
+    std::int32_t surface = -1;  // that is touched now, see WallFace
+
+    /// What may push together: two bodies, or one and what hangs together.
+    std::pair<std::int32_t, std::int32_t> between() const {
+        if (wall < 0) return std::minmax(body_a, body_b);
+        return {-1 - wall, wall_first ? body_b : body_a};
+    }
 
     /// How far its sides may come together while points go some way. Vertices of deformable
     /// bodies lie half a spacing beyond them.
@@ -137,7 +148,7 @@ DOSEKI_WHOLE_DEVICE_FN void ContactRows<D>::push(std::size_t k, double dt) const
         if (!contacts[n].joint) push_there(n, dt);
     }
     for (std::size_t n = k; n < k + rows; ++n)
-        if (!pushes[n].touches) part(n);
+        if (!pushes[n].touches && contacts[n].wall < 0) part(n);  // others see PushTogether
 }
 
 template <int D>

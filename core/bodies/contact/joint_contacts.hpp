@@ -13,25 +13,30 @@
 
 namespace doseki {
 
-/// The rows of each two bodies that touch at points of a surface.
+/// The rows of each two bodies, or of a body and fixed ones that hang together, that touch at
+/// points of a surface.
 struct JointContacts {
     static constexpr double exponent = 8.0;  // P of Eq. (157)
 
-    Array<std::size_t> rows;   // of each two bodies in turn, in rising order
+    Array<std::size_t> rows;   // of each two in turn, in rising order; on walls by their points
     Array<std::size_t> first;  // of each two, and the end of the last
+    Array<std::size_t> order;  // room for the rows as they push together
 
     JointContacts() = default;
     /// Those among `all` that are joint.
-    JointContacts(std::span<const std::size_t> all, std::span<const PairContact> contacts) {
+    JointContacts(std::span<const std::size_t> all, std::span<const PairContact> contacts,
+                  std::span<const ContactPair> pairs) {
         std::map<std::pair<std::int32_t, std::int32_t>, Array<std::size_t>> of_bodies;
         for (const std::size_t k : all)
-            if (contacts[k].joint)
-                of_bodies[std::minmax(contacts[k].body_a, contacts[k].body_b)].push_back(k);
-        for (const auto& [bodies, of_these] : of_bodies) {
+            if (contacts[k].joint) of_bodies[contacts[k].between()].push_back(k);
+        for (auto& [bodies, of_these] : of_bodies) {
+            if (contacts[of_these[0]].wall >= 0)
+                std::ranges::stable_sort(of_these, {}, [&](std::size_t k) { return pairs[k].a; });
             first.push_back(rows.size());
             rows.insert(rows.end(), of_these.begin(), of_these.end());
         }
         first.push_back(rows.size());
+        order.resize(rows.size());
     }
 
     std::size_t size() const { return first.empty() ? 0 : first.size() - 1; }
@@ -72,10 +77,92 @@ template <int D>
 struct PushTogether {
     ContactRows<D> rows;
     std::span<const std::size_t> of_bodies, first;  // see JointContacts
+    std::span<std::size_t> order;
     double dt;
 
     DOSEKI_DEVICE_FN void operator()(std::size_t n) const {
-        const Which which = of_bodies.subspan(first[n], first[n + 1] - first[n]);
+        const std::size_t count = first[n + 1] - first[n];
+        const Which which = of_bodies.subspan(first[n], count);
+        if (rows.contacts[which[0]].wall < 0)
+            push(which);
+        else
+            push_on_wall(which, order.subspan(first[n], count));
+    }
+
+private:
+    using Which = std::span<const std::size_t>;
+
+    /// Each surface takes what presses on it, in whichever of its bodies. Rows of one point follow
+    /// each other.
+    DOSEKI_DEVICE_FN void push_on_wall(Which which, std::span<std::size_t> together) const {
+        for (std::size_t m = 0, end = 0; m < which.size(); m = end) {
+            while (end < which.size() && rows.pairs[which[end]].a == rows.pairs[which[m]].a) ++end;
+            pass_on(which.subspan(m, end - m));
+        }
+        for (std::size_t m = 0; m < which.size(); ++m) {
+            if (!rows.pushes[which[m]].touches) continue;
+            bool done = false;
+            for (std::size_t l = 0; l < m && !done; ++l) done = is_with(which[l], which[m]);
+            if (done) continue;
+            std::size_t count = 0;
+            for (const std::size_t k : which.subspan(m))
+                if (is_with(which[m], k)) together[count++] = k;
+            push(together.first(count));
+        }
+    }
+
+    /// A point that leaves one body over a seam does to the next what it did there, and on the seam
+    /// it touches one of them.
+    DOSEKI_DEVICE_FN void pass_on(Which of_point) const {
+        for (const std::size_t k : of_point)
+            for (const std::size_t from : of_point)
+                if (rows.pushes[k].touches && begins(k) && !rows.pushes[from].touches &&
+                    !begins(from)) {
+                    rows.springs[k] = rows.springs[from], rows.normals[k] = rows.normals[from];
+                    rows.part(from);
+                }
+        for (const std::size_t k : of_point) {
+            if (!rows.pushes[k].touches) rows.part(k);
+            rows.contacts[k].surface = rows.pushes[k].touches ? surface_touched(k) : -1;
+        }
+        for (const std::size_t k : of_point)
+            for (const std::size_t other : of_point)
+                if (k < other && rows.contacts[k].surface >= 0 && is_with(k, other))
+                    rows.part(begins(k) && !begins(other) ? k : other);
+    }
+
+    DOSEKI_DEVICE_FN bool begins(std::size_t k) const {
+        return dot(rows.normals[k], rows.normals[k]) == 0.0;
+    }
+
+    /// Whether two rows touch one surface, or two bodies beside any.
+    DOSEKI_DEVICE_FN bool is_with(std::size_t one, std::size_t other) const {
+        if (!rows.pushes[one].touches || !rows.pushes[other].touches) return false;
+        const PairContact &a = rows.contacts[one], &b = rows.contacts[other];
+        if (a.surface >= 0 || b.surface >= 0) return a.surface == b.surface;
+        return std::min(a.body_a, a.body_b) == std::min(b.body_a, b.body_b) &&
+               std::max(a.body_a, a.body_b) == std::max(b.body_a, b.body_b);
+    }
+
+    /// The one that faces what presses; -1: none that goes on in another body.
+    DOSEKI_DEVICE_FN std::int32_t surface_touched(std::size_t k) const {
+        constexpr double aslant = 0.7;  // cosine of 45 degrees
+        const bool first = rows.contacts[k].wall_first;
+        const ContactSolid<D>& solid =
+            first ? *solid_of_point(rows.pairs[k].first()) : *rows.bodies.solid(rows.pairs[k]);
+        const Vec<double, D> out =
+            rotated_back(solid.rotation, (first ? 1.0 : -1.0) * rows.pushes[k].overlap.normal);
+        double most = aslant;
+        std::int32_t surface = -1;
+        for (std::size_t f = solid.first_face; f < solid.end_face; ++f) {
+            const WallFace<D>& face = rows.bodies.faces[f];
+            if (const double along = dot(face.normal, out); along > most)
+                most = along, surface = face.surface;
+        }
+        return surface;
+    }
+
+    DOSEKI_DEVICE_FN void push(Which which) const {
         double deepest = 0.0;
         for (const std::size_t k : which)
             deepest = std::max(deepest, rows.springs[k][pressed_before]);
@@ -86,9 +173,6 @@ struct PushTogether {
             if (rows.pushes[k].touches) rows.push_there(k, dt);
     }
 
-private:
-    using Which = std::span<const std::size_t>;
-
     /// A point that comes into a body from beside, over an edge of that, is deep at once, and so is
     /// one that another facet bears than before. Neither makes energy: the one presses as before,
     /// a corner that begins no more than others do, and a point of an edge not at all.
@@ -97,11 +181,10 @@ private:
         const PairPush<D>& push = rows.pushes[k];
         const Vec<double, D>& before = rows.normals[k];
         const std::size_t point = rows.pairs[k].first();
-        const bool begins = dot(before, before) == 0.0,
-                   ball = rows.bodies.points.radius[point] > 0.0;
-        if (!push.touches || ball || (!begins && dot(before, push.overlap.normal) > turned)) return;
+        const bool anew = begins(k), ball = rows.bodies.points.radius[point] > 0.0;
+        if (!push.touches || ball || (!anew && dot(before, push.overlap.normal) > turned)) return;
         double pressed = rows.springs[k][pressed_before];
-        if (begins) {
+        if (anew) {
             const Vec<double, D> speed = in_run<D>(rows.relative_motion(k).velocity);
             pressed = dt * std::max(0.0, dot(speed, push.overlap.normal));
             if (rows.bodies.points.corner[point]) pressed = std::max(pressed, deepest);
@@ -137,7 +220,7 @@ private:
     DOSEKI_DEVICE_FN void share_dashpots(Which which) const {
         MiddleOfContact<D> middle;
         for (const std::size_t k : which)
-            if (rows.pushes[k].touches) add(k, rows.contacts[which[0]].body_a, middle);
+            if (rows.pushes[k].touches) add(k, rows.contacts[which[0]], middle);
         if (!(middle.force > 0.0)) return;
         middle.divide();
         const double braked =
@@ -145,7 +228,8 @@ private:
         for (const std::size_t k : which) rows.pushes[k].braked = braked;
     }
 
-    DOSEKI_DEVICE_FN void add(std::size_t k, std::int32_t body_a,
+    /// As `one` has its bodies; of one body and a wall that may be another fixed one.
+    DOSEKI_DEVICE_FN void add(std::size_t k, const PairContact& one,
                               MiddleOfContact<D>& middle) const {
         const Overlap<D>& overlap = rows.pushes[k].overlap;
         const NormalSpring spring = rows.contacts[k].law.normal_spring(pressed(k));
@@ -154,7 +238,7 @@ private:
         Vec<double, D> from_own = overlap.lever_a;
         if (const ContactSolid<D>* own = solid_of_point(point))
             from_own = from_own + rows.bodies.points.position[point] - own->centre;
-        if (rows.contacts[k].body_a == body_a)
+        if (rows.contacts[k].body_a == one.body_a || rows.contacts[k].body_b == one.body_b)
             middle.add(spring, share, overlap.normal, from_own, overlap.lever_b);
         else
             middle.add(spring, share, -1.0 * overlap.normal, overlap.lever_b, from_own);

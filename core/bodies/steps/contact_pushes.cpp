@@ -119,8 +119,9 @@ void Contacts<D>::apply(ContactBodies<D>& bodies, PairKind kind, double moved, d
     const ContactRows<D> all = rows(bodies);
     const std::span<const std::size_t> which = selection.rows;
     bulk::for_each_contact(which.size(), PushPair<D>{all, which, moved, dt});
-    bulk::for_each_contact(selection.joint.size(),
-                           PushTogether<D>{all, selection.joint.rows, selection.joint.first, dt});
+    JointContacts& joint = selection.joint;
+    bulk::for_each_contact(joint.size(),
+                           PushTogether<D>{all, joint.rows, joint.first, joint.order, dt});
     const Array<std::int32_t>& points = selection.points.points;
     bulk::for_each_contact(points.size(),
                            PushPoint<D>{all.bodies.points, points, selection.first_push,

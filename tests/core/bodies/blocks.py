@@ -78,7 +78,7 @@ def assert_restored_with_the_same_bits(run: Running, moving_bodies: int, until: 
     """A 2-D run goes on as another one does that is restored from where it is."""
     saved = run.simulation.checkpoint()
     other = empty_simulation(run.scenario, run.body_names)
-    check_state(other, saved, moving_bodies, 2)
+    check_state(other, saved, moving_bodies, len(run.body_names))
     assert other.restore(saved)
     for one in (run.simulation, other):
         one.advance(limit=until, pause=until, max_steps=FOREVER)
