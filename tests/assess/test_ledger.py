@@ -275,3 +275,12 @@ def test_an_account_goes_on_where_it_was(channel, tmp_path):
     resumed = load(tmp_path / "run").history
     for name in ("gravity_work", "wall_work", "energy_left", "impulse_x", "scheme_work"):
         assert resumed[name][-1] == channel.history[name][-1], name
+
+
+def test_where_nothing_moves_rounding_is_no_energy(tank):
+    rows = np.arange(len(tank.history["time"]))
+    still = {name: 0.0 * rows for name in (*HELD, *GIVEN, *TAKEN)}
+    for size, verdict in ((1e-22, "good"), (1.0, "bad")):
+        run = WithColumns(tank, **still | {"kinetic_energy": size * rows})
+        check = dataclasses.replace(ledger_of(tank), run=run).energy_check("energy", (0.01, 0.05))
+        assert check.verdict == verdict

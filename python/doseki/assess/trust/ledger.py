@@ -16,6 +16,9 @@ HELD = ("kinetic_energy", "bulk_energy", "shear_energy", "elastic_energy")
 GIVEN = ("gravity_work", "wall_work", "contact_work", "scheme_work", "energy_entered")
 TAKEN = ("av_dissipation", "energy_left", "fracture_work", "parting_work", "damping_work")
 OF_BODIES = "elastic_energy"  # without it in the history, nothing of deformable bodies is
+# Of the energy at a fifteenth of the speed of sound in water, reduced as in the run: where nothing
+# moves there is no more than rounding.
+ROUNDING, FAST = 1e-12, 100.0  # share, m/s
 NUMERICAL = (0.01, 0.05)  # work of corrections over the largest energy that took part
 
 
@@ -50,10 +53,12 @@ class Ledger:
 
     @property
     def largest(self) -> float:
-        """The largest of the energies that took part."""
+        """The largest of the energies that took part, and no less than their rounding."""
+        speed = FAST * float(self.run.scenario.get("xi", 1.0))
+        rounding = ROUNDING * speed**2 * self._values("mass")
         moved = [self._column(name) for name in (*GIVEN, *TAKEN)]
         held = [self._values(name) for name in HELD]
-        return max(float(np.max(np.abs(values))) for values in (*held, *moved))
+        return max(float(np.max(np.abs(values))) for values in (rounding, *held, *moved))
 
     def energy_residual(self) -> np.ndarray:
         """Energy that is there, less that of the start and what came and went: (rows,)."""
