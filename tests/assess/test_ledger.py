@@ -279,7 +279,7 @@ def test_an_account_goes_on_where_it_was(channel, tmp_path):
 
 def test_where_nothing_moves_rounding_is_no_energy(tank):
     rows = np.arange(len(tank.history["time"]))
-    still = {name: 0.0 * rows for name in (*HELD, *GIVEN, *TAKEN)}
+    still = dict.fromkeys((*HELD, *GIVEN, *TAKEN), 0.0 * rows)
     for size, verdict in ((1e-22, "good"), (1.0, "bad")):
         run = WithColumns(tank, **still | {"kinetic_energy": size * rows})
         check = dataclasses.replace(ledger_of(tank), run=run).energy_check("energy", (0.01, 0.05))
