@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
-from .numbers import number
+from .numbers import number, whole
 from .options import AsJson, Directory
 
 NAME = 18  # columns of the names of loads
@@ -96,9 +96,12 @@ def census(
         ),
     ] = None,
     sample: Annotated[
-        int, typer.Option(min=1, max=1_000_000, help="Grains in a random sample.")
+        int,
+        typer.Option(parser=whole(1, 1_000_000), metavar="N", help="Grains in a random sample."),
     ] = 30,
-    draws: Annotated[int, typer.Option(min=1, max=100_000, help="Number of samples.")] = 2000,
+    draws: Annotated[
+        int, typer.Option(parser=whole(1, 100_000), metavar="N", help="Number of samples.")
+    ] = 2000,
     bin_width: Annotated[
         float,
         typer.Option(parser=number(1e-6, 1e6), metavar="WIDTH", help="Of the histogram, m/s."),
