@@ -29,7 +29,7 @@ from ..small_scenarios import BLOCK
         (f"title = '{'a' * 301}'", ["line 5", "has 301 characters; at most 300 are allowed"]),
         (
             "[figure.f]\nkind = 'snapshot'\ncolour = []",
-            ["figure.f.colour = [] has 0 entries; at least 1 is allowed"],
+            ["figure.f.colour = [] has 0 entries; at least 1 is needed"],
         ),
         (
             "[figure.f]\nkind = 'snapshot'\ntimes = [" + "1, " * 25 + "]",

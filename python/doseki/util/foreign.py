@@ -14,16 +14,29 @@ from .memory import available_bytes
 
 
 @contextmanager
-def readable(path: Path, how: str = "") -> Iterator[None]:
-    """Turn whatever reading a damaged, forbidden or hostile file raises into a UserError."""
+def readable(path: Path, how: str = "", kind: str = "") -> Iterator[None]:
+    """Turn whatever reading a damaged, forbidden or hostile file raises into a UserError.
+
+    `kind` is what the file should be, such as "a GeoTIFF", where a library reads it: what that says
+    is about its own inside, and is not told.
+    """
     try:
         yield
     except (DosekiError, MemoryError):
         raise
     except Exception as error:
         # Readers of damaged files raise almost anything.
-        said = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        raise UserError(f"{path}: cannot be read{how}: {str(said).splitlines()[0]}") from None
+        how = how or (kind and f" as {kind}")
+        raise UserError(f"{path}: cannot be read{how}: {_cause(error, kind)}") from None
+
+
+def _cause(error: Exception, kind: str) -> str:
+    """Why a file could not be read, in one line."""
+    if isinstance(error, OSError) and error.errno:
+        return os.strerror(error.errno)
+    if kind:
+        return f"it is cut short, damaged, or not {kind}"
+    return (str(error) or type(error).__name__).splitlines()[0]
 
 
 def check_regular_file(path: Path) -> None:

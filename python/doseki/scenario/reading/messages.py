@@ -30,10 +30,10 @@ LARGEST_SHOWN = 10**50  # of whole numbers, digit by digit
 # Of commands that run a scenario, which some write into it.
 OPTIONS = ("threads", "ranks", "device", "output", "overwrite")
 LENGTHS = {
-    "too_short": ("min_length", "entries", "at least"),
-    "too_long": ("max_length", "entries", "at most"),
-    "string_too_short": ("min_length", "characters", "at least"),
-    "string_too_long": ("max_length", "characters", "at most"),
+    "too_short": ("min_length", "entries", "at least {} needed"),
+    "too_long": ("max_length", "entries", "at most {} allowed"),
+    "string_too_short": ("min_length", "characters", "at least {} needed"),
+    "string_too_long": ("max_length", "characters", "at most {} allowed"),
 }
 RANGES = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
 
@@ -106,7 +106,7 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: Kin
         return f"{name} = {_shown(value)} must be {EXPECTED[kind]}{about}"
     if kind in LENGTHS:
         bound, what, words = LENGTHS[kind]
-        limit = f"{words} {context[bound]} {'are' if context[bound] > 1 else 'is'} allowed"
+        limit = words.format(f"{context[bound]} {'is' if context[bound] == 1 else 'are'}")
         return f"{name} = {_shown(value)} has {len(value)} {what}; {limit}{about}"
     for bound, words in RANGES.items():
         if bound in context:

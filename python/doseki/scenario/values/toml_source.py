@@ -87,7 +87,7 @@ Source: TypeAlias = TableSource | TomlSource
 
 
 def _keys_of_line(line: str, header: list[str]) -> list[str] | None:
-    """The full key path that a header `[a.b]` (or `[[a.b]]`), or an assignment `a.b = ...` names."""
+    """The full key path that a header `[a.b]`, or `[[a.b]]`, or an assignment `a.b = ...` names."""
     key = r"[\w-]+|\"[^\"]*\""
     path = rf"((?:{key})(?:\s*\.\s*(?:{key}))*)"
     if found := re.match(rf"\s*\[{{1,2}}\s*{path}\s*\]", line):
