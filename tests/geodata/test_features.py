@@ -112,7 +112,10 @@ REFUSED = {
     "half of a word": ('{"type": "Feature', "no GeoJSON: it stops in the middle"),
     "deep": ("[" * 100_000, "no GeoJSON: lists within lists, too many deep"),
     "many digits": ("[" + "1" * 5000 + "]", "no GeoJSON: a number has too many digits"),
-    "no comma": ('{"type":\n "Feature" 3}', "line 2: no GeoJSON: what stands at column 12 cannot be there"),
+    "no comma": (
+        '{"type":\n "Feature" 3}',
+        "line 2: no GeoJSON: what stands at column 12 cannot be there",
+    ),
     "a list": ("[]", "feature 1: no geometry"),
     "nothing": (collection(), "neither polygons nor lines"),
     "points": (collection({"type": "Point", "coordinates": [0, 0]}), "Point is not read"),

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
+from .changes import warn_of_changes
 from .numbers import number, whole
 from .options import AsJson, Directory
 
@@ -33,6 +34,7 @@ def plot(
 
     if colour is not None and movie is None:
         raise UserError(f"--colour {colour} is that of a movie: give --movie FILE, too")
+    warn_of_changes(directory)
     drawn = draw_run(directory)
     for picture in drawn.pictures:
         typer.echo(str(picture))
@@ -67,6 +69,7 @@ def report(
     """Write the report on a run: one HTML file with a view of it that turns, to be sent."""
     from ..report.report import write_report
 
+    warn_of_changes(directory)
     written = write_report(directory, size_mb, output)
     typer.echo(f"{written.path} ({written.size / 1e6:.2g} MB)")
     for note in written.notes:
@@ -111,6 +114,7 @@ def census(
     from ..figures.census_output import CensusOptions, write_census
 
     chosen = tuple(sections) if sections else None
+    warn_of_changes(directory)
     options = CensusOptions(window, start, end, chosen, sample, draws, bin_width)
     for line in write_census(directory, options):
         typer.echo(line)
@@ -140,6 +144,7 @@ def maps(
     """Draw maps of a 3-D run into DIR/maps: largest depth, speed, pressure, arrival, deposit."""
     from ..figures.maps.output import MapOptions, write_pictures
 
+    warn_of_changes(directory)
     for line in write_pictures(directory, MapOptions(cell, extent, path)):
         typer.echo(line)
 
@@ -154,6 +159,7 @@ def loads(
     from ..record.reader import load
 
     run = load(directory)
+    warn_of_changes(directory)
     found = write_loads(run)
     if not found:
         raise UserError(

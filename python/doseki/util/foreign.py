@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import os
 import stat
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from ..errors import DosekiError, UserError
 from .memory import available_bytes
+
+REMEDY = "bring it back, or move it away"  # of a file that a run has written
 
 
 @contextmanager
@@ -77,6 +81,27 @@ def read_bytes(path: Path, most: int | None = None) -> bytes:
         if size > limit:
             raise UserError(f"{path}: {size} bytes; at most {limit} are read")
         return file.read(size)
+
+
+def read_json_table(path: Path, most: int | None = None) -> dict[str, Any]:
+    """The table in a JSON file, as a run writes them; raises UserError for anything else."""
+    try:
+        found = json.loads(read_text(path, most))
+    except (ValueError, RecursionError):
+        raise UserError(f"{path}: is cut short or damaged: no JSON; {REMEDY}") from None
+    if not isinstance(found, dict):
+        raise UserError(f"{path}: is damaged: it must hold a table, {{...}}; {REMEDY}")
+    return found
+
+
+def read_toml_table(path: Path, most: int | None = None) -> dict[str, Any]:
+    """The same of a TOML file."""
+    try:
+        return tomllib.loads(read_text(path, most))
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{path}: not valid TOML: {error}") from None
+    except (ValueError, RecursionError):
+        raise UserError(f"{path}: is damaged: no run writes such TOML; {REMEDY}") from None
 
 
 def read_text(path: Path, most: int | None = None) -> str:
