@@ -104,14 +104,21 @@ def test_a_half_written_snapshot_is_not_seen(run_folder):
     assert len(load(run_folder)) == 3
 
 
-@pytest.mark.parametrize("made", ["nothing", "folder", "file"])
-def test_what_is_not_a_run_is_refused(tmp_path, made):
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ("nothing", "x: no such folder"),
+        ("folder", "x: not the folder of a run"),
+        ("file", "x: is a file; give the folder of a run"),
+    ],
+)
+def test_what_is_not_a_run_is_refused(tmp_path, made, said):
     path = tmp_path / "x"
     if made == "folder":
         path.mkdir()
     elif made == "file":
         path.write_text("")
-    with pytest.raises(UserError, match=r"not the folder of a run|no such folder"):
+    with pytest.raises(UserError, match=said):
         load(path)
 
 

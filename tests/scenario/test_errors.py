@@ -25,7 +25,7 @@ from ..small_scenarios import BLOCK
         ("gravity = 9.8", ["gravity = 9.8 must be a list in square brackets"]),
         ("alpha = 2020-01-01", ["line 5", "alpha = 2020-01-01 must be a number"]),
         ("alpha = { a = [1] }", ["alpha = { a = [1] } must be a number"]),
-        ("alpha = 1" + "0" * 400, ["alpha = a whole number of 401 digits must be a number"]),
+        ("alpha = 1" + "0" * 400, ["alpha = 1000000000... (401 digits) is out of range"]),
         (f"title = '{'a' * 301}'", ["line 5", "has 301 characters; at most 300 are allowed"]),
         (
             "[figure.f]\nkind = 'snapshot'\ncolour = []",

@@ -285,6 +285,11 @@ def test_a_file_of_another_kind_is_refused(tmp_path):
         load_scenario(str(scenario(tmp_path, "wall.step")))
 
 
+def test_a_file_that_is_missing_is_told_with_its_key(tmp_path):
+    with pytest.raises(UserError, match=r"toml, line \d+: body.wall: .*no.stl: no such file"):
+        build_scene(load_scenario(str(scenario(tmp_path, "no.stl"))))
+
+
 def test_water_makes_room_for_all_that_the_mesh_encloses(tmp_path):
     written(tmp_path, trimesh.creation.box(extents=(0.4, 0.28, 0.2)))
     path = scenario(tmp_path, body=WATER, keys="position = [0.06, 0, 0]\nrotate = 90")

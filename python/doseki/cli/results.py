@@ -28,12 +28,14 @@ def plot(
     ] = None,
 ) -> None:
     """Draw the figures of a run (and a movie on request)."""
-    from ..figures.movie import make_movie
+    from ..figures.movie import check_movie, make_movie
     from ..figures.plot import draw_run
     from ..record.reader import load
 
     if colour is not None and movie is None:
         raise UserError(f"--colour {colour} is that of a movie: give --movie FILE, too")
+    if movie:
+        check_movie(movie)
     warn_of_changes(directory)
     drawn = draw_run(directory)
     for picture in drawn.pictures:

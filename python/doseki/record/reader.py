@@ -37,7 +37,8 @@ def load(directory: str | Path) -> Run:
     """
     folder = RunFolder(Path(directory))
     if not folder.path.is_dir():
-        raise UserError(f"{directory}: no such folder")
+        wrong = "is a file; give the folder of a run" if folder.path.exists() else "no such folder"
+        raise UserError(f"{directory}: {wrong}")
     if not folder.is_run():
         raise UserError(
             f"{directory}: not the folder of a run: {folder.scenario.name} or "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from datetime import date, time
 from typing import Any
@@ -102,6 +103,8 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: Kin
         return f"{name} = {_shown(value)} must be finite{about}"
     if EXPECTED.get(kind) == "a table" and isinstance(value, list):
         return f"{name} must be a table{about}; write [{name}], where [[{name}]] makes a list"
+    if kind == "float_type" and type(value) is int:
+        return f"{name} = {_shown(value)} is out of range; must be below {sys.float_info.max:.0e}"
     if kind in EXPECTED:
         return f"{name} = {_shown(value)} must be {EXPECTED[kind]}{about}"
     if kind in LENGTHS:
@@ -157,7 +160,8 @@ def _as_written(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int) and abs(value) > LARGEST_SHOWN:
-        return f"a whole number of {math.floor(math.log10(abs(value))) + 1} digits"
+        digits = math.floor(math.log10(abs(value))) + 1
+        return f"{value // 10 ** (digits - 10)}... ({digits} digits)"
     if isinstance(value, list):
         return f"[{', '.join(map(_as_written, value))}]"
     if isinstance(value, dict):

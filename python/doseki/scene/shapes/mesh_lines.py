@@ -54,14 +54,14 @@ def _place(file: Path, content: bytes, found: re.Match[bytes]) -> str:
 def _no_numbers(line: re.Match[bytes], form: bytes) -> str:
     """What is wrong with a line that should have three numbers or more, each of a form."""
     words = re.sub(rb"facet[ \t]+normal", b"normal", line[0]).partition(b"#")[0].split()
-    name, *words = (word.decode("utf-8", "replace") for word in words)
+    name, *numbers = (word.decode("utf-8", "replace") for word in words)
     what = {"f": "a face", "v": "a vertex"}.get(name.lower(), f"a {name.lower()}")
-    for word in words:
+    for word in numbers:
         if not re.fullmatch(form, word.encode(), re.IGNORECASE):
             points = "; decimal numbers have points" if "," in word else ""
             return f"{what} has {word[:40]!r}, which is not a number{points}"
     wanted = "three or more vertices" if name == "f" else "three numbers"
-    return f"{what} of {len(words)}; {wanted} are needed"
+    return f"{what} of {len(numbers)}; {wanted} are needed"
 
 
 def check_ply_header(file: Path, header: bytes, size: int) -> None:
