@@ -205,5 +205,14 @@ def test_a_scenario_that_is_no_toml_is_told_in_our_words(run_folder, text):
 def test_a_damaged_history_is_named(run_folder):
     with (run_folder / "history.csv").open("a") as file:
         file.write("1.0,oops\n")
-    with pytest.raises(UserError, match=r"history\.csv: cannot be read"):
+    with pytest.raises(UserError, match=r"history\.csv: cannot be read: line 5 has 2 entries"):
+        _ = load(run_folder).history
+
+
+def test_a_word_in_a_history_is_named_with_its_line(run_folder):
+    file = run_folder / "history.csv"
+    header, first, second, *_ = file.read_text().splitlines()
+    time, _, rest = second.split(",", 2)
+    file.write_text("\n".join([header, first, f"{time},oops,{rest}", ""]))
+    with pytest.raises(UserError, match=r"history\.csv, line 3: step = 'oops' is not a number"):
         _ = load(run_folder).history

@@ -140,7 +140,10 @@ class History(Mapping[str, np.ndarray]):
         self.columns = list(columns)
         self.units: dict[str, str] = history_units(self.columns)
         """Unit of each column; "" where it has none."""
-        table = np.array([[float(cell) for cell in row] for row in rows])
+        try:
+            table = np.array([[float(cell) for cell in row] for row in rows])
+        except ValueError:
+            raise UserError(_no_number(path, self.columns, rows)) from None
         self._table = table.reshape(len(rows), len(self.columns))
 
     def __getitem__(self, column: str) -> np.ndarray:
@@ -153,6 +156,20 @@ class History(Mapping[str, np.ndarray]):
 
     def __len__(self) -> int:
         return len(self.columns)
+
+
+def _no_number(path: str | Path, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """What is wrong with rows of which one entry is no number."""
+    for line, row in enumerate(rows, start=2):
+        for column, cell in zip(columns, row, strict=True):
+            try:
+                float(cell)
+            except ValueError:
+                return (
+                    f"{path}, line {line}: {column} = {cell[:40]!r} is not a number; the file is "
+                    "damaged: bring it back"
+                )
+    return f"{path}: is damaged; bring it back"
 
 
 class GaugeRecord(History):
