@@ -15,10 +15,10 @@ NUMBER = rb"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?)"
 INDEX = rb"-?\d+(?:/-?\d*){0,2}"
 TAIL = rb"(?:[ \t]*(?:#[^\n]*)?\r?$)"
 # Lines that begin as they should and do not go on like that.
-BAD_FACE = rb"^f(?=[ \t])(?!(?:%s%s){3,}%s)" % (GAP, INDEX, TAIL)
+BAD_FACE = rb"^f(?=\s)(?!(?:%s%s){3,}%s)" % (GAP, INDEX, TAIL)
 BAD_VERTEX = rb"^v(?=[ \t])(?!(?:%s%s){3,}%s)" % (GAP, NUMBER, TAIL)
-# Of an STL.
-BAD_POINT = rb"^[ \t]*(?:vertex|facet[ \t]+normal)(?=[ \t])(?!(?:[ \t]+%s){3}%s)" % (NUMBER, TAIL)
+# Of an STL, the normals of which are not used.
+BAD_POINT = rb"^[ \t]*vertex(?=[ \t])(?!(?:[ \t]+%s){3}%s)" % (NUMBER, TAIL)
 NO_VERTEX = rb"^f[^\n#]*[ \t]0+(?=[/\s]|$)"
 
 PLY_TYPES = ("char", "uchar", "short", "ushort", "int", "uint", "float", "double")
@@ -53,15 +53,14 @@ def _place(file: Path, content: bytes, found: re.Match[bytes]) -> str:
 
 def _no_numbers(line: re.Match[bytes], form: bytes) -> str:
     """What is wrong with a line that should have three numbers or more, each of a form."""
-    words = re.sub(rb"facet[ \t]+normal", b"normal", line[0]).partition(b"#")[0].split()
-    name, *numbers = (word.decode("utf-8", "replace") for word in words)
-    what = {"f": "a face", "v": "a vertex"}.get(name.lower(), f"a {name.lower()}")
+    name, *numbers = line[0].decode("utf-8", "replace").partition("#")[0].split()
+    what, of = ("a face", "vertices") if name in "fF" else ("a vertex", "numbers")
     for word in numbers:
         if not re.fullmatch(form, word.encode(), re.IGNORECASE):
             points = "; decimal numbers have points" if "," in word else ""
             return f"{what} has {word[:40]!r}, which is not a number{points}"
-    wanted = "three or more vertices" if name == "f" else "three numbers"
-    return f"{what} of {len(numbers)}; {wanted} are needed"
+    more = " or more" if of == "vertices" else ""
+    return f"{what} of {len(numbers)} {of}; three{more} are needed"
 
 
 def check_ply_header(file: Path, header: bytes, size: int) -> None:
