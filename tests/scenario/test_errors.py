@@ -152,6 +152,7 @@ def test_inflows(write, error_of, old, new, part):
         (b"a = " + b"[" * 100_000, "case.toml: tables or lists nested more than 32 deep"),
         (b"\na = " + b"1" * 5000, "case.toml, line 2: a whole number of more than 4300 digits"),
         (b"dp = 1\ndp = 2", "case.toml, line 2: dp is given twice, at first in line 1"),
+        (b"[[a]]\nb = 1\n[[a]]\nb = 1\nb = 2", "line 5: a.b is given twice, at first in line 4"),
         (b"[a]\nb = 1\n[a]", "case.toml, line 3: a is given twice, at first in line 1"),
         (b"[a]\nb = 1\n[a.b]", "case.toml, line 3: a.b is given twice, at first in line 2"),
         (b"a = 1\n[a.b]", "case.toml, line 2: a.b does not go with a in line 1; give one"),

@@ -126,7 +126,7 @@ def _said(path: Path, text: str, message: str) -> str:
     if not message.startswith(GIVEN_TWICE) or not before:
         return f"{path}: not valid TOML: {message}"
     line, keys, _ = before.pop()
-    same = [(n, k) for n, k, _ in before if k[: len(keys)] == keys[: len(k)]]
+    same = [(n, k) for n, k, _ in reversed(before) if k[: len(keys)] == keys[: len(k)]]
     name = ".".join(keys)
     if not same:
         return f"{path}, line {line}: {name} is given twice; give it once"

@@ -120,7 +120,8 @@ def _check_repeated(file: Path, number: np.ndarray, faces: np.ndarray) -> None:
     again = np.flatnonzero(of[index.ravel()] != np.arange(len(faces)))
     if len(again):
         one, other = number[of[index.ravel()[again[0]]]] + 1, number[again[0]] + 1
-        others = f", and {len(again) - 1} more are twice" if len(again) > 1 else ""
+        more = len(again) - 1
+        others = f", and {more} more {'is' if more == 1 else 'are'} twice" if more else ""
         raise ShapeError(
             f"{file}: triangle {other} is triangle {one} again{others}; leave each out once"
         )
