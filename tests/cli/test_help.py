@@ -66,3 +66,24 @@ def test_an_output_folder_without_a_name_is_refused(monkeypatch, tmp_path, words
     assert done.exit_code == 2
     assert "the name is empty" in done.output
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["run", "film", "--threads", "0"], "0 is outside 1 to 4096"),
+        (["run", "film", "--threads", "1.5"], "'1.5' is not a whole number"),
+        (["run", "film", "--threads", "9" * 5000], "is outside 1 to 4096"),
+        (["run", "film", "--ranks", "-1"], "-1 is outside 1 to 100000"),
+        (["run", "film", "--device", "gpu"], "'gpu' is not one of auto, cpu, host, cuda"),
+        (["new", "a.toml", "--dim", "4"], "'4' is not one of 2, 3"),
+        (["validate", "--tier", "fine"], "'fine' is not one of coarse, full"),
+        (["census", "a", "--draws", "x"], "'x' is not a whole number"),
+    ],
+)
+def test_what_an_option_may_be_is_said_in_our_words(monkeypatch, tmp_path, words, said):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, words, env={"COLUMNS": "400", "TERM": "dumb"})
+    assert done.exit_code == 2
+    assert f"'{words[-2]}': " in done.output
+    assert said in done.output

@@ -167,7 +167,7 @@ def test_what_cannot_be_is_refused_and_leaves_nothing(blocks, dim, options, mess
     ("words", "message"),
     [
         ([], "say what to export, one of --vtu, --surface, --paraview"),
-        (["--vtu", "--surface"], "say what to export"),
+        (["--vtu", "--surface"], "--vtu and --surface at once: export one of them after the"),
         (["--vtu", "--cell", "0.1"], "--cell is about surfaces"),
         (["--paraview", "--time", "0"], "--time is about surfaces"),
     ],

@@ -290,6 +290,12 @@ def test_mp4_needs_ffmpeg(flow_folder, tmp_path, monkeypatch):
     assert not (tmp_path / "m.mp4").exists()
 
 
+def test_a_movie_that_cannot_be_made_is_refused_before_figures_are_drawn(flow_folder, tmp_path):
+    done = CliRunner().invoke(app, ["plot", str(flow_folder), "--movie", str(tmp_path / "m.xyz")])
+    assert "a movie is a .gif, a .webp or an .mp4" in str(done.exception)
+    assert done.output == ""
+
+
 def test_movie_refuses_other_endings_and_existing_files(flow_folder, tmp_path):
     (tmp_path / "m.gif").write_text("mine")
     with pytest.raises(UserError, match="exists"):

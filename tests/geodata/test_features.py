@@ -107,9 +107,15 @@ def test_a_single_geometry(geojson, content):
 
 WGS84 = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
 REFUSED = {
-    "no text": ("", "no GeoJSON"),
-    "half of it": (json.dumps(collection(FRAME))[:-40], "no GeoJSON"),
-    "deep": ("[" * 100_000, "no GeoJSON"),
+    "no text": ("", "no GeoJSON: the file is empty"),
+    "half of it": (json.dumps(collection(FRAME))[:-40], "no GeoJSON: it stops in the middle"),
+    "half of a word": ('{"type": "Feature', "no GeoJSON: it stops in the middle"),
+    "deep": ("[" * 100_000, "no GeoJSON: lists within lists, too many deep"),
+    "many digits": ("[" + "1" * 5000 + "]", "no GeoJSON: a number has too many digits"),
+    "no comma": (
+        '{"type":\n "Feature" 3}',
+        "line 2: no GeoJSON: what stands at column 12 cannot be there",
+    ),
     "a list": ("[]", "feature 1: no geometry"),
     "nothing": (collection(), "neither polygons nor lines"),
     "points": (collection({"type": "Point", "coordinates": [0, 0]}), "Point is not read"),
@@ -150,6 +156,39 @@ def test_damaged_files_are_refused(tmp_path, suffix, content):
     path.write_bytes(content)
     with pytest.raises(UserError, match=str(path)):
         read_features(path)
+
+
+@pytest.fixture
+def geopackage(tmp_path):
+    """A function that writes geometries into a GeoPackage, and its path."""
+    pyogrio = pytest.importorskip("pyogrio", reason="pyogrio: pip install 'doseki[terrain]'")
+    shapely = pytest.importorskip("shapely")
+
+    def write(*texts):
+        path, shapes = (
+            tmp_path / "x.gpkg",
+            [text and shapely.to_wkb(shapely.from_wkt(text)) for text in texts],
+        )
+        about = {"geometry_type": "Polygon", "crs": "EPSG:32633", "driver": "GPKG"}
+        pyogrio.raw.write(path, np.array(shapes, object), [], [], **about)
+        return path
+
+    return write
+
+
+AREA = "POLYGON ((0 0, 9 0, 9 9, 0 0))"
+
+
+def test_a_geopackage_cut_short_is_told_without_words_of_its_library(geopackage):
+    path = geopackage(*[AREA] * 99)
+    path.write_bytes(path.read_bytes()[:30_000])
+    with pytest.raises(UserError, match=r"it is cut short, damaged, or not a GeoPackage$"):
+        read_features(path)
+
+
+@pytest.mark.parametrize("text", [None, "POLYGON EMPTY"])
+def test_a_feature_without_geometry_is_told(geopackage, refusal, text):
+    assert "feature 2: no geometry; draw" in refusal(read_features, geopackage(AREA, text))
 
 
 def test_of_several_layers_one_is_chosen(tmp_path, geojson, refusal, gdal):

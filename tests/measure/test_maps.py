@@ -253,8 +253,10 @@ def test_the_grid_is_that_of_the_terrain(tmp_path):
 @pytest.mark.parametrize(
     ("settings", "word"),
     [
-        (MapSettings(0.25, cell=1.5), "whole multiple"),
-        (MapSettings(2.0), "smaller than a particle"),
+        (MapSettings(0.25, cell=1.5), "^maps: maps.cell = 1.5 m is no whole multiple"),
+        (MapSettings(0.25, cell=1.5, named="--"), "^--cell = 1.5 m is no whole multiple"),
+        (MapSettings(2.0), "smaller than a particle .* give maps.cell of 2 dp or more"),
+        (MapSettings(2.0, named="--"), "smaller than a particle .* give --cell of 2 dp or more"),
         (MapSettings(0.25, extent=[WEST - 1, SOUTH, WEST + 5, SOUTH + 3]), "beyond the raster"),
         (MapSettings(0.25, extent=[WEST + 5, SOUTH, WEST, SOUTH + 3]), "west < east"),
         (MapSettings(0.25, extent=[np.nan, SOUTH, WEST, SOUTH + 3]), "west < east"),
@@ -266,8 +268,10 @@ def test_a_grid_that_does_not_fit_is_refused(tmp_path, settings, word):
 
 
 def test_without_a_terrain_the_grid_is_given(tmp_path):
-    with pytest.raises(UserError, match="has no terrain"):
+    with pytest.raises(UserError, match=r"has no terrain; give maps.extent .* and maps.cell, m"):
         map_grid(RunFolder(tmp_path), MapSettings(0.1, cell=1.0))
+    with pytest.raises(UserError, match=r"has no terrain; give --extent .* and --cell, m"):
+        map_grid(RunFolder(tmp_path), MapSettings(0.1, cell=1.0, named="--"))
     extent = [WEST, SOUTH, WEST + 3.5, SOUTH + 2]
     grid = map_grid(RunFolder(tmp_path), MapSettings(0.1, cell=1.0, extent=extent))
     assert grid.shape == (2, 4)
@@ -278,6 +282,7 @@ def test_without_a_terrain_the_grid_is_given(tmp_path):
 def test_small_cells_are_warned_of():
     assert few_particles(bed(), 0.5) is None
     assert "maps.cell = 1.2" in few_particles(bed(), 0.6)
+    assert "--cell = 1.2" in few_particles(bed(), 0.6, "--")
 
 
 def test_the_runout():
@@ -457,7 +462,11 @@ def test_a_profile():
 
 @pytest.mark.parametrize(
     ("path", "word"),
-    [([[0, 0]], "two points"), ([[1, 1], [1, 1]], "two points"), ([[0, 0], [5, 5]], "beside")],
+    [
+        ([[0, 0]], "two points"),
+        ([[1, 1], [1, 1]], "two points"),
+        ([[0, 0], [5, 5]], "beside the map, which has x from [0-9.]* to .* m and y"),
+    ],
 )
 def test_a_path_that_is_none_is_refused(path, word):
     state = slab((2, 3, 0), (6, 7, 1), 0.25)

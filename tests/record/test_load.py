@@ -104,14 +104,21 @@ def test_a_half_written_snapshot_is_not_seen(run_folder):
     assert len(load(run_folder)) == 3
 
 
-@pytest.mark.parametrize("made", ["nothing", "folder", "file"])
-def test_what_is_not_a_run_is_refused(tmp_path, made):
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ("nothing", "x: no such folder"),
+        ("folder", "x: not the folder of a run"),
+        ("file", "x: is a file; give the folder of a run"),
+    ],
+)
+def test_what_is_not_a_run_is_refused(tmp_path, made, said):
     path = tmp_path / "x"
     if made == "folder":
         path.mkdir()
     elif made == "file":
         path.write_text("")
-    with pytest.raises(UserError, match=r"not the folder of a run|no such folder"):
+    with pytest.raises(UserError, match=said):
         load(path)
 
 
@@ -127,11 +134,13 @@ def test_a_damaged_snapshot_is_named(run_folder):
     ("old", "new", "said"),
     [
         ("dim = 2\n", "", "dim is missing"),
-        ("dim = 2\n", "dim = 4\n", "dim: Input should be 2 or 3"),
-        ("dp = 0.1\n", "dp = 'fine'\n", "dp: "),
-        ("time_max = 2.0\n", "time_max = nan\n", "time_max: "),
+        ("dim = 2\n", "dim = 4\n", "dim = 4 must be 2 or 3"),
+        ("dp = 0.1\n", "dp = 'fine'\n", "dp = fine must be a number"),
+        ("time_max = 2.0\n", "time_max = nan\n", "time_max = nan must be a finite number"),
         ("gravity = [-1.0, ", "gravity = [0.0, 0.0, ", "gravity: a 2-D run needs 2 entries"),
-        ("dim = 2\n", "dim = 2\nbody = 3\n", "body: "),
+        ("dim = 2\n", "dim = 2\nbody = 3\n", "body = 3 must be a table"),
+        ("dp = 0.1\n", "dp = -1.0\n", "dp = -1.0 must be a number above 0"),
+        ("gravity = [-1.0, ", "gravity = [-1.0, 0.0, 0.0, ", "must be a list of two or three"),
         ("dim = 2\n", "dim = 2\nperiodic = ['x']\n", "periodic needs domain_min"),
     ],
 )
@@ -146,8 +155,64 @@ def test_a_damaged_scenario_is_named(run_folder, old, new, said):
     assert said in str(caught.value)
 
 
+def test_snapshots_that_go_back_in_time_are_refused_with_the_names_of_both(run_folder):
+    files = run_folder / "snapshots"
+    (files / "000003.vtkhdf").write_bytes((files / "000001.vtkhdf").read_bytes())
+    with pytest.raises(UserError) as caught:
+        len(load(run_folder))
+    assert str(caught.value).startswith(
+        f"{files / '000003.vtkhdf'}: its time, 1 s, is before that of 000002.vtkhdf, 2 s: one of"
+    )
+
+
+@pytest.mark.parametrize("name", ["summary", "trust"])
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[1,2", "is cut short or damaged: no JSON; bring it back, or move it away"),
+        ("[" * 100_000, "is cut short or damaged: no JSON"),
+        ("5", "is damaged: it must hold a table, {...}; bring it back, or move it away"),
+    ],
+)
+def test_a_damaged_table_is_named(run_folder, name, text, said):
+    (run_folder / f"{name}.json").write_text(text)
+    with pytest.raises(UserError) as caught:
+        getattr(load(run_folder), name)
+    assert str(caught.value).startswith(f"{run_folder / name}.json: {said}")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('{"status": 5}', r"status = 5 must be a word;"),
+        ('{"warnings": 5}', r"warnings = 5 must be a list;"),
+    ],
+)
+def test_a_summary_that_says_what_none_says_is_refused(run_folder, text, said):
+    (run_folder / "summary.json").write_text(text)
+    with pytest.raises(UserError, match=rf"summary\.json: is damaged: {said}"):
+        _ = load(run_folder).summary
+
+
+@pytest.mark.parametrize("text", ["dim = ", "a = " + "[" * 100_000, "a = " + "1" * 5000])
+def test_a_scenario_that_is_no_toml_is_told_in_our_words(run_folder, text):
+    (run_folder / "scenario.toml").write_text(text)
+    with pytest.raises(UserError, match=r"not valid TOML|no run writes such TOML") as caught:
+        _ = load(run_folder).scenario
+    assert "recursion" not in str(caught.value)
+
+
 def test_a_damaged_history_is_named(run_folder):
     with (run_folder / "history.csv").open("a") as file:
         file.write("1.0,oops\n")
-    with pytest.raises(UserError, match=r"history\.csv: cannot be read"):
+    with pytest.raises(UserError, match=r"history\.csv: cannot be read: line 5 has 2 entries"):
+        _ = load(run_folder).history
+
+
+def test_a_word_in_a_history_is_named_with_its_line(run_folder):
+    file = run_folder / "history.csv"
+    header, first, second, *_ = file.read_text().splitlines()
+    time, _, rest = second.split(",", 2)
+    file.write_text("\n".join([header, first, f"{time},oops,{rest}", ""]))
+    with pytest.raises(UserError, match=r"history\.csv, line 3: step = 'oops' is not a number"):
         _ = load(run_folder).history

@@ -8,6 +8,7 @@ import pytest
 from tests.hostile_hdf5 import HARMS, spoil
 
 from doseki.cli.main import main
+from doseki.util.sealed import sealed
 
 
 def refused(capsys, folder):
@@ -19,7 +20,8 @@ def refused(capsys, folder):
     assert said.out == ""
     assert said.err.startswith("doseki: ")
     assert said.err.count("\n") == 1
-    assert "mistake in doseki" not in said.err
+    for words in ("mistake in doseki", "object", "indices", "attribute", "NoneType"):
+        assert words not in said.err
     assert not (folder / "report.html").is_file()
     return said.err
 
@@ -43,6 +45,9 @@ def test_no_run(tmp_path, capsys):
         ("trust.json", "[1]"),
         ("failure.json", "nothing"),
         ("provenance.json", '{"runs": 3}'),
+        ("provenance.json", '"x"'),
+        ("summary.json", "5"),
+        ("summary.json", '{"status": "done", "runout": [1]}'),
         ("scenario.toml", "dim = 2\n"),
         ("scenario.toml", "dim = 'two'\ntime_max = 1\ndp = 1\n"),
         ("scenario.toml", "dim = 2\ntime_max = 1\ndp = 1\ngravity = 'down'\n"),
@@ -65,6 +70,18 @@ def test_an_absurd_scenario_of_figures(drawn_flow, capsys):
     with (drawn_flow / "scenario.toml").open("a") as file:
         file.write('\n[gauge.x]\nkind = "thermometer"\n')
     assert "gauge.x" in refused(capsys, drawn_flow)
+
+
+@pytest.mark.parametrize("words", [["report"], ["plot"], ["export", "--paraview"]])
+def test_a_scenario_that_was_changed_by_hand_is_told_once(drawn_flow, capsys, words):
+    file = drawn_flow / "scenario.toml"
+    file.write_text(sealed(file.read_text()).replace("dp = ", "# here\ndp = "))
+    with pytest.raises(SystemExit):
+        main([*words, str(drawn_flow)])
+    said = f"{file}: has been changed by hand since the run wrote it"
+    assert capsys.readouterr().err.count(f"warning: {said}") == 1
+    if words == ["report"]:
+        assert said in (drawn_flow / "report.html").read_text()
 
 
 def test_nothing_is_written_through_a_link(run_folder, tmp_path, capsys):

@@ -56,7 +56,7 @@ def test_resumptions_are_added_and_a_new_start_begins_anew(run_folder):
 def test_a_damaged_one_is_refused_and_keeps_no_run_from_going_on(run_folder, text):
     folder = RunFolder(run_folder)
     folder.provenance.write_text(text)
-    with pytest.raises(UserError, match=r"provenance\.json"):
+    with pytest.raises(UserError, match=r"provenance\.json: is .*damaged.* bring it back, or"):
         read_provenance(folder)
     note_provenance(folder, False, 1, 1)
     assert len(read_provenance(folder)) == 1

@@ -313,6 +313,27 @@ def test_what_is_no_tank_is_refused(tmp_path, error_of, keys, part):
     assert part in error_of(str(path))
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "part"),
+    [
+        ("dp", "[0.02]", "dp = [0.02] must be a number"),
+        ("dp", "2020-01-01", "dp = 2020-01-01 must be a number"),
+        ("dp", "{ a = 1 }", "dp = { a = 1 } must be a number"),
+        ("dp", "1" + "0" * 400, "dp = 1000000000... (401 digits) is out of range"),
+        ("eta", "[1]", "eta = [1] must be a number"),
+        ("kernel", "'cubic'", "kernel = 'cubic' is not allowed; choose"),
+    ],
+)
+def test_a_wrong_key_is_to_blame_and_not_the_tank_that_needs_it(
+    tmp_path, error_of, key, value, part
+):
+    path = tmp_path / "case.toml"
+    head = [line for line in HEAD.format(dim=2).splitlines() if not line.startswith(f"{key} =")]
+    tank = TANK + "min = [0, 0]\nmax = [0.4, 0.2]\n"
+    path.write_text("\n".join([f"{key} = {value}", *head, tank]))
+    assert f"case.toml, line 1: {part}" in error_of(str(path))
+
+
 def test_boxes_that_dp_does_not_divide_are_reported_with_the_size_they_got(load):
     box = '[body.{}]\nshape = "box"\nmaterial = "water"\nmin = [{}, 0]\nmax = [{}, 0.2]\n'
     lines = check_scenario(load(box.format("whole", 0, 0.4) + box.format("odd", 1, 1.405)))

@@ -77,8 +77,8 @@ def test_the_effective_scenario_no_longer_needs_the_file(write, tmp_path):
         (LIST, "[[0, 1], [2, 1], [1, 1]]", ["i.hydrograph", "row 3: t = 1 s goes back", "2 s"]),
         (LIST, "[[0, 1], [2, -1]]", ["i.hydrograph", "row 2: Q = -1", "from 0 to 1e+12"]),
         (LIST, '[[0, 1], [2, "-1 L/s"]]', ["row 2: Q = -0.001", "from 0 to 1e+12"]),
-        (LIST, "[[0, 1]]", ["i.hydrograph", "1 rows; two or more are needed"]),
-        (LIST, "[]", ["0 rows; two or more"]),
+        (LIST, "[[0, 1]]", ["i.hydrograph", "1 row; two or more are needed"]),
+        (LIST, "[]", ["no rows; two or more"]),
         (LIST, "[[0, 1], [2]]", ["must be a list of [t, Q] pairs, or the path of a CSV file"]),
         (LIST, '[[0, 1], [2, "3 gal/s"]]', ['hydrograph.1.1 = "3 gal/s" is not a rate']),
         (LIST, "[[0, 1], [2, true]]", ["row 2: Q = True"]),
@@ -148,6 +148,11 @@ def test_a_setting_that_takes_the_place_of_the_hydrograph_says_so(write, setting
         ("t,Q\n0,1\n1,1e300\n", "row 2: Q = 1e+300; allowed: numbers from 0 to 1e+12"),
         ("t,Q\n0,1\n1,nan\n", "row 2: Q = nan"),
         ("t,Q\n0,1\n-1,1\n", "row 2: t = -1"),
+        ("", 'q.csv: the file is empty; expected a CSV header such as "t [s],Q [L/s]"'),
+        ("0,0\n1,30\n", 'q.csv: begins with numbers; a header such as "t [s],Q [L/s]" must'),
+        ("t,Q\n", "q.csv: no rows; two or more are needed"),
+        ("t,Q,x\n0,1,1\n1,1,1\n", '"x" is not one of its columns: take it out; expected'),
+        ("t,Q\n0,1\n1\n", "line 3: 1 field; the header has 2 columns"),
     ],
 )
 def test_wrong_files(write, error_of, tmp_path, text, part):

@@ -158,7 +158,7 @@ def test_small_file_that_claims_to_be_huge(tmp_path):
 def test_truncated_hdf5(tmp_path):
     path = write_hdf5(tmp_path)
     path.write_bytes(path.read_bytes()[:700])
-    with pytest.raises(UserError, match="cannot be read as HDF5"):
+    with pytest.raises(UserError, match=r"as HDF5: it is cut short, damaged, or not HDF5$"):
         read_particles(path, 2, None)
 
 

@@ -204,13 +204,27 @@ HOSTILE = {
                 "is cut off: no line `endsolid`"),
     "half.stl": (box().export(file_type="stl_ascii").encode()[:900], "is cut off"),
     "many.ply": (b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999999\n"
-                 b"property float x\nend_header\n", "more than it has"),
+                 b"property float x\nend_header\n",
+                 "line 3: 99999999999999 of the element vertex are more than a file of 94 bytes"),
+    "blob.ply": (b"ply\nformat ascii 1.0\nelement vertex 1\nproperty blob x\nend_header\n1\n",
+                 "line 4: 'blob' is no type of a number; known: char, uchar"),
+    "words.ply": (b"ply\nformat ascii 1.0\nelement vertex many\nend_header\n",
+                  "line 3: element vertex has 'many', which is not a whole number"),
+    "half.ply": (box().export(file_type="ply", vertex_normal=False)[:-20],
+                 "cannot be read as PLY: it is cut short, damaged, or not PLY"),
     "cut.ply": (box().export(file_type="ply", encoding="ascii", vertex_normal=False)[:-20],
-                "has 18 lines after its header, which says 20"),
+                "has 18 lines after its header, which says 20; it is cut short, or damaged"),
     "again.stl": (stl_of(box().triangles[[*range(12), 4]]), "triangle 13 is triangle 5 again;"),
     "turned.stl": (stl_of(np.roll(box().triangles[[*range(12), 4, 7]], 1, axis=1)),
                    "triangle 13 is triangle 5 again, and 1 more"),
     "index.obj": (CORNERS + b"f 1 2 9\n", "obj: a face names a vertex that is not there"),
+    "words.obj": (CORNERS + b"f 1 2 3\nf a b c\n", "line 5: a face has 'a', which is not a number"),
+    "two.obj": (CORNERS + b"f 1 2 3\nf 1 2 # 3\n", "line 5: a face of 2 vertices; three or more"),
+    "comma.obj": (b"v 0 0 0\nv 1,5 0 0\n", "line 2: a vertex has '1,5', which is not a number;"),
+    "comma.stl": (b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1,5\nendsolid\n",
+                  "line 4: a vertex has '1,5', which is not a number; decimal numbers have points"),
+    "short.stl": (b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 1\nendsolid\n",
+                  "line 4: a vertex of 2 numbers; three are needed"),
     "zero.obj": (CORNERS + b"f 1 2 3\nf 1//1 0//1 3//1\n", "line 5: a face names vertex 0"),
     "text.obj": (b"hello", "no triangle|cannot be read"),
 }  # fmt: skip
@@ -241,6 +255,14 @@ def test_names_and_comments_come_in_any_encoding(tmp_path, monkeypatch):
         assert len(made_mesh(file, 1.0, 0.0).shape.mesh.faces) == 12
 
 
+def test_normals_of_an_stl_that_are_no_numbers_do_no_harm(tmp_path):
+    text = box().export(file_type="stl_ascii").replace("normal 0.0", "normal -nan(ind)")
+    assert "nan" in text
+    (tmp_path / "wall.stl").write_text(text)
+    made = made_mesh(tmp_path / "wall.stl", 1.0, 0.0)
+    assert made.shape.contains(np.array([[0, 0, 0]])).all()
+
+
 def test_triangles_without_area_are_left_out(tmp_path):
     corners = box().triangles
     needle = np.array([[corners[0][0], corners[0][0], corners[0][1]]])
@@ -267,6 +289,11 @@ def test_keys_that_mean_nothing_are_refused(tmp_path, keys, said):
 def test_a_file_of_another_kind_is_refused(tmp_path):
     with pytest.raises(UserError, match=r"must end in one of .stl, .obj, .ply"):
         load_scenario(str(scenario(tmp_path, "wall.step")))
+
+
+def test_a_file_that_is_missing_is_told_with_its_key(tmp_path):
+    with pytest.raises(UserError, match=r"toml, line \d+: body.wall: .*no.stl: no such file"):
+        build_scene(load_scenario(str(scenario(tmp_path, "no.stl"))))
 
 
 def test_water_makes_room_for_all_that_the_mesh_encloses(tmp_path):

@@ -67,8 +67,12 @@ def put(name, values, row=None):
 
 
 HOSTILE = {
-    "nan": (put("VTKHDF/Points", np.nan, (3, 0)), "position of the particle in row 3"),
-    "no mass": (put("VTKHDF/PointData/Mass", 0.0, 0), "mass of the particle in row 0"),
+    "nan": (
+        put("VTKHDF/Points", np.nan, (3, 0)),
+        r"line \d+: start.from: .*000003.vtkhdf: the "
+        "position of particle 3 is not finite: the snapshot is damaged",
+    ),
+    "no mass": (put("VTKHDF/PointData/Mass", 0.0, 0), "the mass of particle 0 is not above 0"),
     "fewer": (put("VTKHDF/PointData/Density", np.ones(3)), "must hold"),
     "body": (put("VTKHDF/PointData/Body", 77, 0), "index is outside"),
     "a link": (put("VTKHDF/PointData/Mass", h5py.ExternalLink("x.h5", "/y")), "is a link"),
@@ -86,6 +90,15 @@ def test_a_hostile_snapshot_is_refused(tank, later, tmp_path, kind):
         change(file)
     with pytest.raises(UserError, match=said):
         filled_simulation(load_scenario(later(folder=tmp_path / "hostile")))
+
+
+def test_a_scenario_of_the_earlier_run_that_was_changed_by_hand_is_told(tank, later, tmp_path):
+    shutil.copytree(tank.directory, tmp_path / "changed")
+    file = tmp_path / "changed/scenario.toml"
+    assert load_scenario(later(folder=file.parent)).earlier.findings == []
+    file.write_text(file.read_text().replace("[material", "# another one\n[material", 1))
+    (told,) = load_scenario(later(folder=file.parent)).earlier.findings
+    assert f"start.from: {file}: has been changed by hand since the run wrote it" in str(told)
 
 
 def test_a_damaged_checkpoint_leaves_the_snapshot(tank, later, tmp_path):

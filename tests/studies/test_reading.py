@@ -252,7 +252,7 @@ def test_a_place_off_the_map_is_refused(place, tmp_path):
 
 HOSTILE = {
     "nothing": ("", "empty"),
-    "no rows": ("time,y,error\n", "0 rows"),
+    "no rows": ("time,y,error\n", "o.csv: no rows; an observation has"),
     "nan": ("time,y,error\n0,nan,1\n", "row 1: y = nan"),
     "infinite": ("time,y,error\n0,1e999,1\n", "row 1"),
     "a word": ("time,y,error\n0,high,1\n", "'high' is not a number"),

@@ -304,7 +304,7 @@ def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):
         ("between = [1, 2]\nthickness = 1", "2-D"),
         (SQUARE + "\nfixed = true", "cannot be fixed"),
         (SQUARE + "\narray = {count = [2, 1, 1], step = [1, 0, 0]}", "no copies"),
-        (SQUARE.replace("0.5", "[0.5, 0.4]"), "2 numbers for 1 polygons"),
+        (SQUARE.replace("0.5", "[0.5, 0.4]"), "2 numbers for 1 polygon"),
         (SQUARE.replace("0.5", "0.05"), "less than 0.6 particle"),
         (
             "polygon = [[1, 1], [4, 3], [4, 1], [1, 3]]\nthickness = 0.5",

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
+from .changes import warn_of_changes
 from .numbers import number
 from .options import Directory, folder
 
@@ -76,14 +77,17 @@ def export(
     from ..record.reader import load
 
     asked = [k for k, wanted in zip(KINDS, (vtu, surface, paraview), strict=True) if wanted]
-    if len(asked) != 1:
+    if not asked:
         raise UserError(f"say what to export, one of {', '.join(KINDS)}")
+    if len(asked) > 1:
+        raise UserError(f"{' and '.join(asked)} at once: export one of them after the other")
     given = {"--format": kind, "--cell": cell, "--level": level, "--material": materials,
              "--time": times}  # fmt: skip
     for option, value in given.items():
         if value and not surface:
             raise UserError(f"{option} is about surfaces: {asked[0]} has none; use --surface")
     run = load(directory)
+    warn_of_changes(directory)
     if vtu:
         lines = [str(export_vtu(run, output))]
     elif surface:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..util.files import free_directory as free_directory
-from .numbers import number
+from .numbers import choices, number, one_of, whole
 
 
 def folder(text: object) -> Path:
@@ -48,13 +48,16 @@ Settings = Annotated[
     ),
 ]
 Threads = Annotated[
-    int | None, typer.Option(min=1, max=4096, help="Threads.", show_default="all cores")
+    int | None,
+    typer.Option(parser=whole(1, 4096), metavar="N", help="Threads.", show_default="all cores"),
 ]
 DeviceName = StrEnum("DeviceName", ["auto", "cpu", "host", "cuda"])
 Device = Annotated[
     DeviceName,
     typer.Option(
         "--device",
+        parser=one_of(DeviceName),
+        metavar=choices(DeviceName),
         help="Where the flow is worked out: the processor (cpu), a graphics card (cuda), the code "
         "of a card on the processor (host), or a card if there is one and the case is large "
         "enough (auto).",
@@ -71,7 +74,11 @@ CheckpointMinutes = Annotated[
 ]
 Ranks = Annotated[
     int | None,
-    typer.Option(min=1, max=100_000, help="MPI ranks on this machine; or start with mpiexec."),
+    typer.Option(
+        parser=whole(1, 100_000),
+        metavar="N",
+        help="MPI ranks on this machine; or start with mpiexec.",
+    ),
 ]
 Figures = Annotated[bool, typer.Option(help="Draw the figures at the end.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]

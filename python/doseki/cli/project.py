@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
+from .numbers import choices, one_of
 from .options import Threads, folder, free_directory
 
 Tier = StrEnum("Tier", ["coarse", "full"])
@@ -43,7 +44,10 @@ def list_scenarios() -> None:
 
 def new(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Of the scenario, FILE.toml.")],
-    dim: Annotated[Dimensions, typer.Option(help="Dimensions.")] = Dimensions.TWO,
+    dim: Annotated[
+        Dimensions,
+        typer.Option(parser=one_of(Dimensions), metavar=choices(Dimensions), help="Dimensions."),
+    ] = Dimensions.TWO,
     dry: Annotated[bool, typer.Option("--dry", help="Grains without water.")] = False,
 ) -> None:
     """Write a commented scenario to start from: water in a tank, or dry grains.
@@ -131,7 +135,12 @@ def validate(
         list[str] | None, typer.Argument(metavar="[NAME ...]", help="Cases.", show_default="all")
     ] = None,
     tier: Annotated[
-        Tier, typer.Option(help="coarse: the coarsest resolution only; full: all of them.")
+        Tier,
+        typer.Option(
+            parser=one_of(Tier),
+            metavar=choices(Tier),
+            help="coarse: the coarsest resolution only; full: all of them.",
+        ),
     ] = Tier.coarse,
     output: Annotated[
         Path | None,
@@ -147,7 +156,12 @@ def validate(
     threads: Threads = None,
     precision: Annotated[
         Precision | None,
-        typer.Option(help="Of the pair arithmetic of all cases.", show_default="the scenarios'"),
+        typer.Option(
+            parser=one_of(Precision),
+            metavar=choices(Precision),
+            help="Of the pair arithmetic of all cases.",
+            show_default="the scenarios'",
+        ),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
     only_list: Annotated[bool, typer.Option("--list", help="List the cases and stop.")] = False,

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from ..errors import UserError
-from .numbers import number
+from .changes import warn_of_changes
+from .numbers import number, whole
 from .options import AsJson, Directory
 
 NAME = 18  # columns of the names of loads
@@ -27,12 +28,15 @@ def plot(
     ] = None,
 ) -> None:
     """Draw the figures of a run (and a movie on request)."""
-    from ..figures.movie import make_movie
+    from ..figures.movie import check_movie, make_movie
     from ..figures.plot import draw_run
     from ..record.reader import load
 
     if colour is not None and movie is None:
         raise UserError(f"--colour {colour} is that of a movie: give --movie FILE, too")
+    if movie:
+        check_movie(movie)
+    warn_of_changes(directory)
     drawn = draw_run(directory)
     for picture in drawn.pictures:
         typer.echo(str(picture))
@@ -67,6 +71,7 @@ def report(
     """Write the report on a run: one HTML file with a view of it that turns, to be sent."""
     from ..report.report import write_report
 
+    warn_of_changes(directory)
     written = write_report(directory, size_mb, output)
     typer.echo(f"{written.path} ({written.size / 1e6:.2g} MB)")
     for note in written.notes:
@@ -96,9 +101,12 @@ def census(
         ),
     ] = None,
     sample: Annotated[
-        int, typer.Option(min=1, max=1_000_000, help="Grains in a random sample.")
+        int,
+        typer.Option(parser=whole(1, 1_000_000), metavar="N", help="Grains in a random sample."),
     ] = 30,
-    draws: Annotated[int, typer.Option(min=1, max=100_000, help="Number of samples.")] = 2000,
+    draws: Annotated[
+        int, typer.Option(parser=whole(1, 100_000), metavar="N", help="Number of samples.")
+    ] = 2000,
     bin_width: Annotated[
         float,
         typer.Option(parser=number(1e-6, 1e6), metavar="WIDTH", help="Of the histogram, m/s."),
@@ -108,6 +116,7 @@ def census(
     from ..figures.census_output import CensusOptions, write_census
 
     chosen = tuple(sections) if sections else None
+    warn_of_changes(directory)
     options = CensusOptions(window, start, end, chosen, sample, draws, bin_width)
     for line in write_census(directory, options):
         typer.echo(line)
@@ -137,6 +146,7 @@ def maps(
     """Draw maps of a 3-D run into DIR/maps: largest depth, speed, pressure, arrival, deposit."""
     from ..figures.maps.output import MapOptions, write_pictures
 
+    warn_of_changes(directory)
     for line in write_pictures(directory, MapOptions(cell, extent, path)):
         typer.echo(line)
 
@@ -151,6 +161,7 @@ def loads(
     from ..record.reader import load
 
     run = load(directory)
+    warn_of_changes(directory)
     found = write_loads(run)
     if not found:
         raise UserError(

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import PhysicsError, ResourceError, UserError
+from .numbers import whole
 from .options import AsJson, Figures, ScenarioName, Settings, Threads, folder, free_directory
 
 
@@ -104,7 +105,12 @@ def study(
     ] = None,
     at_once: Annotated[
         int | None,
-        typer.Option(min=1, max=4096, help="Runs at the same time.", show_default="one a core"),
+        typer.Option(
+            parser=whole(1, 4096),
+            metavar="N",
+            help="Runs at the same time.",
+            show_default="one a core",
+        ),
     ] = None,
     only_check: Annotated[
         bool, typer.Option("--check", help="Say what it will take, without a run.")

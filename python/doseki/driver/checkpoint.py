@@ -145,7 +145,8 @@ def from_bytes(data: bytes, path: Path) -> Checkpoint:
         except ValidationError as error:
             first = error.errors()[0]
             place = ".".join(map(str, first["loc"]))
-            raise file.error(place, f"is wrong: {first['msg']}") from None
+            said = f"is wrong: {str(first['input'])[:40]} cannot be there"
+            raise file.error(place, said) from None
         state = {name: file.numbers(name) for name in file.names() if name != AROUND_STATE}
     maps = {name: state.pop(name) for name in list(state) if name.startswith(MAP)}
     for name in ("time", "steps", "lanes"):

@@ -50,11 +50,8 @@ def make_movie(
     ending, a file that exists, an unknown colour or window, and an .mp4 without ffmpeg.
     """
     path = Path(path)
-    encode = ENCODERS.get(path.suffix.lower())
-    if encode is None:
-        raise UserError(f"{path}: a movie is a .gif, a .webp or an .mp4")
-    if path.exists():
-        raise UserError(f"{path}: exists and is not overwritten")
+    check_movie(path)
+    encode = ENCODERS[path.suffix.lower()]
     if not len(run):
         raise UserError(f"{run.directory}: the run has no snapshot to show")
     with plain_text():
@@ -66,6 +63,14 @@ def make_movie(
         path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, lambda temporary: encode(temporary, camera, frames_per_second))
     return path
+
+
+def check_movie(path: Path) -> None:
+    """Raise UserError where no movie can be written, before anything is drawn."""
+    if path.suffix.lower() not in ENCODERS:
+        raise UserError(f"{path}: a movie is a .gif, a .webp or an .mp4")
+    if path.exists():
+        raise UserError(f"{path}: exists and is not overwritten")
 
 
 class _Camera:

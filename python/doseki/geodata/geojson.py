@@ -27,15 +27,34 @@ def read_geojson(path: Path) -> Features:
         UserError: it cannot be read.
 
     """
-    try:
-        content = json.loads(read_text(path, MAX_BYTES).removeprefix("\ufeff"))
-    except (ValueError, RecursionError) as error:
-        raise GeodataError(f"{path}: no GeoJSON: {error}") from None
+    content = _parsed(path, read_text(path, MAX_BYTES).removeprefix("\ufeff").rstrip())
     crs = _crs(path, content)
     found = [shape for feature in _features(path, content) for shape in _shapes(path, *feature)]
     polygons = tuple(shape for shape in found if isinstance(shape, Polygon))
     lines = tuple(shape for shape in found if isinstance(shape, Line))
     return Features(polygons, lines, crs)
+
+
+def _parsed(path: Path, text: str) -> Any:
+    """What a text holds that is JSON; raises GeodataError for one that is none."""
+    if not text:
+        raise GeodataError(f"{path}: no GeoJSON: the file is empty")
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        if error.pos >= len(text) or error.msg.startswith("Unterminated"):
+            raise GeodataError(
+                f"{path}: no GeoJSON: it stops in the middle, as a file that was cut off when it "
+                "was copied or downloaded; bring a whole one"
+            ) from None
+        raise GeodataError(
+            f"{path}, line {error.lineno}: no GeoJSON: what stands at column {error.colno} cannot "
+            "be there"
+        ) from None
+    except RecursionError:
+        raise GeodataError(f"{path}: no GeoJSON: lists within lists, too many deep") from None
+    except ValueError:  # of numbers of thousands of digits
+        raise GeodataError(f"{path}: no GeoJSON: a number has too many digits") from None
 
 
 def _crs(path: Path, content: Any) -> str | None:
@@ -69,7 +88,10 @@ def _features(path: Path, content: Any) -> Iterator[Feature]:
     for number, feature in enumerate(features, 1):
         geometry = feature.get("geometry") if isinstance(feature, dict) else None
         if not isinstance(geometry, dict):
-            raise GeodataError(f"{path}, feature {number}: no geometry")
+            raise GeodataError(
+                f"{path}, feature {number}: no geometry; draw its area or line, or take the "
+                "feature out"
+            )
         attributes = feature.get("properties") or {}
         if not isinstance(attributes, dict):
             raise GeodataError(f'{path}, feature {number}: its "properties" must be an object')

@@ -37,7 +37,7 @@ def read_geotiff(path: Path) -> Raster:
 
     """
     rasterio = needed("rasterio", path, WHAT)
-    with warnings.catch_warnings(), readable(path, " as a GeoTIFF"):
+    with warnings.catch_warnings(), readable(path, kind=WHAT):
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         # Only this driver: others would follow what a file says to other files.
         # Within an Env what GDAL has to say does not go to the terminal.
@@ -79,8 +79,14 @@ def _raster(path: Path, dataset: Any) -> Raster:
     raw, unknown = _read_whole(path, dataset)
     values = raw.astype(np.float64) * dataset.scales[0] + dataset.offsets[0]
     values[unknown] = np.nan
-    if np.isinf(values).any():
-        raise GeodataError(f"{path}: holds infinite values")
+    endless = np.argwhere(np.isinf(values))
+    if len(endless):
+        row, column = endless[0] + 1
+        more = f", and {len(endless) - 1} more cells do" if len(endless) > 1 else ""
+        raise GeodataError(
+            f"{path}: row {row}, column {column} holds {values[row - 1, column - 1]}{more}, which "
+            "is no height: mend it, or let the file say that it means no data"
+        )
     at = dataset.transform
     if at.e > 0:  # its rows run from south to north
         values = values[::-1]

@@ -158,8 +158,12 @@ class Raster:
         west, south = self.west + first * self.cell, self.south + low * self.cell
         return replace(self, values=values, west=west, south=south)
 
-    def for_maps(self, cell: float | None, extent: Sequence[float] | None) -> Raster:
+    def for_maps(
+        self, cell: float | None, extent: Sequence[float] | None, named: str = "maps.cell"
+    ) -> Raster:
         """The cells that maps of a flow on this ground have: a multiple of its own, in a window.
+
+        `named` is what the user calls the size of a cell.
 
         Raises:
             GeodataError: they do not fit the raster.
@@ -168,7 +172,7 @@ class Raster:
         times = round((cell or self.cell) / self.cell)
         if cell is not None and (times < 1 or abs(cell - times * self.cell) > TOLERANCE * cell):
             raise GeodataError(
-                f"maps.cell = {cell:g} m is no whole multiple of the terrain's {self.cell:g} m"
+                f"{named} = {cell:g} m is no whole multiple of the terrain's {self.cell:g} m"
             )
         raster = self.resampled(cell) if cell is not None and times > 1 else self
         return raster if extent is None else raster.window(*extent)

@@ -53,7 +53,7 @@ def read_ground(folder: Path) -> Raster | Profile | None:
 
 def _read_profile(path: Path) -> Profile:
     text = read_text(path)
-    with readable(path):
+    with readable(path, kind="the profile of a run"):
         header, *rows = csv.reader(text.splitlines())
         table = np.array([[float(number) for number in row] for row in rows])
     if header != HEADER or table.ndim != 2 or table.shape[1] != 2 or not np.isfinite(table).all():

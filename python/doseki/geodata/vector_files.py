@@ -36,7 +36,7 @@ def read_vector_file(path: Path, layer: str | None) -> Features:
     with open_regular(path) as (file, _):
         if not file.read(len(MAGIC[suffix])) == MAGIC[suffix]:
             raise GeodataError(f"{path}: is not {WHAT[suffix]}")
-    with warnings.catch_warnings(), readable(path, f" as {WHAT[suffix]}"):
+    with warnings.catch_warnings(), readable(path, kind=WHAT[suffix]):
         warnings.simplefilter("ignore")  # of measures (M) of vertices, which nothing here needs
         layer = _layer(path, layer)
         about, _, shapes, columns = pyogrio.read(path, layer=layer)
@@ -83,7 +83,9 @@ def _plain(value: Any) -> Any:
 
 def _shapes(where: str, geometry: Any, attributes: dict[str, Any]) -> Iterator[Polygon | Line]:
     """The polygons or lines of one feature."""
-    kind = "nothing" if geometry is None or geometry.is_empty else geometry.geom_type
+    if geometry is None or geometry.is_empty:
+        raise GeodataError(f"{where}: no geometry; draw its area or line, or take the feature out")
+    kind = geometry.geom_type
     if kind not in DRAWN:
         raise GeodataError(f"{where}: {kind} is not read; {', '.join(DRAWN)} are")
     for part in getattr(geometry, "geoms", [geometry]):

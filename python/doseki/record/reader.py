@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import UserError
 from ..geodata.ground import Profile, read_ground
 from ..geodata.raster import Raster
-from ..util.foreign import read_text, readable
+from ..util.foreign import REMEDY, read_json_table, readable
 from ..util.spelling import suggestion
 from . import vtkhdf
 from .between import Between
@@ -37,7 +37,8 @@ def load(directory: str | Path) -> Run:
     """
     folder = RunFolder(Path(directory))
     if not folder.path.is_dir():
-        raise UserError(f"{directory}: no such folder")
+        wrong = "is a file; give the folder of a run" if folder.path.exists() else "no such folder"
+        raise UserError(f"{directory}: {wrong}")
     if not folder.is_run():
         raise UserError(
             f"{directory}: not the folder of a run: {folder.scenario.name} or "
@@ -139,7 +140,10 @@ class History(Mapping[str, np.ndarray]):
         self.columns = list(columns)
         self.units: dict[str, str] = history_units(self.columns)
         """Unit of each column; "" where it has none."""
-        table = np.array([[float(cell) for cell in row] for row in rows])
+        try:
+            table = np.array([[float(cell) for cell in row] for row in rows])
+        except ValueError:
+            raise UserError(_no_number(path, self.columns, rows)) from None
         self._table = table.reshape(len(rows), len(self.columns))
 
     def __getitem__(self, column: str) -> np.ndarray:
@@ -152,6 +156,20 @@ class History(Mapping[str, np.ndarray]):
 
     def __len__(self) -> int:
         return len(self.columns)
+
+
+def _no_number(path: str | Path, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """What is wrong with rows of which one entry is no number."""
+    for line, row in enumerate(rows, start=2):
+        for column, cell in zip(columns, row, strict=True):
+            try:
+                float(cell)
+            except ValueError:
+                return (
+                    f"{path}, line {line}: {column} = {cell[:40]!r} is not a number; the file is "
+                    "damaged: bring it back"
+                )
+    return f"{path}: is damaged; bring it back"
 
 
 class GaugeRecord(History):
@@ -177,7 +195,15 @@ class Run(Sequence[Snapshot]):
 
     @cached_property
     def _headers(self) -> list[tuple[Path, vtkhdf.Header]]:
-        return [(path, vtkhdf.read_header(path)) for path in self.folder.snapshot_files()]
+        found = [(path, vtkhdf.read_header(path)) for path in self.folder.snapshot_files()]
+        for (before, one), (path, other) in pairwise(found):
+            # A run that fails at once leaves two of one time.
+            if not other.time >= one.time:
+                raise UserError(
+                    f"{path}: its time, {other.time:.9g} s, is before that of {before.name}, "
+                    f"{one.time:.9g} s: one of the two is a copy, or of another run; move it away"
+                )
+        return found
 
     def __len__(self) -> int:
         return len(self._headers)
@@ -287,13 +313,18 @@ class Run(Sequence[Snapshot]):
         """What the run came to; empty while it is going on."""
         if not self.folder.summary.is_file():
             return {}
-        with readable(self.folder.summary):
-            return json.loads(read_text(self.folder.summary))
+        found = read_json_table(self.folder.summary)
+        for key, kind, what in (("status", str, "a word"), ("warnings", list, "a list")):
+            if not isinstance(found.get(key, kind()), kind):
+                raise UserError(
+                    f"{self.folder.summary}: is damaged: {key} = {str(found[key])[:40]} must be "
+                    f"{what}; {REMEDY}"
+                )
+        return found
 
     @cached_property
     def trust(self) -> dict[str, Any]:
         """How far the run can be trusted (trust.json); empty while it is going on."""
         if not self.folder.trust.is_file():
             return {}
-        with readable(self.folder.trust):
-            return json.loads(read_text(self.folder.trust))
+        return read_json_table(self.folder.trust)

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, FiniteFloat, ValidationError, model_validator
 
 from ..errors import UserError
-from ..util.foreign import read_text, readable
+from ..util.foreign import read_toml_table
 
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 Point = Annotated[list[FiniteFloat], Field(min_length=2, max_length=3)]
+# What a value must be, by how the names of pydantic's objections to others begin.
+EXPECTED = {
+    "float": "a number",
+    "finite": "a finite number",
+    "greater": "a number above 0",
+    "list": "a list",
+    "dict": "a table",
+    "string": "a text",
+    "too_short": "a list of two or three numbers",
+    "too_long": "a list of two or three numbers",
+}
 Tables = dict[str, dict[str, Any]]
 
 
@@ -52,13 +62,24 @@ class _Needed(BaseModel):
 
 def recorded_scenario(path: Path) -> dict[str, Any]:
     """The effective scenario of a run; raises UserError for what no run has written."""
-    with readable(path):
-        table = tomllib.loads(read_text(path))
+    table = read_toml_table(path)
     try:
         _Needed.model_validate(table)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"]))
-        wrong = f"{key} is missing" if first["type"] == "missing" else f"{key}: {first['msg']}"
-        raise UserError(f"{path}: no run has written this: {wrong.removeprefix(': ')}") from None
+        wrong = _wrong(error.errors()[0])
+        raise UserError(f"{path}: no run has written this: {wrong}") from None
     return table
+
+
+def _wrong(objection: Any) -> str:
+    """What is wrong with a key, in our words."""
+    key, kind = ".".join(map(str, objection["loc"])), objection["type"]
+    if kind == "missing":
+        return f"{key} is missing"
+    if kind == "value_error":
+        return str(objection["ctx"]["error"])
+    said = f"{key} = {str(objection['input'])[:40]}"
+    if kind == "literal_error":
+        return f"{said} must be {objection['ctx']['expected']}"
+    what = next((words for type_, words in EXPECTED.items() if kind.startswith(type_)), None)
+    return f"{said} is not allowed" if what is None else f"{said} must be {what}"

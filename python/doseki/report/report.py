@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..assess.summary import title_of
-from ..errors import UserError, one_line
+from ..errors import DosekiError, UserError, one_line
 from ..figures.plot import draw_run
 from ..geodata.ground import Profile, ground_files
 from ..measure.views import tables
@@ -15,7 +16,7 @@ from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..scenario.tables.figure import Figure, LoadFigure
 from ..util.files import write_whole_text
-from ..util.foreign import open_regular, readable
+from ..util.foreign import REMEDY, open_regular
 from .markup import Content, Markup, section, tag
 from .page import GENERATOR, page, viewer
 from .parts.captions import of_figures, of_maps
@@ -36,6 +37,21 @@ DEFAULT_MB = 20.0
 LEAST_VIEW, SHORT_VIEW = 0.4, 0.2
 SPARE = 12_000  # bytes of what stands around the view, and of notes
 HEAD_BYTES = 4096  # of a report, in which it says that it is one
+
+# What the sections are made of.
+FILES = {
+    "title": "summary.json",
+    "summary": "summary.json, history.csv",
+    "trust": "trust.json, summary.json, failure.json",
+    "ledgers": "summary.json, history.csv",
+    "provenance": "provenance.json, inputs",
+    "figures": "scenario.toml, snapshots",
+    "maps": "maps",
+    "loads": "loads.json",
+    "sections": "sections.json",
+    "gauges": "scenario.toml, gauges",
+    "view": "snapshots, scenario.toml",
+}
 
 Maker = Callable[[], Content]  # of a section
 
@@ -58,7 +74,7 @@ def write_report(
     snapshots of the view left out, then pictures, those of maps and loads last. Raises UserError
     where there is no run, or a file of it is damaged, and ResourceError where the disk is full.
     """
-    run = _checked(load(directory))
+    run = load(directory)
     path = output or run.folder.report
     _check_free(path)
     notes = _draw_missing(run)
@@ -90,21 +106,27 @@ def _check_free(path: Path) -> None:
                 raise UserError(f"{path}: exists and is no report of doseki; not overwritten")
 
 
-def _checked(run: Run) -> Run:
-    """A run whose plain files are what they should be; raises UserError for others."""
-    for name, found in (("summary", run.summary), ("trust", run.trust)):
-        if not isinstance(found, dict):
-            raise UserError(f"{getattr(run.folder, name)}: holds no table")
-    return run
-
-
 def _made(run: Run, makers: Mapping[str, Maker]) -> list[Content]:
     """Sections by their names; raises UserError where a file is not what it should be."""
     made = []
     for name, make in makers.items():
-        with readable(run.folder.path, f" for the section {name} of its report"):
+        with _of_section(run, name):
             made.append(make())
     return made
+
+
+@contextmanager
+def _of_section(run: Run, name: str) -> Iterator[None]:
+    """Raise UserError for whatever a damaged file leads to, with the files that may be it."""
+    try:
+        yield
+    except (DosekiError, MemoryError):
+        raise
+    except Exception as error:
+        raise UserError(
+            f"{run.folder.path}: the section {name} of its report cannot be made, as what is in "
+            f"{FILES[name]} is not what a run writes; {REMEDY}"
+        ) from error
 
 
 def _before(run: Run) -> list[Content]:
@@ -161,7 +183,7 @@ def _draw_missing(run: Run) -> list[str]:
     """Draw the figures of a run that has none yet; says which could not be drawn."""
     if not len(run) or any(run.folder.figures.glob("*.png")):
         return []
-    with readable(run.folder.path, " for the section figures of its report"):
+    with _of_section(run, "figures"):
         refuse_links(run.folder)
         return [one_line(f"{text}.") for text in draw_run(run.folder.path).failures]
 
@@ -183,7 +205,7 @@ def _scene(run: Run, room: float, terrain: Grid | None) -> tuple[Scene | None, s
     """The view, or why there is none."""
     if not len(run):
         return None, "The run has no snapshot yet."
-    with readable(run.folder.snapshots, " for the view of its report"):
+    with _of_section(run, "view"):
         return make_scene(run, room, terrain), ""
 
 

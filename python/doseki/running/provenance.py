@@ -21,7 +21,7 @@ from ..compiled import load_core
 from ..errors import UserError
 from ..record.folder import RunFolder
 from ..util.files import write_whole_text
-from ..util.foreign import read_text, readable
+from ..util.foreign import REMEDY, read_json_table
 from ..version import version
 
 LIBRARIES = (
@@ -86,10 +86,11 @@ def read_provenance(folder: RunFolder) -> list[dict[str, Any]]:
     """
     if not folder.provenance.exists():
         return []
-    with readable(folder.provenance):
-        entries = json.loads(read_text(folder.provenance, MAX_BYTES))["runs"]
-        if not isinstance(entries, list) or not all(isinstance(each, dict) for each in entries):
-            raise ValueError('"runs" must be a list of tables')
+    entries = read_json_table(folder.provenance, MAX_BYTES).get("runs")
+    if not isinstance(entries, list) or not all(isinstance(each, dict) for each in entries):
+        raise UserError(
+            f'{folder.provenance}: is damaged: "runs" must be a list of tables; {REMEDY}'
+        )
     return entries
 
 

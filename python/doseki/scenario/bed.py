@@ -217,7 +217,7 @@ def _bed_of_profile(path: Path, terrain: Terrain, dp: float, where: Where) -> Be
         if getattr(terrain, key) is not None:
             raise where.error(("terrain", key), f"terrain.{key}: is for grids, not for a profile")
     try:
-        columns = read_csv_columns(path)
+        columns = read_csv_columns(path, PROFILE_EXAMPLE)
     except UserError as error:
         raise _error(where, str(error)) from None
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,8 +14,9 @@ from ..record.folder import RunFolder
 from ..record.reader import Snapshot, load
 from ..record.vtkhdf import read_header
 from ..util.finding import Finding
-from ..util.foreign import read_text, readable
+from ..util.foreign import read_toml_table
 from ..util.input_file import digest_of
+from ..util.sealed import changed_by_hand
 from .tables.start import Start
 from .values.toml_source import MAX_BYTES, Where
 
@@ -35,6 +35,16 @@ class NearestSnapshot(Finding):
             f"start.time = {self.time:g} s lies between two snapshots; the one at {self.taken:g} s "
             "is taken"
         )
+
+
+@dataclass(frozen=True)
+class ChangedByHand(Finding):
+    """A scenario that is not the one that the earlier run had."""
+
+    said: str
+
+    def __str__(self) -> str:
+        return f"start.from: {self.said}"
 
 
 @dataclass(frozen=True)
@@ -59,17 +69,18 @@ class Earlier:
 
     @property
     def findings(self) -> list[Finding]:
-        """A time that is not that of a snapshot."""
+        """A time that is not that of a snapshot, a scenario that has been changed."""
+        said = changed_by_hand(self.scenario_file)
+        found: list[Finding] = [ChangedByHand("start", said)] if said else []
         asked = self.time if self.asked is None else self.asked
-        if abs(asked - self.time) <= SAME * max(asked, self.time):
-            return []
-        return [NearestSnapshot("start", asked, self.time)]
+        if abs(asked - self.time) > SAME * max(asked, self.time):
+            found.append(NearestSnapshot("start", asked, self.time))
+        return found
 
     @cached_property
     def scenario(self) -> dict[str, Any]:
         """The effective scenario of the earlier run, as its file has it."""
-        with readable(self.scenario_file):
-            return tomllib.loads(read_text(self.scenario_file, MAX_BYTES))
+        return read_toml_table(self.scenario_file, MAX_BYTES)
 
     def section(self, name: str) -> dict[str, Any]:
         """Tables of a section of that scenario; none where the file has something else."""

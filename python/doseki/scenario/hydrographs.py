@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..util.foreign import check_regular_file
-from .particle_files.columns_csv import numbers_in, read_csv_columns
+from .particle_files.columns_csv import check_columns, numbers_in, read_csv_columns
 from .tables.inflow import Inflow
 from .values.toml_source import Where
 from .values.types import LARGEST, checked_hydrograph, checked_surge
@@ -105,8 +105,9 @@ def read_hydrograph(path: Path) -> list[list[float]]:
 
     Raises UserError for a file that cannot be read, ValueError for one that is no hydrograph.
     """
-    columns = _columns(path)
+    columns = _columns(path, EXAMPLE)
     t, rate = (numbers_in(columns, name, unit, EXAMPLE) for name, unit in HEADERS.items())
+    check_columns(columns, HEADERS, EXAMPLE)
     return checked_hydrograph(list(zip(t, rate, strict=True)))
 
 
@@ -115,20 +116,21 @@ def read_surge(path: Path) -> list[list[float]]:
 
     The first may be called timestep.  Raises as read_hydrograph does.
     """
-    columns = _columns(path)
+    columns = _columns(path, SURGE)
     columns = {name.replace("timestep", "t", 1): values for name, values in columns.items()}
     rows = zip(
         *(numbers_in(columns, name, unit, SURGE) for name, unit in SURGE_HEADERS.items()),
         strict=True,
     )
+    check_columns(columns, SURGE_HEADERS, SURGE)
     return checked_surge(list(rows))
 
 
-def _columns(path: Path) -> dict[str, np.ndarray]:
+def _columns(path: Path, example: str) -> dict[str, np.ndarray]:
     check_regular_file(path)
     if path.stat().st_size > MAX_BYTES:
         raise UserError(f"{path}: a hydrograph may have at most {MAX_BYTES // 10**6} MB")
-    columns = read_csv_columns(path)
+    columns = read_csv_columns(path, example)
     rows = len(next(iter(columns.values()), ()))
     if rows > MAX_ROWS:
         raise ValueError(f"{rows} rows; at most {MAX_ROWS}, which the run's scenario.toml holds")

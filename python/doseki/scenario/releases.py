@@ -66,9 +66,14 @@ def completed_release(
     if len(thickness) != count:
         raise where.error(
             ("body", name, "thickness"),
-            f"body.{name}.thickness has {len(thickness)} numbers for {count} polygons",
+            f"body.{name}.thickness has {_counted(len(thickness), 'number')} for "
+            f"{_counted(count, 'polygon')}",
         )
     return release.model_copy(update=found | {"thickness": thickness}), doubts
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
 
 
 def _check_areas(name: str, polygons: list[Any], where: Where) -> None:

@@ -53,14 +53,16 @@ class CarriedOver:
 
     def _check(self) -> None:
         for key, values in self.fields.items():
-            good = np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
-            if key in POSITIVE:
-                good &= values > 0
-            if not good.all():
-                raise UserError(
-                    f"{self._snapshot.path}: {key} of the particle in row {int(np.argmin(good))} "
-                    "is not finite, or not above 0"
-                )
+            finite = np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
+            above = values > 0 if key in POSITIVE else finite
+            for good, wrong in ((finite, "is not finite"), (above, "is not above 0")):
+                if not good.all():
+                    raise self._scenario.where.error(
+                        ("start", "from"),
+                        f"start.from: {self._snapshot.path}: the {key.replace('_', ' ')} of "
+                        f"particle {int(np.argmin(good))} {wrong}: the snapshot is damaged; take "
+                        "another one",
+                    )
 
     def findings(self, moves: bool) -> list[Finding]:
         """What is to be said of the start; `moves`: bodies do."""

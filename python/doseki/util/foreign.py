@@ -2,28 +2,45 @@
 
 from __future__ import annotations
 
+import json
 import os
 import stat
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from ..errors import DosekiError, UserError
 from .memory import available_bytes
 
+REMEDY = "bring it back, or move it away"  # of a file that a run has written
+
 
 @contextmanager
-def readable(path: Path, how: str = "") -> Iterator[None]:
-    """Turn whatever reading a damaged, forbidden or hostile file raises into a UserError."""
+def readable(path: Path, how: str = "", kind: str = "") -> Iterator[None]:
+    """Turn whatever reading a damaged, forbidden or hostile file raises into a UserError.
+
+    `kind` is what the file should be, such as "a GeoTIFF", where a library reads it: what that says
+    is about its own inside, and is not told.
+    """
     try:
         yield
     except (DosekiError, MemoryError):
         raise
     except Exception as error:
         # Readers of damaged files raise almost anything.
-        said = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        raise UserError(f"{path}: cannot be read{how}: {str(said).splitlines()[0]}") from None
+        how = how or (kind and f" as {kind}")
+        raise UserError(f"{path}: cannot be read{how}: {_cause(error, kind)}") from None
+
+
+def _cause(error: Exception, kind: str) -> str:
+    """Why a file could not be read, in one line."""
+    if isinstance(error, OSError) and error.errno:
+        return os.strerror(error.errno)
+    if kind:
+        return f"it is cut short, damaged, or not {kind}"
+    return (str(error) or type(error).__name__).splitlines()[0]
 
 
 def check_regular_file(path: Path) -> None:
@@ -64,6 +81,27 @@ def read_bytes(path: Path, most: int | None = None) -> bytes:
         if size > limit:
             raise UserError(f"{path}: {size} bytes; at most {limit} are read")
         return file.read(size)
+
+
+def read_json_table(path: Path, most: int | None = None) -> dict[str, Any]:
+    """The table in a JSON file, as a run writes them; raises UserError for anything else."""
+    try:
+        found = json.loads(read_text(path, most))
+    except (ValueError, RecursionError):
+        raise UserError(f"{path}: is cut short or damaged: no JSON; {REMEDY}") from None
+    if not isinstance(found, dict):
+        raise UserError(f"{path}: is damaged: it must hold a table, {{...}}; {REMEDY}")
+    return found
+
+
+def read_toml_table(path: Path, most: int | None = None) -> dict[str, Any]:
+    """The same of a TOML file."""
+    try:
+        return tomllib.loads(read_text(path, most))
+    except tomllib.TOMLDecodeError as error:
+        raise UserError(f"{path}: not valid TOML: {error}") from None
+    except (ValueError, RecursionError):
+        raise UserError(f"{path}: is damaged: no run writes such TOML; {REMEDY}") from None
 
 
 def read_text(path: Path, most: int | None = None) -> str:

@@ -33,7 +33,7 @@ def open_hdf5(path: Path, content: bytes | None = None) -> Iterator[Hdf5File]:
     """The HDF5 file at `path`, or `content` read from there; raises UserError for anything else."""
     if content is None:
         check_regular_file(path)
-    with readable(path, " as HDF5"):
+    with readable(path, kind="HDF5"):
         source = path if content is None else io.BytesIO(content)
         size = path.stat().st_size if content is None else len(content)
         with h5py.File(source, "r") as file:

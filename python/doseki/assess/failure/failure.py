@@ -19,6 +19,7 @@ from ...record.writer import jsonable
 from ...solver.protocol import ForceTerms
 from ...util.files import write_whole_text
 from ...util.finding import place_text
+from ...util.foreign import REMEDY, read_json_table
 from .neighbours import neighbours_of
 from .remedy import remedy
 
@@ -161,10 +162,11 @@ def explanation(folder: RunFolder) -> str:
     """Why a recorded run failed, or ended early, as one paragraph; raises UserError if neither."""
     if not folder.failure.is_file():
         return _without_failure(folder)
+    report = read_json_table(folder.failure)
     try:
-        return paragraph(json.loads(folder.failure.read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise UserError(f"{folder.failure}: cannot be read: {error}") from None
+        return paragraph(report)
+    except (ValueError, LookupError, TypeError, AttributeError):
+        raise UserError(f"{folder.failure}: no report of a failure by doseki; {REMEDY}") from None
 
 
 def _without_failure(folder: RunFolder) -> str:

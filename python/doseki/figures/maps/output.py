@@ -91,6 +91,7 @@ def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, lis
         settings,
         cell=settings.cell if options.cell is None else options.cell,
         extent=settings.extent if options.extent is None else options.extent,
+        named="--",
     )
     bed = map_grid(run.folder, settings)
     maps = maps_from_snapshots(run, bed, settings)
@@ -99,7 +100,7 @@ def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, lis
         f"from {len(run)} snapshots: what peaked between them is missed; a table [maps] in the "
         "scenario keeps maps while a run goes on"
     ]
-    if warning := few_particles(bed, settings.dp):
+    if warning := few_particles(bed, settings.dp, settings.named):
         said.append(f"warning: {warning}")
     return maps, bed, said
 

@@ -29,6 +29,7 @@ class MapSettings:
         extent: west, south, east, north; None takes all of the terrain.
         min_depth: below which a cell counts as dry.
         speed_deposit: below which matter has come to rest.
+        named: what stands before `cell` and `extent` where the user gives them.
 
     """
 
@@ -37,6 +38,7 @@ class MapSettings:
     extent: Sequence[float] | None = None
     min_depth: float | None = None
     speed_deposit: float = SPEED_DEPOSIT
+    named: str = "maps."
 
     @classmethod
     def of(cls, table: Mapping[str, Any] | None, dp: float) -> MapSettings:
@@ -64,16 +66,17 @@ def map_grid(folder: RunFolder, settings: MapSettings) -> Raster:
         _check_extent(settings)
         if path is None and (settings.cell is None or settings.extent is None):
             raise GeodataError(
-                f"{folder.path} has no terrain; give maps.extent = [west, south, east, north] and "
-                f"maps.cell, m"
+                f"{folder.path} has no terrain; give {settings.named}extent (west, south, east, "
+                f"north) and {settings.named}cell, m"
             )
         grid = cells_of(None if path is None else read_raster(path), settings)
     except GeodataError as error:
-        raise UserError(f"maps: {error}") from None
+        place = "maps: " if settings.named == MapSettings.named else ""
+        raise UserError(f"{place}{error}") from None
     if grid.cell < settings.dp * (1 - TOLERANCE):
         raise UserError(
-            f"maps.cell = {grid.cell:g} m is smaller than a particle (dp = {settings.dp:g} m); "
-            f"give maps.cell of {FEW:g} dp or more"
+            f"cells of {grid.cell:g} m are smaller than a particle (dp = {settings.dp:g} m); "
+            f"give {settings.named}cell of {FEW:g} dp or more"
         )
     return grid
 
@@ -94,7 +97,7 @@ def cells_of(ground: Raster | None, settings: MapSettings) -> Raster:
 
     """
     if ground is not None:
-        return ground.for_maps(settings.cell, settings.extent)
+        return ground.for_maps(settings.cell, settings.extent, f"{settings.named}cell")
     assert settings.cell is not None
     assert settings.extent is not None
     west, south, east, north = settings.extent
@@ -109,11 +112,14 @@ def cells_of(ground: Raster | None, settings: MapSettings) -> Raster:
     return Raster(np.full(shape, np.nan), west, south, settings.cell)
 
 
-def few_particles(grid: Raster, dp: float) -> str | None:
-    """A warning about small cells; None where there is no need of one."""
+def few_particles(grid: Raster, dp: float, named: str = MapSettings.named) -> str | None:
+    """A warning about small cells; None where there is no need of one.
+
+    `named` is that of MapSettings.
+    """
     if grid.cell >= FEW * dp * (1 - TOLERANCE):
         return None
     return (
         f"cells of {grid.cell:g} m are smaller than {FEW:g} particles (dp = {dp:g} m), so depths "
-        f"are rough; maps.cell = {FEW * dp:g} or more would do"
+        f"are rough; {named}cell = {FEW * dp:g} or more would do"
     )

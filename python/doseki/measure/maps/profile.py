@@ -32,13 +32,23 @@ def along_path(maps: Mapping[str, Raster], bed: Raster, path: np.ndarray) -> dic
     x, y = (np.interp(distance, at_vertex, path[:, axis]) for axis in (0, 1))
     row, column, inside = bed.cells_at(x, y)
     if not inside.any():
-        raise UserError("the path of the profile lies beside the map")
+        edges = [f"from {low:.10g} to {high:.10g} m" for low, high in _sides(bed)]
+        raise UserError(
+            "the path of the profile lies beside the map, which has x " + " and y ".join(edges)
+        )
     found = {"distance": distance, "x": x, "y": y, "bed": bed.sampled(x, y)}
     for quantity in QUANTITIES:
         values = np.full(len(distance), np.nan)
         values[inside] = maps[quantity.name].values[row[inside], column[inside]]
         found[quantity.name] = values
     return found
+
+
+def _sides(bed: Raster) -> Iterator[tuple[float, float]]:
+    """The ends of a map along x and along y, m."""
+    west, south, east, north = bed.extent
+    yield west, east
+    yield south, north
 
 
 def path_lines(profile: Mapping[str, np.ndarray]) -> Iterator[str]:

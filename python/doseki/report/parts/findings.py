@@ -9,6 +9,7 @@ from ...assess.trust.report import trust_lines
 from ...assess.trust.verdicts import BAD, DOUBTFUL, GOOD
 from ...errors import UserError
 from ...record.reader import Run
+from ...util.sealed import changed_by_hand
 from ..markup import Content, Markup, section, tag
 
 CLASSES = {GOOD: "good", DOUBTFUL: "doubtful", BAD: "bad"}
@@ -16,7 +17,9 @@ CLASSES = {GOOD: "good", DOUBTFUL: "doubtful", BAD: "bad"}
 
 def findings(run: Run) -> Markup | None:
     """The section of the verdicts, the warnings and the failure."""
-    warnings = [tag("li", str(text)) for text in _list(run.summary.get("warnings"))]
+    changed = changed_by_hand(run.folder.scenario)
+    told = [*([changed] if changed else []), *_list(run.summary.get("warnings"))]
+    warnings = [tag("li", str(text)) for text in told]
     return section(
         "How far to trust it",
         _failure(run),

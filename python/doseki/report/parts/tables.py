@@ -49,7 +49,7 @@ def tables_of(folder: Path, stem: str, title: str, album: Album) -> Markup | Non
 
 def _shown(file: Path, reason: str) -> Iterator[Content]:
     text = read_text(file, MOST_BYTES)
-    with readable(file):
+    with readable(file, kind=file.suffix[1:].upper()):
         if file.suffix == ".csv":
             yield from _rows(list(csv.reader(text.splitlines())), reason)
         else:

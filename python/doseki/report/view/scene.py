@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -37,6 +37,7 @@ class Scene:
     table: dict[str, Any]
     blocks: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)  # what was left out
+    not_finite: dict[str, int] = field(default_factory=dict)  # positions of what moves, by snapshot
 
     def add(self, name: str, block: Block) -> dict[str, Any]:
         """Keep a block; what the table says of it."""
@@ -155,7 +156,7 @@ def make_scene(run: Run, most: float, terrain: Grid | None = None) -> Scene:
             break
         thinning = replace(thinning, share=0.97 * thinning.share * most / used)
         blocks = _add_frames(maker, scene, thinning, walls)
-    scene.notes = _left_out(run, thinning, blocks, walls)
+    scene.notes = _left_out(run, thinning, blocks, walls, scene.not_finite)
     return scene
 
 
@@ -224,6 +225,9 @@ def _add_frames(
     scene.table["wallSwell"] = walls.swell
     for number, index in enumerate(spread(thinning.frames, len(maker.run))):
         snapshot = maker.snapshot(index)
+        lost = ~np.isfinite(snapshot["position"]).all(axis=1) & ~snapshot["fixed"]
+        if lost.any():
+            scene.not_finite[snapshot.path.name] = int(lost.sum())
         blocks.append(maker.flow(snapshot, thinning))
         frame = {"time": snapshot.time, "flow": scene.add(f"flow{number}", blocks[-1])}
         if maker.walls_go and "walls" in scene.table:
@@ -240,12 +244,23 @@ def _bytes_of_bodies(scene: Scene) -> int:
     return sum(len(text) for name, text in scene.blocks.items() if name.startswith("bodies"))
 
 
-def _left_out(run: Run, thinning: Thinning, blocks: Sequence[Block], walls: Thinning) -> list[str]:
+def _left_out(
+    run: Run,
+    thinning: Thinning,
+    blocks: Sequence[Block],
+    walls: Thinning,
+    not_finite: Mapping[str, int],
+) -> list[str]:
     """What the view leaves out, in sentences."""
-    notes = []
+    notes = [
+        f"{file}: {count} position{'s are' if count > 1 else ' is'} not finite: the snapshot is "
+        "damaged; what is there is left out."
+        for file, count in not_finite.items()
+    ]
     if thinning.frames < len(run):
         notes.append(f"{thinning.frames} of {len(run)} snapshots are shown.")
-    shown, there = sum(block.count for block in blocks), sum(block.of for block in blocks)
+    shown = sum(block.count for block in blocks)
+    there = sum(block.of for block in blocks) - sum(not_finite.values())
     if thinning.shell or thinning.share < 1:
         share = f"{100 * shown / max(1, there):.3g} % of the particles that move are shown"
         hidden = "those inside, which no one sees, are left out" if thinning.shell else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
@@ -23,15 +23,16 @@ MAX_FIELD = 200  # characters; a wrong file (a binary, an essay) fails here, not
 SEPARATORS = {";": "semicolons", "\t": "tabs"}  # of spreadsheets
 
 
-def read_csv_columns(path: Path) -> dict[str, np.ndarray]:
+def read_csv_columns(path: Path, example: str = "x,y,vx,vy,...") -> dict[str, np.ndarray]:
     """Column name -> array (N,) of strings; spaces around fields are dropped.
 
-    Blank lines and lines that begin with # are skipped.  Raises UserError.
+    Blank lines and lines that begin with # are skipped.  Raises UserError, which names `example` as
+    a header where there is none.
     """
     with open_regular(path) as (file, size):
         text = io.TextIOWrapper(file if size else io.BytesIO(), "utf-8-sig", newline="")
         try:
-            return _read(path, _Lines(text))
+            return _read(path, _Lines(text), example)
         except UnicodeDecodeError:
             raise UserError(f"{path}: neither HDF5 nor a CSV text in UTF-8") from None
         except csv.Error as error:
@@ -57,13 +58,29 @@ def numbers_in(
     raise ValueError(f'no column {wanted}; expected a header such as "{example}"')
 
 
+def check_columns(columns: Iterable[str], known: Mapping[str, Unit], example: str) -> None:
+    """Raise ValueError for the first header that is none of the `known` columns."""
+    for header in columns:
+        name = re.split(r"[\[(]", header)[0].strip()
+        if name.lower() not in [each.lower() for each in known]:
+            raise ValueError(
+                f'"{header}" is not one of its columns: take it out; expected a header such as '
+                f'"{example}"'
+            )
+
+
 def _number(text: str, name: str, row: int) -> float:
-    try:
-        if "_" not in text:  # which Python reads within a number
-            return float(text)
-    except ValueError:
-        pass
+    if _is_number(text):
+        return float(text)
     raise ValueError(f"row {row}: {name} = {text!r} is not a number")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return "_" not in text  # which Python reads within a number
 
 
 class _Lines:
@@ -80,10 +97,10 @@ class _Lines:
                 yield line
 
 
-def _read(path: Path, lines: _Lines) -> dict[str, np.ndarray]:
+def _read(path: Path, lines: _Lines, example: str) -> dict[str, np.ndarray]:
     reader = csv.reader(lines, skipinitialspace=True)
     names = [name.strip() for name in next(reader, [])]
-    _check_header(path, names)
+    _check_header(path, names, example)
     chunks: list[list[np.ndarray]] = [[] for _ in names]
     while rows := list(islice(_checked_rows(path, reader, lines, len(names)), ROWS_AT_ONCE)):
         for chunk, column in zip(chunks, zip(*rows, strict=True), strict=True):
@@ -94,9 +111,13 @@ def _read(path: Path, lines: _Lines) -> dict[str, np.ndarray]:
     }
 
 
-def _check_header(path: Path, names: list[str]) -> None:
+def _check_header(path: Path, names: list[str], example: str) -> None:
     if not names:
-        raise UserError(f"{path}: the file is empty; expected a CSV header such as x,y,vx,vy,...")
+        raise UserError(f'{path}: the file is empty; expected a CSV header such as "{example}"')
+    if all(map(_is_number, names)):
+        raise UserError(
+            f'{path}: begins with numbers; a header such as "{example}" must stand above them'
+        )
     for mark, word in SEPARATORS.items():
         if len(names) == 1 and mark in names[0]:
             raise UserError(
@@ -117,8 +138,9 @@ def _checked_rows(
 ) -> Iterator[list[str]]:
     for row in reader:
         if len(row) != width:
+            fields = "1 field" if len(row) == 1 else f"{len(row)} fields"
             raise UserError(
-                f"{path}, line {lines.number}: {len(row)} fields; the header has {width} columns"
+                f"{path}, line {lines.number}: {fields}; the header has {width} columns"
             )
         if any("\0" in field for field in row):
             raise UserError(f"{path}, line {lines.number}: a NUL byte, which no text has")

@@ -149,7 +149,7 @@ def _placements(path: Path, dim: int) -> list[list[float]]:
         check_regular_file(path)
         if path.stat().st_size > MAX_BYTES:
             raise ValueError(f"{path}: placements may have at most {MAX_BYTES // 10**6} MB")
-        columns = read_csv_columns(path)
+        columns = read_csv_columns(path, EXAMPLE[dim])
     except UserError as error:
         raise ValueError(str(error)) from None
     rows = len(next(iter(columns.values())))

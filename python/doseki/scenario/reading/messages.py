@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from collections.abc import Callable
+from datetime import date, time
 from typing import Any
 
 from pydantic import ValidationError
@@ -19,13 +22,20 @@ EXPECTED = {
     "int_from_float": "a whole number",
     "bool_type": "true or false",
     "string_type": "a string",
-    "list_type": "a list [ , ]",
+    "list_type": "a list in square brackets",
     "dict_type": "a table",
     "model_type": "a table",
     "model_attributes_type": "a table",
 }
+LARGEST_SHOWN = 10**50  # of whole numbers, digit by digit
 # Of commands that run a scenario, which some write into it.
 OPTIONS = ("threads", "ranks", "device", "output", "overwrite")
+LENGTHS = {
+    "too_short": ("min_length", "entries", "at least {} needed"),
+    "too_long": ("max_length", "entries", "at most {} allowed"),
+    "string_too_short": ("min_length", "characters", "at least {} needed"),
+    "string_too_long": ("max_length", "characters", "at most {} allowed"),
+}
 RANGES = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
 
 
@@ -80,7 +90,7 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: Kin
     if kind == "missing":
         return f"{name} is missing{about}"
     if kind == "union_tag_not_found" and not isinstance(value, dict):
-        return f"{name} = {_shown(value)} must be a table{about}"
+        kind = "dict_type"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         section = SECTIONS[str(keys[0])]
         assert isinstance(section, Kinds)
@@ -91,13 +101,21 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: Kin
         return f"{name}: {context['error']}"
     if kind == "finite_number":
         return f"{name} = {_shown(value)} must be finite{about}"
+    if EXPECTED.get(kind) == "a table" and isinstance(value, list):
+        return f"{name} must be a table{about}; write [{name}], where [[{name}]] makes a list"
+    if kind == "float_type" and type(value) is int:
+        return f"{name} = {_shown(value)} is out of range; must be below {sys.float_info.max:.0e}"
     if kind in EXPECTED:
         return f"{name} = {_shown(value)} must be {EXPECTED[kind]}{about}"
+    if kind in LENGTHS:
+        bound, what, words = LENGTHS[kind]
+        limit = words.format(f"{context[bound]} {'is' if context[bound] == 1 else 'are'}")
+        return f"{name} = {_shown(value)} has {len(value)} {what}; {limit}{about}"
     for bound, words in RANGES.items():
         if bound in context:
             limit = f"{words} {context[bound]:g}"
             return f"{name} = {_shown(value)} is out of range; must be {limit}{about}"
-    return f"{name} = {_shown(value)}: {objection['msg']}{about}"
+    return f"{name} = {_shown(value)} is not allowed{about}"
 
 
 def _tag_sentence(name: str, kinds: Kinds, tag: str | None) -> str:
@@ -133,5 +151,20 @@ def _nearest_key(keys: KeyPath, table: dict[str, Any], kind_at: KindAt) -> str:
 
 def _shown(value: Any) -> str:
     """The value as the file has it, cut short."""
-    text = {True: "true", False: "false"}[value] if isinstance(value, bool) else repr(value)
+    text = _as_written(value)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _as_written(value: Any) -> str:
+    """The value in the words of TOML; what only Python has in those of Python."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int) and abs(value) > LARGEST_SHOWN:
+        digits = math.floor(math.log10(abs(value))) + 1
+        return f"{value // 10 ** (digits - 10)}... ({digits} digits)"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_as_written, value))}]"
+    if isinstance(value, dict):
+        inside = ", ".join(f"{key} = {_as_written(inner)}" for key, inner in value.items())
+        return f"{{ {inside} }}" if inside else "{}"
+    return str(value) if isinstance(value, date | time) else repr(value)

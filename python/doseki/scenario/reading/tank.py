@@ -62,9 +62,14 @@ def walls_of_tank(table: dict[str, Any], name: str, part: Part) -> dict[str, Par
 
 
 def _thickness(table: dict[str, Any]) -> float:
-    """As many layers as the kernel sees, m."""
+    """As many layers as the kernel sees, m.
+
+    Any, where one of the keys that say so is wrong: the tank is not to blame, and the reading of
+    the whole scenario refuses that key.
+    """
     fields = ScenarioTable.model_fields
     kernel, eta, dp = (table.get(key, fields[key].default) for key in ("kernel", "eta", "dp"))
-    if not all(isinstance(x, int | float) for x in (eta, dp)) or kernel not in KERNEL_SUPPORT:
-        raise ValueError("give the thickness, m")
-    return math.ceil(KERNEL_SUPPORT[kernel] * eta - 0.5 - 1e-9) * float(dp)
+    try:
+        return math.ceil(KERNEL_SUPPORT[kernel] * eta - 0.5 - 1e-9) * float(dp)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return 1.0

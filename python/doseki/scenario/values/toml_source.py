@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,9 @@ from ...util.foreign import read_text
 
 MAX_BYTES = 16 * 2**20
 MAX_DEPTH = 32
+DEEP = f"tables or lists nested more than {MAX_DEPTH} deep"
+# How what Python says of a key begins that is there before.
+GIVEN_TWICE = ("Cannot overwrite", "Cannot declare", "Cannot mutate", "Cannot redefine")
 KeyPath = tuple[str | int, ...]
 
 
@@ -83,10 +87,10 @@ Source: TypeAlias = TableSource | TomlSource
 
 
 def _keys_of_line(line: str, header: list[str]) -> list[str] | None:
-    """The full key path that a header `[a.b]` or an assignment `a.b = ...` names."""
+    """The full key path that a header `[a.b]`, or `[[a.b]]`, or an assignment `a.b = ...` names."""
     key = r"[\w-]+|\"[^\"]*\""
     path = rf"((?:{key})(?:\s*\.\s*(?:{key}))*)"
-    if found := re.match(rf"\s*\[\s*{path}\s*\]", line):
+    if found := re.match(rf"\s*\[{{1,2}}\s*{path}\s*\]", line):
         return _split(found[1])
     if found := re.match(rf"\s*{path}\s*=", line):
         return header + _split(found[1])
@@ -103,12 +107,43 @@ def read_toml(path: Path) -> TomlSource:
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not valid TOML: {error}") from None
-    except (RecursionError, ValueError) as error:
-        raise UserError(f"{path}: cannot be read as TOML: {error}") from None
+        raise UserError(_said(path, text, str(error))) from None
+    except RecursionError:
+        raise UserError(f"{path}: {DEEP}") from None
+    except ValueError:  # all that is no mistake of TOML: more digits than Python reads
+        raise UserError(_said_of_digits(path, text)) from None
     if is_deep(table):
-        raise UserError(f"{path}: tables or lists nested more than {MAX_DEPTH} deep")
+        raise UserError(f"{path}: {DEEP}")
     return TomlSource(path, text, table)
+
+
+def _said(path: Path, text: str, message: str) -> str:
+    """What is wrong with a text that is not TOML; of a key that is there twice, which and where."""
+    found = re.search(r"at line (\d+)", message)
+    lines = int(found[1]) if found else text.count("\n") + 1
+    named = TomlSource(path, text, {})._named()
+    before = [each for each in named if each[0] <= lines]
+    if not message.startswith(GIVEN_TWICE) or not before:
+        return f"{path}: not valid TOML: {message}"
+    line, keys, _ = before.pop()
+    same = [(n, k) for n, k, _ in reversed(before) if k[: len(keys)] == keys[: len(k)]]
+    name = ".".join(keys)
+    if not same:
+        return f"{path}, line {line}: {name} is given twice; give it once"
+    first, other = next((each for each in same if each[1] == keys), same[0])
+    if other == keys:
+        return f"{path}, line {line}: {name} is given twice, at first in line {first}; give it once"
+    return (
+        f"{path}, line {line}: {name} does not go with {'.'.join(other)} in line {first}; give one"
+    )
+
+
+def _said_of_digits(path: Path, text: str) -> str:
+    """What is wrong with a text in which a number has more digits than can be read."""
+    most = sys.get_int_max_str_digits()
+    found = re.search(rf"[0-9_]{{{most},}}", text)
+    place = f", line {text[: found.start()].count(chr(10)) + 1}" if found else ""
+    return f"{path}{place}: a whole number of more than {most} digits; write it as 1e12 is written"
 
 
 def is_deep(table: dict[str, Any]) -> bool:

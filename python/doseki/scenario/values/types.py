@@ -102,7 +102,8 @@ def _hydrograph(value: Any) -> str | list[list[float]]:
 def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
     """Rows [t, Q] in s and m3/s; raises ValueError where they are no hydrograph."""
     if len(rows) < 2:
-        raise ValueError(f"{len(rows)} rows; two or more are needed")
+        there = ("no rows", "1 row")[len(rows)]
+        raise ValueError(f"{there}; two or more are needed")
     for number, (t, rate) in enumerate(rows, start=1):
         for name, value in (("t", t), ("Q", rate)):
             is_number = isinstance(value, int | float) and not isinstance(value, bool)

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ...errors import UserError
 from ...util.finding import Finding
 from ...util.input_file import digest_of
-from ..shapes import MeshShape, Triangles
+from ..shapes import MeshShape, ShapeError, Triangles
 from .layers import wall_layer
 from .mending import closed, findings_of
 from .reading import read_triangles
@@ -41,8 +42,11 @@ def made_mesh(file: Path, scale: float, thickness: float) -> MadeMesh:
 
 
 def _digest(file: Path) -> str:
-    """What tells one content from another."""
-    return digest_of(file)
+    """What tells one content from another; raises ShapeError without a file."""
+    try:
+        return digest_of(file)
+    except UserError as error:
+        raise ShapeError(str(error)) from None
 
 
 @lru_cache(maxsize=KEPT)

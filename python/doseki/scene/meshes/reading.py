@@ -14,11 +14,11 @@ from ...scenario.values.types import LARGEST
 from ...util.foreign import read_bytes, readable
 from ..shapes import ShapeError, Triangles
 from ..shapes.making import quiet
+from ..shapes.mesh_lines import check_obj, check_ply_header
 from ..shapes.stl import in_utf8, readable_stl
 
 LARGEST_FILE = 200_000_000  # bytes
 HEADER_PLY = 4096  # bytes in which a header must end
-NO_VERTEX = re.compile(rb"^f[^\n#]*[ \t]0+(?=[/\s]|$)", re.MULTILINE)  # in a face of an OBJ
 LOST = "a face names a vertex that is not there"
 
 
@@ -30,7 +30,7 @@ def read_triangles(file: Path, scale: float) -> Triangles:
     try:
         content = read_bytes(file, LARGEST_FILE)
         kind = file.suffix.lower()[1:]
-        with readable(file, f" as {kind.upper()}"), quiet():
+        with readable(file, kind=kind.upper()), quiet():
             _check_counts(file, kind, content)
             vertices, faces = _parsed(file, kind, content)
         return _joined(file, vertices, faces, scale)
@@ -47,24 +47,24 @@ def _check_counts(file: Path, kind: str, content: bytes) -> None:
     if kind != "ply":
         return
     header = content[:HEADER_PLY].partition(b"end_header")[0]
+    check_ply_header(file, header, len(content))
     counts = re.findall(rb"element\s+(\S+)\s+(\d+)", header)
-    for name, count in counts:
-        if int(count[:20]) > len(content):
-            raise UserError(f"{file}: {name.decode('ascii', 'replace')[:30]}: more than it has")
     if re.search(rb"^format\s+ascii\b", header, re.MULTILINE):
         said = sum(int(count) for _, count in counts)
         rows = content.partition(b"end_header")[2].splitlines()
         if (found := sum(1 for row in rows if row.strip())) != said:
-            raise UserError(f"{file}: has {found} lines after its header, which says {said}")
+            raise UserError(
+                f"{file}: has {found} lines after its header, which says {said}; it is cut short, "
+                "or damaged"
+            )
 
 
 def _readable(file: Path, kind: str, content: bytes) -> bytes:
     """The content with names and comments, which come in any encoding, in UTF-8."""
     if kind == "stl":
         return readable_stl(file, content)
-    if kind == "obj" and (zero := NO_VERTEX.search(content)):
-        line = content[: zero.start()].count(b"\n") + 1
-        raise UserError(f"{file}, line {line}: a face names vertex 0; they are counted from 1")
+    if kind == "obj":
+        check_obj(file, content)
     text, end, rest = content.partition(b"end_header") if kind == "ply" else (content, b"", b"")
     return in_utf8(text) + end + rest
 
@@ -120,7 +120,8 @@ def _check_repeated(file: Path, number: np.ndarray, faces: np.ndarray) -> None:
     again = np.flatnonzero(of[index.ravel()] != np.arange(len(faces)))
     if len(again):
         one, other = number[of[index.ravel()[again[0]]]] + 1, number[again[0]] + 1
-        others = f", and {len(again) - 1} more are twice" if len(again) > 1 else ""
+        more = len(again) - 1
+        others = f", and {more} more {'is' if more == 1 else 'are'} twice" if more else ""
         raise ShapeError(
             f"{file}: triangle {other} is triangle {one} again{others}; leave each out once"
         )

@@ -74,7 +74,7 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
     """
     try:
         content = read_bytes(file, LARGEST_STL)
-        with readable(file, " as STL"), quiet():
+        with readable(file, kind="STL"), quiet():
             mesh = _closed_mesh(file, content, scale)
     except UserError as error:
         raise ShapeError(str(error)) from None

@@ -68,10 +68,10 @@ def _texts(path: Path) -> dict[str, np.ndarray]:
     check_regular_file(path)
     if path.stat().st_size > MAX_BYTES:
         raise UserError(f"{path}: an observation may have at most {MAX_BYTES // 10**6} MB")
-    texts = read_csv_columns(path)
+    texts = read_csv_columns(path, EXAMPLE)
     rows = len(next(iter(texts.values()), ()))
     if not 1 <= rows <= MAX_ROWS:
-        raise UserError(f"{path}: {rows} rows; an observation has 1 to {MAX_ROWS}")
+        raise UserError(f"{path}: {rows or 'no'} rows; an observation has 1 to {MAX_ROWS}")
     return texts
 
 
