@@ -31,7 +31,12 @@ public:
     Seams(const ContactBodies<D>& bodies, const Array<Standing<D>>& standing,
           const Domain<D>& domain)
         : hidden_(bodies.points.size(), 0), wall_(bodies.solids.size(), -1) {
-        Finder finder{bodies, standing, domain, faces_, wall_, {}};
+        Finder finder{bodies, standing, domain, faces_, wall_, {}, {}, {}, {}};
+        finder.faces_of.resize(bodies.solids.size());
+        finder.first_point.resize(bodies.solids.size());
+        for (std::size_t c = bodies.points.size(); c-- > 0;)
+            if (const std::int32_t of = bodies.points.solid[c]; of >= 0)
+                finder.first_point[static_cast<std::size_t>(of)] = c;
         std::size_t s = bodies.solids.size();
         for (std::size_t c = 0; c < bodies.points.size(); ++c) {
             if (bodies.points.solid[c] < 0) continue;
@@ -66,7 +71,10 @@ private:
         const Domain<D>& domain;
         Array<WallFace<D>>& faces;
         Array<std::int32_t>& wall;
-        Array<std::size_t> around;  // solids that stand with the one that is looked at, and it
+        Array<std::size_t> around;       // solids that stand with the one that is looked at, and it
+        Array<std::size_t> here;         // those of them near the place that is looked at
+        Array<std::size_t> first_point;  // of each solid
+        Array<Array<std::size_t>> faces_of;  // each solid
 
         void look_around(std::size_t s) {
             around.clear();
@@ -83,6 +91,9 @@ private:
         /// Whether half a space around x, which lies on solid s, belongs to these bodies.
         bool is_hidden(std::size_t s, const Vec<double, D>& x) {
             if (!meets_another(s, x)) return false;
+            here.clear();
+            for (const std::size_t t : around)
+                if (t == s || holds(t, x, 1.1 * far * radius(s))) here.push_back(t);
             bool hidden = false;
             for (const Vec<double, D>& n : normals_at(s, x))
                 hidden = goes_on(s, x, n) || is_known(s, x, n) || hidden;
@@ -133,31 +144,34 @@ private:
         /// lie in that plane.
         bool goes_on(std::size_t s, const Vec<double, D>& x, const Vec<double, D>& n) {
             bool all = true;
-            for (const double way : {near, far})
+            for (const double way : {near, far}) {
+                if (!all) return false;
                 for (const Vec<double, D>& along : around_normal(n)) {
                     const Vec<double, D> place = x + radius(s) * (way * along - step * n);
                     bool held = holds(s, place, 0.1 * step * radius(s));
-                    for (std::size_t k = 0; k < around.size() && !held; ++k) {
-                        held = holds(around[k], place, 0.1 * step * radius(s));
-                        if (held && way == near) join(s, around[k], x, n);
+                    for (std::size_t k = 0; k < here.size() && !held; ++k) {
+                        held = holds(here[k], place, 0.1 * step * radius(s));
+                        if (held && way == near) join(s, here[k], x, n);
                     }
                     all = all && held;
                 }
+            }
             return all;
         }
 
         /// Whether a body before has a sample there, at a face in the same plane: one edge of both
         /// has each once.
         bool is_known(std::size_t s, const Vec<double, D>& x, const Vec<double, D>& n) const {
-            for (const std::size_t t : around) {
+            for (const std::size_t t : here) {
                 if (t >= s || !holds(t, x, near * radius(s))) continue;
                 const auto is_same = [&](const Vec<double, D>& m) { return norm(m - n) < far; };
                 if (std::ranges::none_of(normals_at(t, x), is_same)) continue;
                 const Array<std::int32_t>& solid = bodies.points.solid;
                 const auto number = static_cast<std::int32_t>(t);
-                auto c = static_cast<std::size_t>(std::ranges::find(solid, number) - solid.begin());
-                for (; c < solid.size() && solid[c] == number; ++c)
-                    if (norm(bodies.points.position[c] - x) < near * radius(s)) return true;
+                for (std::size_t c = first_point[t]; c < solid.size() && solid[c] == number; ++c)
+                    if (norm(nearest_image(domain, bodies.points.position[c] - x)) <
+                        near * radius(s))
+                        return true;
             }
             return false;
         }
@@ -217,13 +231,13 @@ private:
             const ContactSolid<D>& solid = bodies.solids[s];
             const Vec<double, D> normal = rotated_back(solid.rotation, n);
             const double height = dot(n, solid.place_of(x, domain));
-            const auto number = static_cast<std::int32_t>(s);
-            for (std::size_t f = 0; f < faces.size(); ++f)
-                if (faces[f].solid == number && norm(faces[f].normal - normal) < far &&
+            for (const std::size_t f : faces_of[s])
+                if (norm(faces[f].normal - normal) < far &&
                     std::abs(faces[f].height - height) < near * radius(s))
                     return f;
             const auto surface = static_cast<std::int32_t>(faces.size());
-            faces.push_back({number, surface, normal, height});
+            faces_of[s].push_back(faces.size());
+            faces.push_back({static_cast<std::int32_t>(s), surface, normal, height});
             return faces.size() - 1;
         }
     };
