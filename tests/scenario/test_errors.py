@@ -55,6 +55,7 @@ from ..small_scenarios import BLOCK
         ("time_history = 1e-9", ["time_history = 1e-09 s is too short for time_max = 1 s"]),
         ("schema = 2", ["schema = 2 is not allowed; choose 1"]),
         ("[parameters]\neta = 3", ["parameters.eta", "the name has another meaning"]),
+        ("[parameters]\ndef = 3", ["parameters.def", "the name has another meaning"]),
         ("[parameters]\nn = { value = 7, choices = [1, 5] }", ["7 is not one of 1, 5"]),
         ("[parameters]\nn = { value = 0, min = 1 }", ["parameters.n: 0 is out of range", "1"]),
         ("[parameters]\nn = { valu = 0 }", ["parameters.n.valu is not a known key"]),

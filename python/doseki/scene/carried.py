@@ -128,7 +128,7 @@ class CarriedOver:
             raise self._error(
                 group.name,
                 'a snapshot does not hold the cracks of bodies with kinematics = "breakable"; '
-                "resume the earlier run, or leave it out of carry",
+                "resume the earlier run, or name it in start.without",
             )
         grains = self._grains_of(group.name)
         reach = 2 * np.array([shape.reach for shape in group.shapes])

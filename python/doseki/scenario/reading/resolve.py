@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from keyword import iskeyword
 from typing import Any
 
 from pydantic import ValidationError
@@ -58,7 +59,7 @@ def _check_names(table: dict[str, Any], where: Where) -> None:
         if all(key in table for key in pair):
             raise where.error(pair[:1], f"{pair[0]} and {pair[1]} exclude each other: give one")
     for name in _dict(table.get("parameters")):
-        if name in TOP_LEVEL_KEYS or name in RESERVED_NAMES:
+        if name in TOP_LEVEL_KEYS or name in RESERVED_NAMES or iskeyword(name):
             message = f"parameters.{name}: the name has another meaning; choose another one"
             raise where.error(("parameters", name), message)
 
