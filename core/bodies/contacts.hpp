@@ -78,8 +78,9 @@ public:
     }
     /// Until a kind is applied again no pair of it has touched.
     void forget_forces() { pushes_.assign(pairs_.size(), {}); }
-    /// Calls f(body, other, place, force) for each body of each pair that touched when its kind was
-    /// last applied: the force on it there, by the image that is near the first of the pair.
+    /// Calls f(body, other, place, force, way) for each body of each pair that touched when its
+    /// kind was last applied: the force on it there, by the image that is near the first of the
+    /// pair, and the direction to the other.
     template <class F>
     void for_each_force(const ContactBodies<D>& bodies, F&& f) const {
         for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -87,8 +88,9 @@ public:
             if (!push.touches) continue;
             const Vec<double, D> place =
                 bodies.points.position[pairs_[k].first()] + push.overlap.lever_a;
-            f(contacts_[k].body_a, contacts_[k].body_b, place, push.force);
-            f(contacts_[k].body_b, contacts_[k].body_a, place, -1.0 * push.force);
+            const auto [a, b] = std::pair(contacts_[k].body_a, contacts_[k].body_b);
+            f(a, b, place, push.force, push.overlap.normal);
+            f(b, a, place, -1.0 * push.force, -1.0 * push.overlap.normal);
         }
     }
     /// Largest overlap there ever was, over the diameter.

@@ -6,7 +6,7 @@
 
 namespace doseki {
 
-/// Whether x lies in a fixed convex solid other than these two bodies.
+/// Whether x lies in a fixed convex solid other than two bodies; of a fixed one they are one.
 template <int D>
 DOSEKI_DEVICE_FN bool is_covered(const ContactBodySpans<D>& bodies, const Vec<double, D>& x,
                                  std::int32_t one, std::int32_t other, const Domain<D>& domain) {

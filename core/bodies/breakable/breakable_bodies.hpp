@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/breakable/breakable_body.hpp"
 #include "bodies/breakable/held_bodies.hpp"
+#include "bodies/breakable/partners.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/rigid_bodies.hpp"
@@ -31,8 +34,10 @@ public:
     void divide(std::size_t n, std::span<const std::size_t> parts,
                 const DeformableBodies<D>& deformable);
     /// Gives body n a rigid one, which has its `centre` where points are at rest.
-    void give_rigid(std::size_t n, std::size_t rigid, const Vec<double, D>& centre) {
+    void give_rigid(std::size_t n, std::size_t rigid, const Vec<double, D>& centre,
+                    const DeformableBodies<D>& deformable) {
         bodies_[n].rigid = rigid, bodies_[n].centre = centre, bodies_[n].orientation = {};
+        measure(bodies_[n], deformable);
     }
     /// Call when bodies or the points of rigid ones have changed. A number of a rigid point is that
     /// of one deformable point for good, so that particles that are bound to an old one find it.
@@ -193,30 +198,34 @@ void BreakableBodies<D>::catch_blows(const Contacts<D>& contacts, const ContactB
                                      const RigidBodies<D>& rigid, Array<double>& tension) const {
     auto bends = [](const BreakableBody<D>& body) { return body.sections.bends(); };
     if (std::ranges::none_of(bodies_, bends)) return;
-    auto number_of = [&](std::int32_t k) {
-        const BreakableBody<D>* body = waiting(k, deformable);
-        return body && bends(*body) ? body - bodies_.data() : -1;
-    };
-    auto is_rigid = [&](std::int32_t k) { return static_cast<std::size_t>(k) < rigid.size(); };
-    auto mass_of = [&](std::int32_t k) {
-        const auto other = static_cast<std::size_t>(k);
-        if (!is_rigid(k)) return deformable.mass(other - rigid.size());
-        return rigid.body(other).fixed ? 0.0 : rigid.body(other).mass;
-    };
-    auto velocity_at = [&](std::int32_t k, const Vec<double, D>& place) {
-        const auto body = static_cast<std::size_t>(k);
-        if (!is_rigid(k)) return deformable.velocity(body - rigid.size());
-        const RigidBodyState<D>& state = rigid.state(body);
-        const Vec<double, D> r = nearest_image(contacts.domain(), place - state.centre);
-        return state.velocity + turning_velocity<D>(rigid.spin(body), r);
-    };
-    const Array<Held> held =
-        held_bodies(size(), contacts, touching, number_of, mass_of, velocity_at);
+    const PartnersOfBodies<D> partners(rigid, deformable, contacts.domain());
+    Array<Closing> pairs;
+    Array<double> fastest(size(), 0.0);
+    contacts.for_each_force(
+        touching, [&](std::int32_t k, std::int32_t other, const Vec<double, D>& place,
+                      const Vec<double, D>&, const Vec<double, D>& way) {
+            const BreakableBody<D>* body = waiting(k, deformable);
+            if (!body || !bends(*body)) return;
+            const auto n = static_cast<std::size_t>(body - bodies_.data());
+            const double speed =
+                dot(partners.velocity(k, place) - partners.velocity(other, place), way);
+            pairs.push_back({n, other, speed}), fastest[n] = std::max(fastest[n], speed);
+        });
+    // Hardly any comes nearer so fast that even the heaviest of all could break what it touches.
+    constexpr double most_partners = 64.0;
+    const double heaviest = most_partners * partners.heaviest();
+    std::erase_if(pairs, [&](const Closing& pair) {
+        const BreakableBody<D>& body = bodies_[pair.body];
+        const double square = fastest[pair.body] * fastest[pair.body];
+        return body.caught(heaviest * square / rigid.body(body.rigid).mass) < body.bears;
+    });
+    if (pairs.empty()) return;
+    auto mass_of = [&](std::int32_t k) { return partners.mass(k); };
+    const Array<double> blows = blows_on_held(size(), std::move(pairs), mass_of);
     for (std::size_t n = 0; n < size(); ++n)
-        if (held[n].mass > 0.0)
-            tension[n] = std::max(
-                tension[n], bodies_[n].caught(held[n].closing,
-                                              held[n].mass / rigid.body(bodies_[n].rigid).mass));
+        if (blows[n] > 0.0)
+            tension[n] = std::max(tension[n],
+                                  bodies_[n].caught(blows[n] / rigid.body(bodies_[n].rigid).mass));
 }
 
 template <int D>

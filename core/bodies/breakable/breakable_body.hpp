@@ -65,14 +65,13 @@ struct BreakableBody {
     /// Tension of bending by what it meets at this speed, as heavy as `other` [kg], 2-D: [kg/m];
     /// none of a compact one.
     double blown(double speed, double density, double other) const {
-        if (sections.long_fibre() == 0.0) return 0.0;
+        if (!sections.is_long()) return 0.0;
         const double share = 1.0 / (1.0 + density * sections.cube() / other);
-        return blow_tension(speed, bar_impedance, sections.long_fibre(), share);
+        return blow_tension(speed, bar_impedance, sections.fibre(), share);
     }
-    /// The same where others hold it, and those that move are `others` times as heavy as itself.
-    double caught(double speed, double others) const {
-        return caught_tension(speed, bar_impedance, sections.fibre(), others,
-                              sections.long_fibre() > 0.0);
+    /// The same where others hold it, by what has twice this energy for each kilogram of it.
+    double caught(double blow) const {
+        return caught_tension(blow, bar_impedance, sections.fibre(), sections.is_long());
     }
     /// Time for which it remembers how it vibrated [s].
     double lately(const DeformableBodies<D>& bodies) const { return 5.0 * crossing(bodies); }

@@ -1,45 +1,44 @@
 #pragma once
-// What holds a body from several sides while something lands on it.
+// What lands on bodies that others hold.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <map>
-#include <set>
+#include <tuple>
 
 #include "base/array.hpp"
-#include "base/vec.hpp"
-#include "bodies/contacts.hpp"
 
 namespace doseki {
 
-/// The mass of all that touches a body that at least two others touch [kg], 2-D: [kg/m], and the
-/// speed at which the fastest of them comes nearer [m/s]; zero of other bodies.
-struct Held {
-    double mass = 0.0, closing = 0.0;
+/// Another body that touches a body, and how fast the two come nearer there [m/s].
+struct Closing {
+    std::size_t body;
+    std::int32_t other;
+    double speed;
 };
 
-/// Of bodies numbered below `count`: `number_of` gives the number of a body that may be held, or
-/// -1, `mass_of` the mass of what touches one, and `velocity_at` the velocity of a body at a place.
-template <int D, class NumberOf, class MassOf, class VelocityAt>
-Array<Held> held_bodies(std::size_t count, const Contacts<D>& contacts,
-                        const ContactBodies<D>& touching, NumberOf&& number_of, MassOf&& mass_of,
-                        VelocityAt&& velocity_at) {
-    std::map<std::size_t, std::set<std::int32_t>> around;
-    Array<Held> held(count);
-    contacts.for_each_force(
-        touching, [&](std::int32_t k, std::int32_t other, const Vec<double, D>& place,
-                      const Vec<double, D>& force) {
-            const auto number = number_of(k);
-            const double push = norm(force);
-            if (number < 0 || !(push > 0.0)) return;
-            const auto n = static_cast<std::size_t>(number);
-            around[n].insert(other);
-            const Vec<double, D> apart = velocity_at(k, place) - velocity_at(other, place);
-            held[n].closing = std::max(held[n].closing, -dot(apart, force) / push);
-        });
-    for (const auto& [n, others] : around)
-        if (others.size() > 1)
-            for (const std::int32_t other : others) held[n].mass += mass_of(other);
-    return held;
+/// Twice the energy of what lands on each body below `count` that at least two others touch [J],
+/// 2-D: [J/m]; 0 of others. What moves brings its own, and all of it that of the speed at which the
+/// body comes nearer to what is fixed. `mass_of` gives the mass of what touches one [kg]; 0: fixed.
+template <class MassOf>
+Array<double> blows_on_held(std::size_t count, Array<Closing> pairs, MassOf&& mass_of) {
+    std::ranges::sort(pairs, {}, [](const Closing& pair) {
+        return std::tuple(pair.body, pair.other, -pair.speed);
+    });
+    Array<double> blows(count, 0.0);
+    for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+        double mass = 0.0, moving = 0.0, fixed = 0.0;
+        std::size_t others = 0;
+        for (; end < pairs.size() && pairs[end].body == pairs[begin].body; ++end) {
+            const bool known = end > begin && pairs[end].other == pairs[end - 1].other;
+            if (known) continue;  // the fastest place of each comes first
+            const double other = mass_of(pairs[end].other), speed = std::max(0.0, pairs[end].speed);
+            mass += other, moving += other * speed * speed, ++others;
+            if (other == 0.0) fixed = std::max(fixed, speed);
+        }
+        if (others > 1) blows[pairs[begin].body] = moving + mass * fixed * fixed;
+    }
+    return blows;
 }
 
 }  // namespace doseki

@@ -99,19 +99,20 @@ public:
         const int shortest = points.dim - 1;
         for (int a = 0; a < points.dim; ++a) {
             const double thickness = length(a < shortest ? shortest : shortest - 1);
+            const int next = (a + 1) % points.dim;  // in 2-D the other one of the plane
             if (length(a) * slender > thickness)
-                cut(points, axes[a], {axes[(a + 1) % 3], axes[(a + 2) % 3]},
+                cut(points, axes[a], {axes[next], axes[3 - a - next]},
                     length(a) > slender * thickness);
         }
     }
 
     /// Not a disc or ball: all that presses on one goes through its centre.
     bool bends() const { return !round_; }
-    /// Outermost distance over the radius of gyration, the most of all cuts; zero of a disc or
-    /// ball, through the centre of which all that presses on it goes.
-    double fibre() const { return round_ ? 0.0 : fibre_; }
-    /// The same of cuts across long axes alone; zero without one.
-    double long_fibre() const { return long_fibre_; }
+    /// Whether it is longer than thick, as beams are.
+    bool is_long() const { return long_fibre_ > 0.0; }
+    /// Outermost distance over the radius of gyration, the most of all cuts across long axes, or of
+    /// all where it has none.
+    double fibre() const { return is_long() ? long_fibre_ : fibre_; }
     /// Volume of what is as long as thick, the least of those cuts [m^3], 2-D: [m^2].
     double cube() const { return cube_; }
     /// A bound on tension(), for forces of which the sizes have this sum.
@@ -174,7 +175,7 @@ private:
         for (double at = low + end * points.spacing; at <= high - end * points.spacing;
              at += points.spacing) {
             Section section{axis, at, {}, 0.0, across, {}, {}};
-            const double outermost = measure(section, points);
+            const auto [outermost, over_gyration] = measure(section, points);
             if (!(section.area > 0.0)) continue;
             if (!is_long)
                 section.fibre = {short_beam * section.fibre[0], short_beam * section.fibre[1]};
@@ -183,7 +184,6 @@ private:
                          fibre = std::max(section.fibre[0], section.fibre[1]);
             most_per_force_ = std::max(most_per_force_, 2.0 * (1.0 / section.area + arm * fibre));
             most_per_spin_ = std::max(most_per_spin_, pull_of_spin(section, fibre));
-            const double over_gyration = std::sqrt(fibre * outermost * section.area);
             fibre_ = std::max(fibre_, over_gyration);
             if (!is_long) continue;
             long_fibre_ = std::max(long_fibre_, over_gyration);
@@ -198,8 +198,12 @@ private:
         for (int a = 0; a < 3; ++a) second += all_.second(a, a);
         return 2.0 * first / section.area + 4.0 * fibre * (norm(section.middle) * first + second);
     }
-    /// Returns how far from its middle the cut reaches, along the axes across [m].
-    static double measure(Section& section, const MassPoints& points) {
+    /// How far from its middle a cut reaches along the axes across [m], and the most that this is
+    /// over the radius of gyration along one of them.
+    struct Reach {
+        double farthest = 0.0, over_gyration = 0.0;
+    };
+    static Reach measure(Section& section, const MassPoints& points) {
         const double spacing = points.spacing, each = points.dim == 2 ? spacing : spacing * spacing;
         auto is_cut = [&](const Vec3& r) {
             return std::abs(dot(r, section.axis) - section.at) < 0.5 * spacing;
@@ -209,9 +213,9 @@ private:
             if (dot(r, section.axis) > section.at) section.beyond.add(points.mass[k], r);
             if (is_cut(r)) section.area += each, section.middle = section.middle + each * r;
         }
-        if (!(section.area > 0.0)) return 0.0;
+        if (!(section.area > 0.0)) return {};
         section.middle = (1.0 / section.area) * section.middle;
-        double farthest = 0.0;
+        Reach reach;
         for (int a = 0; a + 1 < points.dim; ++a) {
             double moment = 0.0, outermost = 0.0;
             for (const Vec3& r : points.place) {
@@ -221,9 +225,12 @@ private:
                 outermost = std::max(outermost, std::abs(y));
             }
             outermost += 0.5 * spacing;
-            section.fibre[a] = outermost / moment, farthest = std::max(farthest, outermost);
+            section.fibre[a] = outermost / moment;
+            reach.farthest = std::max(reach.farthest, outermost);
+            reach.over_gyration =
+                std::max(reach.over_gyration, outermost * std::sqrt(section.area / moment));
         }
-        return farthest;
+        return reach;
     }
 
     MassMoments all_;

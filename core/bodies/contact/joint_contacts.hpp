@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <utility>
@@ -91,6 +92,7 @@ struct PushTogether {
 
 private:
     using Which = std::span<const std::size_t>;
+    static constexpr double aslant = 0.7;  // cosine of 45 degrees
 
     /// Each surface takes what presses on it, in whichever of its bodies. Rows of one point follow
     /// each other.
@@ -117,7 +119,7 @@ private:
         for (const std::size_t k : of_point)
             for (const std::size_t from : of_point)
                 if (rows.pushes[k].touches && begins(k) && !rows.pushes[from].touches &&
-                    !begins(from)) {
+                    !begins(from) && goes_on(from, k)) {
                     rows.springs[k] = rows.springs[from], rows.normals[k] = rows.normals[from];
                     rows.part(from);
                 }
@@ -131,6 +133,10 @@ private:
                     rows.part(begins(k) && !begins(other) ? k : other);
     }
 
+    /// Whether a row is pushed as another one was: over a seam it is, in a corner not.
+    DOSEKI_DEVICE_FN bool goes_on(std::size_t before, std::size_t now) const {
+        return dot(rows.normals[before], rows.pushes[now].overlap.normal) > aslant;
+    }
     DOSEKI_DEVICE_FN bool begins(std::size_t k) const {
         return dot(rows.normals[k], rows.normals[k]) == 0.0;
     }
@@ -144,20 +150,27 @@ private:
                std::max(a.body_a, a.body_b) == std::max(b.body_a, b.body_b);
     }
 
-    /// The one that faces what presses; -1: none that goes on in another body.
+    /// The one that faces what presses and is nearest to where it does; -1: none that goes on in
+    /// another body.
     DOSEKI_DEVICE_FN std::int32_t surface_touched(std::size_t k) const {
-        constexpr double aslant = 0.7;  // cosine of 45 degrees
         const bool first = rows.contacts[k].wall_first;
+        const std::size_t point = rows.pairs[k].first();
         const ContactSolid<D>& solid =
-            first ? *solid_of_point(rows.pairs[k].first()) : *rows.bodies.solid(rows.pairs[k]);
+            first ? *solid_of_point(point) : *rows.bodies.solid(rows.pairs[k]);
+        const Overlap<D>& overlap = rows.pushes[k].overlap;
         const Vec<double, D> out =
-            rotated_back(solid.rotation, (first ? 1.0 : -1.0) * rows.pushes[k].overlap.normal);
-        double most = aslant;
+            rotated_back(solid.rotation, (first ? 1.0 : -1.0) * overlap.normal);
+        const Vec<double, D> place =
+            rotated_back(solid.rotation,
+                         first ? overlap.lever_a + rows.bodies.points.position[point] - solid.centre
+                               : overlap.lever_b);
+        double nearest = std::numeric_limits<double>::infinity();
         std::int32_t surface = -1;
         for (std::size_t f = solid.first_face; f < solid.end_face; ++f) {
             const WallFace<D>& face = rows.bodies.faces[f];
-            if (const double along = dot(face.normal, out); along > most)
-                most = along, surface = face.surface;
+            const double off = std::abs(dot(face.normal, place) - face.height);
+            if (dot(face.normal, out) > aslant && off < nearest)
+                nearest = off, surface = face.surface;
         }
         return surface;
     }

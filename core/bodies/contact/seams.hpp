@@ -163,7 +163,7 @@ private:
         /// has each once.
         bool is_known(std::size_t s, const Vec<double, D>& x, const Vec<double, D>& n) const {
             for (const std::size_t t : here) {
-                if (t >= s || !holds(t, x, near * radius(s))) continue;
+                if (t >= s || !standing[t].facets || !holds(t, x, near * radius(s))) continue;
                 const auto is_same = [&](const Vec<double, D>& m) { return norm(m - n) < far; };
                 if (std::ranges::none_of(normals_at(t, x), is_same)) continue;
                 const Array<std::int32_t>& solid = bodies.points.solid;

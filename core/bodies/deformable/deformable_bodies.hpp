@@ -228,14 +228,6 @@ public:
             square = std::max(square, dot(solids_.v[p], solids_.v[p]));
         return std::sqrt(square);
     }
-    /// Of a body [kg], 2-D: [kg/m].
-    double mass(std::size_t body) const {
-        return rigid_motion<D>(solids_, solids_.points_of(body)).mass;
-    }
-    /// Of the centre of a body [m/s].
-    Vec<double, D> velocity(std::size_t body) const {
-        return rigid_motion<D>(solids_, solids_.points_of(body)).velocity;
-    }
     /// Of the ball around a body [m].
     double radius(std::size_t body) const {
         return rigid_motion<D>(solids_, solids_.points_of(body)).radius;

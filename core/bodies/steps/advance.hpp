@@ -298,7 +298,7 @@ void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int3
     state.orientation = motion.orientation;
     rigid.add(body, state, deformable.shape_of(contact_, shown, b, motion));
     rigid_origins_.add(deformable_origins_[b]);
-    breakable_.give_rigid(n, k, motion.rest_centre);
+    breakable_.give_rigid(n, k, motion.rest_centre, deformable);
     for (const std::uint32_t p : deformable.solids().points_of(b))
         deformable.set_rigid_point(
             p, rigid_particles_.add(k, rotated_back(turn, deformable.solids().x[p] - motion.centre),

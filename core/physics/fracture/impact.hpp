@@ -39,14 +39,13 @@ inline double blow_tension(double speed, double impedance, double fibre, double 
     return ends * impedance * speed * share * fibre;
 }
 
-/// Largest tension in a beam on supports in the middle of which something lands that has `mass`
-/// times its own mass, Eq. (180); `impedance` and `fibre` as in blow_tension. All of the energy of
-/// the blow bends it. In a block that is about as long as thick most of it goes into shear and into
-/// where it is touched.
-inline double caught_tension(double speed, double impedance, double fibre, double mass,
-                             bool is_long) {
+/// Largest tension in a beam on supports on the middle of which something lands, Eq. (180): `blow`
+/// is twice its energy over the mass of the beam [m^2/s^2], `impedance` and `fibre` as in
+/// blow_tension. All of that energy bends it. In a block that is about as long as thick most of it
+/// goes into shear and into where it is touched.
+inline double caught_tension(double blow, double impedance, double fibre, bool is_long) {
     const double bends = is_long ? 1.0 : 0.125;  // share of the energy
-    return impedance * speed * fibre * std::sqrt(3.0 * bends * mass);
+    return impedance * fibre * std::sqrt(3.0 * bends * blow);
 }
 
 /// Eq. (139a) and (139b): the tension that is to be expected at most in a compact body.
