@@ -337,3 +337,19 @@ def test_parts_of_a_file_are_one_body(tmp_path):
             load_scenario(scenario(tmp_path, body=gauge.format(name)))
     with pytest.raises(UserError, match="did you mean wall"):
         load_scenario(scenario(tmp_path, body=gauge.format("s")))
+
+
+def test_a_vertex_of_many_numbers_is_refused_at_once(tmp_path):
+    """Lines that have lost their ends: a search for numbers could go through all their splits."""
+    numbers = " ".join(["123456"] * 40)
+    (tmp_path / "wall.obj").write_text(f"v 0 0 0\nv {numbers} x\n")
+    with pytest.raises(UserError, match=r"line 2: a vertex has 'x', which is not a number"):
+        build_scene(load_scenario(str(scenario(tmp_path, file="wall.obj"))))
+
+
+def test_a_header_with_long_comments_is_read(tmp_path):
+    box().export(tmp_path / "wall.ply", encoding="ascii")
+    lines = (tmp_path / "wall.ply").read_text().splitlines(keepends=True)
+    lines[2:2] = [f"comment {'scanned ' * 20}{k}\n" for k in range(40)]
+    (tmp_path / "wall.ply").write_text("".join(lines))
+    build_scene(load_scenario(str(scenario(tmp_path, file="wall.ply"))))

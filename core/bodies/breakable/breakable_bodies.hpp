@@ -4,7 +4,6 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "base/array.hpp"
 #include "base/error.hpp"
@@ -161,7 +160,7 @@ void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D
     auto for_each_force = [&](auto&& f) {
         contacts.for_each_force(
             touching, [&](std::int32_t k, std::int32_t, const Vec<double, D>& place,
-                          const Vec<double, D>& force) {
+                          const Vec<double, D>& force, const Vec<double, D>&) {
                 if (const BreakableBody<D>* body = waiting(k, deformable))
                     f(static_cast<std::size_t>(body - bodies_.data()), place, force);
             });
@@ -214,14 +213,16 @@ void BreakableBodies<D>::catch_blows(const Contacts<D>& contacts, const ContactB
     // Hardly any comes nearer so fast that even the heaviest of all could break what it touches.
     constexpr double most_partners = 64.0;
     const double heaviest = most_partners * partners.heaviest();
-    std::erase_if(pairs, [&](const Closing& pair) {
+    Array<Closing> fast;
+    for (const Closing& pair : pairs) {
         const BreakableBody<D>& body = bodies_[pair.body];
         const double square = fastest[pair.body] * fastest[pair.body];
-        return body.caught(heaviest * square / rigid.body(body.rigid).mass) < body.bears;
-    });
-    if (pairs.empty()) return;
+        if (body.caught(heaviest * square / rigid.body(body.rigid).mass) >= body.bears)
+            fast.push_back(pair);
+    }
+    if (fast.empty()) return;
     auto mass_of = [&](std::int32_t k) { return partners.mass(k); };
-    const Array<double> blows = blows_on_held(size(), std::move(pairs), mass_of);
+    const Array<double> blows = blows_on_held(size(), std::move(fast), mass_of);
     for (std::size_t n = 0; n < size(); ++n)
         if (blows[n] > 0.0)
             tension[n] = std::max(tension[n],

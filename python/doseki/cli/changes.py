@@ -6,12 +6,12 @@ from pathlib import Path
 
 import typer
 
-from ..record.folder import RunFolder
-from ..util.sealed import changed_by_hand
-
 
 def warn_of_changes(directory: Path) -> None:
     """Say so on stderr where the scenario of a run is not the one that was run."""
+    from ..record.folder import RunFolder
+    from ..util.sealed import changed_by_hand
+
     scenario = RunFolder(directory).scenario
     if scenario.is_file() and (said := changed_by_hand(scenario)):
         typer.echo(f"warning: {said}", err=True)

@@ -6,6 +6,7 @@ They are read here, as typer says what is wrong in words of its own.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from enum import StrEnum
 from typing import TypeVar
@@ -37,7 +38,7 @@ def whole(low: int, high: int) -> Callable[[object], int]:
     """The same for whole numbers."""
 
     def parsed(text: object) -> int:
-        digits = str(text).strip().removeprefix("-")
+        digits = re.sub(r"^[+-]", "", str(text).strip())
         if not (digits.isascii() and digits.isdigit()):
             raise typer.BadParameter(f"{str(text)[:40]!r} is not a whole number")
         # More digits than Python reads are too many for any option.

@@ -72,6 +72,53 @@ def test_one_that_stays_rigid_would_not_have_cracked(tmp_path):
     assert caught(tmp_path, "elastic", 1.4, 0.1) == 0
 
 
+def pressed(folder, own: float):
+    """The largest load of a square block that is pressed between two rollers and a third, N/m.
+
+    Its own axes are turned by a quarter turn, or not: which of them is across the load is alike.
+    """
+    half, steel = 0.5 * HIGH, '"aluminium"'
+    text = TEXT.format(dp=HIGH / 12).replace("speed = 1", 'stiffness = "material"') + box(
+        "block", (-half, 0), (half, HIGH), material='"rock"', kinematics='"breakable"', rotate=own
+    )  # fmt: skip
+    for side in (-1, 1):
+        text += ball(f"roller{side + 1}", (side * (half - POST), -POST), POST, fixed=True)
+    text += ball("press", (0, HIGH + POST), POST, fixed=True, motion="{ velocity = [0, -0.04] }")
+    simulation = started(folder, text.replace('"stone"', steel)).simulation
+    most = 0.0
+    for time in np.linspace(0, 0.01, 101)[1:]:
+        simulation.advance(limit=time, pause=time, max_steps=10**6)
+        forces = np.linalg.norm(simulation.grains()["contact_force"], axis=1)
+        most = max(most, forces.max())
+        if simulation.totals()["broken_bonds"] > 10:
+            return most
+    return np.inf
+
+
+@pytest.mark.parametrize("own", [0, 90])
+def test_a_block_that_is_pressed_breaks_at_the_load_of_an_elastic_one(tmp_path, own):
+    """Which is 306 kN/m; as a disc of its area, Eq. (139b), it was rigid up to 705."""
+    assert 0.8 * 306e3 < pressed(tmp_path, own) < 1.25 * 306e3
+
+
+@pytest.mark.parametrize("turn", [0, 40])
+def test_what_slides_with_a_load_on_it_is_not_struck(tmp_path, turn):
+    """Friction makes no blow: both slide down at 5 m/s, pressed on their way by their weight."""
+    angle = np.radians(turn)
+    along, up = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    weight = listed(-9.81 * (0.9 * up - 0.3 * along))
+    turned = {"rotate": turn, "pivot": [0.0, 0.0]}
+    text = TEXT.format(dp=HIGH / 10).replace("[0.0, 0.0]", str(weight), 1)
+    moving = {"material": '"rock"', "velocity": listed(5 * along), **turned}
+    text += box("slope", (-1, -0.1), (2, 0), fixed=True, material='"basalt"', **turned)
+    text += box("below", (-0.1, 0), (0.1, 0.1), kinematics='"breakable"', **moving)
+    text += box("above", (-0.1, 0.1), (0.1, 0.2), **moving)
+    simulation = started(folder=tmp_path, text=text).simulation
+    for time in np.linspace(0, 0.1, 21)[1:]:
+        simulation.advance(limit=time, pause=time, max_steps=10**6)
+        assert len(simulation.fragments()["mass"]) == 0
+
+
 def spun(folder, kinematics: str, share: float):
     """Bonds that break in a rod whose spin pulls at its middle by a share of its strength."""
     spin = np.sqrt(8 * STRENGTH * share / DENSITY) / 0.1

@@ -10,6 +10,8 @@ import pytest
 from doseki.scenario.load import load_scenario
 from doseki.solver.build import build_simulation, empty_simulation
 
+from .blocks import listed
+
 TOP = """
 schema = 1
 dim = 3
@@ -55,9 +57,10 @@ STRONG, WEAK = 1e9, 1.5e5  # Pa
 def build(tmp_path: Path):
     """Makes a simulation of these bodies; `build.again()` an empty one of the same scenario."""
 
-    def make(*bodies: str, strength: float = WEAK):
+    def make(*bodies: str, strength: float = WEAK, gravity=(0, 0, 0)):
         path = tmp_path / "case.toml"
-        path.write_text(TOP.format(strength=strength) + "".join(bodies), encoding="utf-8")
+        top = TOP.format(strength=strength).replace("[0, 0, 0]", str(listed(gravity)), 1)
+        path.write_text(top + "".join(bodies), encoding="utf-8")
         simulation, names = build_simulation(load_scenario(str(path)))
         make.again = lambda: empty_simulation(load_scenario(str(path)), names)
         return simulation
@@ -253,7 +256,7 @@ def test_a_restored_run_goes_on_with_the_same_bits(build):
 @pytest.mark.parametrize("side", [0.1056, 0.1045, 0.095])
 def test_a_block_at_rest_on_a_floor_stays_there_whatever_its_sides_are(build, axis, side):
     """Its balls reach to its faces: they began inside the floor where dp does not divide a side,
-    and a block of granite flew to pieces.
+    and a block of granite flew to pieces; with balls that are too small it would fall.
     """
     across = [side, side, 0.1]
     low, high = np.zeros(3), np.roll(across, axis - 2)
@@ -261,8 +264,14 @@ def test_a_block_at_rest_on_a_floor_stays_there_whatever_its_sides_are(build, ax
     over = np.where(np.arange(3) == axis, 0.0, high + 0.02)
     block = FLOOR.replace("floor", "block").replace("fixed = true", 'kinematics = "elastic"')
     block = block.format(low=low.tolist(), high=high.tolist())
-    simulation = build(block, FLOOR.format(low=under.tolist(), high=over.tolist()))
-    simulation.advance(limit=0.002, pause=0.002, max_steps=10**6)
-    totals = simulation.totals()
-    assert totals["broken_bonds"] == 0
-    assert abs(totals["contact_work"]) < 1e-12
+    floor = FLOOR.format(low=under.tolist(), high=over.tolist())
+    for weight in (0.0, 9.81):
+        pull = listed(np.where(np.arange(3) == axis, -weight, 0.0))
+        simulation = build(block, floor, gravity=pull)
+        before = simulation.state()["position"].copy()
+        simulation.advance(limit=0.004, pause=0.004, max_steps=10**6)
+        totals = simulation.totals()
+        assert totals["broken_bonds"] == 0
+        assert np.abs(simulation.state()["position"] - before).max() < 0.1 * 0.5 * 9.81 * 0.004**2
+        if weight == 0:
+            assert abs(totals["contact_work"]) < 1e-12

@@ -26,7 +26,7 @@ def faces_check(run: Run) -> list[Check]:
 
     A `normal` gives a body that one plane face: what fluid does to its other sides is not right.
     """
-    if not any("normal" in body for body in run.scenario["body"].values()):
+    if not any("normal" in body for body in run.scenario.get("body", {}).values()):
         return []
     scenario = load_scenario(run.folder.scenario)
     normals = dict(_normals(scenario))
@@ -48,7 +48,13 @@ def faces_check(run: Run) -> list[Check]:
 def _normals(scenario: Scenario) -> Iterator[tuple[str, np.ndarray]]:
     """Those that fixed bodies of the scenario say themselves, before their motions."""
     for name, body in bodies_of(scenario).items():
-        if isinstance(body, Shaped) and body.table.fixed and body.table.normal is not None:
+        carved = scenario.body[name].given("where") is not None
+        if (
+            not carved
+            and isinstance(body, Shaped)
+            and body.table.fixed
+            and body.table.normal is not None
+        ):
             given = np.asarray(body.table.normal, float)
             yield name, body.rotation @ (given / np.linalg.norm(given))
 
@@ -60,21 +66,23 @@ def _beside(
     from scipy.spatial import cKDTree
 
     position, names = snapshot["position"], np.asarray(snapshot["body"])
-    walls = np.flatnonzero(snapshot["motion"] == FIXED)
-    if not len(walls) or not len(fluid):
-        return {}
-    tree = cKDTree(position[walls])
-    nearest = tree.query(fluid, distance_upper_bound=NEAR * scenario.dp)[1]
-    touched = np.append(names[walls], "")[nearest]  # the last: of those that touch none
+    is_wall, near = snapshot["motion"] == FIXED, NEAR * scenario.dp
     found = {}
     for name, normal in normals.items():
-        own = scenario.names_of_bodies(name)
-        of_it = np.isin(names[walls], own)
+        of_it = is_wall & np.isin(names, scenario.names_of_bodies(name))
         if not of_it.any():
             continue
-        now = Displacement(scenario, name, snapshot.time).vectors(normal[None])[0]
-        surface = (position[walls[of_it]] @ now).max() + 0.5 * scenario.dp
-        at_it = np.isin(touched, own)
+        own = position[of_it]
+        low, high = own.min(axis=0) - near, own.max(axis=0) + near
+        beside = fluid[((fluid > low) & (fluid < high)).all(axis=1)]
+        if not len(beside):
+            continue
+        walls = is_wall & ((position > low - near) & (position < high + near)).all(axis=1)
+        apart, nearest = cKDTree(position[walls]).query(beside, distance_upper_bound=near)
+        at_it = np.append(of_it[walls], False)[nearest] & np.isfinite(apart)
         if at_it.any():
-            found[name] = float((fluid[at_it] @ now < surface - BELOW * scenario.dp).mean())
+            now = Displacement(scenario, name, snapshot.time).vectors(normal[None])[0]
+            surface = (own @ now).max() + 0.5 * scenario.dp
+            below = beside[at_it] @ now < surface - BELOW * scenario.dp
+            found[name] = float(below.mean())
     return found

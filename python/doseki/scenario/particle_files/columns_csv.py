@@ -62,6 +62,10 @@ def check_columns(columns: Iterable[str], known: Mapping[str, Unit], example: st
     """Raise ValueError for the first header that is none of the `known` columns."""
     for header in columns:
         name = re.split(r"[\[(]", header)[0].strip()
+        if not name:
+            raise ValueError(
+                "a column has no name: its header ends in a comma, or has two in a row"
+            )
         if name.lower() not in [each.lower() for each in known]:
             raise ValueError(
                 f'"{header}" is not one of its columns: take it out; expected a header such as '

@@ -104,12 +104,13 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: Kin
     if EXPECTED.get(kind) == "a table" and isinstance(value, list):
         return f"{name} must be a table{about}; write [{name}], where [[{name}]] makes a list"
     if kind == "float_type" and type(value) is int:
-        return f"{name} = {_shown(value)} is out of range; must be below {sys.float_info.max:.0e}"
+        return f"{name} = {_shown(value)} is out of range; must be below {sys.float_info.max:.1e}"
     if kind in EXPECTED:
         return f"{name} = {_shown(value)} must be {EXPECTED[kind]}{about}"
     if kind in LENGTHS:
         bound, what, words = LENGTHS[kind]
         limit = words.format(f"{context[bound]} {'is' if context[bound] == 1 else 'are'}")
+        what = "entry" if (len(value), what) == (1, "entries") else what
         return f"{name} = {_shown(value)} has {len(value)} {what}; {limit}{about}"
     for bound, words in RANGES.items():
         if bound in context:

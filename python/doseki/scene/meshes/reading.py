@@ -18,7 +18,7 @@ from ..shapes.mesh_lines import check_obj, check_ply_header
 from ..shapes.stl import in_utf8, readable_stl
 
 LARGEST_FILE = 200_000_000  # bytes
-HEADER_PLY = 4096  # bytes in which a header must end
+HEADER_PLY = 2**20  # bytes: scanners write long comments
 LOST = "a face names a vertex that is not there"
 
 
@@ -46,7 +46,8 @@ def _check_counts(file: Path, kind: str, content: bytes) -> None:
     """
     if kind != "ply":
         return
-    header = content[:HEADER_PLY].partition(b"end_header")[0]
+    header, end, _ = content[:HEADER_PLY].partition(b"end_header")
+    header = header if end else header[: header.rfind(b"\n") + 1]  # the last line is cut here
     check_ply_header(file, header, len(content))
     counts = re.findall(rb"element\s+(\S+)\s+(\d+)", header)
     if re.search(rb"^format\s+ascii\b", header, re.MULTILINE):

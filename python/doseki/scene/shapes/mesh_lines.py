@@ -11,7 +11,7 @@ from pathlib import Path
 from ...errors import UserError
 
 GAP = rb"(?:[ \t]|\\\r?\n)+"  # a line of an OBJ may go on in the next one
-NUMBER = rb"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?)"
+NUMBER = rb"[-+]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?)"
 INDEX = rb"-?\d+(?:/-?\d*){0,2}"
 TAIL = rb"(?:[ \t]*(?:#[^\n]*)?\r?$)"
 # Lines that begin as they should and do not go on like that.
