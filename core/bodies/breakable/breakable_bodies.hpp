@@ -161,19 +161,23 @@ void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D
         contacts.for_each_force(
             touching, [&](std::int32_t k, std::int32_t, const Vec<double, D>& place,
                           const Vec<double, D>& force, const Vec<double, D>&) {
-                if (const BreakableBody<D>* body = waiting(k, deformable))
+                const BreakableBody<D>* body = waiting(k, deformable);
+                if (body && body->sections.bends())
                     f(static_cast<std::size_t>(body - bodies_.data()), place, force);
             });
     };
+    auto bends = [](const BreakableBody<D>& body) { return body.sections.bends(); };
     Array<double> sum(size(), 0.0);
-    for_each_force([&](std::size_t n, const Vec<double, D>&, const Vec<double, D>& force) {
-        sum[n] += norm(force);
-    });
+    if (std::ranges::any_of(bodies_, bends))
+        for_each_force([&](std::size_t n, const Vec<double, D>&, const Vec<double, D>& force) {
+            sum[n] += norm(force);
+        });
     Array<std::uint8_t> may_bend(size(), 0);
     for (std::size_t n = 0; n < size(); ++n)
         if (bodies_[n].has_rigid() && deformable.solids().is_rigid(bodies_[n].deformable))
             may_bend[n] = bodies_[n].sections.most_tension(sum[n], rigid.spin(bodies_[n].rigid)) >=
                           bodies_[n].bears;
+    if (std::ranges::find(may_bend, 1) == may_bend.end()) return;
     Array<Array<PlacedForce>> forces(size());
     for_each_force([&](std::size_t n, const Vec<double, D>& place, const Vec<double, D>& force) {
         if (!may_bend[n]) return;
