@@ -114,6 +114,14 @@ private:
         const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
         return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
     }
+    /// Which of them the rigid body k is, if it may break and bend; -1: none.
+    std::int32_t bending(std::int32_t k, const DeformableBodies<D>& deformable) const {
+        const BreakableBody<D>* body = waiting(k, deformable);
+        return body && body->sections.bends() ? of_rigid_[static_cast<std::size_t>(k)] : -1;
+    }
+    bool any_bends() const {
+        return std::ranges::any_of(bodies_, [](const auto& body) { return body.sections.bends(); });
+    }
     /// Adds the tension of bending by all contacts and of spin to that of others, where it may be
     /// more than bodies bear.
     void bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
@@ -158,17 +166,15 @@ void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D
                               const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
                               Array<double>& tension) const {
     auto for_each_force = [&](auto&& f) {
-        contacts.for_each_force(
-            touching, [&](std::int32_t k, std::int32_t, const Vec<double, D>& place,
-                          const Vec<double, D>& force, const Vec<double, D>&) {
-                const BreakableBody<D>* body = waiting(k, deformable);
-                if (body && body->sections.bends())
-                    f(static_cast<std::size_t>(body - bodies_.data()), place, force);
-            });
+        contacts.for_each_force(touching,
+                                [&](std::int32_t k, std::int32_t, const Vec<double, D>& place,
+                                    const Vec<double, D>& force, const Vec<double, D>&) {
+                                    if (const std::int32_t n = bending(k, deformable); n >= 0)
+                                        f(static_cast<std::size_t>(n), place, force);
+                                });
     };
-    auto bends = [](const BreakableBody<D>& body) { return body.sections.bends(); };
     Array<double> sum(size(), 0.0);
-    if (std::ranges::any_of(bodies_, bends))
+    if (any_bends())
         for_each_force([&](std::size_t n, const Vec<double, D>&, const Vec<double, D>& force) {
             sum[n] += norm(force);
         });
@@ -199,17 +205,16 @@ template <int D>
 void BreakableBodies<D>::catch_blows(const Contacts<D>& contacts, const ContactBodies<D>& touching,
                                      const DeformableBodies<D>& deformable,
                                      const RigidBodies<D>& rigid, Array<double>& tension) const {
-    auto bends = [](const BreakableBody<D>& body) { return body.sections.bends(); };
-    if (std::ranges::none_of(bodies_, bends)) return;
+    if (!any_bends()) return;
     const PartnersOfBodies<D> partners(rigid, deformable, contacts.domain());
     Array<Closing> pairs;
     Array<double> fastest(size(), 0.0);
     contacts.for_each_force(
         touching, [&](std::int32_t k, std::int32_t other, const Vec<double, D>& place,
                       const Vec<double, D>&, const Vec<double, D>& way) {
-            const BreakableBody<D>* body = waiting(k, deformable);
-            if (!body || !bends(*body)) return;
-            const auto n = static_cast<std::size_t>(body - bodies_.data());
+            const std::int32_t number = bending(k, deformable);
+            if (number < 0) return;
+            const auto n = static_cast<std::size_t>(number);
             const double speed =
                 dot(partners.velocity(k, place) - partners.velocity(other, place), way);
             pairs.push_back({n, other, speed}), fastest[n] = std::max(fastest[n], speed);

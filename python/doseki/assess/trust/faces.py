@@ -35,7 +35,7 @@ def faces_check(run: Run) -> list[Check]:
         fluid = snapshot["position"][snapshot["motion"] == FREE]
         for name, share in _beside(scenario, snapshot, fluid, normals).items():
             worst[name] = max(worst[name], share)
-    bodies = sorted((name for name in worst if worst[name] > 0), key=worst.__getitem__)[::-1]
+    bodies = sorted(filter(worst.get, worst), key=worst.__getitem__, reverse=True)
     counted = f"share of the fluid that touches a body, the most of {len(run)} snapshots"
     remedy = (
         f"at {', '.join(bodies[:NAMED])}: a `normal` gives a body one face; leave it out, so that"
@@ -48,15 +48,10 @@ def faces_check(run: Run) -> list[Check]:
 def _normals(scenario: Scenario) -> Iterator[tuple[str, np.ndarray]]:
     """Those that fixed bodies of the scenario say themselves, before their motions."""
     for name, body in bodies_of(scenario).items():
-        carved = scenario.body[name].given("where") is not None
-        if (
-            not carved
-            and isinstance(body, Shaped)
-            and body.table.fixed
-            and body.table.normal is not None
-        ):
-            given = np.asarray(body.table.normal, float)
-            yield name, body.rotation @ (given / np.linalg.norm(given))
+        table = scenario.body[name]
+        given, carved = table.given("normal"), table.given("where") is not None
+        if isinstance(body, Shaped) and table.fixed and given is not None and not carved:
+            yield name, body.rotation @ (np.asarray(given, float) / np.linalg.norm(given))
 
 
 def _beside(
