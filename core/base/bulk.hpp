@@ -40,7 +40,11 @@ void for_each(std::size_t count, const F& f) {
     thrust::for_each_n(thrust::device, thrust::counting_iterator<std::size_t>(0), count, f);
 }
 
-/// The same for pairs of bodies that may touch, see base/parallel.hpp.
+/// The same for particles of two kinds and for pairs of bodies, see base/parallel.hpp.
+template <class F>
+void for_each(std::size_t, std::size_t count, const F& f) {
+    for_each(count, f);
+}
 template <class F>
 void for_each_contact(std::size_t count, const F& f) {
     for_each(count, f);
@@ -130,6 +134,11 @@ inline Buckets sorted_by(Array<std::uint32_t> keys, std::size_t count) {
 template <class F>
 void for_each(std::size_t count, const F& f) {
     for_each_particle(count, f);
+}
+
+template <class F>
+void for_each(std::size_t moving, std::size_t count, const F& f) {
+    for_each_particle(moving, count, f);
 }
 
 template <class F>

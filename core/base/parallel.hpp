@@ -30,6 +30,19 @@ void for_each_particle(std::size_t count, F&& f) {
     for (std::size_t p = 0; p < count; ++p) f(p);
 }
 
+/// The same for particles of which the first `moving` and all others have pair sums of their own:
+/// a thread gets those whose sums for_each_task() gives it, which are in the cache of its core.
+template <class F>
+void for_each_particle(std::size_t moving, std::size_t count, F&& f) {
+#pragma omp parallel if (count > light_loop)
+    {
+#pragma omp for schedule(static) nowait
+        for (std::size_t p = 0; p < moving; ++p) f(p);
+#pragma omp for schedule(static)
+        for (std::size_t p = moving; p < count; ++p) f(p);
+    }
+}
+
 /// The same for pairs of bodies that may touch, each some hundred operations where they do.
 template <class F>
 void for_each_contact(std::size_t count, F&& f) {
@@ -91,12 +104,39 @@ struct Join {
 inline constexpr Maximum maximum;
 inline constexpr Join joined;
 
-/// Calls f(thread, k) for k = 0 ... count - 1, each much work of unequal size, handed out in
-/// chunks. `thread` is below thread_count(): f may keep something for each.
+/// What a thread takes next of its block of tasks; on a cache line of its own.
+struct alignas(64) NextTask {
+    std::size_t number = 0;
+};
+
+/// Calls f(thread, k) for k = 0 ... count - 1, each much work of unequal size. Each thread begins
+/// with a block that is the same in every loop over as many, so that what it wrote in the loop
+/// before is still in the cache of its core, and then helps the others, chunk by chunk. `thread` is
+/// below thread_count(): f may keep something for each.
 template <class F>
 void for_each_task(std::size_t count, std::size_t chunk, F&& f) {
-#pragma omp parallel for schedule(dynamic, chunk) if (count > pair_loop)
-    for (std::size_t k = 0; k < count; ++k) f(static_cast<std::size_t>(omp_get_thread_num()), k);
+    const auto most = static_cast<std::size_t>(thread_count());
+    Array<NextTask> next(count > pair_loop ? most : 1);
+#pragma omp parallel if (next.size() > 1)
+    {
+        const auto own = static_cast<std::size_t>(omp_get_thread_num()),
+                   threads = static_cast<std::size_t>(omp_get_num_threads());
+        for (std::size_t k = 0; k < threads; ++k) {
+            const std::size_t block = (own + k) % threads, first = count * block / threads,
+                              last = count * (block + 1) / threads;
+            auto take = [&] {
+                std::size_t taken = 0;
+#pragma omp atomic capture
+                {
+                    taken = next[block].number;
+                    next[block].number += chunk;
+                }
+                return first + taken;
+            };
+            for (std::size_t at = take(); at < last; at = take())
+                for (std::size_t task = at; task < std::min(at + chunk, last); ++task) f(own, task);
+        }
+    }
 }
 
 /// Adds to a number that other threads add to at the same time.

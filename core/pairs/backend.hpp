@@ -42,6 +42,7 @@ template <class B>
 concept LoopsOverParticles =
     requires(std::size_t count, void (*f)(std::size_t), double (*value)(std::size_t)) {
         B::for_each_particle(count, f);
+        B::for_each_particle(count, count, f);
         { B::reduce(count, 0.0, maximum, value) } -> std::same_as<double>;
     };
 

@@ -16,6 +16,11 @@ struct BulkBackend {
     static void for_each_particle(std::size_t count, const F& f) {
         bulk::for_each(count, f);
     }
+    /// Of which the first `moving` are in the clusters that move.
+    template <class F>
+    static void for_each_particle(std::size_t moving, std::size_t count, const F& f) {
+        bulk::for_each(moving, count, f);
+    }
     template <class Value, class Combine, class F>
     static Value reduce(std::size_t count, const Value& start, const Combine& combine, const F& f) {
         return bulk::reduce(count, start, combine, f);

@@ -95,8 +95,9 @@ template <template <class, int> class Packer>
 void Resolved<D, real, Backend>::pack(State& state, double half_dt) {
     const auto timing = phases_.measure(Phase::pack);
     Backend::for_each_particle(
-        state.size(), Packer<real, D>{{*model_, state, motion_, fluid_, wall_, fluid_count_, frame_,
-                                       records(state).inverse_support, half_dt}});
+        fluid_count_, state.size(),
+        Packer<real, D>{{*model_, state, motion_, fluid_, wall_, fluid_count_, frame_,
+                         records(state).inverse_support, half_dt}});
 }
 
 template <int D, class real, class Backend>

@@ -154,10 +154,12 @@ class Rock:
 # Nakamura & Fujiwara came out as they were measured (Benz & Asphaug, Icarus 107, 1994); strength of
 # intact basalt: Schultz (Rock Mech. Rock Eng. 28, 1995); toughness of Icelandic basalt: Meredith
 # et al. (final report of PRENLAB-2, Icelandic Meteorological Office, 2001).
-# Toughness of Westerly granite and Berea sandstone: Atkinson & Meredith, in Fracture Mechanics of
-# Rock (1987); density, elasticity and strength are common values of such rock.  Concrete C30 by the
-# fib Model Code 2010: strength 0.3 * 30^(2/3) MPa (5.1-3a), fracture energy 73 * 38^0.18 J/m2
-# (5.1-9), Young's modulus 21.5 * 3.8^(1/3) GPa (5.1-21).
+# Granite is Westerly's and sandstone Berea's, with toughness by Atkinson & Meredith, in Fracture
+# Mechanics of Rock (1987), and round numbers for the rest. Measured: sandstone 13.1 GPa and 0.17,
+# drained, at 10 MPa (Hart & Wang, J. Geophys. Res. 100, 1995); granite of Lac du Bonnet 8.8 MPa in
+# Brazilian tests, 6.9 MPa when pulled (Rock Mech. Rock Eng. 2019, doi 10.1007/s00603-019-01946-x).
+# Concrete C30 by the fib Model Code 2010: strength 0.3 * 30^(2/3) MPa (5.1-3a), fracture energy
+# 73 * 38^0.18 J/m2 (5.1-9), Young's modulus 21.5 * 3.8^(1/3) GPa (5.1-21).
 _BASALT = Rock(2700.0, 53.1e9, 0.169, Cohesive(14.5e6, toughness=2.71e6), flaws=(5e34, 8.5))
 _GRANITE = Rock(2650.0, 60e9, 0.25, Cohesive(10e6, toughness=1.6e6))
 _SANDSTONE = Rock(2200.0, 14e9, 0.2, Cohesive(4e6, toughness=0.28e6))
