@@ -57,12 +57,13 @@ Value reduce(std::size_t count, Value start, Combine&& combine, F&& f) {
     struct Block {  // threads may write to neighbours, which the bits of many bools in a row forbid
         Value value;
     };
-    Array<Block> blocks((count + light_loop - 1) / light_loop, Block{start});
-#pragma omp parallel for schedule(static) if (blocks.size() > 1)
+    constexpr std::size_t size = 256;  // small, so that threads get equal shares
+    Array<Block> blocks((count + size - 1) / size, Block{start});
+#pragma omp parallel for schedule(static) if (count > light_loop)
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         Value result = start;
-        const std::size_t end = std::min(count, (b + 1) * light_loop);
-        for (std::size_t p = b * light_loop; p < end; ++p) result = combine(result, f(p));
+        const std::size_t end = std::min(count, (b + 1) * size);
+        for (std::size_t p = b * size; p < end; ++p) result = combine(result, f(p));
         blocks[b].value = result;
     }
     Value result = start;
