@@ -120,6 +120,7 @@ public:
     void gather(const Particles<D>& particles, const Ranks& ranks) {
         if (!any_moves()) return;
         rigid_particles_.gather(particles, rigid, ranks);
+        breakable_.feel_flow(rigid_particles_, rigid, deformable);
         deformable.gather(particles, ranks);
     }
     void kick(double half_dt) {
@@ -132,8 +133,7 @@ public:
     /// returns the largest distance that one went.
     double place(Particles<D>& particles, double dt) {
         if (!any_moves()) return 0.0;
-        rebind(particles);
-        bind_dust(particles);
+        rebind(particles), bind_dust(particles);
         const double bent = deformable.place(particles, contacts_.domain(), dt);
         return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), dt));
     }
@@ -352,8 +352,7 @@ private:
 
 template <int D>
 void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
-    rigid.serialise(archive);
-    rigid_particles_.serialise(archive);
+    rigid.serialise(archive), rigid_particles_.serialise(archive);
     archive("bodies_moved", moved_);
     deformable.serialise(archive, gravity_);
     breakable_.serialise(archive);
@@ -363,6 +362,7 @@ void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
     archive.nested("deformable_origin_", deformable_origins_);
     archive("body_numbers", numbers_), archive("bodies_at_start", rigid_at_start_);
     if (archive.loads()) {
+        dust_points_.clear(), rebinds_ = false;  // of the state that was there
         expect_fit(rigid_origins_.size() == rigid.size() &&
                        deformable_origins_.size() == deformable.bodies(),
                    "body_numbers");

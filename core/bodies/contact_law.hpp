@@ -53,6 +53,7 @@ struct Together {
 struct ContactLaw {
     bool hertz;        // otherwise a linear spring
     bool rigid;        // both bodies are
+    bool dust;         // one of them is
     double stiffness;  // k, or E* of Hertz
     double mass;       // m*
     double radius;     // R*; 0: does not roll
@@ -199,7 +200,7 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     const ContactProperties &u = materials_[first], &v = materials_[second];
     const bool penalty = a.deformable || b.deformable;
     ContactLaw law{};
-    law.rigid = !penalty;
+    law.rigid = !penalty, law.dust = a.dust || b.dust;
     law.hertz = hertz() && !penalty;
     law.mass = !a.fixed && !b.fixed ? a.mass * b.mass / (a.mass + b.mass)
                : a.fixed            ? b.mass
@@ -209,7 +210,7 @@ ContactLaw ContactLaws<D>::between(const ContactSide& a, const ContactSide& b) c
     law.zeta = damping_[first * materials_.size() + second];
     law.friction = 0.5 * (u.friction + v.friction);
     law.rolling = 0.5 * (u.rolling_friction + v.rolling_friction);
-    law.steps = penalty || a.dust || b.dust ? few_steps : options_.steps;
+    law.steps = penalty || law.dust ? few_steps : options_.steps;
     if (penalty) {
         const double width = b.flat ? a.width() : std::min(a.width(), b.width());
         law.stiffness =

@@ -93,7 +93,7 @@ public:
             f(b, a, place, -1.0 * push.force, -1.0 * push.overlap.normal);
         }
     }
-    /// Largest overlap there ever was, over the diameter.
+    /// Largest overlap of rigid bodies that there ever was, over the diameter, but for dust.
     double max_overlap() const { return max_overlap_; }
     /// Energy in the springs of all pairs when they were last applied [J], 2-D: [J/m].
     double stored_energy() const;

@@ -8,10 +8,12 @@
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "bodies/breakable/breakable_body.hpp"
+#include "bodies/breakable/flow_on_body.hpp"
 #include "bodies/breakable/held_bodies.hpp"
 #include "bodies/breakable/partners.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
+#include "bodies/particles/rigid_particles.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "physics/fracture/impact.hpp"
 
@@ -81,9 +83,13 @@ public:
     /// The points of deformable bodies, by the numbers that they have among those of rigid ones.
     const Array<std::int32_t>& deformable_points() const { return deformable_point_; }
 
-    /// Those that are rigid and in which the contacts of a kind, as they were last applied, may
-    /// cause more tension than they bear. Dust, is_dust(body), is as small as the points of a body:
-    /// what it does beside its contact is that of its force.
+    /// Takes over what the fluid does to those that are rigid.
+    void feel_flow(const RigidParticles<D>& particles, const RigidBodies<D>& rigid,
+                   const DeformableBodies<D>& deformable);
+
+    /// Those that are rigid and in which the fluid and the contacts of a kind, as they were last
+    /// applied, may cause more tension than they bear. Dust, is_dust(body), is as small as the
+    /// points of a body: what it does beside its contact is that of its force.
     template <class IsDust>
     Array<std::size_t> struck(const Contacts<D>& contacts, const ContactBodies<D>& touching,
                               PairKind kind, const DeformableBodies<D>& deformable,
@@ -114,6 +120,10 @@ private:
         const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
         return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
     }
+    /// The same of body n.
+    bool waits(std::size_t n, const DeformableBodies<D>& deformable) const {
+        return bodies_[n].has_rigid() && deformable.solids().is_rigid(bodies_[n].deformable);
+    }
     /// Which of them the rigid body k is, if it may break and bend; -1: none.
     std::int32_t bending(std::int32_t k, const DeformableBodies<D>& deformable) const {
         const BreakableBody<D>* body = waiting(k, deformable);
@@ -122,8 +132,8 @@ private:
     bool any_bends() const {
         return std::ranges::any_of(bodies_, [](const auto& body) { return body.sections.bends(); });
     }
-    /// Adds the tension of bending by all contacts and of spin to that of others, where it may be
-    /// more than bodies bear.
+    /// Adds the tension of bending by the fluid and all contacts and of spin to that of others,
+    /// where it may be more than bodies bear.
     void bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
               const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
               Array<double>& tension) const;
@@ -133,6 +143,7 @@ private:
                      Array<double>& tension) const;
 
     Array<BreakableBody<D>> bodies_;
+    Array<FlowOnBody> flow_;  // of each, as it was last felt
     Array<std::int32_t> of_rigid_, deformable_point_;
 };
 
@@ -162,6 +173,24 @@ void BreakableBodies<D>::measure(BreakableBody<D>& body,
 }
 
 template <int D>
+void BreakableBodies<D>::feel_flow(const RigidParticles<D>& particles, const RigidBodies<D>& rigid,
+                                   const DeformableBodies<D>& deformable) {
+    flow_.assign(size(), {});
+    if (!any()) return;
+    particles.for_each_push([&](std::size_t k, const RigidBodyPoint<D>& point,
+                                const Vec<double, D>& force) {
+        const BreakableBody<D>* body = waiting(static_cast<std::int32_t>(k), deformable);
+        if (!body) return;
+        const Mat<double, 3> at_rest = body->orientation.matrix();
+        const Vec3 place = at_rest * in_space(point.offset) + in_space(body->centre - body->middle);
+        flow_[static_cast<std::size_t>(body - bodies_.data())].add(
+            {place, rotated_back(body->turned(rigid), in_space(force))},
+            at_rest * in_space(point.area));
+    });
+    for (FlowOnBody& flow : flow_) flow.finish();
+}
+
+template <int D>
 void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D>& touching,
                               const DeformableBodies<D>& deformable, const RigidBodies<D>& rigid,
                               Array<double>& tension) const {
@@ -174,17 +203,20 @@ void BreakableBodies<D>::bend(const Contacts<D>& contacts, const ContactBodies<D
                                 });
     };
     Array<double> sum(size(), 0.0);
+    for (std::size_t n = 0; n < flow_.size(); ++n) sum[n] = flow_[n].sum;
     if (any_bends())
         for_each_force([&](std::size_t n, const Vec<double, D>&, const Vec<double, D>& force) {
             sum[n] += norm(force);
         });
     Array<std::uint8_t> may_bend(size(), 0);
     for (std::size_t n = 0; n < size(); ++n)
-        if (bodies_[n].has_rigid() && deformable.solids().is_rigid(bodies_[n].deformable))
+        if (waits(n, deformable))
             may_bend[n] = bodies_[n].sections.most_tension(sum[n], rigid.spin(bodies_[n].rigid)) >=
                           bodies_[n].bears;
     if (std::ranges::find(may_bend, 1) == may_bend.end()) return;
     Array<Array<PlacedForce>> forces(size());
+    for (std::size_t n = 0; n < flow_.size(); ++n)
+        if (may_bend[n]) forces[n] = flow_[n].forces;
     for_each_force([&](std::size_t n, const Vec<double, D>& place, const Vec<double, D>& force) {
         if (!may_bend[n]) return;
         const BreakableBody<D>& body = bodies_[n];
@@ -287,6 +319,11 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
                                     : std::numeric_limits<double>::infinity();
     };
     Array<double> force(size(), 0.0), tension(size(), 0.0);
+    for (std::size_t n = 0; n < flow_.size(); ++n) {
+        if (!waits(n, deformable)) continue;
+        force[n] = flow_[n].squeeze;
+        tension[n] = std::max(pressed_tension<D>(force[n], bodies_[n].diameter), flow_[n].pressure);
+    }
     auto feel = [&](std::int32_t k, std::int32_t other, double push, double approach) {
         const BreakableBody<D>* body = waiting(k, deformable);
         if (!body) return;

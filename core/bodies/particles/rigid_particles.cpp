@@ -112,14 +112,6 @@ struct MoveBound {
     }
 };
 
-/// What the fluid does to a point: force, its moment about the point, and what Eq. (152) takes, the
-/// pressure and the share of its area that water sees.
-template <int D>
-struct FlowOnPoint {
-    Vec<double, D> force{};
-    Turn<double, D> moment{};
-    double pressure = 0.0, wetted = 0.0;
-};
 /// As numbers, which ranks add up.
 template <int D>
 std::span<double> numbers_of(Array<FlowOnPoint<D>>& points) {
@@ -195,12 +187,12 @@ private:
 template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) {
-    Array<FlowOnPoint<D>> flow(points_.size());
-    bulk::for_each(particles.size(), FlowAtPoint<D>{particles, flow});
-    ranks.sum(numbers_of(flow));
+    flow_.assign(points_.size(), {});
+    bulk::for_each(particles.size(), FlowAtPoint<D>{particles, flow_});
+    ranks.sum(numbers_of(flow_));
     sort_by_body(bodies.size());
     bulk::for_each(bodies.size(),
-                   SumOfBody<D>{first_of_body_, of_body_, points_, flow, bodies.moved().states});
+                   SumOfBody<D>{first_of_body_, of_body_, points_, flow_, bodies.moved().states});
 }
 
 template <int D>

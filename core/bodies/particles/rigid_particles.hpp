@@ -11,6 +11,15 @@
 
 namespace doseki {
 
+/// What the fluid does to a point: force, its moment about the point, and what Eq. (152) takes, the
+/// pressure and the share of its area that water sees.
+template <int D>
+struct FlowOnPoint {
+    Vec<double, D> force{};
+    Turn<double, D> moment{};
+    double pressure = 0.0, wetted = 0.0;
+};
+
 /// The particles of rigid bodies, which the fluid meets as it meets a wall: they bring the force of
 /// the fluid to the bodies and go where these are.
 template <int D>
@@ -44,6 +53,14 @@ public:
     /// Hands the force of the fluid on to the bodies. All ranks have all bodies: each point is a
     /// particle of one of them, so that the sums are those of one rank, to the bit.
     void gather(const Particles<D>& particles, RigidBodies<D>& bodies, const Ranks& ranks);
+    /// Calls f(body, point, force) for the points on which the fluid pushed when gather() was last
+    /// called.
+    template <class F>
+    void for_each_push(const F& f) const {
+        for (std::size_t q = 0; q < flow_.size(); ++q)
+            if (const Vec<double, D>& force = flow_[q].force; dot(force, force) > 0.0)
+                f(points_[q].index(), points_[q], force);
+    }
     /// Puts particles where their bodies are (eq. 53), with the velocity that has taken them there
     /// in `dt`; returns the largest distance that one went.
     double place(Particles<D>& particles, const RigidBodies<D>& bodies, const Domain<D>& domain,
@@ -67,6 +84,7 @@ private:
     void sort_by_body(std::size_t bodies);
 
     Array<RigidBodyPoint<D>> points_;
+    Array<FlowOnPoint<D>> flow_;
     Array<std::size_t> of_body_, first_of_body_;  // points by body, in rising order
 };
 

@@ -87,7 +87,8 @@ struct OverlapOfRow {
 
     DOSEKI_DEVICE_FN double operator()(std::size_t n) const {
         const PairContact& contact = rows.contacts[which[n]];
-        return rows.pushes[which[n]].touches ? contact.overlap / contact.law.diameter : 0.0;
+        const bool counts = contact.law.rigid && !contact.law.dust && rows.pushes[which[n]].touches;
+        return counts ? contact.overlap / contact.law.diameter : 0.0;
     }
 };
 

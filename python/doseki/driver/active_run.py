@@ -317,7 +317,7 @@ class ActiveRun:
     def step_back(self) -> bool:
         """After a failed step, go back to the state before it and put that safely on the disk.
 
-        False if there is no way back: the run failed before its first step.
+        False if there is no way back: the run failed before its first step, or fails on the way.
         """
         simulation = self.simulation
         copy = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
@@ -325,5 +325,6 @@ class ActiveRun:
             return False
         # The step before may be past saving; the run may go on from the state well before it.
         self.store(copy)
-        self.write_checkpoint()
-        return True
+        if self.rewind.arrived:
+            self.write_checkpoint()
+        return self.rewind.arrived

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from ..compiled import load_core
 from ..solver.protocol import Simulation
 from .checkpoint import Checkpoint
 
@@ -19,6 +20,7 @@ class Rewind:
 
     def __init__(self) -> None:
         self.last: Checkpoint | None = None
+        self.arrived = False  # whether the way back led to the step that was asked for
         self._next = 0.0
 
     def is_due(self) -> bool:
@@ -38,12 +40,17 @@ class Rewind:
         """Take `simulation` to the state after `step` steps, from the last copy; returns the copy.
 
         None, and nothing is done, if no copy was ever made. `limit_at(time)` is the time of the
-        first output after `time`, s, which steps must meet.
+        first output after `time`, s, which steps must meet.  Where steps fail on the way, it is
+        left at the copy.
         """
         if self.last is None:
             return None
         simulation.restore(self.last.state)
-        while simulation.steps < step:
-            limit = limit_at(simulation.time)
-            simulation.advance(limit=limit, pause=limit, max_steps=step - simulation.steps)
+        try:
+            while simulation.steps < step:
+                limit = limit_at(simulation.time)
+                simulation.advance(limit=limit, pause=limit, max_steps=step - simulation.steps)
+            self.arrived = True
+        except load_core().PhysicsFailure:
+            simulation.restore(self.last.state)
         return self.last

@@ -188,7 +188,8 @@ def _explained(run: ActiveRun, message: str) -> Failure:
     kind, particle, position = simulation.failure
     state, time, steps = simulation.state(), simulation.time, simulation.steps
     rewound = run.step_back()
-    run.record_snapshot()
+    if rewound or run.rewind.last is None:  # else it is back before what was recorded last
+        run.record_snapshot()
     run.write_maps()
     failure = Failure(kind, particle, position, message, state, time, steps, rewound)
     explain_failure(run, failure)

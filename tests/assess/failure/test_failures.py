@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
 from doseki.assess.failure.failure import explanation
+from doseki.compiled import load_core
 from doseki.driver import rewind
 from doseki.driver.checkpoint import CheckpointFolder, from_bytes
 from doseki.driver.ranks import OneRank
-from doseki.errors import UserError
+from doseki.errors import PhysicsError, UserError
 from doseki.record.folder import RunFolder
+from doseki.record.reader import load
 from doseki.running.resume import resume_run
-from doseki.running.runner import RunOptions
+from doseki.running.runner import RunOptions, run_scenario
+from doseki.scenario.load import load_scenario
 
 OVERLAPPING = """
 [body.other]
@@ -218,3 +223,51 @@ def test_good_states_are_checkpoints(fail, block):
     failed = fail(block + "velocity = [0, 3]\n" + LID, *LONG_STEPS)
     newest = CheckpointFolder(failed.run.folder.checkpoints).files()[-1]
     assert newest.name == failed.report["good_state"]
+
+
+SOFT = ("across=20", "young=1e6", "tensile=1e5", "energy=50", "density=2000")  # squeezed flat
+
+
+def soft_disc(folder):
+    """A run that fails in a step in which dust is born; its failure and failure.json."""
+    scenario = load_scenario("brazil-test", list(SOFT))
+    with pytest.raises(PhysicsError) as failed:
+        run_scenario(scenario, folder / "run", RunOptions(threads=1))
+    return str(failed.value), json.loads(RunFolder(folder / "run").failure.read_text())
+
+
+def test_a_run_that_fails_while_dust_is_born_goes_back_to_the_step_before(tmp_path):
+    """Its particles were bound to bodies that the state before does not have, at 1e243 m."""
+    message, report = soft_disc(tmp_path)
+    assert "lost its shape" in message
+    assert "step 1:" not in message
+    assert report["step"] > 10
+    assert report["good_state"]
+    times = [snapshot.time for snapshot in load(tmp_path / "run")]
+    assert times == sorted(times)
+    assert times[-1] == pytest.approx(report["time"])
+
+
+def test_a_failure_on_the_way_back_leaves_the_first_one(tmp_path, monkeypatch):
+    def fails(*_, **__):
+        raise load_core().PhysicsFailure("another failure")
+
+    def back_to(self, simulation, step, limit_at):
+        simulation.restore(self.last.state)
+        return real(self, Stuck(simulation), step, limit_at)
+
+    class Stuck:
+        def __init__(self, simulation):
+            self.steps, self.time, self.restore = 0, 0.0, simulation.restore
+
+        advance = fails
+
+    real = rewind.Rewind.back_to
+    monkeypatch.setattr(rewind.Rewind, "back_to", back_to)
+    message, report = soft_disc(tmp_path)
+    assert "lost its shape" in message
+    assert "another" not in message
+    assert report["step"] > 10
+    assert report["good_state"] is None
+    times = [snapshot.time for snapshot in load(tmp_path / "run")]
+    assert times == sorted(times)

@@ -72,8 +72,8 @@ def explain_failure(run: ActiveRun, failure: Failure) -> dict[str, Any]:
         "kind": failure.kind,
         "meaning": KINDS.get(failure.kind, failure.kind),
         "message": failure.message,
-        "time": run.simulation.time,
-        "step": run.simulation.steps,
+        "time": run.simulation.time if failure.rewound else failure.time,
+        "step": run.simulation.steps if failure.rewound else failure.steps,
         "initial_speed": _initial_speed(run.folder),
         "good_state": _newest(run) if failure.rewound else None,
     }
