@@ -51,7 +51,8 @@ class Grains(TypedDict):
     number: NDArray[np.int32]  # (n,) stays with a body; -1: of one that is not followed
     parent: NDArray[np.int32]  # (n,) number of the body it was part of; -1: of none
     born: Floats  # (n,) time, s
-    worst_overlap: float  # of any contact since the start, over the diameter
+    # Of any contact of rigid bodies that are no dust, since the start, over the diameter.
+    worst_overlap: float
 
 
 class Fragments(TypedDict):

@@ -30,7 +30,7 @@ poisson_ratio = 0.2
 friction = 0.3
 fracture = "cohesive"
 tensile_strength = {strength}
-fracture_energy = 2
+fracture_energy = {energy}
 """
 BALL = """
 [body.{name}]
@@ -50,7 +50,7 @@ min = {low}
 max = {high}
 """
 SQUEEZED = 'displacement = ["= -0.02 * x", "= -0.02 * y", "= -0.02 * z"]\n'
-STRONG, WEAK = 1e9, 1.5e5  # Pa
+STRONG, WEAK = 1e7, 1.5e5  # Pa
 
 
 @pytest.fixture
@@ -59,7 +59,9 @@ def build(tmp_path: Path):
 
     def make(*bodies: str, strength: float = WEAK, gravity=(0, 0, 0)):
         path = tmp_path / "case.toml"
-        top = TOP.format(strength=strength).replace("[0, 0, 0]", str(listed(gravity)), 1)
+        top = TOP.format(strength=strength, energy=2 * (strength / WEAK) ** 2).replace(
+            "[0, 0, 0]", str(listed(gravity)), 1
+        )
         path.write_text(top + "".join(bodies), encoding="utf-8")
         simulation, names = build_simulation(load_scenario(str(path)))
         make.again = lambda: empty_simulation(load_scenario(str(path)), names)

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ...errors import UserError
 from ...scenario.materials import NO_FRACTURE, Material
-from ...util.finding import Finding, no_more_than
+from ...util.finding import Finding, no_less_than, no_more_than
 from ..groups import Group
 from ..kinds.body import Body
 
 MIN_ACROSS_BREAKABLE = 8  # particles; fewer have no crack that runs between them
 MIN_LENGTH = 2.0  # spacings of the length of the process zone, E G_f/f_t^2
+LEAST_LENGTH = 0.2  # spacings of it; with fewer a bond snaps back as it cracks
+MOST_STRENGTH = 0.1  # Young's moduli
+STRAINS = (1e-8, 0.1)  # of the weakest flaw of a body: below, all is dust; above, nothing breaks
+MOST_FLAWS = 1e99  # 1/m3, that `weibull_k` may be
 
 
 @dataclass(frozen=True)
@@ -85,8 +91,63 @@ def _breakable(body: Body[Any], group: Group, material: Material) -> Iterator[Fi
             + ('kinematics = "rigid"' if group.breakable else whole)
         )
     if material.fracture == "cohesive":
-        numbers = material.of_laws
-        modulus = material.elasticity[0]
-        length = modulus * numbers["fracture_energy"] / numbers["tensile_strength"] ** 2
-        if body.spacing > length / MIN_LENGTH:
-            yield CoarseCrack(group.name, body.spacing, length)
+        yield from _cohesive(body, group, material)
+    elif material.fracture == "grady_kipp":
+        _check_flaws(body, group, material)
+
+
+def _cohesive(body: Body[Any], group: Group, material: Material) -> Iterator[Finding]:
+    """Raises UserError for a strength or an energy with which nothing can be computed."""
+    modulus, numbers = material.elasticity[0], material.of_laws
+    strength, energy = numbers["tensile_strength"], numbers["fracture_energy"]
+    most = MOST_STRENGTH * modulus
+    if strength > most * (1 + 1e-9):
+        raise _error_of_material(
+            body,
+            "tensile_strength",
+            f" = {strength:.3g} Pa: must be at most {most:.3g} Pa, a tenth of Young's modulus; "
+            "no material bears more, and its strains would not be small",
+        )
+    length = modulus * energy / strength**2
+    if length < LEAST_LENGTH * body.spacing * (1 - 1e-9):
+        least = no_less_than(LEAST_LENGTH * body.spacing * strength**2 / modulus)
+        raise _error_of_material(
+            body,
+            "fracture_energy",
+            f" = {energy:.3g} J/m2: cracks open over E G_f/f_t^2 = {length:.2g} m, but it must be "
+            f"at least {LEAST_LENGTH:g} spacings of body.{group.name} (dp = {body.spacing:.3g} m), "
+            f"whose bonds snap back otherwise: {least} J/m2 would do, or "
+            f"dp = {no_more_than(length / LEAST_LENGTH)}",
+        )
+    if body.spacing > length / MIN_LENGTH:
+        yield CoarseCrack(group.name, body.spacing, length)
+
+
+def _check_flaws(body: Body[Any], group: Group, material: Material) -> None:
+    """Raises UserError where the weakest flaw of a body gives way at once, or never.
+
+    In 2-D a body is 1 m across.
+    """
+    k, m = (material.of_laws[key] for key in ("weibull_k", "weibull_m"))
+    volumes = group.measures[0]
+    for volume, least in ((volumes.max(), True), (volumes.min(), False)):
+        strain, limit = float(k * volume) ** (-1 / m), STRAINS[0 if least else 1]
+        if (strain >= limit) if least else (strain <= limit):
+            continue
+        enough = 10 ** (-m * math.log10(limit) - math.log10(volume))
+        some = f"at most {no_more_than(enough)}" if least else f"at least {no_less_than(enough)}"
+        remedy = f"{some} 1/m3 would do" if enough < MOST_FLAWS else "make weibull_m smaller"
+        raise _error_of_material(
+            body,
+            "weibull_k",
+            f" = {k:.3g} 1/m3: with weibull_m = {m:.3g} the weakest flaw of body.{group.name} "
+            f"gives way at a strain (k V)^(-1/m) = {strain:.2g}, "
+            + (f"below {limit:g}: it would be dust" if least else f"above {limit:g}: never")
+            + f"; {remedy}",
+        )
+
+
+def _error_of_material(body: Body[Any], key: str, text: str) -> UserError:
+    name = body.table.material
+    keys = ("material", name, key)
+    return body.scenario.where.error(keys, f"material.{name}.{key}{text}")
