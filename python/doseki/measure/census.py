@@ -20,16 +20,15 @@ from ..record.reader import Run, Snapshot
 from ..scenario.kinematics import DEFORM
 from . import numbers as measure
 from .grading import is_structure, structure_names
+from .plan_columns import Columns, Plan, plan_of
 from .views import View, flow_direction, fluid_names, way_of_flow
 
 CLASSES = ("waiting", "preceding", "carried", "floating", "rolling", "deposited")
 WAITING, PRECEDING, CARRIED, FLOATING, ROLLING, DEPOSITED = range(len(CLASSES))
 AT_REST = 0.05  # m/s
 TOUCHING = 0.2  # diameters between a grain and a fixed body
-COLUMN = 2.0  # diameters: width of the columns of plan in which depths are taken
 WET_DEPTH = 0.1  # diameters of water that make a column wet
 FRONT_DEPTH = 0.4  # diameters of water that make a flow, in a column and over a stretch of them
-FRONT_STRETCH = 5  # columns
 
 
 @dataclass(frozen=True)
@@ -119,57 +118,21 @@ def surroundings_of(snapshot: Snapshot, fluids: set[str]) -> Surroundings:
     return Surroundings(x[water], volume[water], x[fixed], volume[fixed] ** (1 / snapshot.dim))
 
 
-class Columns:
-    """Columns of plan of equal width: water, grains and the bed in each of them."""
-
-    def __init__(self, grains: Grains, around: Surroundings) -> None:
-        """Their width is COLUMN mean diameters."""
-        self.width = COLUMN * float(grains.diameter.mean()) if len(grains.id) else math.inf
-        every = [around.water, around.fixed, grains.position]
-        keys = np.floor(np.concatenate(every)[:, :-1] / self.width).astype(np.int64)
-        self.keys, index = np.unique(keys, axis=0, return_inverse=True)
-        ends = np.cumsum([len(part) for part in every])[:-1]
-        self._of_water, self._of_fixed, self.of_grain = np.split(index.ravel(), ends)
-        area, n = self.width ** keys.shape[1], len(self.keys)
-        self.water = np.bincount(self._of_water, around.water_volume, n) / area
-        self.depth = self.water + np.bincount(self.of_grain, grains.volume, n) / area
-        self.bed = np.full(n, -math.inf)
-        top = around.fixed[:, -1] + 0.5 * around.fixed_spacing
-        np.maximum.at(self.bed, self._of_fixed, top)
-
-    def front(self, direction: int, min_depth: float) -> float:
-        """The downstream edge, along the first axis, of the last column of a flow.
-
-        There the water is deeper than `min_depth`, and so it is on the mean over FRONT_STRETCH
-        columns from there upstream; spray ahead of a flow is not part of it.  nan: no flow.
-        """
-        along = direction * self.keys[:, 0]
-        depth = np.zeros(int(np.ptp(along)) + 1)
-        np.maximum.at(depth, along - along.min(), self.water)
-        wet = np.flatnonzero(depth)
-        if not len(wet):
-            return math.nan
-        total = np.concatenate([[0.0], np.cumsum(depth[wet[0] :])])
-        end = np.arange(1, len(total))
-        start = np.maximum(end - FRONT_STRETCH, 0)
-        mean = (total[end] - total[start]) / (end - start)
-        flow = np.flatnonzero((depth[wet[0] :] > min_depth) & (mean > min_depth))
-        if not len(flow):
-            return math.nan
-        last = int(along.min() + wet[0] + flow[-1])
-        return self.width * (last + 1 if direction > 0 else -last)
-
-
 def classify(
-    grains: Grains, start: np.ndarray, around: Surroundings, direction: int
+    grains: Grains,
+    start: np.ndarray,
+    around: Surroundings,
+    direction: int,
+    plan: Plan | None = None,
 ) -> tuple[np.ndarray, float]:
     """(class of each grain, front of the water along the first axis, m; nan without water).
 
-    `start` (n, dim) is where each grain was first; the flow runs along `direction` (+1, -1).
+    `start` (n, dim) is where each grain was first; the flow runs along `direction` (+1, -1);
+    `plan` is where columns are, if not as these grains have them.
     """
     if not len(grains.id):
         return np.zeros(0, np.int8), math.nan
-    columns = Columns(grains, around)
+    columns = Columns(grains, around, plan or plan_of(grains, around))
     d, here = grains.diameter, columns.of_grain
     front = columns.front(direction, FRONT_DEPTH * float(d.mean()))
     slow = grains.speed < AT_REST
@@ -259,6 +222,7 @@ def take_census(run: Run) -> Census:
     first: dict[int, np.ndarray] = {}
     parts: list[dict[str, np.ndarray]] = []
     fronts: list[float] = []
+    plan: Plan | None = None
     times = np.unique(run.times)
     for time in times:  # a run that was stopped has its last time twice
         snapshot = run.at(time)
@@ -270,7 +234,9 @@ def take_census(run: Run) -> Census:
             ]
         ).reshape(-1, snapshot.dim)
         around = surroundings_of(snapshot, fluids)
-        kinds, front = classify(grains, start, around, way)
+        if plan is None and len(grains.id):
+            plan = plan_of(grains, around)
+        kinds, front = classify(grains, start, around, way, plan)
         parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | {"kind": kinds})
         fronts.append(front)
     if not first:

@@ -7,8 +7,12 @@ from typing import Any
 
 from ...errors import UserError
 from ...record.history import history_columns
+from ...scenario.gauges.gauge import Gauge
+from ...scenario.gauges.motion import Motion
+from ...scenario.kinematics import RIGID
 from ...scenario.model import Scenario
 from ...scenario.table import Table
+from ...scenario.tables.bodies import Grains
 from ...util.spelling import suggestion
 
 # Turns a key and what is wrong with it into the error that names file and line.
@@ -30,8 +34,22 @@ def check_gauge(scenario: Scenario, gauge: str, column: str | None, refuse: Refu
 def check_one_row(scenario: Scenario, gauge: str, refuse: Refuse) -> None:
     """Raise where a gauge has several rows for a time, which make no series."""
     found = scenario.gauge[gauge]
-    if not found.has_one_row:
+    if not (found.has_one_row or _is_of_one_grain(scenario, found)):
         raise refuse("gauge", f"a gauge of kind {found.kind} has several rows for each time")
+
+
+def _is_of_one_grain(scenario: Scenario, gauge: Gauge) -> bool:
+    """Whether a gauge follows the motion of one body, which has a row for each time."""
+    if not isinstance(gauge, Motion):
+        return False
+    if gauge.grains is not None:
+        return len(gauge.grains) == 1
+    if len(gauge.bodies) != 1:
+        return False
+    name = gauge.bodies[0]
+    table = scenario.body[name]
+    is_one = scenario.kinematics_of(name) is RIGID or table.given("fill") == "single"
+    return is_one and not isinstance(table, Grains)
 
 
 def check_history(scenario: Scenario, column: str, refuse: Refuse) -> None:
