@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doseki.measure.census import PRECEDING, take_census
+from doseki.measure.census.census import PRECEDING, take_census
 from doseki.record.reader import Run
 
 from ..page import Chart, Film, Line, Number, Page

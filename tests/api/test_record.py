@@ -13,7 +13,7 @@ from matplotlib import pyplot
 
 import doseki
 from doseki.api import datasets
-from doseki.measure.census import take_census
+from doseki.measure.census.census import take_census
 from doseki.record.fields import FIELD_BY_KEY
 
 

@@ -15,7 +15,7 @@ from doseki.figures.kinds.series import draw_curves
 from doseki.figures.kinds.spatial import DOWN, Space
 from doseki.figures.layout import chart_grid, name_of_curves, nice_length, say_where_empty
 from doseki.figures.plot import draw_run, figures
-from doseki.measure.census import draw_speeds
+from doseki.measure.census.census import draw_speeds
 from doseki.measure.moments import moments
 from doseki.measure.views import named_window, whole_space
 from doseki.record.reader import load

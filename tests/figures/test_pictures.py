@@ -26,7 +26,7 @@ from doseki.figures.movie import make_movie
 from doseki.figures.panel import draw_panel
 from doseki.figures.plot import figures, plot_run
 from doseki.figures.raster import EMPTY, coloured, splat
-from doseki.measure.census import draw_speeds
+from doseki.measure.census.census import draw_speeds
 from doseki.measure.moments import Moment
 from doseki.measure.quantities import quantity
 from doseki.measure.views import View, named_window, whole_space

@@ -13,7 +13,7 @@ import pytest
 from doseki.cli.main import main
 from doseki.errors import UserError
 from doseki.figures.census_output import census_lines
-from doseki.measure.census import (
+from doseki.measure.census.census import (
     CARRIED,
     CLASSES,
     DEPOSITED,

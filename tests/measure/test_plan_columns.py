@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.measure.census import CLASSES, Grains, Surroundings, classify, take_census
-from doseki.measure.plan_columns import Columns, plan_of
+from doseki.measure.census.census import CLASSES, classify, take_census
+from doseki.measure.census.columns import Columns, plan_of
+from doseki.measure.census.grains import Grains, Surroundings
 from doseki.record.reader import load
 
 from ..synthetic_runs import make_plain_state
@@ -84,7 +85,7 @@ def test_columns_stay_as_wide_as_at_first(tmp_path, record_run):
             used.append(given[-1])
             return classify(*given)
 
-        patch.setattr("doseki.measure.census.classify", noted)
+        patch.setattr("doseki.measure.census.census.classify", noted)
         take_census(run)
     assert len(used) > 1
     assert {plan.width for plan in used} == {used[0].width}

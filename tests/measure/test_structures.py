@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doseki.measure.census import grains_of, take_census
+from doseki.measure.census.census import take_census
+from doseki.measure.census.grains import grains_of
 from doseki.measure.grading import grading_of, gradings, structure_names
 from doseki.record.reader import load
 from doseki.running.runner import RunOptions, run_scenario

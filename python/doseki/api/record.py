@@ -160,7 +160,7 @@ def _draw(
 
 
 def _census_frame(run: Run) -> pd.DataFrame:
-    from ..measure.census import CLASSES, take_census
+    from ..measure.census.census import CLASSES, take_census
 
     dim = int(run.scenario["dim"])
     units = {"time": "s", "grain": "", "class": ""}

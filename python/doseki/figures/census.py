@@ -9,7 +9,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from ..measure.census import CLASSES, Census, SpeedDraws
+from ..measure.census.census import CLASSES, Census, SpeedDraws
 from ..measure.grading import Grading
 from ..record.units import unit_in
 from .kinds.histogram import draw_speed_row

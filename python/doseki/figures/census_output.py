@@ -14,7 +14,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..errors import UserError
-from ..measure.census import CLASSES, Census, SpeedDraws, deposit_outline, draw_speeds, take_census
+from ..measure.census.census import (
+    CLASSES,
+    Census,
+    SpeedDraws,
+    deposit_outline,
+    draw_speeds,
+    take_census,
+)
 from ..measure.grading import grading_table, gradings, has_parts
 from ..measure.views import View, named_window, windows
 from ..record.beginning import refuse_links

@@ -11,7 +11,7 @@ import numpy as np
 from ..record.reader import Run, Snapshot
 from . import numbers as measure
 from .advance import Advance, goes_along_x
-from .census import Grains, grains_of
+from .census.grains import Grains, grains_of
 from .grading import structure_names
 from .views import (
     View,

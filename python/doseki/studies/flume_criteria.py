@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..measure import numbers as measure
-from ..measure.census import (
+from ..measure.census.census import (
     DEPOSITED,
     FLOATING,
     PRECEDING,

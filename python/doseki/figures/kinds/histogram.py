@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...measure import numbers as measure
-from ...measure.census import SpeedDraws, draw_speeds
+from ...measure.census.census import SpeedDraws, draw_speeds
 from ...measure.moments import Moment
 from ...measure.views import View, named_window, select, whole_space
 from ...record.reader import Run, Snapshot

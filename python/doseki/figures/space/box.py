@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...geodata.raster import Raster
-from ...measure.census import keep_their_shape
+from ...measure.census.grains import keep_their_shape
 from ...measure.views import View, fluid_names
 from ...record.reader import Run, Snapshot
 from ..colouring import Colouring

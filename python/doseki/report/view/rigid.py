@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from ...figures.space.box import is_round
-from ...measure.census import keep_their_shape
+from ...measure.census.grains import keep_their_shape
 from ...record.quantities import CATEGORIES
 from ...record.reader import Run, Snapshot
 from ...scene.groups import matrices

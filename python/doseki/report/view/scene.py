@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import UserError
-from ...measure.census import keep_their_shape
+from ...measure.census.grains import keep_their_shape
 from ...record.reader import Run, Snapshot
 from .box import Box, box_of
 from .colours import Field, fields_of, scale

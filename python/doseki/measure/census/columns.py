@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .census import Grains, Surroundings
+from .grains import Grains, Surroundings
 
 COLUMN = 2.0  # diameters: width of the columns
 FRONT_STRETCH = 5  # columns, over which the water is that of a flow
