@@ -241,6 +241,8 @@ def test_a_run_that_fails_while_dust_is_born_goes_back_to_the_step_before(tmp_pa
     message, report = soft_disc(tmp_path)
     assert "lost its shape" in message
     assert "step 1:" not in message
+    assert "outflow" not in message
+    assert "raise young_modulus or contact.speed" in message
     assert report["step"] > 10
     assert report["good_state"]
     times = [snapshot.time for snapshot in load(tmp_path / "run")]

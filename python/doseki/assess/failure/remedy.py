@@ -23,8 +23,13 @@ def remedy(report: dict[str, Any], scenario: Scenario, warnings: Sequence[Findin
     """
     if report["kind"] == "unresolved":
         return "Make dp smaller, or the body thicker where it is thinnest."
-    if "particle" not in report:
+    if report["kind"] == "empty":
         return "Check the outflows: every particle has left or was removed."
+    if "particle" not in report:
+        return (
+            "Lower cflnumber; where bodies meet faster or are pressed harder than they can bear,"
+            " raise young_modulus or contact.speed."
+        )
     said = (
         _bad_start(report),
         _overlap(report, warnings),
