@@ -67,7 +67,7 @@ public:
     }
     /// The one that a rigid body is of; none.
     const BreakableBody<D>* of_rigid(std::size_t k) const {
-        const std::int32_t n = k < of_rigid_.size() ? of_rigid_[k] : -1;
+        const std::int32_t n = number_of_rigid(k);
         return n < 0 ? nullptr : &bodies_[static_cast<std::size_t>(n)];
     }
     /// Which of them a deformable body is; -1: none.
@@ -115,19 +115,22 @@ public:
 
 private:
     void measure(BreakableBody<D>& body, const DeformableBodies<D>& deformable) const;
-    /// The rigid body k as one that may break; none where it may not, or is deformable now.
-    const BreakableBody<D>* waiting(std::int32_t k, const DeformableBodies<D>& deformable) const {
-        const BreakableBody<D>* body = of_rigid(static_cast<std::size_t>(k));
-        return body && deformable.solids().is_rigid(body->deformable) ? body : nullptr;
+    std::int32_t number_of_rigid(std::size_t k) const {
+        return k < of_rigid_.size() ? of_rigid_[k] : -1;
     }
-    /// The same of body n.
+    /// Whether body n may break, and is rigid now.
     bool waits(std::size_t n, const DeformableBodies<D>& deformable) const {
         return bodies_[n].has_rigid() && deformable.solids().is_rigid(bodies_[n].deformable);
     }
-    /// Which of them the rigid body k is, if it may break and bend; -1: none.
+    /// Which of them the rigid body k is, if it waits; -1: none.
+    std::int32_t waiting(std::int32_t k, const DeformableBodies<D>& deformable) const {
+        const std::int32_t n = number_of_rigid(static_cast<std::size_t>(k));
+        return n >= 0 && waits(static_cast<std::size_t>(n), deformable) ? n : -1;
+    }
+    /// The same, if it bends.
     std::int32_t bending(std::int32_t k, const DeformableBodies<D>& deformable) const {
-        const BreakableBody<D>* body = waiting(k, deformable);
-        return body && body->sections.bends() ? of_rigid_[static_cast<std::size_t>(k)] : -1;
+        const std::int32_t n = waiting(k, deformable);
+        return n >= 0 && bodies_[static_cast<std::size_t>(n)].sections.bends() ? n : -1;
     }
     bool any_bends() const {
         return std::ranges::any_of(bodies_, [](const auto& body) { return body.sections.bends(); });
@@ -177,16 +180,20 @@ void BreakableBodies<D>::feel_flow(const RigidParticles<D>& particles, const Rig
                                    const DeformableBodies<D>& deformable) {
     flow_.assign(size(), {});
     if (!any()) return;
-    particles.for_each_push([&](std::size_t k, const RigidBodyPoint<D>& point,
-                                const Vec<double, D>& force) {
-        const BreakableBody<D>* body = waiting(static_cast<std::int32_t>(k), deformable);
-        if (!body) return;
-        const Mat<double, 3> at_rest = body->orientation.matrix();
-        const Vec3 place = at_rest * in_space(point.offset) + in_space(body->centre - body->middle);
-        flow_[static_cast<std::size_t>(body - bodies_.data())].add(
-            {place, rotated_back(body->turned(rigid), in_space(force))},
-            at_rest * in_space(point.area));
-    });
+    Array<Mat<double, 3>> at_rest(size()), turned(size());
+    for (std::size_t n = 0; n < size(); ++n)
+        if (waits(n, deformable))
+            at_rest[n] = bodies_[n].orientation.matrix(), turned[n] = bodies_[n].turned(rigid);
+    particles.for_each_push(
+        [&](std::size_t k, const RigidBodyPoint<D>& point, const Vec<double, D>& force) {
+            const std::int32_t number = waiting(static_cast<std::int32_t>(k), deformable);
+            if (number < 0) return;
+            const auto n = static_cast<std::size_t>(number);
+            const Vec3 from_middle = in_space(bodies_[n].centre - bodies_[n].middle);
+            flow_[n].add({at_rest[n] * in_space(point.offset) + from_middle,
+                          rotated_back(turned[n], in_space(force))},
+                         at_rest[n] * in_space(point.area));
+        });
     for (FlowOnBody& flow : flow_) flow.finish();
 }
 
@@ -325,15 +332,16 @@ Array<std::size_t> BreakableBodies<D>::struck(const Contacts<D>& contacts,
         tension[n] = std::max(pressed_tension<D>(force[n], bodies_[n].diameter), flow_[n].pressure);
     }
     auto feel = [&](std::int32_t k, std::int32_t other, double push, double approach) {
-        const BreakableBody<D>* body = waiting(k, deformable);
-        if (!body) return;
-        const auto n = static_cast<std::size_t>(body - bodies_.data());
+        const std::int32_t number = waiting(k, deformable);
+        if (number < 0) return;
+        const auto n = static_cast<std::size_t>(number);
+        const BreakableBody<D>& body = bodies_[n];
         force[n] += 0.5 * push;
         if (is_dust(other)) approach = 0.0;
-        const double density = deformable.solids().material(body->deformable).rho0;
-        tension[n] = std::max({tension[n], body->blown(approach, density, mass(other)),
-                               expected_tension<D>({approach, body->impedance, impedance(other),
-                                                    force[n], body->diameter})});
+        const double density = deformable.solids().material(body.deformable).rho0;
+        tension[n] = std::max({tension[n], body.blown(approach, density, mass(other)),
+                               expected_tension<D>({approach, body.impedance, impedance(other),
+                                                    force[n], body.diameter})});
     };
     contacts.for_each_touch(kind,
                             [&](std::int32_t a, std::int32_t b, double push, double approach) {

@@ -319,12 +319,13 @@ class ActiveRun:
 
         False if there is no way back: the run failed before its first step, or fails on the way.
         """
-        simulation = self.simulation
-        copy = self.rewind.back_to(simulation, simulation.steps, self.limit_at)
+        simulation, steps = self.simulation, self.simulation.steps
+        copy = self.rewind.back_to(simulation, steps, self.limit_at)
         if copy is None:
             return False
         # The step before may be past saving; the run may go on from the state well before it.
         self.store(copy)
-        if self.rewind.arrived:
-            self.write_checkpoint()
-        return self.rewind.arrived
+        if simulation.steps < steps:
+            return False
+        self.write_checkpoint()
+        return True

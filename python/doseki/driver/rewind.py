@@ -20,7 +20,6 @@ class Rewind:
 
     def __init__(self) -> None:
         self.last: Checkpoint | None = None
-        self.arrived = False  # whether the way back led to the step that was asked for
         self._next = 0.0
 
     def is_due(self) -> bool:
@@ -50,7 +49,6 @@ class Rewind:
             while simulation.steps < step:
                 limit = limit_at(simulation.time)
                 simulation.advance(limit=limit, pause=limit, max_steps=step - simulation.steps)
-            self.arrived = True
         except load_core().PhysicsFailure:
             simulation.restore(self.last.state)
         return self.last

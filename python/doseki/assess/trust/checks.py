@@ -97,12 +97,11 @@ def overlap_check(run: Run, seen: Seen) -> Check:
 
 def _overlap_counted(run: Run, seen: Seen, has_kept: bool) -> str:
     """What the largest overlap was looked for in; a summary may be of an end before this one."""
-    said = "rigid bodies that move, largest of the whole run, over the diameter, without those that"
+    alone = f"{len(seen.overlap)} snapshots alone, between which were others"
+    looked = "the whole run" if has_kept else alone
+    said = f"rigid bodies that move, largest of {looked}, over the diameter, without those that"
     said += " touch a body that deforms, or dust"
-    if not has_kept:
-        snapshots = f"largest of {len(seen.overlap)} snapshots alone, between which were others,"
-        return said.replace("largest of the whole run,", snapshots)
     end = run.summary.get("time")
-    if isinstance(end, int | float) and run.times[-1] > end * (1 + 1e-9):
+    if has_kept and isinstance(end, int | float) and run.times[-1] > end * (1 + 1e-9):
         return said + f"; after {end:.6g} s snapshots alone"
     return said

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from ..schemes import RESOLVED, UETA2022
 from .parameters import LIMIT, MaterialParameter
 
+MOST_FLAWS = 1e99  # 1/m3, that `weibull_k` is below
+
 
 def _no_objection(numbers: Mapping[str, float]) -> str | None:
     return None
@@ -159,7 +161,9 @@ FRACTURES = _table(
         "grady_kipp",
         "damage that grows from flaws of a Weibull distribution, eqs. 112 to 114",
         parameters=(
-            _breaking("weibull_k", "1/m3", "flaws of a volume below a strain of 1", below=1e99),
+            _breaking(
+                "weibull_k", "1/m3", "flaws of a volume below a strain of 1", below=MOST_FLAWS
+            ),
             _breaking("weibull_m", "", "Weibull's exponent", below=100.0),
         ),
         needed=("weibull_k", "weibull_m"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...errors import UserError
-from ...scenario.materials import NO_FRACTURE, Material
+from ...scenario.materials import MOST_FLAWS, NO_FRACTURE, Material
 from ...util.finding import Finding, no_less_than, no_more_than
 from ..groups import Group
 from ..kinds.body import Body
@@ -18,7 +18,6 @@ MIN_LENGTH = 2.0  # spacings of the length of the process zone, E G_f/f_t^2
 LEAST_LENGTH = 0.2  # spacings of it; with fewer a bond snaps back as it cracks
 MOST_STRENGTH = 0.1  # Young's moduli
 STRAINS = (1e-8, 0.1)  # of the weakest flaw of a body: below, all is dust; above, nothing breaks
-MOST_FLAWS = 1e99  # 1/m3, that `weibull_k` may be
 
 
 @dataclass(frozen=True)
