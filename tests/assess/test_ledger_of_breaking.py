@@ -167,3 +167,49 @@ def test_what_breaks_under_pressure_gains_no_energy(tmp_path, shape, angle):
     rise = np.diff(history["kinetic_energy"] + history["elastic_energy"] - history["contact_work"])
     assert rise.max() < 3e-4 * history["kinetic_energy"][0]
     assert rise[rise > 0].sum() < 1e-3 * history["kinetic_energy"][0]
+
+
+MEET = """
+schema = 1
+dim = 2
+dp = 0.005
+scheme = "resolved"
+speed_max = 60
+time_max = 0.0012
+time_out = 0.0006
+time_history = 0.00004
+gravity = [0, 0]
+
+[parameters]
+along = {{ value = {along} }}
+
+[body.left]
+shape = "disc"
+material = "chalk"
+kinematics = "elastic"
+centre = [-0.0505, 0]
+radius = 0.05
+velocity = ["= 3 + along", "= along/5"]
+
+[body.right]
+shape = "disc"
+material = "chalk"
+kinematics = "elastic"
+centre = [0.0505, 0.01]
+radius = 0.05
+velocity = ["= -3 + along", "= along/5"]
+"""
+
+
+def test_a_moving_frame_hides_nothing(tmp_path):
+    at_rest, carried = (
+        recorded(tmp_path / name, MEET.format(along=speed) + CHALK)
+        for name, speed in (("at_rest", 0), ("carried", 40))
+    )
+    assert at_rest.history["broken_bonds"][-1] > 10
+    assert carried.history["kinetic_energy"][0] > 100 * at_rest.history["kinetic_energy"][0]
+    largest = ledger_of(at_rest).largest
+    assert ledger_of(carried).largest == pytest.approx(largest, rel=1e-3)
+    assert gap(without(carried, "fracture_work")) == pytest.approx(
+        gap(without(at_rest, "fracture_work")), rel=0.3
+    )

@@ -52,13 +52,39 @@ class Ledger:
         return np.asarray(np.linalg.norm(gravity_of(self.run.scenario)) * self._values("mass"))
 
     @property
+    def _is_alone(self) -> bool:
+        """Whether nothing from outside acts on what moves, and nothing enters or leaves."""
+        outside = ("impulse", "momentum_entered", "momentum_left")
+        pushed = max(float(np.max(np.abs(self._vector(name)))) for name in outside)
+        changes = float(np.ptp(self._values("mass")))
+        rounding = ROUNDING * float(np.max(np.linalg.norm(self._momentum, axis=1)))
+        return pushed <= rounding and changes <= ROUNDING * float(np.max(self._values("mass")))
+
+    @property
+    def _momentum(self) -> np.ndarray:
+        axes = "xyz"[: self.run.scenario["dim"]]
+        return np.array([self._values(f"momentum_{axis}") for axis in axes]).T
+
+    @property
+    def _kinetic(self) -> np.ndarray:
+        """Kinetic energy that can take part: what is alone keeps that of its mass centre."""
+        kinetic, mass = self._values("kinetic_energy"), self._values("mass")
+        if not self._is_alone:
+            return kinetic
+        of_centre = np.sum(self._momentum**2, axis=1) / (2 * np.where(mass > 0, mass, np.inf))
+        return np.asarray(np.maximum(0.0, kinetic - of_centre))
+
+    @property
     def largest(self) -> float:
         """The largest of the energies that took part, and no less than their rounding."""
-        speed = FAST * float(self.run.scenario.get("xi", 1.0))
-        rounding = ROUNDING * speed**2 * self._values("mass")
         moved = [self._column(name) for name in (*GIVEN, *TAKEN)]
-        held = [self._values(name) for name in HELD]
-        return max(float(np.max(np.abs(values))) for values in (rounding, *held, *moved))
+        held = [self._kinetic, *(self._values(name) for name in HELD[1:])]
+        return max(self._rounding, *(float(np.max(np.abs(values))) for values in (*held, *moved)))
+
+    @property
+    def _rounding(self) -> float:
+        speed = FAST * float(self.run.scenario.get("xi", 1.0))
+        return ROUNDING * speed**2 * float(np.max(self._values("mass")))
 
     def energy_residual(self) -> np.ndarray:
         """Energy that is there, less that of the start and what came and went: (rows,)."""
@@ -106,7 +132,8 @@ class Ledger:
         given = self._vector("impulse") + carried
         residual = np.linalg.norm(self._vector("momentum") - given, axis=1)
         drift = float(residual.max())
-        moving = math.sqrt(2 * float(np.max(history["mass"]) * np.max(history["kinetic_energy"])))
+        energy = max(self._rounding, float(np.max(self._kinetic)))
+        moving = math.sqrt(2 * float(np.max(history["mass"])) * energy)
         scale = max(moving, float(np.sum(self._weight[1:] * np.diff(history["time"]))))
         counted = "all rows of the history, less the impulses of gravity, walls, inflows and fixed"
         counted += " bodies, and what entered and left carried; over the impulse of the weight"
