@@ -53,6 +53,19 @@ void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo
 }
 
 template <int D, class real, class Backend>
+void Resolved<D, real, Backend>::sum_walls_alone(State& state, const Lists& lists, Halo<D>& halo) {
+    constexpr double no_time = 0.0;
+    pack<ContinuityPacker>(state, no_time);
+    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
+                halo_column(wall_, HaloColumn::fixed, fluid_count_)});
+    halo.finish();
+    if (model_->options.flow.wide_kernel)
+        sum_walls<WendlandC6<D>>(state, lists, records(state), no_time);
+    else
+        sum_walls<WendlandC2<D>>(state, lists, records(state), no_time);
+}
+
+template <int D, class real, class Backend>
 FlowRecords<real, D> Resolved<D, real, Backend>::records(const State& state) const {
     const std::size_t count = state.size();
     const auto inverse_support =

@@ -57,6 +57,9 @@ public:
     /// Sets timestep() and dissipated_power(). Nothing depends on whether lists are new.
     void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool);
 
+    /// The part of evaluate() that gives pressures to wall particles, where no time passes.
+    void sum_walls_alone(State& state, const Lists& lists, Halo<D>& halo);
+
     /// See Ueta2022::force_terms.
     ForceTerms<D> force_terms(const State& state, const Lists& lists, Halo<D>&,
                               std::int64_t p) const;

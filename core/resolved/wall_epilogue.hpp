@@ -70,8 +70,8 @@ private:
 
     /// Share of its last change with which the pressure of a film goes on: it runs in from the rim
     /// like a wave. By the mean of its surroundings alone it would creep in, the more slowly the
-    /// longer the steps are.
-    static constexpr double film_inertia = 0.5;
+    /// longer the steps are. At the start no time passes, and what counts is where it ends.
+    static constexpr double film_inertia = 0.5, film_inertia_at_start = 0.95;
 
     /// Share of what it would see of a plane face that a face sees at least beside one that curves.
     static constexpr double curved = 0.9;
@@ -95,7 +95,8 @@ private:
         }
         const double weight = with_air(p, sums);
         const double mean = (sums.pressure + sums.film_pressure) / weight;
-        wall.film_change[p] = mean - before + film_inertia * wall.film_change[p];
+        const double inertia = dt_ > 0.0 ? film_inertia : film_inertia_at_start;
+        wall.film_change[p] = mean - before + inertia * wall.film_change[p];
         wall.pressure[p] = before + wall.film_change[p];
         wall.film_density[p] = (sums.density + sums.film_density) / weight;
         wall.film_traction[p] = film_traction(p, sums);

@@ -15,6 +15,7 @@
 #include "run/diagnostics.hpp"
 #include "run/failure.hpp"
 #include "run/lists.hpp"
+#include "run/settle_films.hpp"
 #include "run/terrain_looks.hpp"
 
 namespace doseki {
@@ -77,12 +78,12 @@ public:
             if (particles.is_counted(p)) open_boundaries.ledger.initial += particles.mass[p];
         moving_walls.set_velocities(particles, time_);
         open_boundaries.inject(particles, time_);
-        bodies.start(particles, moving_walls);
-        bodies.set_velocities(particles, 0.0);
+        bodies.start(particles, moving_walls), bodies.set_velocities(particles, 0.0);
         remove_outflow(0.0);
         look_at_terrain();
         rebuild_lists(0.0);
         for (int n = 0; n < scheme_->first_evaluations(); ++n) evaluate(0.0);
+        if (settle_films(*scheme_, lists_.lists(), lists_.halo())) evaluate(0.0);
     }
 
     /// Steps until `limit` (met exactly), or returns early at the first step at or past `pause`, or
@@ -106,8 +107,7 @@ public:
         archive("time", time_), archive("last_timestep", last_dt_), archive("steps", steps_);
         archive("updates", updates_), archive("av_dissipation", dissipation_);
         archive("moved_since_outflow", moved_since_outflow_);
-        terrain_looks_.serialise(archive);
-        archive("account", account_);
+        terrain_looks_.serialise(archive), archive("account", account_);
         lists_.serialise_wear(archive, steps_);
         particles.serialise(archive);
         if (archive.loads()) expect_particles();

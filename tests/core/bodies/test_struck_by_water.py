@@ -109,3 +109,17 @@ def test_still_water_leaves_a_weak_body_rigid(tmp_path, shape, strength):
     for _ in range(20):
         simulation.advance(limit=0.1, pause=0.1, max_steps=10)
         assert len(simulation.fragments()["mass"]) == 0
+
+
+def test_a_weak_block_on_the_bed_of_a_pool_stays_rigid(tmp_path):
+    """Its strength is half the pressure at the bed, which is below it as well from the start."""
+    weak = head(2e4, (0.0, -9.81)).replace("dp = 0.004", "dp = 0.05")
+    text = weak.replace("speed_max = 14", "speed_max = 9").replace("rho0 = 2000", "rho0 = 2200")
+    still = 'pressure = "= 1000*9.81*(4 - y)"\n'
+    text += box("pool", (0, 0), (3, 4), material='"water"') + still
+    text += '[body.tank]\nshape = "tank"\nmaterial = "aluminium"\nmin = [0, 0]\nmax = [3, 4.5]\n'
+    text += box("block", (1.2, 0), (1.8, 0.6), material='"clay"', kinematics='"breakable"')
+    simulation = started(tmp_path, text).simulation
+    for _ in range(20):
+        simulation.advance(limit=0.1, pause=0.1, max_steps=5)
+        assert len(simulation.fragments()["mass"]) == 0

@@ -88,6 +88,15 @@ def test_a_block_on_a_bed_has_its_uplift():
     assert uplift() == pytest.approx(1, abs=CLOSE)
 
 
+@pytest.mark.parametrize("tilt", [0, 20])
+@pytest.mark.parametrize("across", [6, 24])
+def test_it_has_its_uplift_from_the_first_step_on(across, tilt):
+    """A film that began empty took thousands of steps to fill below a wide block."""
+    run = Running(BLOCK, f"across={across}", f"tilt={tilt}", f"depth={1.5 * SIDE}")
+    up = -np.asarray(run.scenario.gravity) / 9.81
+    assert up @ flow_force(run, 0.0) / (9810 * SIDE**2) == pytest.approx(1, abs=CLOSE)
+
+
 @pytest.mark.parametrize(("across", "depth"), [(6, 1.5), (6, 3), (10, 3)])
 def test_coarse_blocks_and_deep_water(across, depth):
     """Pressure of the whole depth is on all sides, and what lifts is a small difference."""
