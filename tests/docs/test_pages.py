@@ -72,6 +72,7 @@ def test_a_boulder_strikes_a_sill(tmp_path):
     page = Page("how-to/breaking.md", tmp_path)
     assert "sill.toml" in {path.name for path, _ in page.write_scenarios()}
     scenario = load_scenario(str(tmp_path / "sill.toml"), ["time_max=0.012"])
+    assert scenario.bed is not None
     assert filled_simulation(scenario).warnings == []
     run_scenario(scenario, tmp_path / "sill", RunOptions(threads=1))
     table = load(tmp_path / "sill")[-1].grains
