@@ -132,7 +132,14 @@ class Census:
         """Number of grains of the same that have crossed x = `section` by the end."""
         return self._pass(section, load)[1]
 
+    @cached_property
+    def _passes(self) -> dict[tuple[float, bool], tuple[np.ndarray, int]]:
+        """What `_pass` has counted so far."""
+        return {}
+
     def _pass(self, section: float, load: bool) -> tuple[np.ndarray, int]:
+        if (section, load) in self._passes:
+            return self._passes[section, load]
         passed, masses = measure.PassedMass(section, self.direction), []
         for there in self._slices():
             own = self.table["is_load"][there] == load
@@ -140,7 +147,8 @@ class Census:
                 self.table[key][there][own] for key in ("position", "mass", "id", "source")
             )
             masses.append(passed.update(x[:, 0], mass, ids, source))
-        return np.array(masses), passed.count
+        self._passes[section, load] = np.array(masses), passed.count
+        return self._passes[section, load]
 
     def _slices(self) -> Iterator[slice]:
         starts = np.searchsorted(self.table["time"], self.times)
