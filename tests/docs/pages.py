@@ -62,8 +62,8 @@ class Page:
     def write_scenarios(self) -> Iterator[tuple[Path, list[str]]]:
         """Write what its TOML says: after each block the file that changed, and settings.
 
-        A block that begins with `# NAME.toml` is that file; others are added to the scenario of the
-        page, keys of the top level as by --set.
+        A block that begins with `# NAME.toml` is that file, one of text with `# NAME.csv` that;
+        others of TOML are added to the scenario of the page, keys of the top level as by --set.
         """
         own = self.folder / PAGES[self.name]
         if self.name != START:
@@ -71,9 +71,11 @@ class Page:
             if own.name != BASE and not own.exists():
                 shutil.copy(self.folder / BASE, own)
         for block in self.blocks:
+            first, _, rest = block.text.partition("\n")
+            if block.language == "text" and first.startswith("# ") and first.endswith(".csv"):
+                (self.folder / first[2:]).write_text(block.text)
             if block.language != "toml":
                 continue
-            first, _, rest = block.text.partition("\n")
             if first.startswith("# ") and first.endswith(".toml"):
                 (self.folder / first[2:]).write_text(rest)
                 yield self.folder / first[2:], []

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import ast
 
+import numpy as np
 import pytest
 
 from doseki.errors import UserError
+from doseki.record.reader import load
+from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
+from doseki.solver.build import filled_simulation
 
 from .pages import PAGES, START, Page, base_scenario, unknown_options
 
@@ -61,6 +65,18 @@ def test_the_first_page_is_checked(tmp_path):
     page.run_command("./doseki run my-channel.toml -o out --set time_max=0.1")
     page.run_command("./doseki plot out --movie channel.gif --colour speed")
     assert (tmp_path / "channel.gif").stat().st_size > 1000
+
+
+def test_a_boulder_strikes_a_sill(tmp_path):
+    """The ground that the page prints bears the scene, whose sill breaks in what it runs."""
+    page = Page("how-to/breaking.md", tmp_path)
+    assert "sill.toml" in {path.name for path, _ in page.write_scenarios()}
+    scenario = load_scenario(str(tmp_path / "sill.toml"), ["time_max=0.012"])
+    assert scenario.bed is not None
+    assert filled_simulation(scenario).warnings == []
+    run_scenario(scenario, tmp_path / "sill", RunOptions(threads=1))
+    table = load(tmp_path / "sill")[-1].grains
+    assert np.count_nonzero(table["parent"] >= 0) > 10
 
 
 @pytest.fixture(scope="module")

@@ -170,7 +170,8 @@ def made_census(dim=2):
     table = {
         "time": time, "id": ids, "position": x, "velocity": np.ones((5, dim)), "mass": ids + 1.0,
         "kind": np.array([WAITING, WAITING, CARRIED, WAITING, DEPOSITED]),
-        "diameter": np.full(5, D),
+        "diameter": np.full(5, D), "is_part": np.zeros(5, bool), "is_load": np.ones(5, bool),
+        "source": np.array([-1, -1, 0, 1, 1]),
     }  # fmt: skip
     return Census(np.array([0.0, 1.0, 2.0]), np.full(3, math.nan), table, -1)
 

@@ -100,3 +100,19 @@ def test_without_a_direction_mass_passes_from_either_side_and_must_be_seen_there
 def test_passed_mass_is_exactly_zero_while_nothing_passes():
     mass = np.random.default_rng(0).uniform(size=1000)
     assert measure.PassedMass(0.0, -1).update(np.ones(1000), mass, np.arange(1000)) == 0.0
+
+
+@pytest.mark.parametrize("direction", [1, 0])
+def test_what_breaks_passes_part_by_part(direction):
+    """1 falls into dust before the section, of which half passes; 2 breaks as it passes."""
+    passed = measure.PassedMass(section=0.0, direction=direction)
+    x, ids = np.array([-1.0, -1.0]), np.array([1, 2])
+    assert passed.update(x, np.array([4.0, 10.0]), ids, np.array([-1, -1])) == 0
+    x, ids, mass = np.array([1, -1, -1, 1, -1.0]), np.arange(2, 7), np.array([6.0, 2, 2, 3, 1])
+    assert passed.update(x, mass, ids, np.array([2, 1, 1, 2, 2])) == 9
+    assert passed.update(np.array([1, -1, 1, 1, 1.0]), mass, ids, ids) == 12
+    assert passed.update(np.array([-1.0, 1, 1, 1, 1]), mass, ids, ids) == 14
+    more = np.append(mass, 1.0), np.append(ids, 7), np.append(ids, 2)  # off what has passed
+    assert passed.update(np.array([-1.0, 1, 1, 1, 1, -1]), *more) == 14
+    assert passed.update(np.ones(6), more[0], more[1], more[1]) == 14
+    assert passed.count == 5

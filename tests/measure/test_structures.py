@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import csv
+
 import numpy as np
 import pytest
 
+from doseki.cli.main import main
 from doseki.measure.census.census import take_census
 from doseki.measure.census.grains import grains_of
+from doseki.measure.census.lineage import Lineage
 from doseki.measure.grading import grading_of, gradings, structure_names
 from doseki.record.reader import load
 from doseki.running.runner import RunOptions, run_scenario
@@ -89,3 +93,76 @@ def test_nor_is_it_in_the_grading(run):
         assert post not in grading.grain
         assert len(grading.grain) > 0
     assert post in grading_of(run[-1], set()).grain
+
+
+def test_the_load_is_what_was_loose_at_the_start(run):
+    """Parts of the post are many times the stone that breaks them."""
+    census = take_census(run)
+    stone = run[0].grains["mass"][run[0].grains["body"] == "stone"].sum()
+    assert census.load_mass == pytest.approx(stone)
+    loose = sum(census.mass_of(kind) for kind in range(6))
+    np.testing.assert_allclose(loose, stone)
+    table = run[-1].grains
+    post = (table["body"] == "post") & (table["parent"] < 0)
+    lost = run[0].grains["mass"][run[0].grains["body"] == "post"].sum() - table["mass"][post].sum()
+    np.testing.assert_allclose(census.off_structures, [0, lost])
+
+
+class Made:
+    """A snapshot with a table of bodies."""
+
+    def __init__(self, parent):
+        self.grains = {"parent": np.array(parent), "body": np.array(["post"] * len(parent))}
+        self.grains["body"][1:2] = "stone"
+
+
+def test_parts_of_parts_are_of_what_their_line_began_with():
+    """Row 0 is a post, 1 a stone; in the second snapshot both have lost parts, and these others."""
+    lineage = Lineage({"post"})
+    assert [x.tolist() for x in lineage.look(Made([-1, -1]), np.array([1]))] == [[True], [-1]]
+    parents, ids = [-1, -1, 0, 1, 2, 3, 5], np.array([1, 2, 4, 5, 6])  # 3 is dust
+    load, source = lineage.look(Made(parents), ids)
+    assert load.tolist() == [True, False, False, True, True]
+    assert source.tolist() == [1, -1, -1, 1, 1]
+    load, source = lineage.look(Made([*parents, 4, 6]), np.array([1, 2, 7, 8]))
+    assert load.tolist() == [True, False, False, True]
+    assert source.tolist() == [1, 2, 4, 6]
+
+
+def test_what_lies_about_when_a_run_begins_is_load():
+    """It goes on from one in which a part had come off the post."""
+    load, _ = Lineage({"post"}).look(Made([-1, -1, 0]), np.array([1, 2]))
+    assert load.tolist() == [True, True]
+
+
+SHAKEN = (
+    POST[: POST.index("[body.stone]")].replace(
+        "clamped", 'velocity = ["= max(0, y - 0.1)*150", 0]\nclamped'
+    )
+    + CHALK
+)
+
+
+@pytest.mark.filterwarnings("error")
+def test_where_only_a_structure_breaks_there_is_no_load(tmp_path, capsys):
+    (tmp_path / "post.toml").write_text(SHAKEN, encoding="utf-8")
+    run_scenario(
+        load_scenario(str(tmp_path / "post.toml")), tmp_path / "run", RunOptions(threads=1)
+    )
+    with pytest.raises(SystemExit) as done:
+        main(["census", str(tmp_path / "run"), "--section", "0.1"])
+    assert done.value.code == 0
+    told = capsys.readouterr()
+    assert "no load: nothing was loose at the start" in told.out
+    assert "came off structures and is not of the load: " in told.out
+    assert "figure classes is not drawn: there is no load" in told.out
+    for unwanted in ("nan", "warning", "Error"):
+        assert unwanted not in told.out + told.err
+    folder = tmp_path / "run" / "census"
+    assert (folder / "grading.png").is_file()
+    with (folder / "passed.csv").open() as file:
+        last = list(csv.DictReader(file))[-1]
+    assert float(last["x = 0.1"]) == 0
+    assert "x = 0.1 off structures" in last
+    with (folder / "grains.csv").open() as file:
+        assert {row["origin"] for row in csv.DictReader(file)} == {"structure"}

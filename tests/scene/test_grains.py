@@ -248,7 +248,10 @@ def test_mass_and_grading(write):
         (LOAD + "grading = [[1, 1]]", ["give either d or grading"]),
         (LOAD + 'mass_total = "3 lb"', ["body.load.mass_total", 'such as "20 kg"']),
         (LOAD + "mass_total = 1", ["body.load", "not one grain"]),
-        (LOAD.replace("basalt", "water"), ["body.load", "solid material, not water"]),
+        (
+            LOAD.replace("basalt", "water"),
+            ["body.load", "water is a fluid", "choose a solid material"],
+        ),
         (
             DISC.replace("disc", "stl")
             .replace("centre", "file = 'a.stl'\ncentre")

@@ -92,7 +92,8 @@ class Run(RecordedRun):
 
         Columns: time, s, grain (a number that stays with it), class (waiting, preceding, carried,
         floating, rolling, deposited: docs/census.md), position_x ..., m, velocity_x ..., speed,
-        m/s, spin_x ... (2-D: spin_z), rad/s, contacts, diameter, m, mass, kg (2-D: kg/m).
+        m/s, spin_x ... (2-D: spin_z), rad/s, contacts, diameter, m, mass, kg (2-D: kg/m), origin
+        (load; structure: has come off one).
         `attrs["units"]` has the units.  Raises UserError for a run without grains, or where pandas
         is not installed.
         """
@@ -179,6 +180,9 @@ def _census_frame(run: Run) -> pd.DataFrame:
         if dim == 3 or axis == "z":
             columns[f"spin_{axis}"], units[f"spin_{axis}"] = table["spin"][:, k], "rad/s"
     columns |= {name: table[name] for name in ("contacts", "diameter", "mass")}
-    frame = frame_of(columns, units | {"contacts": "", "diameter": "m", "mass": unit_in("kg", dim)})
+    columns["origin"] = np.where(table["is_load"], "load", "structure")
+    frame = frame_of(
+        columns, units | {"contacts": "", "origin": "", "diameter": "m", "mass": unit_in("kg", dim)}
+    )
     frame["class"] = frame["class"].astype("category").cat.set_categories(list(CLASSES))
     return frame

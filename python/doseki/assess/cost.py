@@ -58,11 +58,11 @@ def estimate(
     Where nothing has entered a dry scene by then, what particles take is nan.  `sliding` is where
     its fluid may get to, if that is needed elsewhere, too.
     """
-    start = len(simulation)
+    start, before = len(simulation), simulation.steps
     sliding = sliding or Sliding(scenario, simulation.state(), body_names)
     mean, most, ground, scattered = _particles(sliding, start)
     rate, timestep = _burst(simulation, scenario)
-    done, now, end = simulation.steps, simulation.time, scenario.time_max
+    done, now, end = simulation.steps - before, simulation.time, scenario.time_max
     steps = done + steps_between(now, end, timestep, step_ends(scenario))
     unhindered = done + steps_between(now, end, timestep, ())
     if not len(simulation):
@@ -105,7 +105,7 @@ def _burst(simulation: Simulation, scenario: Scenario) -> tuple[float, float]:
 
     Outputs end steps of bodies alone, which nothing else may.
     """
-    steps, time_max = 1, scenario.time_max
+    steps, time_max, first = 1, scenario.time_max, simulation.steps
     intervals = step_ends(scenario) if scenario.has_bodies_alone else [time_max]
     ends = [OutputTimes(interval, time_max) for interval in intervals]
     started = time.perf_counter()
@@ -115,7 +115,7 @@ def _burst(simulation: Simulation, scenario: Scenario) -> tuple[float, float]:
             middle = (now, simulation.updates, simulation.steps, simulation.time)
         limit = min(end.after(simulation.time) for end in ends)
         simulation.advance(limit=limit, pause=limit, max_steps=steps)
-        steps = min(2 * steps, max(1, int(0.1 * simulation.steps)))
+        steps = min(2 * steps, max(1, int(0.1 * (simulation.steps - first))))
     elapsed = time.perf_counter() - middle[0]
     steps = max(1, simulation.steps - middle[2])
     return (simulation.updates - middle[1]) / elapsed, (simulation.time - middle[3]) / steps

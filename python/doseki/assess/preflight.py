@@ -8,13 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..driver.ranks import OneRank
 from ..driver.schedule import steps_between
+from ..driver.start.first_state import first_state
 from ..errors import PhysicsError, ResourceError
 from ..record.particles import FIXED
 from ..record.units import unit_in
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
-from ..solver.build import filled_simulation, load_core
+from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.finding import Finding, rounded_up, sentences
 from ..util.memory import available_bytes
@@ -62,13 +64,14 @@ def check_scenario(scenario: Scenario, threads: int | None = None, tell: Tell = 
 def preflight(
     scenario: Scenario, threads: int | None = None, tell: Tell = say_nothing
 ) -> Preflight:
-    """Build the scene and take a burst of steps of a second; raises as check_scenario does."""
+    """Begin as a run does, and take a burst of steps of a second; raises as check_scenario does."""
     core = load_core()
     before = core.threads()
     core.set_threads(threads or before)
     try:
-        simulation, body_names, warnings = filled_simulation(scenario, tell=tell)
-        simulation.start()
+        simulation, body_names, warnings, goes_on = first_state(scenario, OneRank(), tell)
+        if not goes_on:
+            simulation.start()
         state = simulation.state()
         sliding = Sliding(scenario, state, body_names)
         expected = estimate(scenario, simulation, body_names, sliding)

@@ -15,6 +15,7 @@ from ..record.units import unit_in
 from .kinds.histogram import draw_speed_row
 from .kinds.series import draw_curves
 from .layout import chart_grid, figure_legend
+from .nothing import NothingToDrawError
 
 MOST_CURVES = 6  # of a grading over time
 COLOURS = ("#bdbdbd", "#fdae61", "#3182bd", "#74c476", "#756bb1", "#636363")  # of CLASSES
@@ -22,8 +23,10 @@ COLOURS = ("#bdbdbd", "#fdae61", "#3182bd", "#74c476", "#756bb1", "#636363")  # 
 
 def draw_classes(census: Census) -> Figure:
     """Shares of the load in each class, one above the other, over time."""
+    if not census.load_mass:
+        raise NothingToDrawError("there is no load, since nothing was loose at the start")
     figure, grid = chart_grid(1, 1, (7.0, 3.2), "Grains by class")
-    shares = [census.mass_of(kind) / census.load_mass for kind in range(len(CLASSES))]
+    shares = [census.share(census.mass_of(kind)) for kind in range(len(CLASSES))]
     axes = grid[0, 0]
     axes.stackplot(census.times, shares, labels=CLASSES, colors=COLOURS)
     axes.set(xlabel="time (s)", ylabel="share of the load", ylim=(0, 1))
@@ -46,11 +49,18 @@ def draw_speed_histogram(drawn: SpeedDraws, where: str) -> Figure:
 def draw_passed(census: Census, sections: Sequence[float], dim: int) -> Figure:
     """Mass that has crossed each section, over time."""
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Grains that have passed")
-    curves = {f"x = {section:.12g} m": census.passed(section) for section in sections}
+    curves = {}
+    for section in sections:
+        name = f"x = {section:.12g} m"
+        if census.load_mass:
+            curves[name] = census.passed(section)
+        if census.off_structures[-1]:
+            curves[f"{name}, off structures"] = census.passed(section, load=False)
     draw_curves(grid[0, 0], census.times, curves)
     figure_legend(figure, grid.flat)
-    unit = unit_in("kg", dim)
-    grid[0, 0].set(xlabel="time (s)", ylabel=f"passed ({unit} of {census.load_mass:.4g})")
+    unit, load = unit_in("kg", dim), census.load_mass
+    of_load = f"; load: {load:.4g}" if load else ""
+    grid[0, 0].set(xlabel="time (s)", ylabel=f"passed ({unit}{of_load})")
     return figure
 
 
@@ -75,8 +85,11 @@ def _when_they_change(gradings: Mapping[float, Grading]) -> list[float]:
 
 
 def draw_grading(gradings: Mapping[float, Grading]) -> Figure:
-    """Shares of the mass that are finer than a size, at a few times."""
-    figure, grid = chart_grid(1, 1, (7.0, 3.4), "Grading of what has broken")
+    """Shares of the mass that are finer than a size, at a few times when anything is loose."""
+    gradings = {time: grading for time, grading in gradings.items() if len(grading.size)}
+    if not gradings:
+        raise NothingToDrawError("whatever came off had left by the next snapshot")
+    figure, grid = chart_grid(1, 1, (7.0, 3.4), "Grading of what is loose")
     times = _when_they_change(gradings)
     axes = grid[0, 0]
     shown = np.unique(np.linspace(0, len(times) - 1, MOST_CURVES).round().astype(int))

@@ -26,6 +26,7 @@ from ..measure.grading import grading_table, gradings, has_parts
 from ..measure.views import View, named_window, windows
 from ..record.beginning import refuse_links
 from ..record.reader import Run, load
+from ..record.units import unit_in
 from ..util.files import clear_errors, write_whole, write_whole_text
 from .census import (
     draw_classes,
@@ -36,6 +37,7 @@ from .census import (
 )
 from .saving import Drawn
 
+ORIGINS = ("structure", "load")  # of a grain: whether it is of the load
 OUTLET, DEPOSIT = "outlet", "deposit"  # windows that are used by default
 
 
@@ -107,7 +109,7 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
             f"no passing is counted: x = 0 is not in the scene, which goes from {low:.8g} to "
             f"{high:.8g} m; say where with --section X"
         )
-    return [*lines, files, *(f"warning: {text}" for text in pictures.remarks)]
+    return [*lines, files, *pictures.notes, *(f"warning: {text}" for text in pictures.remarks)]
 
 
 def _sections(run: Run, census: Census) -> tuple[float, ...]:
@@ -136,13 +138,18 @@ def grain_table(census: Census) -> dict[str, np.ndarray]:
         columns |= {f"{letter}{axis}": table[name][:, k] for k, axis in enumerate(axes)}
     columns |= {f"spin_{axis}": table["spin"][:, k] for k, axis in enumerate("xyz")}
     columns |= {name: table[name] for name in ("contacts", "diameter", "mass")}
-    return columns | {"class": np.array(CLASSES)[table["kind"]]}
+    columns["class"] = np.array(CLASSES)[table["kind"]]
+    return columns | {"origin": np.array(ORIGINS)[table["is_load"].astype(int)]}
 
 
 def class_table(census: Census) -> dict[str, np.ndarray]:
-    """Mass of each class and position of the water front over time."""
+    """Mass of each class, that off structures, position of the water front over time."""
     masses = {name: census.mass_of(kind) for kind, name in enumerate(CLASSES)}
-    return {"time": census.times, "front": census.front} | masses
+    return {"time": census.times, "front": census.front} | masses | _off_structures(census)
+
+
+def _off_structures(census: Census) -> dict[str, np.ndarray]:
+    return {"off_structures": census.off_structures} if census.off_structures[-1] else {}
 
 
 def speed_table(drawn: SpeedDraws) -> dict[str, np.ndarray]:
@@ -154,6 +161,8 @@ def speed_table(drawn: SpeedDraws) -> dict[str, np.ndarray]:
 def passed_table(census: Census, sections: Sequence[float]) -> dict[str, np.ndarray]:
     """Mass that has crossed each section, over time."""
     passed = {f"x = {section:.12g}": census.passed(section) for section in sections}
+    for section in sections if census.off_structures[-1] else ():
+        passed[f"x = {section:.12g} off structures"] = census.passed(section, load=False)
     return {"time": census.times} | passed
 
 
@@ -201,10 +210,9 @@ def census_lines(
     census: Census, drawn: SpeedDraws, where: str, sections: Sequence[float]
 ) -> list[str]:
     """The census in a few lines."""
-    shares = census_shares(census)
-    greatest = ", ".join(f"{name} {_percent(share.max())}" for name, share in shares.items())
-    lines = [f"{_counted(census)} at {len(census.times)} times"]
-    lines.append(f"most of the load at once: {greatest}")
+    lines = [f"{_counted(census)} at {len(census.times)} times", _most_at_once(census)]
+    if census.off_structures[-1]:
+        lines.append(_came_off(census))
     if len(drawn.speeds):
         lines.append(
             f"{where}: {len(drawn.speeds)} speeds, mean {drawn.speeds.mean():.3g} m/s; samples of "
@@ -214,10 +222,49 @@ def census_lines(
         lines.append(f"{where}: no grain in this range of time")
     way = {-1: "towards -x", 0: "either way", 1: "towards +x"}[census.direction]
     for section in sections:
-        count, share = census.passed_count(section), census.passed(section)[-1] / census.load_mass
-        told = f"{count} grain{'' if count == 1 else 's'}, {_percent(share)} of the load"
+        told = _passed(census, section)
         lines.append(f"passed x = {section:.12g} m {way} at the end: {told}")
     return lines
+
+
+def _most_at_once(census: Census) -> str:
+    """The largest share of each class, if there is a load."""
+    if not census.load_mass:
+        return "no load: nothing was loose at the start, so classes have no shares"
+    shares = census_shares(census)
+    greatest = ", ".join(f"{name} {_percent(share.max())}" for name, share in shares.items())
+    return f"most of the load at once: {greatest}"
+
+
+def _came_off(census: Census) -> str:
+    """What structures have lost."""
+    there = int((census.last() & ~census.table["is_load"]).sum())
+    return (
+        f"{_mass(census, census.off_structures[-1])} came off structures and is not of the load: "
+        f"{_parts(there)} at the last time"
+    )
+
+
+def _passed(census: Census, section: float) -> str:
+    """How much has passed a section: of the load, and of what came off structures."""
+    said = []
+    if census.load_mass:
+        count = census.passed_count(section)
+        share = _percent(float(census.share(census.passed(section)[-1])))
+        said.append(f"{count} grain{'' if count == 1 else 's'}, {share} of the load")
+    if census.off_structures[-1]:
+        count = census.passed_count(section, load=False)
+        mass = _mass(census, census.passed(section, load=False)[-1])
+        said.append(f"{_parts(count)} of structures, {mass}")
+    return "; ".join(said)
+
+
+def _mass(census: Census, mass: float) -> str:
+    return f"{mass:.4g} {unit_in('kg', census.table['position'].shape[1])}"
+
+
+def _parts(count: int) -> str:
+    return f"{count} part{'' if count == 1 else 's'}"
 
 
 def _counted(census: Census) -> str:
@@ -235,4 +282,4 @@ def _percent(share: float) -> str:
 
 def census_shares(census: Census) -> dict[str, np.ndarray]:
     """Share (T,) of the load in each class over time."""
-    return {name: census.mass_of(kind) / census.load_mass for kind, name in enumerate(CLASSES)}
+    return {name: census.share(census.mass_of(kind)) for kind, name in enumerate(CLASSES)}

@@ -16,10 +16,13 @@ from ..measure.quantities import quantity
 from ..measure.views import View, fluid_names, select
 from ..record.quantities import CATEGORIES, check_quantity, quantity_label
 from ..record.reader import Run, Snapshot
+from ..scenario.kinematics import DEFORM
+from ..scenario.materials import NO_FRACTURE
 
 FIXED_COLOUR = "#262626"  # the slope is black, as in the paper
 FIXED_IN_SPACE = "#b3ada3"
 FIXED_BESIDE_SCALE = "#a6a6a6"  # grey, because black is a colour of the scale
+PALE = "#d0d7de"  # no colour of the scale either
 FLUID_COLOURS = ("#3182bd", "#41b6c4", "#54278f")  # water blue, debris red
 SOLID_COLOURS = ("#d7301f", "#fd8d3c", "#8c510a", "#dd3497")
 OTHER_COLOURS = ("#3182bd", "#d7301f", "#31a354", "#fd8d3c", "#756bb1", "#8c510a", "#41b6c4")
@@ -115,9 +118,13 @@ class ScaleColours:
         """The scale spans what the particles that can move have in `view`."""
         self._name = name
         self.heading = quantity_label(name, snapshots[0].dim)
-        values = [quantity(s, name)[select(s, view)] for s in snapshots]
+        values = [quantity(s, name)[select(s, view) & self.has(s)] for s in snapshots]
         self._limits = limits(np.concatenate(values))
         self._norm = colors.Normalize(*self._limits)
+
+    def has(self, snapshot: Snapshot) -> np.ndarray:
+        """Which particles (N,) have this number, be it zero."""
+        return np.ones(len(snapshot["id"]), bool)
 
     def rgba(self, snapshot: Snapshot) -> np.ndarray:
         """Colours (N, 4) from 0 to 1."""
@@ -145,6 +152,40 @@ class ScaleColours:
         beside.set_ylabel(self.heading, fontsize="small")
 
 
+class DamageColours(ScaleColours):
+    """The scale for bodies that may break; what cannot is pale, so that it is not taken for whole.
+
+    `heading` says so.
+    """
+
+    def __init__(self, run: Run, snapshots: Sequence[Snapshot], view: View) -> None:
+        """As that of the field "damage"."""
+        self._breaking = sorted(_breaking(run))
+        super().__init__(snapshots, "damage", view)
+        self.heading = "damage (pale: does not break)"
+
+    def has(self, snapshot: Snapshot) -> np.ndarray:
+        """Which particles (N,) are of bodies that may break, or came off such."""
+        return np.isin(snapshot["body"], self._breaking)
+
+    def rgba(self, snapshot: Snapshot) -> np.ndarray:
+        """Colours (N, 4) from 0 to 1."""
+        colours = super().rgba(snapshot)
+        colours[~self.has(snapshot) & ~snapshot["fixed"]] = colors.to_rgba(PALE)
+        return colours
+
+
+def _breaking(run: Run) -> set[str]:
+    """The bodies of a scenario that deform and whose material breaks."""
+    materials, tables = run.scenario.get("material", {}), run.scenario.get("body", {})
+    breaks = {n for n, m in materials.items() if m.get("fracture", NO_FRACTURE) != NO_FRACTURE}
+    return {
+        name
+        for name, table in tables.items()
+        if table.get("kinematics") in DEFORM and table.get("material") in breaks
+    }
+
+
 Colouring = CategoryColours | GrainColours | ScaleColours
 
 
@@ -155,6 +196,8 @@ def colouring(run: Run, snapshots: Sequence[Snapshot], name: str, view: View) ->
         return CategoryColours(run, snapshots, name)
     if name == "grain":
         return GrainColours(run, snapshots)
+    if name == "damage" and _breaking(run):
+        return DamageColours(run, snapshots, view)
     return ScaleColours(snapshots, name, view)
 
 

@@ -9,6 +9,8 @@ import math
 
 import numpy as np
 
+TRACE = 1e-9  # of the mass of what breaks: less than that is nothing left
+
 
 def to_frame(position: np.ndarray, rotate: float) -> np.ndarray:
     """Coordinates (N, dim) in axes turned by `rotate` degrees from the first towards the last."""
@@ -88,7 +90,8 @@ class PassedMass:
     A particle that has been seen upstream counts as passed once it is not there any more: it is
     downstream, or an outflow has removed it.  It stays so where it falls back below the section.
     Where the direction of the flow is unknown a particle may come from either side; one that is
-    removed does not count, since nothing says where.
+    removed does not count, since nothing says where.  What breaks takes its parts along: each has
+    been where the whole was, and the whole counts with what is left of it.
     """
 
     def __init__(self, section: float, direction: int) -> None:
@@ -103,17 +106,36 @@ class PassedMass:
     @property
     def count(self) -> int:
         """How many particles have passed so far."""
-        return len(self._passed)
+        return sum(mass > 0 for mass in self._passed.values())
 
-    def update(self, x: np.ndarray, mass: np.ndarray, ids: np.ndarray) -> float:
-        """Take one snapshot of what counts; returns the mass passed so far, kg (2-D: kg/m)."""
+    def update(
+        self, x: np.ndarray, mass: np.ndarray, ids: np.ndarray, source: np.ndarray | None = None
+    ) -> float:
+        """Take one snapshot of what counts; returns the mass passed so far, kg (2-D: kg/m).
+
+        `source` (n,) is the id that each had, or was part of, in the snapshot before.
+        """
         seen = dict(zip(ids.tolist(), mass.tolist(), strict=True))
+        parts = _parts(ids, ids if source is None else source)
+        lost: dict[int, float] = {}  # by what has broken: mass of what came off it
+        for part, whole in parts.items():
+            lost[whole] = lost.get(whole, 0.0) + seen[part]
+        self._passed |= {part: 0.0 for part, whole in parts.items() if whole in self._passed}
         for way, waiting in self._upstream.items():
             there = set(ids[way * (x - self._section) < 0].tolist())
             can_vanish = len(self._upstream) == 1
+            waiting |= {part: seen[part] for part, whole in parts.items() if whole in waiting}
             gone = {
-                i: m for i, m in waiting.items() if i not in there and (can_vanish or i in seen)
+                i: seen.get(i, m - lost.get(i, 0.0))
+                for i, m in waiting.items()
+                if i not in there and (can_vanish or i in seen)
             }
-            self._passed |= gone
+            self._passed |= {i: m for i, m in gone.items() if m > TRACE * waiting[i]}
             self._upstream[way] = {i: seen[i] for i in there if i not in self._passed}
         return math.fsum(self._passed.values())
+
+
+def _parts(ids: np.ndarray, source: np.ndarray) -> dict[int, int]:
+    """By the id of what has just come off something: the id of that."""
+    new = (source >= 0) & (source != ids)
+    return dict(zip(ids[new].tolist(), source[new].tolist(), strict=True))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from ..compiled import card_here, load_core, module_is_chosen, use_device
 from ..driver.ranks import OneRank
+from ..driver.start.first_state import with_checkpoint
 from ..record.reader import Run
 from ..scenario.model import Scenario
 from ..scene.build import build_bodies
@@ -60,6 +61,8 @@ def rehearsed(name: str, say: Callable[[str], None]) -> str:
 
 def count_of_scene(scenario: Scenario) -> int:
     """The particles that a run begins with, without those of terrain."""
+    if (earlier := with_checkpoint(scenario)) is not None:
+        return len(earlier.snapshot["id"])
     return len(build_bodies(scenario)[0])
 
 

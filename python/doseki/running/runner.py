@@ -21,6 +21,7 @@ from ..driver.active_run import ActiveRun, Progress
 from ..driver.live import Watch
 from ..driver.ranks import OneRank
 from ..driver.schedule import CheckpointClock, StopRequests
+from ..driver.start.first_state import first_state
 from ..driver.threads import ThreadChoice
 from ..errors import Interrupted, PhysicsError, ResourceError, UserError
 from ..geodata.ground import write_ground
@@ -35,7 +36,6 @@ from ..solver.protocol import SimulationView
 from ..util.cores import chosen_threads
 from ..util.finding import sentences
 from ..util.telling import Tell, say_nothing
-from .first_state import first_state
 from .provenance import note_provenance
 
 CHECKPOINT_MINUTES = 10.0  # what a crash may cost

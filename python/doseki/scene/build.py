@@ -22,6 +22,7 @@ from .carried import (
     placed_parts,
     present,
 )
+from .checks.bodies.clamping import clamp_findings, clamped_points
 from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps, period_findings
 from .checks.outflows import far_findings, outflow_findings
@@ -123,7 +124,9 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     warnings += list(placing_findings(scenario, particles, names))
     warnings += [*outflow_findings(scenario, particles, names, groups), *late_findings(scenario)]
     warnings += far_findings(scenario, particles, names)
-    warnings += find_overlaps(particles, names, scenario.carried)
+    clamped = clamped_points(rigid.elastic, len(particles))
+    warnings += find_overlaps(particles, names, scenario.carried, clamped)
+    warnings += clamp_findings(bodies, rigid.elastic)
     if carried is None:
         return Scene(particles, names, rigid, warnings)
     warnings += carried.findings(moves)

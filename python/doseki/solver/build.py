@@ -19,7 +19,7 @@ from ..scenario.schemes import RESOLVED
 from ..scenario.tables.body import BodyTable
 from ..scenario.tables.terrain.terrain import TERRAIN, Terrain
 from ..scene.build import Scene, build_scene
-from ..scene.checks.grain_numbers import check_grain_numbers
+from ..scene.checks.bodies.grain_numbers import check_grain_numbers
 from ..scene.checks.panels import check_panels
 from ..scene.checks.sensors import sensor_findings
 from ..scene.checks.structures import structure_findings

@@ -226,7 +226,7 @@ def _water_figure(flumes: Sequence[FlumeRun]) -> Figure:
 def _passed_figure(flumes: Sequence[FlumeRun]) -> Figure:
     figure, grid = chart_grid(1, 1, (7.0, 3.0), "Share of the load past the outlet")
     for flume in flumes:
-        share = flume.census.passed(0.0) / flume.census.load_mass
+        share = flume.census.share(flume.census.passed(0.0))
         draw_curves(grid[0, 0], flume.census.times, {flume.scheme: share})
     figure_legend(figure, grid.flat)
     grid[0, 0].set(xlabel="time (s)", ylabel="share", ylim=(0, 1.02))

@@ -109,8 +109,8 @@ def measure_flume(run: Run) -> FlumeRun:
         SPEED: _mean(water, steadily),
         BALANCE: _balance(run, float(end), direction, steady),
         AHEAD: _ahead(census, arrival, float(end)),
-        FLOATS: float(census.mass_of(FLOATING).max() / census.load_mass),
-        PASSED: float(np.interp(evacuated, census.times, census.passed(end)) / census.load_mass),
+        FLOATS: float(census.share(census.mass_of(FLOATING)).max()),
+        PASSED: float(np.interp(evacuated, census.times, census.share(census.passed(end)))),
         STUCK: _stuck(census, float(end), float(view.lower[-1])),
         RATIO: _ratio(speeds.speeds, np.interp(census.table["time"][rows], flow.times, water)),
     }
@@ -191,7 +191,8 @@ def _ahead(census: Census, arrival: float, outlet: float) -> float:
     gone = census.passed(outlet)[k]
     beyond = census.direction * (census.table["position"][:, 0] - outlet) > 0
     now = (census.table["time"] == census.times[k]) & (census.table["kind"] == PRECEDING) & ~beyond
-    return float((census.table["mass"][now].sum() + gone) / census.load_mass)
+    now &= census.table["is_load"]
+    return float(census.share(census.table["mass"][now].sum() + gone))
 
 
 def _at_load(census: Census) -> float:
@@ -209,5 +210,5 @@ def _stuck(census: Census, outlet: float, below: float) -> float:
     table = census.table
     upstream = census.direction * (table["position"][:, 0] - outlet) < 0
     upstream &= table["position"][:, -1] > below
-    resting = (table["kind"] == DEPOSITED) | (table["kind"] == 0)
-    return float(table["mass"][census.last() & upstream & resting].sum() / census.load_mass)
+    resting = table["is_load"] & ((table["kind"] == DEPOSITED) | (table["kind"] == 0))
+    return float(census.share(table["mass"][census.last() & upstream & resting].sum()))

@@ -21,6 +21,7 @@ from ..grading import structure_names
 from ..views import View, flow_direction, fluid_names, way_of_flow
 from .columns import Columns, Plan, plan_of
 from .grains import Grains, Surroundings, grains_of, surroundings_of
+from .lineage import Lineage
 
 CLASSES = ("waiting", "preceding", "carried", "floating", "rolling", "deposited")
 WAITING, PRECEDING, CARRIED, FLOATING, ROLLING, DEPOSITED = range(len(CLASSES))
@@ -73,8 +74,8 @@ class Census:
     """The grains of all snapshots of a run, one row for each grain and time.
 
     `table` has time, id, position (N, dim), velocity (N, dim), spin (N, 3), contacts, diameter,
-    mass, is_part and kind (index into CLASSES), sorted by time; `front` (T,) is that of the water,
-    m.
+    mass, is_part, kind (index into CLASSES), is_load and source (see Lineage), sorted by time;
+    `front` (T,) is that of the water, m.
     `direction` is that of the flow along the first axis, +1 or -1; 0 where nothing says it.
     """
 
@@ -85,10 +86,23 @@ class Census:
 
     @cached_property
     def load_mass(self) -> float:
-        """Mass of all grains that ever were, each once, kg (2-D: kg/m)."""
+        """Mass of the load, kg (2-D: kg/m): grains loose at first, and others that came later.
+
+        Parts that come off them are in it, what comes off structures is not; 0 without a load.
+        """
         _, first = np.unique(self.table["id"], return_index=True)
-        whole = ~self.table["is_part"][first] if "is_part" in self.table else 1.0
+        whole = (self.table["time"][first] == self.times[0]) | ~self.table["is_part"][first]
         return float((self.table["mass"][first] * whole).sum())
+
+    def share(self, mass: np.ndarray) -> np.ndarray:
+        """Masses, kg (2-D: kg/m), over that of the load; nan without one."""
+        return np.asarray(mass) / self.load_mass if self.load_mass else np.full_like(mass, math.nan)
+
+    @cached_property
+    def off_structures(self) -> np.ndarray:
+        """Mass (T,) that has come off structures by each time, kg (2-D: kg/m)."""
+        new = ~self.table["is_load"] & (self.table["source"] < 0)
+        return np.cumsum(self._sums(new))
 
     def rows(
         self, view: View | None = None, start: float = -math.inf, end: float = math.inf
@@ -99,24 +113,42 @@ class Census:
         return mask if view is None else mask & view.contains(self.table["position"])
 
     def mass_of(self, kind: int) -> np.ndarray:
-        """Mass (T,) of the grains of a class over time, kg (2-D: kg/m)."""
-        mine = self.table["kind"] == kind
-        index = np.searchsorted(self.times, self.table["time"][mine])
-        return np.bincount(index, self.table["mass"][mine], len(self.times))
+        """Mass (T,) of the load in a class over time, kg (2-D: kg/m)."""
+        return self._sums((self.table["kind"] == kind) & self.table["is_load"])
 
-    def passed(self, section: float) -> np.ndarray:
-        """Mass (T,) that has crossed x = `section` by each time, kg (2-D: kg/m)."""
-        return self._pass(section)[0]
+    def _sums(self, rows: np.ndarray) -> np.ndarray:
+        """Mass (T,) of the rows of a mask at each time."""
+        index = np.searchsorted(self.times, self.table["time"][rows])
+        return np.bincount(index, self.table["mass"][rows], len(self.times))
 
-    def passed_count(self, section: float) -> int:
-        """Number of grains that have crossed x = `section` by the end."""
-        return self._pass(section)[1]
+    def passed(self, section: float, load: bool = True) -> np.ndarray:
+        """Mass (T,) of the load, or of what came off structures, beyond x = `section`.
 
-    def _pass(self, section: float) -> tuple[np.ndarray, int]:
-        passed = measure.PassedMass(section, self.direction)
-        x, mass, ids = self.table["position"][:, 0], self.table["mass"], self.table["id"]
-        masses = [passed.update(x[s], mass[s], ids[s]) for s in self._slices()]
-        return np.array(masses), passed.count
+        It is in kg (2-D: kg/m), and counts what has crossed the section by each time.
+        """
+        return self._pass(section, load)[0]
+
+    def passed_count(self, section: float, load: bool = True) -> int:
+        """Number of grains of the same that have crossed x = `section` by the end."""
+        return self._pass(section, load)[1]
+
+    @cached_property
+    def _passes(self) -> dict[tuple[float, bool], tuple[np.ndarray, int]]:
+        """What `_pass` has counted so far."""
+        return {}
+
+    def _pass(self, section: float, load: bool) -> tuple[np.ndarray, int]:
+        if (section, load) in self._passes:
+            return self._passes[section, load]
+        passed, masses = measure.PassedMass(section, self.direction), []
+        for there in self._slices():
+            own = self.table["is_load"][there] == load
+            x, mass, ids, source = (
+                self.table[key][there][own] for key in ("position", "mass", "id", "source")
+            )
+            masses.append(passed.update(x[:, 0], mass, ids, source))
+        self._passes[section, load] = np.array(masses), passed.count
+        return self._passes[section, load]
 
     def _slices(self) -> Iterator[slice]:
         starts = np.searchsorted(self.table["time"], self.times)
@@ -131,6 +163,7 @@ class Census:
 def take_census(run: Run) -> Census:
     """The census of all snapshots; raises UserError for a run without grains or snapshots."""
     fluids, structures, way = fluid_names(run), structure_names(run), way_of_flow(run) or 1
+    lineage = Lineage(structures)
     first: dict[int, np.ndarray] = {}
     parts: list[dict[str, np.ndarray]] = []
     fronts: list[float] = []
@@ -149,7 +182,9 @@ def take_census(run: Run) -> Census:
         if plan is None and len(grains.id):
             plan = plan_of(grains, around)
         kinds, front = classify(grains, start, around, way, plan)
-        parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | {"kind": kinds})
+        load, source = lineage.look(snapshot, grains.id)
+        more = {"kind": kinds, "is_load": load, "source": source}
+        parts.append({"time": np.full(len(grains.id), time)} | vars(grains) | more)
         fronts.append(front)
     if not first:
         raise UserError(f"{run.directory}: the run has no grains to take a census of")

@@ -66,12 +66,19 @@ def _check_dimension(scenario: Scenario, name: str, body: BodyTable) -> None:
 def _check_solid(scenario: Scenario, name: str, body: BodyTable) -> None:
     """Some shapes are made of bodies, which only solids of the resolved scheme are."""
     solid = body.material is not None and scenario.materials[body.material].law == "solid"
-    if body.is_solid and not (solid and scenario.scheme == RESOLVED):
-        raise scenario.where.error(
-            ("body", name, "shape"),
-            f"body.{name}: {body.described} is a solid of the resolved scheme: set scheme = "
-            f'"resolved" and a solid material, not {body.material}',
+    if not body.is_solid or (solid and scenario.scheme == RESOLVED):
+        return
+    if scenario.scheme == RESOLVED:
+        ball = "disc" if scenario.dim == 2 else "sphere"
+        why = (
+            f'is for solids, and {body.material} is a fluid: fluids have the shape "box" (rotate '
+            f'turns it, where = "= ..." keeps what is above zero of it), "{ball}" with centre and '
+            'radius, "points", "file", or "release" on a terrain; else choose a solid material'
         )
+    else:
+        not_solid = "" if solid else f" and a solid material, not {body.material}"
+        why = f'is a solid of the resolved scheme: set scheme = "resolved"{not_solid}'
+    raise scenario.where.error(("body", name, "shape"), f"body.{name}: {body.described} {why}")
 
 
 def _check_keys(scenario: Scenario, name: str, body: BodyTable) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...record.particles import ParticleSet
+from ...record.particles import FIXED, ParticleSet
 from ...util.finding import Finding
 
 TOO_NEAR = 0.3  # of the smaller particle's spacing
@@ -30,19 +30,29 @@ class Overlap(Finding):
 
 
 def find_overlaps(
-    particles: ParticleSet, names: list[str], known: Set[str] = frozenset()
+    particles: ParticleSet,
+    names: list[str],
+    known: Set[str] = frozenset(),
+    clamped: np.ndarray | None = None,
 ) -> list[Overlap]:
     """One for each pair of bodies (or body with itself) that has overlapping particles.
 
-    Among those `known` nothing is looked for: they have moved already.
+    Among those `known` nothing is looked for: they have moved already.  Particles that are
+    `clamped` (N,) may lie in fixed ones, which hold them.
     """
-    found = _overlapping_bodies(particles).items()
+    found = _overlapping_bodies(particles, clamped).items()
     pairs = [(names[first], names[second], count) for (first, second), count in found]
     return [Overlap(a, b, count) for a, b, count in pairs if not known >= {a, b}]
 
 
-def _overlapping_bodies(particles: ParticleSet) -> dict[tuple[int, int], int]:
+def _overlapping_bodies(
+    particles: ParticleSet, clamped: np.ndarray | None
+) -> dict[tuple[int, int], int]:
     i, j = _near_pairs(particles)
+    if clamped is not None:
+        fixed = particles.motion == FIXED
+        held = (clamped[i] & fixed[j]) | (fixed[i] & clamped[j])
+        i, j = i[~held], j[~held]
     if len(i) == 0:
         return {}
     bodies = np.sort(np.column_stack([particles.body[i], particles.body[j]]), axis=1)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ...scenario.gauges.motion import Motion
-from ...scenario.model import Scenario
-from ..bodies import Bodies
+from ....scenario.gauges.motion import Motion
+from ....scenario.model import Scenario
+from ...bodies import Bodies
 
 MAX_ROWS = 1e7  # of a gauge
 

@@ -7,19 +7,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ..driver.checkpoint import Checkpoint, DamagedCheckpointError, from_bytes
-from ..driver.ranks import OneRank
-from ..errors import UserError
-from ..scenario.earlier import Earlier
-from ..scenario.model import Scenario
-from ..scenario.tables.wall import FRICTION_OF
-from ..scene.build import body_names
-from ..solver.build import empty_simulation
-from ..solver.protocol import Simulation
-from ..solver.restoring import with_new_meters
-from ..util.finding import Finding
-from ..util.foreign import read_bytes
-from ..util.telling import Tell, say_nothing
+from ...errors import UserError
+from ...scenario.earlier import Earlier
+from ...scenario.model import Scenario
+from ...scenario.tables.wall import FRICTION_OF
+from ...scene.build import body_names
+from ...solver.build import empty_simulation
+from ...solver.protocol import Simulation
+from ...solver.restoring import with_new_meters
+from ...util.finding import Finding
+from ...util.foreign import read_bytes
+from ...util.telling import Tell, say_nothing
+from ..checkpoint import Checkpoint, DamagedCheckpointError, from_bytes
+from ..ranks import OneRank
 
 # Keys of a body that are no part of its state: how fluid meets it, and what it does from now on.
 NOT_OF_STATE = {"wall", *FRICTION_OF, "motion", "file"}
@@ -57,16 +57,23 @@ def first_state(scenario: Scenario, ranks: OneRank, tell: Tell = say_nothing) ->
     Where the earlier run of the scenario has a checkpoint at that time and the bodies are the same,
     everything goes on as it was; else bodies are made, or taken from its snapshot.
     """
-    earlier, doubts = scenario.earlier, list[Finding]()
-    if earlier is not None and earlier.checkpoint is not None:
+    doubts = list[Finding]()
+    if (earlier := with_checkpoint(scenario)) is not None:
         own = tomllib.loads(scenario.effective_toml())
-        if _has_same_bodies(own, earlier):
-            try:
-                return _gone_on(scenario, earlier, _changed(own, earlier) <= OF_RECORD, ranks)
-            except (DamagedCheckpointError, UserError, ValueError) as error:
-                doubts.append(UnusedCheckpoint("start", str(error)))
+        try:
+            return _gone_on(scenario, earlier, _changed(own, earlier) <= OF_RECORD, ranks)
+        except (DamagedCheckpointError, UserError, ValueError) as error:
+            doubts.append(UnusedCheckpoint("start", str(error)))
     simulation, names, warnings = ranks.filled_simulation(scenario, tell)
     return FirstState(simulation, names, [*warnings, *doubts], False)
+
+
+def with_checkpoint(scenario: Scenario) -> Earlier | None:
+    """The earlier run, if all of its bodies are to go on from a checkpoint that it has."""
+    earlier = scenario.earlier
+    if earlier is None or earlier.checkpoint is None:
+        return None
+    return earlier if _has_same_bodies(tomllib.loads(scenario.effective_toml()), earlier) else None
 
 
 def _gone_on(scenario: Scenario, earlier: Earlier, is_same: bool, ranks: OneRank) -> FirstState:

@@ -1,0 +1,1 @@
+"""Checks of bodies that are told apart by number, and of those that are held."""
