@@ -174,7 +174,9 @@ def test_files(tmp_path, error_of, content, part):
 
 
 def test_places_that_are_no_file(tmp_path, error_of):
-    assert "a folder, not a file" in error_of(f"{tmp_path}/")
+    assert "a folder; what is asked for is a scenario, a TOML file" in error_of(f"{tmp_path}/")
+    (tmp_path / "scenario.toml").touch()
+    assert f"that of this run is {tmp_path}/scenario.toml" in error_of(f"{tmp_path}")
     assert "no such file" in error_of(str(tmp_path / "none.toml"))
     assert "not a regular file" in error_of("/dev/null")
     assert "did you mean collision?" in error_of("colision")

@@ -21,13 +21,28 @@ def scenario_folder() -> Path:
 
 
 def find_scenario(name: str) -> Path:
-    """A bare name means a shipped scenario; with a "/" or the ending .toml it is a path."""
+    """A bare name means a shipped scenario; with a "/" or the ending .toml it is a path.
+
+    Raises UserError for a name that is none, and for a folder.
+    """
+    if "/" in name and Path(name).is_dir():
+        raise UserError(
+            f"{name}: a folder; what is asked for is a scenario{_scenario_of_run(name)}"
+        )
     if "/" in name or name.endswith(".toml"):
         return Path(name)
     shipped = {path.stem: path for path in scenario_folder().glob("*.toml")}
     if name not in shipped:
         raise UserError(f'no scenario named "{name}"{suggestion(name, shipped)}')
     return shipped[name]
+
+
+def _scenario_of_run(folder: str) -> str:
+    """Where a folder is that of a run, what it has of it."""
+    copy = Path(folder) / "scenario.toml"
+    if not copy.is_file():
+        return ", a TOML file or the name of a shipped one"
+    return f": that of this run is {copy}; what came of the run is in its summary.txt"
 
 
 def read_with_bases(first: Source) -> list[Source]:

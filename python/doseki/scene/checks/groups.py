@@ -105,7 +105,8 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
             raise scenario.where.error(
                 ("body", name),
                 f"body.{name}: a body of it overlaps {whom} by {overlap:.3g} m at the start; "
-                f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m",
+                f"allowed: {allowed:g} of its size (contact.overlap), {allowed * size:.3g} m; "
+                "move one of them apart, or make one smaller",
             )
 
 
