@@ -53,16 +53,21 @@ void Resolved<D, real, Backend>::evaluate(State& state, const Lists& lists, Halo
 }
 
 template <int D, class real, class Backend>
-void Resolved<D, real, Backend>::sum_walls_alone(State& state, const Lists& lists, Halo<D>& halo) {
+void Resolved<D, real, Backend>::sum_walls_alone(State& state, const Lists& lists, Halo<D>& halo,
+                                                 double inertia) {
     constexpr double no_time = 0.0;
-    pack<ContinuityPacker>(state, no_time);
-    halo.start({halo_column(motion_), halo_column(fluid_, HaloColumn::moving),
-                halo_column(wall_, HaloColumn::fixed, fluid_count_)});
+    const ContinuityPacker<real, D> packer{{*model_, state, motion_, fluid_, wall_, fluid_count_,
+                                            frame_, records(state).inverse_support, no_time}};
+    Backend::for_each_particle(state.size() - fluid_count_,
+                               PackWall<ContinuityPacker<real, D>>{packer});
+    halo.start({halo_column(wall_, HaloColumn::fixed, fluid_count_)});
     halo.finish();
+    const WallEpilogue<real, D> epilogue(*model_, wall_, fluid_count_, summary_, state, no_time,
+                                         inertia);
     if (model_->options.flow.wide_kernel)
-        sum_walls<WendlandC6<D>>(state, lists, records(state), no_time);
+        sum_walls<WendlandC6<D>>(state, lists, records(state), epilogue);
     else
-        sum_walls<WendlandC2<D>>(state, lists, records(state), no_time);
+        sum_walls<WendlandC2<D>>(state, lists, records(state), epilogue);
 }
 
 template <int D, class real, class Backend>
@@ -134,17 +139,18 @@ void Resolved<D, real, Backend>::sum_forces(State& state, const Lists& lists, Ha
     const FlowRecords<real, D> records = this->records(state);
     const ForceTerm<Kernel, real, D> forces{records, model_->constants};
     const ForceEpilogue<real, D> accelerate(*model_, fluid_, fluid_count_, summary_, state, dt);
+    const WallEpilogue<real, D> of_walls(*model_, wall_, fluid_count_, summary_, state, dt);
     const bool friction = model_->has_bed_friction();
     if (friction || halo.alone()) {
         halo.finish();
-        sum_walls<Kernel>(state, lists, records, dt);
+        sum_walls<Kernel>(state, lists, records, of_walls);
         if (friction)
             halo.start({halo_column(wall_, &WallRecord<real, D>::traction, HaloColumn::fixed,
                                     fluid_count_)});
         sum_fluid(Phase::pass_2, lists, halo, forces, accelerate);
     } else {
         sum_fluid(Phase::pass_2, lists, halo, forces, accelerate);
-        sum_walls<Kernel>(state, lists, records, dt);
+        sum_walls<Kernel>(state, lists, records, of_walls);
     }
 }
 
@@ -161,7 +167,8 @@ bool Resolved<D, real, Backend>::has_wet_walls(const FlowRecords<real, D>& recor
 template <int D, class real, class Backend>
 template <class Kernel>
 void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
-                                           const FlowRecords<real, D>& records, double dt) {
+                                           const FlowRecords<real, D>& records,
+                                           const WallEpilogue<real, D>& epilogue) {
     const auto timing = phases_.measure(Phase::pass_1);
     if (!has_wet_walls(records)) {
         std::ranges::fill(state.wall.force.stored(), Vec<double, D>{});
@@ -171,8 +178,7 @@ void Resolved<D, real, Backend>::sum_walls(State& state, const Lists& lists,
     const std::size_t first = fluid_count_ / Backend::width;
     Backend::sum_pairs(
         lists, {lists.clusters().subspan(first), motion_, frame_, {.first_cluster = first}},
-        WallTerm<Kernel, real, D>{records, model_->constants, model_->options.gravity},
-        WallEpilogue<real, D>(*model_, wall_, fluid_count_, summary_, state, dt));
+        WallTerm<Kernel, real, D>{records, model_->constants, model_->options.gravity}, epilogue);
 }
 
 /// Keeps the sums of wall particles for a face; those of others in their clusters mean nothing.

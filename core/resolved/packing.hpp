@@ -132,6 +132,13 @@ private:
     }
 };
 
+/// The wall particle of a number among them.
+template <class Packer>
+struct PackWall {
+    Packer packer;
+    DOSEKI_DEVICE_FN void operator()(std::size_t n) const { packer(packer.fluid_count + n); }
+};
+
 /// For forces: the end of the step, with the velocities of fluid predicted for it. Walls are packed
 /// but for their place.
 template <class real, int D>

@@ -20,6 +20,8 @@ namespace doseki {
 
 template <class real, int D>
 struct FlowRecords;
+template <class real, int D>
+class WallEpilogue;
 template <int D>
 struct ResolvedModel;
 
@@ -57,8 +59,9 @@ public:
     /// Sets timestep() and dissipated_power(). Nothing depends on whether lists are new.
     void evaluate(State& state, const Lists& lists, Halo<D>& halo, double half_dt, bool);
 
-    /// The part of evaluate() that gives pressures to wall particles, where no time passes.
-    void sum_walls_alone(State& state, const Lists& lists, Halo<D>& halo);
+    /// The part of evaluate() that gives pressures to wall particles, where no time passes; those
+    /// of films go on with this share of their last change.
+    void sum_walls_alone(State& state, const Lists& lists, Halo<D>& halo, double inertia);
 
     /// See Ueta2022::force_terms.
     ForceTerms<D> force_terms(const State& state, const Lists& lists, Halo<D>&,
@@ -124,7 +127,7 @@ private:
     void sum_forces(State& state, const Lists& lists, Halo<D>& halo, double dt);
     template <class Kernel>
     void sum_walls(State& state, const Lists& lists, const FlowRecords<real, D>& records,
-                   double dt);
+                   const WallEpilogue<real, D>& epilogue);
     template <class Kernel>
     void sum_face(const State& state, const Lists& lists, const FacePlane<D>& face,
                   const Array<std::uint32_t>& clusters);

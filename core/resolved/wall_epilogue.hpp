@@ -13,16 +13,22 @@ namespace doseki {
 template <class real, int D>
 class WallEpilogue {
 public:
+    /// Share of its last change with which the pressure of a film goes on: it runs in from the rim
+    /// like a wave. By the mean of its surroundings alone it would creep in, the more slowly the
+    /// longer the steps are.
+    static constexpr double film_inertia = 0.5;
+
     /// `dt`: since the evaluation before.
     WallEpilogue(const ResolvedModel<D>& model, std::span<WallRecord<real, D>> records,
                  std::size_t first_wall, std::span<FlowSummary<D>> summaries,
-                 ResolvedState<D>& state, double dt)
+                 ResolvedState<D>& state, double dt, double inertia = film_inertia)
         : model_(model),
           records_(records),
           first_wall_(first_wall),
           summaries_(summaries),
           state_(state),
-          dt_(dt) {}
+          dt_(dt),
+          inertia_(inertia) {}
 
     DOSEKI_DEVICE_FN void operator()(std::size_t p, const WallAccumulators<double, D>& sums) const {
         if (p < first_wall_) return;  // a fluid particle in the first cluster of walls
@@ -68,11 +74,6 @@ private:
     static constexpr double min_filled = 0.05;  // of the kernel, by fluid
     static constexpr double min_weight = 1e-9;  // the same; less presses with nothing
 
-    /// Share of its last change with which the pressure of a film goes on: it runs in from the rim
-    /// like a wave. By the mean of its surroundings alone it would creep in, the more slowly the
-    /// longer the steps are. At the start no time passes, and what counts is where it ends.
-    static constexpr double film_inertia = 0.5, film_inertia_at_start = 0.95;
-
     /// Share of what it would see of a plane face that a face sees at least beside one that curves.
     static constexpr double curved = 0.9;
 
@@ -95,8 +96,7 @@ private:
         }
         const double weight = with_air(p, sums);
         const double mean = (sums.pressure + sums.film_pressure) / weight;
-        const double inertia = dt_ > 0.0 ? film_inertia : film_inertia_at_start;
-        wall.film_change[p] = mean - before + inertia * wall.film_change[p];
+        wall.film_change[p] = mean - before + inertia_ * wall.film_change[p];
         wall.pressure[p] = before + wall.film_change[p];
         wall.film_density[p] = (sums.density + sums.film_density) / weight;
         wall.film_traction[p] = film_traction(p, sums);
@@ -270,7 +270,7 @@ private:
     std::size_t first_wall_;
     std::span<FlowSummary<D>> summaries_;
     ResolvedState<D>& state_;
-    double dt_;
+    double dt_, inertia_;
 };
 
 }  // namespace doseki

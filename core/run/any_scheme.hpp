@@ -68,8 +68,9 @@ public:
     /// Where it looks back: over a step.
     virtual void advance_density(const Lists& lists, Halo<D>& halo, double dt) = 0;
     virtual void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) = 0;
-    /// Of what evaluate() does at the start, the sums of wall particles.
-    virtual void sum_walls_alone(const Lists& lists, Halo<D>& halo) = 0;
+    /// Of what evaluate() does at the start, the sums of wall particles. Films between them go on
+    /// with this share of their last change.
+    virtual void sum_walls_alone(const Lists& lists, Halo<D>& halo, double inertia) = 0;
     virtual void end_step() = 0;
     /// What fluid gives to wall particles against the normal of a face.
     virtual void push_on(const Lists& lists, const FacePlane<D>& face,

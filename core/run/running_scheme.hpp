@@ -77,9 +77,9 @@ public:
     void evaluate(const Lists& lists, Halo<D>& halo, double half_dt, bool new_lists) override {
         scheme_.evaluate(state_, lists, halo, half_dt, new_lists);
     }
-    void sum_walls_alone(const Lists& lists, Halo<D>& halo) override {
-        if constexpr (requires { scheme_.sum_walls_alone(state_, lists, halo); })
-            scheme_.sum_walls_alone(state_, lists, halo);
+    void sum_walls_alone(const Lists& lists, Halo<D>& halo, double inertia) override {
+        if constexpr (requires { scheme_.sum_walls_alone(state_, lists, halo, inertia); })
+            scheme_.sum_walls_alone(state_, lists, halo, inertia);
     }
     void end_step() override { scheme_.end_step(state_); }
     void push_on(const Lists& lists, const FacePlane<D>& face, std::span<const std::uint32_t> walls,
