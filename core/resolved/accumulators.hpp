@@ -67,6 +67,7 @@ struct WallAccumulators {
     Vec<T, D> area;      // that it sees of the fluid, outwards, over the wall particle's volume
     // Over the faces of other bodies around its own:
     Vec<T, D> film_force, face_velocity, to_face;
+    Vec<T, D> facing;  // how much they are in front of each face at an edge
     T cover{}, film_pressure{}, film_density{};
 
     template <class F, class... Self>
@@ -74,7 +75,7 @@ struct WallAccumulators {
         f(self.force...), f(self.moment...), f(self.weight...), f(self.height...);
         f(self.pressure...), f(self.density...), f(self.viscosity...);
         f(self.velocity...), f(self.area...), f(self.film_force...);
-        f(self.face_velocity...), f(self.to_face...), f(self.cover...);
+        f(self.face_velocity...), f(self.to_face...), f(self.facing...), f(self.cover...);
         f(self.film_pressure...), f(self.film_density...);
     }
 };
@@ -301,6 +302,41 @@ DOSEKI_FN void add_fluid_to_face(FaceAccumulators<T, D>& sums, const FlowConstan
     for (int a = 0; a < D; ++a) sums.lever[a] += front * r_jw[a];
 }
 
+/// Whether a wall particle is at an edge: another face than its own, which is not that of the other
+/// side, is in its support.
+template <class T, int D>
+DOSEKI_FN auto is_at_edge(const WallFields<T, D>& w, const T& inverse_support) {
+    const Vec<T, D> first = row(w.faces, 0), second = row(w.faces, 1);
+    const T half = number<T>(0.5);
+    return dot(second, second) > half && dot(first, second) > -half &&
+           w.depths[1] * inverse_support < T(1);
+}
+
+/// How much of the film at the face k of w a particle at `to` from it bears: what is in front of
+/// that face, within 45 degrees, and a little of it all others, as nothing may be there.
+template <class T, int D>
+DOSEKI_FN T in_front_of(const WallFields<T, D>& w, int k, const Vec<T, D>& to,
+                        const T& inverse_support) {
+    const T little = number<T>(0.0001);  // of the square of the support
+    const T height = max(T(0), dot(row(w.faces, k), to));
+    return max(T(0), number<T>(2) * height * height - dot(to, to)) * inverse_support *
+               inverse_support +
+           little;
+}
+
+/// The force of the film of w that a particle at `to` from it bears, with this share of w.
+template <class T, int D>
+DOSEKI_FN Vec<T, D> film_force_on(const WallFields<T, D>& w, const Vec<T, D>& to, const T& share,
+                                  const T& inverse_support) {
+    Vec<T, D> of_faces, force;
+    for (int k = 0; k < D; ++k)
+        of_faces = of_faces + (w.film_traction[k] * in_front_of<T, D>(w, k, to, inverse_support)) *
+                                  row(w.faces, k);
+    const auto at_edge = is_at_edge<T, D>(w, inverse_support);
+    for (int a = 0; a < D; ++a) force[a] = share * select(at_edge, of_faces[a], w.film_traction[a]);
+    return force;
+}
+
 /// What a face v of another body adds to a face w: the pressure of the film between them, and their
 /// share in the force of that film, which is the opposite for v.
 template <class Kernel, class T, int D>
@@ -319,13 +355,17 @@ DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& grav
         sums.face_velocity[a] += share * v.v[a];
         sums.to_face[a] -= share * pair.r_ij[a];
     }
+    const Vec<T, D> to_v = T(-1) * pair.r_ij;
+    for (int k = 0; k < D; ++k)
+        sums.facing[k] += share * in_front_of<T, D>(w, k, to_v, inverse_support);
     sums.cover += share;
     sums.film_pressure += share * head;
     sums.film_density += share * v.film_density;
     // Two bodies that move have the force of one film each.
     const T both = select(own >= body && other >= body, number<T>(0.5), T(1));
-    for (int a = 0; a < D; ++a)
-        sums.film_force[a] += both * (share * w.film_traction[a] - of_other * v.film_traction[a]);
+    sums.film_force =
+        sums.film_force + both * (film_force_on<T, D>(w, to_v, share, inverse_support) -
+                                  film_force_on<T, D>(v, pair.r_ij, of_other, inverse_support));
 }
 
 }  // namespace doseki

@@ -109,7 +109,28 @@ private:
         const double size = std::sqrt(dot(hidden, hidden));
         if (size == 0.0) return {};
         const double pressure = pressure_at_surface(p, (1.0 / size) * hidden, sums);
-        return (-pressure / std::max(sums.cover, least_cover(p))) * hidden;
+        const Vec<double, D> traction = (-pressure / std::max(sums.cover, least_cover(p))) * hidden;
+        const auto inverse_support =
+            static_cast<real>(1.0 / (model_.kernel_support() * state_.smoothing_length[p]));
+        return is_at_edge<real, D>(records_[p - first_wall_], inverse_support)
+                   ? by_faces(p, traction, sums)
+                   : traction;
+    }
+
+    /// Of each face at an edge, over how much others are in front of it: what adds up to all of it.
+    DOSEKI_DEVICE_FN Vec<double, D> by_faces(std::size_t p, const Vec<double, D>& traction,
+                                             const WallAccumulators<double, D>& sums) const {
+        constexpr int sweeps = 8;  // of faces that are not at right angles
+        const Mat<double, D>& faces = state_.wall.edge_normals[p];
+        Vec<double, D> left = traction, found{};
+        for (int n = 0; n < sweeps; ++n)
+            for (int k = 0; k < D; ++k) {
+                const double along = dot(left, row(faces, k));
+                found[k] += along, left = left - along * row(faces, k);
+            }
+        for (int k = 0; k < D; ++k)
+            found[k] = sums.facing[k] > 0.0 ? found[k] * sums.cover / sums.facing[k] : 0.0;
+        return found;
     }
 
     DOSEKI_DEVICE_FN double farthest(std::size_t p) const {

@@ -85,7 +85,7 @@ def forces(tmp_path: Path):
         running, turn = Running(str(path)), np.radians(angle)
         axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
         found = []
-        for time in np.linspace(0.75, 1, 20):
+        for time in np.linspace(0.75, 1, 100):  # sound swings by a sixth of the thrust
             state = running.advance(time)
             found.append(
                 [axes @ state["force"][state["body"] == k].sum(0)

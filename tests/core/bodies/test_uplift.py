@@ -97,6 +97,43 @@ def test_it_has_its_uplift_from_the_first_step_on(across, tilt):
     assert up @ flow_force(run, 0.0) / (9810 * SIDE**2) == pytest.approx(1, abs=CLOSE)
 
 
+@pytest.mark.parametrize("wide", [6, 16])
+def test_a_wide_slab_has_its_uplift_from_the_first_step_on(wide):
+    """Pressure creeps in as the square of the width."""
+    across = 10
+    run = Running(
+        BLOCK, f"across={across}", f"depth={3 * SIDE}", f"width={(wide + 2) * SIDE}",
+        f"body.block.min=[{SIDE}, 0]", f"body.block.max=[{(wide + 1) * SIDE}, {SIDE}]",
+    )  # fmt: skip
+    lift = flow_force(run, 0.0)[1] / (9810 * wide * SIDE**2)
+    assert lift == pytest.approx(1, abs=2 * CLOSE)
+
+
+BLOCK_BESIDE = """
+[body.beside]
+shape = "box"
+material = "stone"
+min = ["= place + side/2", 0]
+max = ["= place + 1.5*side", "= side"]
+"""
+
+
+@pytest.mark.parametrize("depth", [0.3, 0.6])
+def test_blocks_side_by_side_keep_most_of_their_uplift(tmp_path, depth):
+    """Each bore a part of what lifts the other, 0.7 spacings times the pressure at its foot."""
+    tank = (CASES / "grains" / f"{BLOCK}.toml").read_text()
+    (tmp_path / "two.toml").write_text(tank + BLOCK_BESIDE)
+    run = Running(
+        str(tmp_path / "two.toml"), "across=10", f"depth={depth}", "width=0.5", "place=0.2"
+    )
+    grains = run.simulation.grains()
+    moving = np.flatnonzero(np.asarray(grains["fixed"]) == 0)
+    lost = 1 - grains["flow_force"][moving, 1] / (9810 * SIDE**2)
+    assert len(moving) == 2
+    assert lost[0] == pytest.approx(lost[1], abs=1e-6)
+    assert np.all(lost * SIDE**2 < 0.35 * (SIDE / 10) * depth)
+
+
 @pytest.mark.parametrize(("across", "depth"), [(6, 1.5), (6, 3), (10, 3)])
 def test_coarse_blocks_and_deep_water(across, depth):
     """Pressure of the whole depth is on all sides, and what lifts is a small difference."""
