@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....scenario.model import Scenario
+from ....scenario.schemes import RESOLVED
 from ....util.finding import Finding
 from ...groups import Group, matrices
 from ...meeting import meeting_pairs
@@ -48,7 +49,8 @@ class _Side(NamedTuple):
 def gap_findings(scenario: Scenario, groups: list[Group]) -> Iterator[Finding]:
     """One finding for each two bodies that move, or one and a fixed one, with such a gap."""
     gravity = np.asarray(scenario.gravity)
-    if not scenario.liquids or not scenario.uplift or not gravity.any():
+    has_films = scenario.scheme == RESOLVED and scenario.uplift and scenario.liquids
+    if not has_films or not gravity.any():
         return
     sides = [side for group in groups if not group.elastic for side in _sides(group, scenario.dim)]
     if not sides:
