@@ -52,8 +52,10 @@ struct WallState {
     WallField<double> film_change;   // of its pressure in the last step [Pa]
     WallField<double> film_cover;    // share of it that other faces cover
     WallField<double> film_density;  // of the fluid that presses on it [kg/m^3]; 0: dry
-    WallField<Vec<double, D>> film_traction;  // force on it over the sum of weights of other faces
-    WallField<BodyKind> body_kind;            // of bound particles
+    // Force on it over the sum of weights of other faces; at edges, see is_at_edge, that along each
+    // face over how much others are in front of it.
+    WallField<Vec<double, D>> film_traction;
+    WallField<BodyKind> body_kind;  // of bound particles
     // Index among the points of bodies of that kind; of a terrain's particle, its tile.
     WallField<std::int32_t> point;
 

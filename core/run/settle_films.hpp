@@ -19,7 +19,7 @@ double change_of_films(const Particles<D>& particles) {
 
 /// The pressure of films runs in from their rims, for thousands of steps under a wide body. A run
 /// begins with those that have had the time for it. Inertia grows from sum to sum: the narrow ones
-/// are done first, and the wide ones take some twenty sums for each spacing of their width.
+/// are done first, and the wide ones take some ten to twenty sums for each spacing of their width.
 /// Returns whether there are any.
 template <class Lists>
 bool settle_films(AnyScheme<Lists>& scheme, const Lists& lists, Halo<Lists::dim>& halo) {

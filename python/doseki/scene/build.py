@@ -23,6 +23,7 @@ from .carried import (
     present,
 )
 from .checks.bodies.clamping import clamp_findings, clamped_points
+from .checks.bodies.gaps import gap_findings
 from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps, period_findings
 from .checks.outflows import far_findings, outflow_findings
@@ -104,6 +105,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         warnings += resolution_warnings(bodies, groups)
         warnings += fracture_warnings(bodies, made)
         warnings += period_findings(scenario, groups)
+        warnings += gap_findings(scenario, groups)
         check_overlaps(scenario, groups)
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)

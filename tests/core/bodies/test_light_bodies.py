@@ -69,7 +69,7 @@ def write(tmp_path):
 
 @pytest.mark.parametrize(
     ("density", "radius", "expected"),
-    [(100, 0.1, 0.25), (50, 0.2, 0.25), (600, 0.1, 0.8), (100, 0.3, 0.75), (100, 0.32, 0.8)],
+    [(100, 0.1, 0.2), (50, 0.2, 0.2), (600, 0.1, 0.8), (100, 0.3, 0.6), (100, 0.4, 0.8)],
 )
 def test_the_step_follows_from_density_and_size(write, density, radius, expected):
     scenario = load_scenario(write(density=density, radius=radius))

@@ -47,7 +47,7 @@ def stable_cflnumber(
 def _limits(
     tables: ScenarioTable, materials: Mapping[str, Material]
 ) -> Iterator[tuple[str, float]]:
-    """Of each table of rigid bodies, in the densest liquid there is: s R/dp."""
+    """Of each table of rigid bodies, in the densest liquid there is: 0.8 s R/dp, Eq. (178)."""
     used = [body.material for body in tables.body.values()]
     used += [inflow.material for inflow in tables.inflow.values()]
     known = [materials[name] for name in used if name is not None]
@@ -58,7 +58,7 @@ def _limits(
         material, across = materials[body.material], _across(body, tables.dp)
         kinematics = body.kinematics_in(tables.scheme, material.law)
         if kinematics.is_whole and kinematics != ELASTIC and across > 0:
-            yield name, 0.5 * across * material.rho0 / max(liquids)
+            yield name, 0.4 * across * material.rho0 / max(liquids)
 
 
 def _across(body: BodyTable, dp: float) -> float:
