@@ -38,8 +38,12 @@ class Ledger:
         return values - values[0]
 
     def _vector(self, name: str) -> np.ndarray:
+        values = self._vector_values(name)
+        return np.asarray(values - values[0])
+
+    def _vector_values(self, name: str) -> np.ndarray:
         axes = "xyz"[: self.run.scenario["dim"]]
-        return np.array([self._column(f"{name}_{axis}") for axis in axes]).T
+        return np.array([self._values(f"{name}_{axis}") for axis in axes]).T
 
     @property
     def deforms(self) -> bool:
@@ -57,13 +61,8 @@ class Ledger:
         outside = ("impulse", "momentum_entered", "momentum_left")
         pushed = max(float(np.max(np.abs(self._vector(name)))) for name in outside)
         changes = float(np.ptp(self._values("mass")))
-        rounding = ROUNDING * float(np.max(np.linalg.norm(self._momentum, axis=1)))
+        rounding = ROUNDING * float(np.max(np.linalg.norm(self._vector_values("momentum"), axis=1)))
         return pushed <= rounding and changes <= ROUNDING * float(np.max(self._values("mass")))
-
-    @property
-    def _momentum(self) -> np.ndarray:
-        axes = "xyz"[: self.run.scenario["dim"]]
-        return np.array([self._values(f"momentum_{axis}") for axis in axes]).T
 
     @property
     def _kinetic(self) -> np.ndarray:
@@ -71,7 +70,8 @@ class Ledger:
         kinetic, mass = self._values("kinetic_energy"), self._values("mass")
         if not self._is_alone:
             return kinetic
-        of_centre = np.sum(self._momentum**2, axis=1) / (2 * np.where(mass > 0, mass, np.inf))
+        of_centre = np.sum(self._vector_values("momentum") ** 2, axis=1)
+        of_centre = of_centre / (2 * np.where(mass > 0, mass, np.inf))
         return np.asarray(np.maximum(0.0, kinetic - of_centre))
 
     @property

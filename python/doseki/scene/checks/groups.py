@@ -63,7 +63,9 @@ class _Ball(NamedTuple):
     radius: float
 
 
-class _Block(NamedTuple):
+class Block(NamedTuple):
+    """A convex body with sides, in place; lengths in m."""
+
     name: str
     fixed: bool
     centre: np.ndarray  # (dim,)
@@ -90,7 +92,7 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     """Raise UserError where a body that moves overlaps another by more than contacts may."""
     groups = _with_images(scenario, groups)
     balls = [ball for group in groups for ball in _balls(group)]
-    blocks = [block for group in groups for block in _blocks(group, scenario)]
+    blocks = [block for group in groups for block in blocks_of(group, scenario)]
     meshes = [mesh for group in groups for mesh in _meshes(group, scenario)]
     allowed = scenario.contact.overlap
     for name, other, overlap, size in [
@@ -214,25 +216,23 @@ def _is_held_by(scenario: Scenario, name: str, other: str) -> bool:
 Overlap = tuple[str, str, float, float]  # of a body that moves, with, by m, its size in m
 
 
-def _overlaps(balls: list[_Ball], blocks: list[_Block]) -> Iterator[Overlap]:
+def _overlaps(balls: list[_Ball], blocks: list[Block]) -> Iterator[Overlap]:
     for ball in balls:
         if not ball.fixed:
             yield from _of_balls(ball, ball)
     for one, other in _near(balls, blocks):
         if one.fixed and other.fixed:
             continue
-        if isinstance(one, _Block):
-            assert isinstance(other, _Block)
+        if isinstance(one, Block):
+            assert isinstance(other, Block)
             yield from _of_blocks(one, other)
-        elif isinstance(other, _Block):
+        elif isinstance(other, Block):
             yield from _of_ball_and_block(one, other)
         else:
             yield from _of_balls(one, other)
 
 
-def _near(
-    balls: list[_Ball], blocks: list[_Block]
-) -> Iterator[tuple[_Ball | _Block, _Ball | _Block]]:
+def _near(balls: list[_Ball], blocks: list[Block]) -> Iterator[tuple[_Ball | Block, _Ball | Block]]:
     """Pairs that may overlap, balls first."""
     if not balls and not blocks:
         return
@@ -240,12 +240,12 @@ def _near(
     ends += [(block.centre, block.centre, block.reach) for block in blocks]
     low, high = (np.array([end[k] for end in ends]) for k in (0, 1))
     reach = np.array([end[2] for end in ends])[:, None]
-    solids: list[_Ball | _Block] = [*balls, *blocks]
+    solids: list[_Ball | Block] = [*balls, *blocks]
     for first, second in meeting_pairs(low - reach, high + reach):
         yield solids[first], solids[second]
 
 
-def _of_blocks(first: _Block, second: _Block) -> Iterator[Overlap]:
+def _of_blocks(first: Block, second: Block) -> Iterator[Overlap]:
     if float(np.linalg.norm(first.centre - second.centre)) > first.reach + second.reach:
         return
     moving, other_name = (second, first.name) if first.fixed else (first, second.name)
@@ -261,7 +261,7 @@ def _balls(group: Group) -> Iterator[_Ball]:
                 yield _Ball(group.name, group.fixed, centre, shape.radius)
 
 
-def _with_ground(scenario: Scenario, balls: list[_Ball], blocks: list[_Block]) -> Iterator[Overlap]:
+def _with_ground(scenario: Scenario, balls: list[_Ball], blocks: list[Block]) -> Iterator[Overlap]:
     """What moves and lies in the ground of a terrain."""
     if scenario.bed is None:
         return
@@ -276,9 +276,7 @@ def _with_ground(scenario: Scenario, balls: list[_Ball], blocks: list[_Block]) -
             yield block.name, TERRAIN, float(deepest), 2 * block.reach
 
 
-def _with_meshes(
-    balls: list[_Ball], blocks: list[_Block], meshes: list[_Mesh]
-) -> Iterator[Overlap]:
+def _with_meshes(balls: list[_Ball], blocks: list[Block], meshes: list[_Mesh]) -> Iterator[Overlap]:
     for mesh in meshes:
         for ball in balls:
             if not ball.fixed:
@@ -299,7 +297,8 @@ def _meshes(group: Group, scenario: Scenario) -> Iterator[_Mesh]:
             yield _Mesh(group.name, shape, group.centre[k], turned, samples)
 
 
-def _blocks(group: Group, scenario: Scenario) -> Iterator[_Block]:
+def blocks_of(group: Group, scenario: Scenario) -> Iterator[Block]:
+    """Those among the bodies of a group."""
     for k, turned in enumerate(matrices(group.orientation, scenario.dim)):
         shape = group.shapes[group.shape[k]]
         if isinstance(shape, Convex):
@@ -308,7 +307,7 @@ def _blocks(group: Group, scenario: Scenario) -> Iterator[_Block]:
             corners = shape.vertices[shape.faces] @ turned.T + centre
             samples = shape.samples(scenario.dp) @ turned.T + centre
             offset = distance + normal @ centre
-            yield _Block(
+            yield Block(
                 group.name, group.fixed, centre, normal, offset, corners, samples, shape.reach
             )
 
@@ -328,7 +327,7 @@ def _of_balls(one: _Ball, other: _Ball) -> Iterator[Overlap]:
     yield moving.name, still.name, float(worst), 2 * moving.radius
 
 
-def _of_ball_and_block(ball: _Ball, block: _Block) -> Iterator[Overlap]:
+def _of_ball_and_block(ball: _Ball, block: Block) -> Iterator[Overlap]:
     beyond = (ball.centre @ block.normal.T - block.offset).max(axis=1)
     near = beyond < ball.radius
     if near.any():
@@ -358,7 +357,7 @@ def _distance(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.min(distances, axis=0)
 
 
-def _common_width(one: _Block, other: _Block) -> float:
+def _common_width(one: Block, other: Block) -> float:
     """Diameter of the largest ball that lies in both, m; below zero where they are apart."""
     from scipy.optimize import linprog
 

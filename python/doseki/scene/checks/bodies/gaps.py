@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from ....scenario.model import Scenario
 from ....scenario.schemes import RESOLVED
 from ....util.finding import Finding
-from ...groups import Group, matrices
+from ...groups import Group
 from ...meeting import meeting_pairs
-from ...shapes import Convex
+from ..groups import Block, blocks_of
 
 NARROW, WIDE = 0.2, 0.75  # spacings: between them the film loses its pressure towards the bed
 OPPOSITE = 0.98  # minus the cosine between normals of faces that look at each other
@@ -37,55 +36,38 @@ class NarrowGap(Finding):
         )
 
 
-class _Side(NamedTuple):
-    """The faces of one body, in place."""
-
-    group: Group
-    vertices: np.ndarray  # (n, dim)
-    normal: np.ndarray  # (m, dim)
-    offset: np.ndarray  # (m,) of the planes: normal.x <= offset inside
-
-
 def gap_findings(scenario: Scenario, groups: list[Group]) -> Iterator[Finding]:
     """One finding for each two bodies that move, or one and a fixed one, with such a gap."""
     gravity = np.asarray(scenario.gravity)
     has_films = scenario.scheme == RESOLVED and scenario.uplift and scenario.liquids
     if not has_films or not gravity.any():
         return
-    sides = [side for group in groups if not group.elastic for side in _sides(group, scenario.dim)]
-    if not sides:
+    blocks = [b for group in groups if not group.elastic for b in blocks_of(group, scenario)]
+    if not blocks:
         return
     low, high = (
-        np.array([end(side.vertices, axis=0) for side in sides]) for end in (np.min, np.max)
+        np.array([end(b.corners, axis=(0, 1)) for b in blocks]) for end in (np.min, np.max)
     )
-    up, reach, told = gravity / np.linalg.norm(gravity), WIDE * scenario.dp, set[tuple[str, str]]()
+    down, reach = gravity / np.linalg.norm(gravity), WIDE * scenario.dp
+    told = set[tuple[str, str]]()
     for first, second in meeting_pairs(low - 0.5 * reach, high + 0.5 * reach):
-        one, other = sides[first], sides[second]
-        if one.group.fixed:
+        one, other = blocks[first], blocks[second]
+        if one.fixed:
             one, other = other, one
-        names = one.group.name, other.group.name
-        if one.group.fixed or names in told:
+        names = one.name, other.name
+        if one.fixed or names in told:
             continue
         gap, normal = _gap(one, other)
-        if NARROW * scenario.dp < gap < reach and abs(normal @ up) < UPRIGHT:
+        if NARROW * scenario.dp < gap < reach and abs(normal @ down) < UPRIGHT:
             told.add(names)
             yield NarrowGap(f"body.{names[0]}", names[1], gap, scenario.dp)
 
 
-def _sides(group: Group, dim: int) -> Iterator[_Side]:
-    for k, turned in enumerate(matrices(group.orientation, dim)):
-        shape = group.shapes[group.shape[k]]
-        if isinstance(shape, Convex):
-            normal, distance = shape.planes[0] @ turned.T, shape.planes[1]
-            vertices = shape.vertices @ turned.T + group.centre[k]
-            yield _Side(group, vertices, normal, distance + normal @ group.centre[k])
-
-
-def _gap(one: _Side, other: _Side) -> tuple[float, np.ndarray]:
+def _gap(one: Block, other: Block) -> tuple[float, np.ndarray]:
     """How far apart two are along a normal that both have, m, and that; -inf where none has it."""
     best, along = -np.inf, np.zeros(one.normal.shape[1])
     for near, far in ((one, other), (other, one)):
-        apart = (far.vertices @ near.normal.T).min(axis=0) - near.offset
+        apart = (far.corners @ near.normal.T).min(axis=(0, 1)) - near.offset
         faces = (near.normal @ far.normal.T).min(axis=1) < -OPPOSITE
         apart = np.where(faces, apart, -np.inf)
         if apart.max() > best:
