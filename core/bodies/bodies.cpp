@@ -2,6 +2,8 @@
 
 #include "bodies/bodies.hpp"
 
+#include <numeric>
+
 #include "bodies/contact_forces.hpp"
 #include "bodies/deformable/rigid_shape.hpp"
 #include "bodies/fragments/dust_room.hpp"

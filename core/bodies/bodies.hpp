@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <span>
 
 #include "base/array.hpp"
@@ -15,6 +14,7 @@
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/particles/rigid_particles.hpp"
 #include "bodies/rigid_bodies.hpp"
+#include "bodies/steps/companions.hpp"
 
 namespace doseki {
 
@@ -287,7 +287,7 @@ private:
     /// Looks for contacts that a step would meet; returns whether it had to.
     bool look_ahead(double step);
     void find_contacts() {
-        moved_ = 0.0;
+        moved_ = 0.0, companions_.count_anew();
         contacts_.find(contact_, margin_);
         deformable.choose(contact_, contacts_.points_of_deformable());
         find_companions();
@@ -305,7 +305,7 @@ private:
     }
     /// That of what is deformable and of dust, and of what that may strike.
     double shorter_step() const {
-        if (companions_.empty() && !deformable.any_deforms())
+        if (companions_.none() && !deformable.any_deforms())
             return std::numeric_limits<double>::infinity();
         return std::min(
             {longest_step(PairKind::fast), deformable_step_, deformable.unstrained_timestep()});
@@ -334,8 +334,8 @@ private:
     double memory_;
     Contacts<D> contacts_;
     BreakableBodies<D> breakable_;
-    Array<std::uint32_t> companions_, others_;  // rigid bodies in short steps, and in long ones
-    bool rebinds_ = false;                      // whether bodies have changed since place()
+    Companions companions_;
+    bool rebinds_ = false;  // whether bodies have changed since place()
     RigidParticles<D> rigid_particles_;
     Origins rigid_origins_, deformable_origins_;
     std::int32_t numbers_ = 0;                        // of bodies, given so far
@@ -362,7 +362,7 @@ void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
     archive.nested("deformable_origin_", deformable_origins_);
     archive("body_numbers", numbers_), archive("bodies_at_start", rigid_at_start_);
     if (archive.loads()) {
-        dust_points_.clear(), rebinds_ = false;  // of the state that was there
+        dust_points_.clear(), rebinds_ = false, companions_ = {};  // of the state that was there
         expect_fit(rigid_origins_.size() == rigid.size() &&
                        deformable_origins_.size() == deformable.bodies(),
                    "body_numbers");

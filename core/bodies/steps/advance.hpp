@@ -108,9 +108,11 @@ void Bodies<D>::find_companions() {
     };
     contacts_.for_each_pair_of(PairKind::fast,
                                [&](std::int32_t a, std::int32_t b) { mark(a), mark(b); });
-    companions_.clear(), others_.clear();
-    for (std::uint32_t k = 0; k < rigid.size(); ++k)
-        (is_companion[k] ? companions_ : others_).push_back(k);
+    companions_.choose(is_companion);
+    const Array<std::uint32_t> late = companions_.take_late();
+    if (late.empty()) return;
+    moved_ += rigid.drift(-companions_.ahead(), late);
+    rigid.show(contact_, all_points_);
 }
 
 /// The longest of slow contacts, in each half of which are whole short ones.
@@ -153,12 +155,13 @@ void Bodies<D>::step_at_once(const MovingWalls<D>& walls, double t, double dt, C
 
 template <int D>
 void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Course& course) {
-    Array<std::uint32_t> together = companions_;  // and dust that is born on the way
-    double ahead = rigid.drift(dt, others_);
+    const double ahead = rigid.drift(dt, companions_.others());
+    companions_.begin(dt, ahead, rigid.size());
     moved_ += ahead;
     auto drift_together = [&](double now, double step) {
-        const double way = std::max(deformable.drift(step), rigid.drift(step, together));
-        moved_ += std::max(0.0, way - ahead), ahead = std::max(0.0, ahead - way);
+        const double way =
+            std::max(deformable.drift(step), rigid.drift(step, companions_.together()));
+        moved_ += companions_.catch_up(step, way);
         follow_walls(walls, now, step);
     };
     for (double left = dt; left > 0.0;) {
@@ -167,15 +170,15 @@ void Bodies<D>::drift_apart(const MovingWalls<D>& walls, double t, double dt, Co
                      now = t + (dt - left);
         drift_together(now, 0.5 * step);
         const std::size_t before = rigid.size();
-        if (!together.empty() || deformable.any_deforms())
+        if (!companions_.together().empty() || deformable.any_deforms())
             push_fast(now, step, course);
         else
             course.on_points += step;
-        for (std::size_t k = before; k < rigid.size(); ++k)
-            together.push_back(static_cast<std::uint32_t>(k));
+        companions_.take_born(before, rigid.size());
         drift_together(now + 0.5 * step, 0.5 * step);
         left = steps > 1.0 ? left - step : 0.0;
     }
+    companions_.end();
 }
 
 template <int D>
