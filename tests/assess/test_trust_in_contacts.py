@@ -1,4 +1,4 @@
-"""The trust report on overlaps of contacts: collisions between snapshots count."""
+"""The trust report on contacts: overlaps between snapshots count, and contacts give nothing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doseki.assess.trust.report import trust_checks
-from doseki.assess.trust.verdicts import BAD, GOOD
+from doseki.assess.trust.verdicts import BAD, GOOD, NOT_AVAILABLE
 from doseki.record.reader import load
 from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
@@ -47,8 +47,12 @@ def run_of_discs(folder, speed, way):
     return load(folder / "run")
 
 
+def check_of(run, name):
+    return next(check for check in trust_checks(run) if check.name == name)
+
+
 def overlap_of_contacts(run):
-    return next(check for check in trust_checks(run) if check.name == "overlap of contacts")
+    return check_of(run, "overlap of contacts")
 
 
 @pytest.mark.parametrize("way", [(1, 0), (0, 1)])
@@ -75,3 +79,29 @@ def test_a_run_that_is_not_over_has_snapshots_alone(tmp_path):
     check = overlap_of_contacts(load(run.directory))
     assert check.value == 0
     assert "largest of 2 snapshots alone" in check.counted
+
+
+def test_contacts_that_give_energy_are_told_of(tmp_path):
+    run = run_of_discs(tmp_path, SPEED, (1, 0))
+    check = check_of(run, "energy of contacts")
+    assert check.verdict == GOOD
+    assert check.value < 1e-6
+    history = tmp_path / "run" / "history.csv"
+    *rows, last = history.read_text(encoding="utf-8").splitlines()
+    values = last.split(",")
+    given = 0.1 * run.history["kinetic_energy"].max()
+    values[rows[0].split(",").index("contact_work")] = f"{given:g}"
+    history.write_text("\n".join([*rows, ",".join(values), ""]), encoding="utf-8")
+    check = check_of(load(tmp_path / "run"), "energy of contacts")
+    assert check.verdict == BAD
+    assert "report it" in check.remedy
+
+
+def test_walls_that_move_may_give_energy(tmp_path):
+    moves = "fixed = true\nmotion = { velocity = [-1, 0] }\n[body.beside]"
+    text = DISCS.format(speed=SPEED, centre=[-0.3, 0], velocity=[1, 0]) + moves
+    text += '\nshape = "disc"\nmaterial = "basalt"\ncentre = [0, 0.4]\nradius = 0.1\n'
+    (tmp_path / "moves.toml").write_text(text, encoding="utf-8")
+    run_scenario(load_scenario(str(tmp_path / "moves.toml")), tmp_path / "moves")
+    check = check_of(load(tmp_path / "moves"), "energy of contacts")
+    assert check.verdict == NOT_AVAILABLE

@@ -113,6 +113,20 @@ def momentum_check(run: Run, seen: Seen) -> Check:
     return judged(name, value, limits, counted, remedy, drift=drift, scale=scale)
 
 
+def contact_energy_check(run: Run, seen: Seen) -> list[Check]:
+    """That contacts of bodies give no energy; of runs without an account or such bodies, none."""
+    ledger = ledger_of(run)
+    if ledger is None or not seen.bodies_move:
+        return []
+    bodies = run.scenario.get("body", {}).values()
+    why = ""
+    if seen.walls_go or any("motion" in body and body.get("enabled", True) for body in bodies):
+        why = "walls that move give energy through contacts"
+    elif run.scenario.get("start"):
+        why = "contacts may have had energy at the start"
+    return [ledger.contact_check("energy of contacts", why)]
+
+
 def is_clamped(run: Run) -> bool:
     """Whether points of a body are held in place."""
     bodies = run.scenario.get("body", {}).values()

@@ -20,6 +20,7 @@ OF_BODIES = "elastic_energy"  # without it in the history, nothing of deformable
 # moves there is no more than rounding.
 ROUNDING, FAST = 1e-12, 100.0  # share, m/s
 NUMERICAL = (0.01, 0.05)  # work of corrections over the largest energy that took part
+CONTACTS = (0.01, 0.05)  # what contacts gave, over the same
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,18 @@ class Ledger:
         remedy = "lower dp; shifting = false tells what shifting takes"
         value = work / largest if largest else work
         return judged(name, value, NUMERICAL, counted, remedy, work=work, largest=largest)
+
+    def contact_check(self, name: str, unseen: str) -> Check:
+        """What contacts gave: they begin without energy, so that they only take. `unseen`: why it
+        is not known, if it is not.
+        """
+        if self.unknown or unseen:
+            return unknown(name, CONTACTS, self.unknown or unseen)
+        gained, largest = float(np.max(self._column("contact_work"))), self.largest
+        counted = "all rows of the history: the most that contacts of bodies had given"
+        remedy = "this is a mistake in doseki: report it; a smaller time_out may help"
+        value = gained / largest if largest else gained
+        return judged(name, value, CONTACTS, counted, remedy, gained=gained, largest=largest)
 
     def momentum_check(self, name: str, limits: tuple[float, float]) -> Check:
         """Momentum against start + impulses of outer forces + entered - left."""

@@ -12,7 +12,7 @@ from ...record.writer import jsonable
 from ...scenario.schemes import UETA2022
 from ...util.files import write_whole_text
 from ..sound_speed import sound_speed_from
-from .balances import energy_check, momentum_check
+from .balances import contact_energy_check, energy_check, momentum_check
 from .checks import (
     contact_check,
     density_check,
@@ -44,6 +44,7 @@ def trust_checks(run: Run) -> list[Check]:
         *ground_check(run),
         contact_check(seen, *given),
         *deformable_checks(run, seen),
+        *contact_energy_check(run, seen),
         *([tension_check(seen.tension)] if is_resolved(scenario) else []),
         *(faces_check(run) if is_resolved(scenario) else []),
         *([overlap_check(run, seen)] if seen.bodies_move else []),
