@@ -128,3 +128,10 @@ def test_what_begins_after_the_end_is_told(told, tables, place):
 @pytest.mark.parametrize("tables", [GATE.format(times="start = 0.9"), SPRING.format(first=0.1)])
 def test_what_begins_in_time_is_not(told, tables):
     assert told(tables) == []
+
+
+def test_an_interval_longer_than_the_run_is_told(told):
+    gauge = '[gauge.deep]\nkind = "pressure"\nposition = [0.5, 0.1]\ninterval = {}\n'
+    (said,) = told(gauge.format(1.5))
+    assert said.startswith("gauge.deep.interval = 1.5 s is longer than the run, time_max = 1 s")
+    assert told(gauge.format(1)) == []

@@ -1,4 +1,4 @@
-"""What would begin after a run has ended."""
+"""What would begin, or be due again, after a run has ended."""
 
 from __future__ import annotations
 
@@ -26,8 +26,25 @@ class TooLate(Finding):
         )
 
 
+@dataclass(frozen=True)
+class LongInterval(Finding):
+    """An interval between outputs that is longer than the run."""
+
+    interval: float  # s
+    time_max: float  # s
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place} = {self.interval:g} s is longer than the run, time_max = "
+            f"{self.time_max:g} s: nothing is written between its start and its end"
+        )
+
+
 def late_findings(scenario: Scenario) -> Iterator[Finding]:
-    """One for each motion, inflow and figure that this run sees nothing of; it may be continued."""
+    """One for each motion, inflow, figure and interval that this run sees nothing of.
+
+    It may be continued.
+    """
     for place, time in _beginnings(scenario):
         if time >= scenario.time_max:
             yield TooLate(place, time, scenario.time_max)
@@ -35,6 +52,20 @@ def late_findings(scenario: Scenario) -> Iterator[Finding]:
         times: list[float] = figure.given("times") or []
         if times and max(times) > scenario.time_max * (1 + ROUNDING):
             yield TooLate(f"figure.{name}.times", max(times), scenario.time_max)
+    for place, interval in _intervals(scenario):
+        if interval > scenario.time_max * (1 + ROUNDING):
+            yield LongInterval(place, interval, scenario.time_max)
+
+
+def _intervals(scenario: Scenario) -> Iterator[tuple[str, float]]:
+    """Those that are given."""
+    yield "time_out", scenario.time_out
+    yield "time_history", scenario.time_history
+    for name, gauge in scenario.gauge.items():
+        if gauge.interval is not None:
+            yield f"gauge.{name}.interval", gauge.interval
+    if scenario.maps is not None and scenario.maps.interval is not None:
+        yield "maps.interval", scenario.maps.interval
 
 
 def _beginnings(scenario: Scenario) -> Iterator[tuple[str, float]]:
