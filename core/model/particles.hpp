@@ -53,8 +53,9 @@ struct WallState {
     WallField<double> film_cover;    // share of it that other faces cover
     WallField<double> film_density;  // of the fluid that presses on it [kg/m^3]; 0: dry
     // Force on it over the sum of weights of other faces; at edges, see is_at_edge, that along each
-    // face over how much others are in front of it.
-    WallField<Vec<double, D>> film_traction;
+    // face over how much others are in front of it, and what those in front of its other faces bear
+    // along it.
+    WallField<Vec<double, D>> film_traction, film_aside;
     WallField<BodyKind> body_kind;  // of bound particles
     // Index among the points of bodies of that kind; of a terrain's particle, its tile.
     WallField<std::int32_t> point;
@@ -68,7 +69,7 @@ struct WallState {
         f("wall_pressure", pressure);
         f("face", face), f("face_area", area), f("face_wetted", wetted);
         f("film_change", film_change), f("film_density", film_density), f("film_cover", film_cover),
-            f("film_traction", film_traction);
+            f("film_traction", film_traction), f("film_aside", film_aside);
         f("body_kind", body_kind), f("point", point);
     }
 };

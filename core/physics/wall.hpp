@@ -130,17 +130,22 @@ struct Face {
     }
 };
 
-/// Sum of V W over a plane lattice of spacing dp at this distance.
-template <class Kernel, int D>
-double weight_of_row(double dp, double support, double distance) {
+/// Sum of V f(r) over a plane lattice of spacing dp at this distance.
+template <int D, class Function>
+double sum_over_row(double dp, double support, double distance, const Function& f) {
     const int reach = static_cast<int>(support / dp) + 1;
-    double weight = 0.0;
+    double sum = 0.0;
     for (int x = -reach; x <= reach; ++x)
         for (int y = D == 3 ? -reach : 0; y <= (D == 3 ? reach : 0); ++y)
-            weight += std::pow(dp, D) *
-                      Kernel::value(std::sqrt(distance * distance + dp * dp * (x * x + y * y)),
-                                    1.0 / support);
-    return weight;
+            sum += std::pow(dp, D) * f(std::sqrt(distance * distance + dp * dp * (x * x + y * y)));
+    return sum;
+}
+
+/// The same of V W.
+template <class Kernel, int D>
+double weight_of_row(double dp, double support, double distance) {
+    return sum_over_row<D>(dp, support, distance,
+                           [&](double r) { return Kernel::value(r, 1.0 / support); });
 }
 
 /// The gap between two walls in which there is no room for a fluid particle, told by what walls
@@ -198,6 +203,35 @@ struct FullCover {
         for (int k = 0; k <= steps; ++k)
             cover.weight[k] = weight_of_row<Kernel, D>(dp, support, dp + k * cover.step);
         return cover;
+    }
+};
+
+/// The area (87) of a particle below a plane face that goes on all around, over its volume.
+struct FlatArea {
+    static constexpr int steps = 12;
+    double step = 1.0;                        // of the depth below the face [m]
+    std::array<double, steps + 1> inverse{};  // [1/m]
+
+    DOSEKI_DEVICE_FN double at(double depth) const {
+        const double x = std::clamp(depth / step, 0.0, double(steps));
+        const int k = std::min(static_cast<int>(x), steps - 1);
+        return inverse[k] + (x - k) * (inverse[k + 1] - inverse[k]);
+    }
+
+    /// `scale` is that of kernel gradients, Eq. (25).
+    template <class Kernel, int D>
+    static FlatArea of(double dp, double support, double scale) {
+        FlatArea area{support / steps, {}};
+        const int rows = static_cast<int>(support / dp) + 1;
+        for (int k = 0; k <= steps; ++k)
+            for (int n = 0; n < rows; ++n) {
+                const double height = k * area.step + (n + 0.5) * dp;
+                area.inverse[k] -=
+                    2.0 * height * sum_over_row<D>(dp, support, height, [&](double r) {
+                        return scale * Kernel::gradient_factor(r, 1.0 / support);
+                    });
+            }
+        return area;
     }
 };
 

@@ -67,7 +67,8 @@ struct WallAccumulators {
     Vec<T, D> area;      // that it sees of the fluid, outwards, over the wall particle's volume
     // Over the faces of other bodies around its own:
     Vec<T, D> film_force, face_velocity, to_face;
-    Vec<T, D> facing;  // how much they are in front of each face at an edge
+    Vec<T, D> facing, facing_height;  // how much they are in front of each face at an edge, and
+                                      // the same times their height above it
     T cover{}, film_pressure{}, film_density{};
 
     template <class F, class... Self>
@@ -75,8 +76,8 @@ struct WallAccumulators {
         f(self.force...), f(self.moment...), f(self.weight...), f(self.height...);
         f(self.pressure...), f(self.density...), f(self.viscosity...);
         f(self.velocity...), f(self.area...), f(self.film_force...);
-        f(self.face_velocity...), f(self.to_face...), f(self.facing...), f(self.cover...);
-        f(self.film_pressure...), f(self.film_density...);
+        f(self.face_velocity...), f(self.to_face...), f(self.facing...), f(self.facing_height...);
+        f(self.cover...), f(self.film_pressure...), f(self.film_density...);
     }
 };
 
@@ -312,26 +313,36 @@ DOSEKI_FN auto is_at_edge(const WallFields<T, D>& w, const T& inverse_support) {
            w.depths[1] * inverse_support < T(1);
 }
 
-/// How much of the film at the face k of w a particle at `to` from it bears: what is in front of
-/// that face, within 45 degrees, and a little of it all others, as nothing may be there.
+/// How much a particle at `to` from w is in front of its face k, within 45 degrees, in squares of
+/// the support.
 template <class T, int D>
 DOSEKI_FN T in_front_of(const WallFields<T, D>& w, int k, const Vec<T, D>& to,
                         const T& inverse_support) {
-    const T little = number<T>(0.0001);  // of the square of the support
     const T height = max(T(0), dot(row(w.faces, k), to));
     return max(T(0), number<T>(2) * height * height - dot(to, to)) * inverse_support *
-               inverse_support +
-           little;
+           inverse_support;
 }
 
-/// The force of the film of w that a particle at `to` from it bears, with this share of w.
+/// The same of what is in front of none: a little of the film at a face, where nothing else may be.
+constexpr double in_front_of_none = 1e-4;
+
+/// The force of the film of w that a particle at `to` from it bears, with this share of w. At an
+/// edge, along each face, it is by what is in front of that face, and by what is in front of
+/// others.
 template <class T, int D>
 DOSEKI_FN Vec<T, D> film_force_on(const WallFields<T, D>& w, const Vec<T, D>& to, const T& share,
                                   const T& inverse_support) {
-    Vec<T, D> of_faces, force;
-    for (int k = 0; k < D; ++k)
-        of_faces = of_faces + (w.film_traction[k] * in_front_of<T, D>(w, k, to, inverse_support)) *
-                                  row(w.faces, k);
+    Vec<T, D> of_faces, force, in_front;
+    T all(0);
+    for (int k = 0; k < D; ++k) {
+        in_front[k] = in_front_of<T, D>(w, k, to, inverse_support);
+        all += in_front[k];
+    }
+    for (int k = 0; k < D; ++k) {
+        const T along = w.film_traction[k] * (in_front[k] + number<T>(in_front_of_none)) +
+                        w.film_aside[k] * (all - in_front[k]);
+        of_faces = of_faces + along * row(w.faces, k);
+    }
     const auto at_edge = is_at_edge<T, D>(w, inverse_support);
     for (int a = 0; a < D; ++a) force[a] = share * select(at_edge, of_faces[a], w.film_traction[a]);
     return force;
@@ -356,8 +367,11 @@ DOSEKI_FN void add_face(WallAccumulators<T, D>& sums, const Vec<double, D>& grav
         sums.to_face[a] -= share * pair.r_ij[a];
     }
     const Vec<T, D> to_v = T(-1) * pair.r_ij;
-    for (int k = 0; k < D; ++k)
-        sums.facing[k] += share * in_front_of<T, D>(w, k, to_v, inverse_support);
+    for (int k = 0; k < D; ++k) {
+        const T facing = share * in_front_of<T, D>(w, k, to_v, inverse_support);
+        sums.facing[k] += facing;
+        sums.facing_height[k] += facing * dot(row(w.faces, k), to_v);
+    }
     sums.cover += share;
     sums.film_pressure += share * head;
     sums.film_density += share * v.film_density;

@@ -93,6 +93,7 @@ struct ResolvedModel {
     double lattice_concentration = 1.0, own_concentration = 0.0;  // of that, a particle's own
     double own_gradient_factor = 0.0;                             // of a particle with itself
     FullCover full_cover;
+    FlatArea flat_area;
     NarrowGap narrow_gap;
     std::array<double, D + 1> spacing_power{1.0};  // dp^k
 
@@ -119,7 +120,9 @@ struct ResolvedModel {
                                       : FullCover::of<WendlandC2<D>, D>(flow.dp, support);
         narrow_gap = flow.wide_kernel ? NarrowGap::of<WendlandC6<D>, D>(flow.dp, support)
                                       : NarrowGap::of<WendlandC2<D>, D>(flow.dp, support);
-        constants.gradient_scale = 1.0 / lattice.moment;
+        const double scale = constants.gradient_scale = 1.0 / lattice.moment;
+        flat_area = flow.wide_kernel ? FlatArea::of<WendlandC6<D>, D>(flow.dp, support, scale)
+                                     : FlatArea::of<WendlandC2<D>, D>(flow.dp, support, scale);
         own_gradient_factor = flow.wide_kernel ? own_factor<WendlandC6<D>>(constants, support)
                                                : own_factor<WendlandC2<D>>(constants, support);
         constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);

@@ -128,6 +128,7 @@ private:
         record.film_density = walls.film_density[p];
         record.film_cover = walls.film_cover[p];
         record.film_traction = walls.film_traction[p];
+        record.film_aside = walls.film_aside[p];
         this->wall[p - this->fluid_count] = converted<WallRecord<real, D>>(record);
     }
 };

@@ -54,7 +54,7 @@ struct WallFields {
     Turn<T, D> spin;    // of its body [rad/s]
     // Of the film between faces, see WallState:
     T face, pressure, film_density, film_cover;
-    Vec<T, D> film_traction;
+    Vec<T, D> film_traction, film_aside;
 
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
@@ -62,7 +62,7 @@ struct WallFields {
         f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.inverse_density...),
             f(self.spin...), f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_cover...),
-            f(self.film_traction...);
+            f(self.film_traction...), f(self.film_aside...);
     }
 };
 

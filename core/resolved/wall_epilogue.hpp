@@ -87,7 +87,7 @@ private:
                                                double before) const {
         WallState<D>& wall = state_.wall;
         wall.film_density[p] = sums.weight > 0.0 ? sums.density / sums.weight : 0.0;
-        wall.film_traction[p] = {};
+        wall.film_traction[p] = {}, wall.film_aside[p] = {};
         const bool dry = sums.weight == 0.0 && sums.film_density == 0.0 && before == 0.0;
         wall.film_cover[p] = dry ? 0.0 : std::min(1.0, sums.cover / least_cover(p));
         if (sums.cover == 0.0) {
@@ -99,38 +99,79 @@ private:
         wall.film_change[p] = mean - before + inertia_ * wall.film_change[p];
         wall.pressure[p] = before + wall.film_change[p];
         wall.film_density[p] = (sums.density + sums.film_density) / weight;
-        wall.film_traction[p] = film_traction(p, sums);
+        set_film_traction(p, sums);
         return sums.film_force;
     }
 
-    DOSEKI_DEVICE_FN Vec<double, D> film_traction(std::size_t p,
-                                                  const WallAccumulators<double, D>& sums) const {
+    DOSEKI_DEVICE_FN void set_film_traction(std::size_t p,
+                                            const WallAccumulators<double, D>& sums) const {
         const Vec<double, D> hidden = without_air(p, hidden_area(p, sums), sums);
         const double size = std::sqrt(dot(hidden, hidden));
-        if (size == 0.0) return {};
-        const double pressure = pressure_at_surface(p, (1.0 / size) * hidden, sums);
-        const Vec<double, D> traction = (-pressure / std::max(sums.cover, least_cover(p))) * hidden;
+        if (size == 0.0) return;
+        const double pressure = pressure_at_surface(p, (1.0 / size) * hidden, sums),
+                     of_area = -pressure / std::max(sums.cover, least_cover(p));
         const auto inverse_support =
             static_cast<real>(1.0 / (model_.kernel_support() * state_.smoothing_length[p]));
-        return is_at_edge<real, D>(records_[p - first_wall_], inverse_support)
-                   ? by_faces(p, traction, sums)
-                   : traction;
+        if (is_at_edge<real, D>(records_[p - first_wall_], inverse_support))
+            deal_out(p, hidden, of_area, sums);
+        else
+            state_.wall.film_traction[p] = of_area * hidden;
     }
 
-    /// Of each face at an edge, over how much others are in front of it: what adds up to all of it.
-    DOSEKI_DEVICE_FN Vec<double, D> by_faces(std::size_t p, const Vec<double, D>& traction,
-                                             const WallAccumulators<double, D>& sums) const {
+    /// At an edge: what acts along each face, over how much others are in front of it, and what of
+    /// it acts aside, over how much they are in front of other faces: what adds up to all of it.
+    DOSEKI_DEVICE_FN void deal_out(std::size_t p, const Vec<double, D>& hidden, double of_area,
+                                   const WallAccumulators<double, D>& sums) const {
+        WallState<D>& wall = state_.wall;
+        const Vec<double, D> along = along_faces(p, hidden), aside = area_aside(p, along, sums);
+        double all = 0.0;
+        for (int k = 0; k < D; ++k) all += sums.facing[k];
+        for (int k = 0; k < D; ++k) {
+            wall.film_traction[p][k] = of_area * (along[k] + aside[k]) * sums.cover /
+                                       (sums.facing[k] + in_front_of_none * sums.cover);
+            if (aside[k] > 0.0)
+                wall.film_aside[p][k] = -of_area * aside[k] * sums.cover / (all - sums.facing[k]);
+        }
+    }
+
+    /// What of an area is along each face at an edge.
+    DOSEKI_DEVICE_FN Vec<double, D> along_faces(std::size_t p, const Vec<double, D>& area) const {
         constexpr int sweeps = 8;  // of faces that are not at right angles
         const Mat<double, D>& faces = state_.wall.edge_normals[p];
-        Vec<double, D> left = traction, found{};
+        Vec<double, D> left = area, found{};
         for (int n = 0; n < sweeps; ++n)
             for (int k = 0; k < D; ++k) {
-                const double along = dot(left, row(faces, k));
-                found[k] += along, left = left - along * row(faces, k);
+                const double of_face = dot(left, row(faces, k));
+                found[k] += of_face, left = left - of_face * row(faces, k);
             }
-        for (int k = 0; k < D; ++k)
-            found[k] = sums.facing[k] > 0.0 ? found[k] * sums.cover / sums.facing[k] : 0.0;
         return found;
+    }
+
+    /// Eq. (182): what an edge lacks of a face that goes on, where others cover it and one beside
+    /// it: what goes on there is the other body, which presses aside on it as water would.
+    DOSEKI_DEVICE_FN Vec<double, D> area_aside(std::size_t p, const Vec<double, D>& along,
+                                               const WallAccumulators<double, D>& sums) const {
+        const WallState<D>& wall = state_.wall;
+        Vec<double, D> covered{}, aside{};
+        for (int k = 0; k < D; ++k)
+            covered[k] = std::min(1.0, met_by_faces(p, row(wall.edge_normals[p], k), sums)) *
+                         with_much(sums.facing[k], sums);
+        for (int k = 0; k < D; ++k) {
+            double beside = 0.0;
+            for (int j = 0; j < D; ++j)
+                if (j != k) beside = std::max(beside, covered[j]);
+            const double flat = volume(p) * model_.flat_area.at(wall.edge_depths[p][k]);
+            aside[k] = covered[k] * beside * std::max(0.0, flat - along[k]);
+        }
+        return aside;
+    }
+    /// From 0 to 1 as more is in front of faces. Forces of a step go by what is there in the next:
+    /// little would soon be many times as much.
+    DOSEKI_DEVICE_FN static double with_much(double facing,
+                                             const WallAccumulators<double, D>& sums) {
+        constexpr double little = 0.003;  // a plane face has some 0.05
+        const double square = facing * facing;
+        return square > 0.0 ? square / (square + little * little * sums.cover * sums.cover) : 0.0;
     }
 
     DOSEKI_DEVICE_FN double farthest(std::size_t p) const {
@@ -146,19 +187,19 @@ private:
     DOSEKI_DEVICE_FN double with_air(std::size_t p, const WallAccumulators<double, D>& sums) const {
         const double seen = sums.weight + sums.cover, least = std::max(seen, least_cover(p));
         if (state_.wall.face[p] < Face::first_body) return least;
-        const double distance = std::min(to_face(p, sums), farthest(p)),
-                     share = std::min(1.0, seen / (curved * model_.full_cover.at(distance))),
+        const double share =
+                         std::min(1.0, seen / (curved * model_.full_cover.at(to_face(p, sums)))),
                      square = share * share;
         return std::max(least, 2.0 * seen / (square * square * (1.0 + met_beyond_edges(p, sums))));
     }
 
-    /// How far the other face is in front of this one, at edges of that which it is in front of.
+    /// How far the nearest of the other faces is in front of one of its own.
     DOSEKI_DEVICE_FN double to_face(std::size_t p, const WallAccumulators<double, D>& sums) const {
-        const WallState<D>& wall = state_.wall;
-        double height = dot(wall.normal[p], sums.to_face);
+        double least = farthest(p);
         for (int k = 0; k < D; ++k)
-            height = std::max(height, dot(row(wall.edge_normals[p], k), sums.to_face));
-        return height / sums.cover;
+            if (sums.facing[k] > 0.0)
+                least = std::min(least, sums.facing_height[k] / sums.facing[k]);
+        return least;
     }
 
     /// The least of `met` of the faces at an edge.
@@ -194,11 +235,14 @@ private:
                                 const WallAccumulators<double, D>& sums) const {
         const double all = dot(state_.wall.area[p], n);
         if (!(all > 0.0)) return 1.0;
+        const double water = 3.0 * volume(p) * dot(sums.area, n) / all;
+        return std::min(1.0, std::max(0.0, water) + met_by_faces(p, n, sums));
+    }
+    DOSEKI_DEVICE_FN double met_by_faces(std::size_t p, const Vec<double, D>& n,
+                                         const WallAccumulators<double, D>& sums) const {
         const double little = 0.5 * farthest(p) * least_cover(p),
-                     lean = 0.01 * std::sqrt(dot(sums.to_face, sums.to_face)),
-                     water = 3.0 * volume(p) * dot(sums.area, n) / all,
-                     face = (dot(sums.to_face, n) - lean) / little;
-        return std::min(1.0, std::max(0.0, water) + std::max(0.0, face));
+                     lean = 0.01 * std::sqrt(dot(sums.to_face, sums.to_face));
+        return std::max(0.0, (dot(sums.to_face, n) - lean) / little);
     }
 
     /// That of the film where it presses against the direction n. Faces that part stretch the film

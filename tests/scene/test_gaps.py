@@ -1,4 +1,4 @@
-"""Gaps between upright faces that are a part of a spacing wide are told of."""
+"""Narrow gaps beside bodies under deep water, where their uplift is rough, are told of."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from doseki.solver.build import filled_simulation
 
 TANK = """
 schema = 1
-dim = 2
-dp = 0.01
+dim = {dim}
+dp = {dp}
 scheme = "resolved"
 speed_max = 2
 time_max = 0.1
@@ -22,52 +22,62 @@ gravity = {gravity}
 [body.tank]
 shape = "tank"
 material = "basalt"
-min = [0, 0]
-max = [1, 0.6]
+min = {lowest}
+max = {highest}
 
 [body.water]
 shape = "box"
-material = "{liquid}"
-min = [0, 0]
-max = [1, 0.3]
-
-[body.first]
+material = "water"
+min = {lowest}
+max = {surface}
+"""
+BLOCK = """
+[body.block_{number}]
 shape = "box"
 material = "basalt"
-min = [{place}, 0]
-max = [{place} + 0.1, 0.1]
-rotate = {rotate}
-
-[body.second]
-shape = "box"
-material = "basalt"
-min = [{place} + 0.1 + {gap}, {up}]
-max = [{place} + 0.2 + {gap}, {up} + 0.1]
+min = {low}
+max = {high}
 """
 
 
-def gaps(folder, *, gap=0.5, place=0.3, up=0.0, top="", gravity="[0, -9.81]", rotate=0):
-    """The findings about two blocks `gap` spacings apart, m else."""
-    text = TANK.replace("{place} + 0.1 + {gap}", str(place + 0.1 + 0.01 * gap))
-    text = text.replace("{place} + 0.2 + {gap}", str(place + 0.2 + 0.01 * gap))
-    text = text.replace("{place} + 0.1,", f"{place + 0.1},").replace("{up} + 0.1", str(up + 0.1))
-    text = text.format(place=place, up=up, top=top, gravity=gravity, rotate=rotate, liquid="water")
+def corner(dim: int, x: float, up: float, across: float = 0.1) -> str:
+    return f"[{x:.6g}, {up:.6g}]" if dim == 2 else f"[{x:.6g}, {across:.6g}, {up:.6g}]"
+
+
+def gaps(
+    folder, *, gap=0.5, head=1.2, up=0.0, top="", gravity="", dim=2, dp=0.01, place=0.2
+) -> list[NarrowGap]:
+    """The findings about two blocks of 0.1 m side by side, `gap` spacings apart."""
+    text = TANK.format(
+        dim=dim, dp=dp, top=top, gravity=gravity or corner(dim, 0, -9.81, 0),
+        lowest=corner(dim, 0, 0, 0), highest=corner(dim, 0.9, 2, 0.3),
+        surface=corner(dim, 0.9, head, 0.3),
+    )  # fmt: skip
+    for number, x in enumerate((place, place + 0.1 + gap * dp)):
+        low, high = corner(dim, x, number * up), corner(dim, x + 0.1, number * up + 0.1, 0.2)
+        text += BLOCK.format(number=number, low=low, high=high)
     (folder / "case.toml").write_text(text)
     _, _, warnings = filled_simulation(load_scenario(str(folder / "case.toml")))
     return [finding for finding in warnings if isinstance(finding, NarrowGap)]
 
 
-def test_a_gap_of_half_a_spacing_is_told_of(tmp_path):
-    (finding,) = gaps(tmp_path)
-    assert finding.gap == pytest.approx(0.005)
-    assert "body.first" in str(finding)
-    assert "0.5 dp" in str(finding)
-    assert "let them touch, or leave a gap of a dp" in str(finding)
+def test_each_of_the_two_is_told_of(tmp_path):
+    one, other = gaps(tmp_path)
+    assert (one.place, one.other) == ("body.block_0", "block_1")
+    assert (other.place, other.other) == ("body.block_1", "block_0")
+    assert one.gap == pytest.approx(0.005)
+    assert "0.5 dp: under 1.2 m of water" in str(one)
+    assert "wrong by 72 %; let them touch, leave a gap of a dp, or take a smaller dp" in str(one)
 
 
 def test_to_a_wall_as_well(tmp_path):
     (finding,) = gaps(tmp_path, gap=5, place=0.005)
     assert "tank" in finding.other
+
+
+def test_in_space(tmp_path):
+    found = gaps(tmp_path, dim=3, dp=0.02, head=0.6)
+    assert found[0].error == pytest.approx(0.72, abs=0.01)
 
 
 @pytest.mark.parametrize(
@@ -78,11 +88,11 @@ def test_to_a_wall_as_well(tmp_path):
         {"gap": 1},
         {"gap": 5},
         {"up": 0.4},
-        {"rotate": 30},
+        {"head": 0.3, "dp": 0.005},
         {"top": "uplift = false"},
         {"gravity": "[0, 0]"},
         {"gravity": "[9.81, 0]"},
     ],
 )
-def test_other_gaps_are_not(tmp_path, given):
+def test_others_are_not(tmp_path, given):
     assert gaps(tmp_path, **given) == []

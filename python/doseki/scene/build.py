@@ -105,7 +105,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         warnings += resolution_warnings(bodies, groups)
         warnings += fracture_warnings(bodies, made)
         warnings += period_findings(scenario, groups)
-        warnings += gap_findings(scenario, groups)
+        warnings += gap_findings(scenario, groups, loose.position[loose.motion == FREE])
         check_overlaps(scenario, groups)
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)

@@ -10,7 +10,7 @@ from ..flows import FILM, advance
 WALL_FIELDS = (
     "normal", "wall_bend", "wall_depth", "edge_normals", "edge_depths", "wall_cut", "wall_force",
     "wall_moment", "wall_spin", "wall_pressure", "face", "face_area", "face_wetted", "film_change",
-    "film_cover", "film_density", "film_traction", "body_kind", "point",
+    "film_cover", "film_density", "film_traction", "film_aside", "body_kind", "point",
 )  # fmt: skip
 FLOW_FIELDS = (
     "pressure_gradient", "velocity_gradient", "inverse_moment", "shift", "surface",
@@ -23,7 +23,7 @@ COMMON_FIELDS = (
 TAG = 16
 # Bytes of the records of a pass in double, half of them in single; of the place at the last
 # build and its cell, of an entry of a list.
-MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 144, 3: 224}, {2: 184, 3: 296}
+MOTION_RECORD, FLOW_RECORD, WALL_RECORD = {2: 48, 3: 64}, {2: 144, 3: 224}, {2: 200, 3: 320}
 PLACE, ENTRY = {2: 24, 3: 32}, 2
 SPARE = 0.08  # of all: summaries, cells, blocks of lists
 
