@@ -8,13 +8,13 @@
 #include "base/array.hpp"
 #include "bodies/body_energy.hpp"
 #include "bodies/breakable/breakable_bodies.hpp"
+#include "bodies/breakable/companions.hpp"
 #include "bodies/contacts.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
 #include "bodies/fragments/origins.hpp"
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/particles/rigid_particles.hpp"
 #include "bodies/rigid_bodies.hpp"
-#include "bodies/steps/companions.hpp"
 
 namespace doseki {
 
