@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
 from doseki.record.particles import FREE
 from doseki.scenario.load import load_scenario
@@ -100,3 +101,14 @@ def test_bodies_that_move_do_not_wait(tmp_path):
     )
     with pytest.raises(UserError, match=r"relax = 0\.1: bodies that move"):
         built(tmp_path, "relax=0.1", text=text)
+
+
+def test_check_tells_what_relaxing_takes(tmp_path):
+    """As many steps for each second as the run itself."""
+    (tmp_path / "tank.toml").write_text(TANK)
+    told = check_scenario(load_scenario(str(tmp_path / "tank.toml"), ["relax=0.1"]))
+    lines = {line[:18].strip(): line[18:] for line in told.splitlines()}
+    steps = float(lines["steps"].replace(",", "").split()[0])
+    relaxing = float(lines["before it"].split()[1].replace(",", ""))
+    assert relaxing == pytest.approx(0.1 * steps, rel=0.3)
+    assert "for the 0.1 s in which water relaxes" in lines["before it"]

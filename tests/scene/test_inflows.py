@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from doseki.errors import ResourceError
+from doseki.errors import ResourceError, UserError
 from doseki.scenario.load import load_scenario
 from doseki.scenario.values.directions import section_axes
 from doseki.scene.build import build_bodies
@@ -63,3 +63,12 @@ def test_discharge_is_a_parameter_with_its_unit():
 def test_what_cannot_be_held_is_refused_before_it_is_made():
     with pytest.raises(ResourceError, match=r"of them in inflow\.\w+\).*increase dp"):
         sections("inflow.water.depth=1e9")
+
+
+def test_what_enters_faster_than_sound_is_refused():
+    scenario, _, (section,) = sections()
+    sound = scenario.xi * scenario.min_sound_speed
+    most = 0.003 * sound / section.speed
+    sections(f"discharge={0.99 * most:g}")
+    with pytest.raises(UserError, match=r"inflow\.\w+: enters at up to .* raise xi"):
+        sections(f"discharge={1.01 * most:g}")

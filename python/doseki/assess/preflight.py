@@ -200,6 +200,11 @@ def _costs(scenario: Scenario, expected: Estimate) -> Iterator[str]:
     if expected.sampling > TOLD_SAMPLING * expected.seconds:
         gauges = f"; {duration_text(expected.sampling)} of it to read gauges"
     yield _line("wall time", f"{duration_text(expected.seconds)}, from a burst of a second{gauges}")
+    if scenario.relax is not None:
+        steps = scenario.relax / expected.timestep
+        each = (expected.seconds - expected.sampling) / expected.steps
+        took = f"about {steps:,.0f} steps, {duration_text(steps * each)}"
+        yield _line("before it", f"{took}, for the {scenario.relax:g} s in which water relaxes")
 
 
 def _solid_steps(scenario: Scenario, expected: Estimate) -> Iterator[str]:

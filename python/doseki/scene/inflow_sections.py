@@ -106,6 +106,7 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     if inflow.surge is not None:
         _, thickness, speeds = np.array(inflow.surge, dtype=float).T
         heights = _appearance(scenario, name, rows)
+    _check_speed(scenario, name, float(speeds.max()))
     steps = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)
     return InflowSection(
         name=name,
@@ -125,6 +126,16 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
         thickness=thickness,
         row_height=heights,
     )
+
+
+def _check_speed(scenario: Scenario, name: str, fastest: float) -> None:
+    sound = scenario.xi * scenario.min_sound_speed
+    if fastest > sound:
+        raise scenario.where.error(
+            ("inflow", name),
+            f"inflow.{name}: enters at up to {fastest:.3g} m/s, faster than sound in this run, "
+            f"{sound:.3g} m/s; take less, a larger section, or raise {scenario.sound_speed_key[0]}",
+        )
 
 
 def _rows_above_ground(scenario: Scenario, name: str) -> np.ndarray:
