@@ -122,3 +122,22 @@ def test_errors(write, tables, top, part):
     with pytest.raises(UserError, match=r"body\.load") as caught:
         grains_of(write, tables, top)
     assert part in str(caught.value)
+
+
+@pytest.mark.parametrize("top", [TOP, TOP.replace("[0, -9.81]", "[0, -5]")])
+def test_those_after_may_start_where_those_before_stood(write, top):
+    """The first has come down before the second is there."""
+    second = SECOND.replace("[0, 7]", "[0, 6]")
+    _, simulation = grains_of(write, FLOOR + LOAD + second, top)
+    table = simulation.grains()
+    free = ~np.asarray(table["fixed"])
+    low, high = (
+        np.asarray(table["centre"])[free][which, 1] for which in (slice(40), slice(40, 80))
+    )
+    assert high.mean() > low.mean() + 2
+
+
+def test_but_not_where_those_before_have_come_to_rest(write):
+    second = SECOND.replace("[0, 7]", "[0, 1]")
+    with pytest.raises(UserError, match=r"body\.more: a body of it overlaps load by .* move one"):
+        grains_of(write, FLOOR + LOAD + second)

@@ -78,6 +78,11 @@ def build_bodies(scenario: Scenario) -> tuple[ParticleSet, list[str]]:
     return scene.particles, scene.names
 
 
+def settling(scenario: Scenario) -> set[str]:
+    """Names of the bodies that settle before the start, one after the other."""
+    return {n for n, body in scenario.body.items() if body.given("settle")} - scenario.carried
+
+
 def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     """The particles and rigid bodies of a scenario, with warnings; see `build_bodies`.
 
@@ -106,7 +111,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         warnings += fracture_warnings(bodies, made)
         warnings += period_findings(scenario, groups)
         warnings += gap_findings(scenario, groups, loose.position[loose.motion == FREE])
-        check_overlaps(scenario, groups)
+        check_overlaps(scenario, groups, settling(scenario))
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)
             warnings += unsettled

@@ -15,7 +15,8 @@ from ..scenario.checks.effort import contact_steps
 from ..scenario.kinematics import FIXED
 from ..scenario.model import Scenario
 from ..scene.bodies import Bodies
-from ..scene.build import Settled
+from ..scene.build import Settled, settling
+from ..scene.checks.groups import check_overlaps
 from ..scene.groups import Group
 from ..scene.kinds.body import Body
 from ..scene.kinds.registry import body_of
@@ -93,14 +94,14 @@ def settled(
 
     One body after the other in the order of the scenario, held by the sides of its box: those
     before it stand still, those after it are not there yet.  Raises UserError where grains fall
-    out of the scene.
+    out of the scene, or start within those that have settled.
     """
-    waits = {name for name, body in scenario.body.items() if body.given("settle")}
-    waits -= scenario.carried
+    waits = settling(scenario)
     there = [replace(g, kinematics=FIXED) for g in groups if g.name not in waits]
     found: dict[str, Group] = {}
     warnings: list[Finding] = []
     for group in sorted((g for g in groups if g.name in waits), key=_order(scenario)):
+        check_overlaps(scenario, [group, *there])
         found[group.name], unrest = _at_rest(scenario, group, there, names, make, tell)
         warnings += unrest
         there.append(replace(found[group.name], kinematics=FIXED))

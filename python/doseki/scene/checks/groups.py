@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -88,8 +88,13 @@ class _Mesh(NamedTuple):
         return -self.shape.wall((position - self.centre) @ self.turned, 1.0)[1]
 
 
-def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
-    """Raise UserError where a body that moves overlaps another by more than contacts may."""
+def check_overlaps(
+    scenario: Scenario, groups: list[Group], in_turn: Set[str] = frozenset()
+) -> None:
+    """Raise UserError where a body that moves overlaps another by more than contacts may.
+
+    Of those with names `in_turn`, one is not there where another is now.
+    """
     groups = _with_images(scenario, groups)
     balls = [ball for group in groups for ball in _balls(group)]
     blocks = [block for group in groups for block in blocks_of(group, scenario)]
@@ -102,6 +107,8 @@ def check_overlaps(scenario: Scenario, groups: list[Group]) -> None:
     ]:
         if {name, other} <= scenario.carried:
             continue  # as deep as contacts have let them
+        if name != other and {name, other} <= in_turn:
+            continue
         if overlap > allowed * size and not _is_held_by(scenario, name, other):
             whom = "another of its own" if name == other else other
             raise scenario.where.error(
