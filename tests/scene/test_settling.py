@@ -127,8 +127,8 @@ def test_errors(write, tables, top, part):
 @pytest.mark.parametrize("top", [TOP, TOP.replace("[0, -9.81]", "[0, -5]")])
 def test_those_after_may_start_where_those_before_stood(write, top):
     """The first has come down before the second is there."""
-    second = SECOND.replace("[0, 7]", "[0, 6]")
-    _, simulation = grains_of(write, FLOOR + LOAD + second, top)
+    loose = [text.replace("packing = 0.7", "packing = 0.3") for text in (LOAD, SECOND)]
+    _, simulation = grains_of(write, FLOOR + "".join(loose).replace("[0, 7]", "[0, 6]"), top)
     table = simulation.grains()
     free = ~np.asarray(table["fixed"])
     low, high = (
