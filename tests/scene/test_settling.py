@@ -86,7 +86,7 @@ def test_settling_for_some_time(write):
 
 def test_what_comes_no_nearer_to_rest_is_ended_with_a_message(write):
     downhill = TOP.replace("[0, -9.81]", "[9, -4]") + PERIODIC
-    few = LOAD.replace("count = 40", "count = 8").replace("packing = 0.7", "packing = 0.3")
+    few = LOAD.replace("count = 40", "count = 8").replace("packing = 0.7", "packing = 0.35")
     scenario = load_scenario(write(top=downhill, tables=TROUGH + few), ["dp=0.2"])
     told = []
     (warning,) = filled_simulation(scenario, tell=told.append).warnings
@@ -127,8 +127,10 @@ def test_errors(write, tables, top, part):
 @pytest.mark.parametrize("top", [TOP, TOP.replace("[0, -9.81]", "[0, -5]")])
 def test_those_after_may_start_where_those_before_stood(write, top):
     """The first has come down before the second is there."""
-    loose = [text.replace("packing = 0.7", "packing = 0.3") for text in (LOAD, SECOND)]
-    _, simulation = grains_of(write, FLOOR + "".join(loose).replace("[0, 7]", "[0, 6]"), top)
+    loose = (LOAD + SECOND.replace("[0, 7]", "[0, 6]")).replace("packing = 0.7", "packing = 0.35")
+    path = write(top=top, tables=FLOOR + loose.replace("settle = true", "settle = 3"))
+    simulation, _, _ = filled_simulation(load_scenario(path, ["dp=0.2"]))
+    simulation.start()
     table = simulation.grains()
     free = ~np.asarray(table["fixed"])
     low, high = (
