@@ -62,6 +62,12 @@ interval = 1.0
         (0.0, 0.0, "nothing yet"),
         (0.0, 3.2, "peak 3.2 m3/s at 1 s, 3.2 m3 passed, nowhere as deep as half a particle (0.05"),
         (2.0, 3.2, "flow from 1 s on, peak 3.2 m3/s at 1 s, 3.2 m3 passed, depth up to 0.5 m"),
+        (
+            2.0,
+            -3.2,
+            "flow from 1 s on, peak -3.2 m3/s at 1 s, -3.2 m3 passed the other way than its banks "
+            "say (swap left and right), depth up to 0.5 m",
+        ),
     ],
 )
 def test_what_passed_a_section(tmp_path, record_run, width, rate, said):
