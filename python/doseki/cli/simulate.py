@@ -181,7 +181,7 @@ def resume(
         float,
         typer.Option(
             "--from",
-            parser=number(),
+            parser=number(0.0),
             metavar="SECONDS",
             help="Not from a checkpoint later than this.",
         ),
