@@ -230,7 +230,7 @@ def test_the_ground_may_have_the_number_for_no_data_of_its_file(tmp_path, driver
         (["terrain.material=water"], "a fluid; a bed is a solid"),
         (["terrain.material=cheese"], "not a known material"),
         (["terrain.section=[[0, 0], [1, 1]]"], "2-D"),
-        (["terrain.file=nothing.asc"], "nothing.asc"),
+        (["terrain.file=nothing.asc"], "nothing.asc: no such file in /"),
         (["terrain.digest=" + "0" * 32], "is not the file that was meant"),
         (["terrain.fiel=x"], "fiel is not a known key.*file"),
         (["terrain.wall=rough"], "a rough wall needs ks"),
