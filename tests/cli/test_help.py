@@ -74,6 +74,7 @@ def test_an_output_folder_without_a_name_is_refused(monkeypatch, tmp_path, words
         (["run", "film", "--threads", "0"], "0 is outside 1 to 4096"),
         (["run", "film", "--threads", "1.5"], "'1.5' is not a whole number"),
         (["run", "film", "--threads", "9" * 5000], "is outside 1 to 4096"),
+        (["resume", "run", "--from", "-1"], "-1 is outside 0 to 1e+12"),
         (["run", "film", "--ranks", "-1"], "-1 is outside 1 to 100000"),
         (["run", "film", "--device", "gpu"], "'gpu' is not one of auto, cpu, host, cuda"),
         (["new", "a.toml", "--dim", "4"], "'4' is not one of 2, 3"),

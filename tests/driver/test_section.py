@@ -179,6 +179,14 @@ def test_what_is_no_section_is_refused(tmp_path, error_of, keys, word):
     assert word in error_of(str(path))
 
 
+@pytest.mark.parametrize("key", ["left", "right"])
+def test_the_bank_that_was_changed_is_blamed(tmp_path, error_of, key):
+    path = tmp_path / "case.toml"
+    path.write_text(TANK + "left = [0, 0]\nright = [0, 1]")
+    same = {"left": [0, 1], "right": [0, 0]}[key]
+    assert error_of(path, f"gauge.s.{key}={same}").startswith(f"--set gauge.s.{key}: ")
+
+
 def test_a_2d_run_has_none(tmp_path, error_of):
     path = tmp_path / "case.toml"
     path.write_text(

@@ -170,6 +170,11 @@ def test_odd_titles_are_no_markup_of_the_progress_bar(monkeypatch, title):
         ('kind = "snapshot"\ncolour = []', "colour"),
         ('kind = "snapshot"\ncolour = [""]', "colour"),
         ('kind = "snapshot"\ntimes = [' + "0.1, " * 100 + "]", "times"),
+        ('kind = "snapshot"\ntimes = [0, -1]', r"figure.one.times.1 = -1 is out of range; must be"),
+        (
+            'kind = "gauge"\ngauge = "level"\ntimes = [-1]',
+            "figure.one.times.0 = -1 is out of range",
+        ),
         ('kind = "histogram"\nbin_width = 1e-300', "bin_width"),
         ('kind = "histogram"\nbin_width = 1e-9', "more than 2000 bins"),
         ('kind = "histogram"\nbin_width = 1e300', "bin_width"),

@@ -36,7 +36,8 @@ def called(*arguments):
         ("", "is empty"),
         ("when [s],mass_passed [kg/m]\n0,0\n", "'time' is not a column"),
         ("time [s],force_x [N/m]\n0,much\n", "much"),
-        ("time\n0\n", "cannot be read"),
+        ("x\n", "'time' is not a column; known: x"),
+        ("time\n0\n1\n", "is not a column; known: time"),
         (None, "no such file"),
     ],
 )
@@ -59,15 +60,16 @@ def test_plot_names_the_file(run, text):
     assert str(file) in done.output
 
 
-def test_a_report_names_what_it_leaves_out(run):
+@pytest.mark.parametrize("text", ["", "x\n", "x [m],[y] [z [m]\n0,0\n"])
+def test_a_report_names_what_it_leaves_out(run, text):
     """Of loads it leaves out nothing: there the file is named."""
     file = run / "gauges" / "top.csv"
-    file.write_text("")
+    file.write_text(text)
     done = called("report", run)
     assert done.exit_code == 0, done.output
     assert f"gauge top is left out: {file}" in done.output.replace("\n", "")
     file = run / "gauges" / "sill.csv"
-    file.write_text("")
+    file.write_text(text)
     done = called("report", run)
     assert isinstance(done.exception, UserError), done.output
     assert str(file) in str(done.exception)

@@ -125,6 +125,22 @@ def test_without_a_whole_checkpoint_nothing_is_touched(run):
     assert {file: file.read_bytes() for file in run.rglob("*") if file.is_file()} == before
 
 
+@pytest.mark.parametrize("spoilt", [False, True])
+def test_times_before_all_checkpoints_are_told_which_there_are(run, spoilt):
+    first, last = CheckpointFolder(run / "checkpoints").files()
+    times = [from_bytes(file.read_bytes(), file).time for file in (first, last)]
+    if spoilt:
+        first.write_bytes(flip(first.read_bytes()))
+        times = times[1:]
+    with pytest.raises(UserError, match=r"no whole checkpoint at .* at most 0.001 s") as caught:
+        resume_run(run, until=0.001)
+    said, at = str(caught.value).split("; checkpoints are at ")
+    assert (f"{first} is damaged" in said) == spoilt
+    told = [float(time.removesuffix(" s")) for time in at.split(" and ")]
+    assert told == pytest.approx(times, rel=1e-5)
+    assert all(one >= other for one, other in zip(told, times, strict=True))
+
+
 def test_a_record_with_missing_rows_is_refused(run):
     history = run / "history.csv"
     history.write_text("".join(history.read_text().splitlines(keepends=True)[:4]))

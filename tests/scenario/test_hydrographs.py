@@ -248,3 +248,11 @@ def test_a_simulation_lets_in_what_the_hydrograph_says(write):
     totals = simulation.totals()
     assert totals["mass_asked"] == pytest.approx(entered, rel=1e-9)
     assert abs(totals["mass_entered"] - entered) <= 0.5 * 1000 * 0.4 * 0.05 * (1 + 1e-9)
+
+
+def test_a_file_of_an_option_is_looked_for_here(write, error_of, tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    said = error_of(write(tables=INFLOW), "inflow.i.hydrograph=sub/hy.csv")
+    place = f"sub/hy.csv: no such file in {tmp_path / 'here' / 'sub'}"
+    assert said == f"--set inflow.i.hydrograph: inflow.i.hydrograph: {place}"

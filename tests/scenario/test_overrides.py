@@ -56,6 +56,24 @@ def test_a_key_replaces_its_rival(write):
     assert scenario.slope is None
 
 
+WINDOWS = """
+[window.v]
+min = [0, 0]
+max = [1, 1]
+
+[window.w]
+min = [0, 0]
+max = [2, 2]
+"""
+SHOWN = (
+    WINDOWS
+    + """
+[figure.f]
+kind = "profile"
+"""
+)
+
+
 @pytest.mark.parametrize(
     ("override", "part"),
     [
@@ -77,9 +95,24 @@ def test_a_key_replaces_its_rival(write):
         ("body.block.array.count=[2, 1]", "count goes with step, which is missing"),
         ("body.block.array.cuont=3", "did you mean count?"),
         ("body.block.array.count.x=3", "expected body.block.KEY=value"),
+        (
+            "body.block.shape=blob",
+            '--set body.block.shape: body.block.shape = "blob" is not a shape',
+        ),
+        ("figure.f.kind=foo", '--set figure.f.kind: figure.f.kind = "foo" is not a kind'),
+        ("body.block.velocity=[0, 0, 1]", "--set body.block.velocity: body.block.velocity"),
+        ("window.w.max=[-1, 1]", "--set window.w.max: window.w: every entry of min must be below"),
         ("material.watr.rho0=1", "did you mean material.water?"),
         ("dp=1" + "0" * 400, "--set dp: dp = 1000"),
     ],
 )
 def test_refusal(write, error_of, override, part):
-    assert part in error_of(write(tables=PARAMETERS + BLOCK), override)
+    assert part in error_of(write(tables=PARAMETERS + BLOCK + SHOWN), override)
+
+
+@pytest.mark.parametrize("given", ["window.v.max=[3, 3]", "window.w.title=max", "dp=0.05"])
+def test_what_a_change_has_nothing_to_do_with_is_of_the_file(write, error_of, given):
+    path = write(tables=BLOCK + WINDOWS.replace("[2, 2]", "[-2, 2]"))
+    said = error_of(path, given)
+    assert said.startswith(f"{path}, line ")
+    assert "window.w: every entry of min must be below that of max" in said

@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from doseki.assess.preflight import check_scenario
 from doseki.cli.main import main
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
@@ -103,6 +104,38 @@ def test_no_number_of_flaws_is_advised_that_is_none(scene):
 
 def test_usual_flaws_are_left_alone(scene):
     scene(*flaws(5e34, 8.5))
+
+
+ROCK = """
+[material.rock]
+preset = "basalt"
+[material.other]
+based_on = "rock"
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ([], 0),
+        (["material.rock.weibull_m=8"], 1),
+        (["material.other.weibull_k=1e34"], 1),
+        (["material.rock.weibull_m=8", "material.rock.weibull_k=1e34"], 0),
+        (["material.rock.fracture=none"], 0),
+    ],
+)
+def test_half_of_what_is_fitted_together_is_told(tmp_path, given, told):
+    fracture, keys = flaws(5e34, 8.5)
+    text = DISC.format(fracture=fracture, keys=keys, more=ROCK)
+    (tmp_path / "disc.toml").write_text(text, encoding="utf-8")
+    scenario = load_scenario(tmp_path / "disc.toml", given)
+    lines = check_scenario(scenario).splitlines()
+    said = [line for line in lines if "fitted together" in line]
+    assert len(said) == told
+    for key in [each.split("=")[0].split(".") for each in given[:told]]:
+        assert said[0].startswith(f"warning: material.{key[1]}: {key[2]} is given without weibull_")
+        values = [scenario.materials[key[1]].of_laws[k] for k in ("weibull_k", "weibull_m")]
+        assert "weibull_k = {:.3g} and weibull_m = {:.3g}".format(*values) in said[0]
 
 
 def test_the_exit_code_is_that_of_a_mistake_of_the_user(tmp_path, capsys):

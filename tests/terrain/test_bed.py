@@ -222,15 +222,15 @@ def test_the_ground_may_have_the_number_for_no_data_of_its_file(tmp_path, driver
     [
         (["terrain.window=[-5, 0, 3, 2]"], "reaches beyond the raster"),
         (["maps.cell=0.15"], "no whole multiple of the terrain's 0.1 m"),
-        (["maps.extent=[1, 1, 9, 2]"], "maps: .* reaches beyond the raster"),
+        (["maps.extent=[1, 1, 9, 2]"], "maps: extent .* reaches beyond the raster"),
         (["terrain.window=[3, 0, 1, 2]"], "smaller ones first"),
         (["terrain.window=[3, 0, 1]"], "terrain.window"),
-        (["terrain.resample=9"], "larger than the raster"),
+        (["terrain.resample=9"], "terrain.resample: .* larger than the raster"),
         (["terrain.smoothing=900"], "longer than the raster"),
         (["terrain.material=water"], "a fluid; a bed is a solid"),
         (["terrain.material=cheese"], "not a known material"),
         (["terrain.section=[[0, 0], [1, 1]]"], "2-D"),
-        (["terrain.file=nothing.asc"], "nothing.asc"),
+        (["terrain.file=nothing.asc"], "nothing.asc: no such file in /"),
         (["terrain.digest=" + "0" * 32], "is not the file that was meant"),
         (["terrain.fiel=x"], "fiel is not a known key.*file"),
         (["terrain.wall=rough"], "a rough wall needs ks"),
@@ -245,8 +245,9 @@ def test_the_ground_may_have_the_number_for_no_data_of_its_file(tmp_path, driver
     ],
 )
 def test_what_cannot_be_is_refused_in_a_sentence(path, settings, said):
-    with pytest.raises(UserError, match=said):
+    with pytest.raises(UserError, match=said) as caught:
         load_scenario(path, settings)
+    assert str(caught.value).startswith("--set ")
 
 
 @pytest.mark.parametrize(

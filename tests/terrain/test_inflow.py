@@ -83,6 +83,12 @@ def test_one_that_lies_in_the_ground_is_refused(path):
         filled_simulation(deep)
 
 
+def test_whatever_puts_it_into_the_ground_is_blamed(path):
+    turned = load_scenario(path, ["inflow.flood.direction=[0, 1, 0]"])
+    with pytest.raises(UserError, match=r"^--set inflow.flood.direction: inflow.flood: "):
+        filled_simulation(turned)
+
+
 SURGE = """
 [inflow.flood]
 material = "water"

@@ -125,3 +125,8 @@ def test_run_and_resume_say_so(tmp_path, monkeypatch, capsys):
         assert not end.value.code
         said = capsys.readouterr().err.splitlines()
         assert len([line for line in said if "the cores are not this run's own" in line]) == 1
+    for wrong in (["--set", "dp=0.02"], ["--from", "0.0001"], []):
+        with pytest.raises(SystemExit) as end:
+            main(["resume", str(tmp_path / "run"), *wrong])
+        assert end.value.code == 2
+        assert "the cores are not" not in capsys.readouterr().err

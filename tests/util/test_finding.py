@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from doseki.util.finding import Finding, sentences
+import pytest
+
+from doseki.util.finding import Finding, below, sentences
 
 
 @dataclass(frozen=True)
@@ -26,3 +28,10 @@ def test_copies_are_told_of_together():
         "is open",
         "rock.1: is small",
     ]
+
+
+@pytest.mark.parametrize(
+    ("value", "said"), [(7.4, "7.4"), (7.99, "7.99"), (7.96, "7.96"), (7.9999995, "7.9999995")]
+)
+def test_what_is_below_a_limit_is_so_as_it_is_printed(value, said):
+    assert below(value, 8) == said

@@ -181,7 +181,7 @@ def resume(
         float,
         typer.Option(
             "--from",
-            parser=number(),
+            parser=number(0.0),
             metavar="SECONDS",
             help="Not from a checkpoint later than this.",
         ),
@@ -209,18 +209,23 @@ def resume(
     if settings:
         time_max = load_scenario(run.folder.scenario, settings).time_max
     choose_device(device, lambda: count_of_record(run), team, _say)
+
+    def tell(*_started: Any) -> None:
+        for line in _about_cores(threads) if team.is_root else ():
+            _say(line)
+
     with team.holding(directory), ending_early():
         with progress_bar(scenario.get("title", ""), time_max) as progress:
             options = RunOptions(
                 threads,
                 progress=progress,
+                started=tell,
+                resumed=tell,
                 checkpoint_every=checkpoint_every,
                 checkpoint_minutes=checkpoint_minutes,
                 ranks=team,
                 tell=progress.tell,
             )
-            for line in _about_cores(threads) if team.is_root else ():
-                _say(line)
             summary, notes = resume_run(directory, settings or [], options, until)
         for note in notes:
             typer.echo(f"warning: {note}", err=True)

@@ -17,6 +17,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..errors import UserError
 from ..util.files import clear_errors, write_whole
+from ..util.finding import rounded_up
 from ..util.foreign import read_bytes
 from ..util.hdf5 import open_hdf5
 
@@ -190,16 +191,24 @@ class CheckpointFolder:
         Raises UserError when there is none.
         """
         damaged: list[str] = []
+        later: list[float] = []
         for file in reversed(self.files()):
             try:
                 checkpoint = from_bytes(read_bytes(file), file)
                 if checkpoint.time <= until:
                     return checkpoint, [f"{each}; using the one before it" for each in damaged]
+                later.append(checkpoint.time)
             except (DamagedCheckpointError, UserError) as error:
                 said = str(error).removeprefix(f"{file}: ")
                 damaged.append(f"{file} is damaged ({said})")
         found = f": {damaged[0]}" if damaged else ""
-        raise UserError(f"{self.path}: no whole checkpoint to go on from{found}; run it again")
+        if not later:
+            raise UserError(f"{self.path}: no whole checkpoint to go on from{found}; run it again")
+        times = " and ".join(f"{rounded_up(time, 6):g} s" for time in reversed(later))
+        raise UserError(
+            f"{self.path}: no whole checkpoint at a time of at most {until:g} s{found}; "
+            f"checkpoints are at {times}"
+        )
 
     def drop_later(self, step: int) -> None:
         """Remove what was written after `step`: damaged files, or states the run now replaces."""

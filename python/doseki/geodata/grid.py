@@ -138,14 +138,16 @@ class Raster:
             abs(mine - its) <= near for mine, its in zip(self.extent, other.extent, strict=True)
         )
 
-    def window(self, west: float, south: float, east: float, north: float) -> Raster:
+    def window(
+        self, west: float, south: float, east: float, north: float, *, named: str = "window"
+    ) -> Raster:
         """The whole cells that cover a rectangle of the map, m.
 
         Raises:
             GeodataError: it is empty, or reaches beyond the raster.
 
         """
-        asked = f"window [{west:.10g}, {south:.10g}, {east:.10g}, {north:.10g}]"
+        asked = f"{named} [{west:.10g}, {south:.10g}, {east:.10g}, {north:.10g}]"
         if not (west < east and south < north):
             raise GeodataError(f"{asked} must be west < east and south < north")
         first, last = self._cells(west - self.west, east - self.west)
@@ -175,7 +177,7 @@ class Raster:
                 f"{named} = {cell:g} m is no whole multiple of the terrain's {self.cell:g} m"
             )
         raster = self.resampled(cell) if cell is not None and times > 1 else self
-        return raster if extent is None else raster.window(*extent)
+        return raster if extent is None else raster.window(*extent, named="extent")
 
     def _cells(self, start: float, end: float) -> tuple[int, int]:
         """The first cell, and the one after the last, that cover a stretch from an edge, m."""

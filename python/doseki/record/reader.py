@@ -181,10 +181,10 @@ class GaugeRecord(History):
     def __init__(
         self, columns: Sequence[str], rows: Sequence[Sequence[str]], path: str | Path
     ) -> None:
-        """`columns` as in the file, "name [unit]" each."""
-        parts = [column.removesuffix("]").split(" [") for column in columns]
-        super().__init__([name for name, _ in parts], rows, path)
-        self.units = dict(parts)
+        """`columns` as in the file, "name [unit]" each; one without a unit is none of a gauge."""
+        parts = [column.removesuffix("]").partition(" [") for column in columns]
+        super().__init__([name for name, _, _ in parts], rows, path)
+        self.units = {name: unit for name, _, unit in parts}
 
 
 class Run(Sequence[Snapshot]):

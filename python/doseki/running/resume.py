@@ -71,6 +71,7 @@ def resume_run(
             text = sealed(scenario.effective_toml(stored=True))
             options.ranks.on_root(lambda: write_whole_text(folder.scenario, text))
             run.identity = options.ranks.on_root(lambda: identity_of(folder.scenario))
+        options.resumed()
         return carry_out(run, options, fresh=False), notes
 
 

@@ -57,6 +57,10 @@ def _say_nothing(
     pass
 
 
+def _do_nothing() -> None:
+    pass
+
+
 @dataclass
 class RunOptions:
     """How a run is carried out, as against what it simulates."""
@@ -73,6 +77,8 @@ class RunOptions:
     stops: Callable[[Path], StopRequests] = StopRequests  # what asks the run in a folder to stop
     # The files of a scenario that is one which a run stored: it named them, and names them no more.
     files: Sequence[Mapping[str, str]] = ()
+    # Called before the first step of a run that goes on from a checkpoint.
+    resumed: Callable[[], None] = field(default=_do_nothing)
 
     def __post_init__(self) -> None:
         if self.watch is not None and self.ranks.count > 1:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -122,8 +124,8 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        as_read = _windowed(_with_heights(path, _read(path, where)), terrain)
-        raster = _remade(as_read, terrain)
+        as_read = _windowed(_with_heights(path, _read(path, where)), terrain, where)
+        raster = _remade(as_read, terrain, where)
         kept = as_read if as_read.values.size <= MAX_CELLS else None
     except GeodataError as error:
         raise where.error(("terrain",), f"terrain: {error}") from None
@@ -165,17 +167,29 @@ def _with_heights(path: Path, raster: Raster) -> Raster:
     return raster
 
 
-def _windowed(raster: Raster, terrain: Terrain) -> Raster:
+@contextmanager
+def _asked_by(key: str, where: Where) -> Iterator[None]:
+    """Name the key of [terrain] that asks for what a map cannot give."""
+    try:
+        yield
+    except GeodataError as error:
+        raise where.error(("terrain", key), f"terrain.{key}: {error}") from None
+
+
+def _windowed(raster: Raster, terrain: Terrain, where: Where) -> Raster:
     """What is used of the map."""
-    return raster if terrain.window is None else raster.window(*terrain.window)
+    with _asked_by("window", where):
+        return raster if terrain.window is None else raster.window(*terrain.window)
 
 
-def _remade(raster: Raster, terrain: Terrain) -> Raster:
+def _remade(raster: Raster, terrain: Terrain, where: Where) -> Raster:
     """With cells of another size, and smoothed."""
     if terrain.resample is not None:
-        raster = raster.resampled(terrain.resample)
+        with _asked_by("resample", where):
+            raster = raster.resampled(terrain.resample)
     if terrain.smoothing is not None:
-        raster = raster.smoothed(terrain.smoothing)
+        with _asked_by("smoothing", where):
+            raster = raster.smoothed(terrain.smoothing)
     return raster
 
 

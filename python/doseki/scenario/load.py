@@ -14,6 +14,7 @@ from ..errors import UserError
 from ..util.finding import Finding
 from ..util.input_file import digest_of
 from .bed import Bed, read_bed
+from .checks.flaws import halves_of_flaws
 from .checks.light_bodies import stable_cflnumber
 from .checks.references import check_names, check_references
 from .checks.tables import check_scenario
@@ -93,6 +94,7 @@ def _completed(tables: ScenarioTable, where: Where, constants: dict[str, Any]) -
         "xi": tables.xi or _reduction_factor(tables, gravity, materials, read),
     }
     completed["cflnumber"], doubts = stable_cflnumber(tables, materials)
+    doubts += halves_of_flaws(tables, materials)
     if any(isinstance(body, Release) for body in tables.body.values()):
         completed["body"], own = _with_releases(tables, bed, where)
         doubts += own

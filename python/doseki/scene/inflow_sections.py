@@ -17,6 +17,7 @@ INSTANTS = 2000  # at which the volume of a surge is looked at
 NEAREST = 0.4  # spacings between an inflow and a terrain
 NEAREST_WALL = 0.6  # between it and fixed particles
 MOST_ROWS_MORE = 8  # on top of those of the depth, for what banks take
+PLACED_BY = "its position, direction, width and depth say where it is"
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,8 @@ def _section(scenario: Scenario, name: str, body: int) -> InflowSection:
     rows = _rows_above_ground(scenario, name)
     if not len(rows):
         raise scenario.where.error(
-            ("inflow", name, "position"), f"inflow.{name}: all of its section lies in the ground"
+            ("inflow", name, "position"),
+            f"inflow.{name}: all of its section lies in the ground; {PLACED_BY}",
         )
     _check_on_map(scenario, name, rows)
     times, rate = inflow.rows.T
@@ -165,7 +167,7 @@ def _check_on_map(scenario: Scenario, name: str, rows: np.ndarray) -> None:
     if unknown.any():
         raise scenario.where.error(
             ("inflow", name, "position"),
-            f"inflow.{name}: its section {beyond_text(places[unknown][0])}",
+            f"inflow.{name}: its section {beyond_text(places[unknown][0])}; {PLACED_BY}",
         )
 
 

@@ -37,6 +37,12 @@ def no_less_than(least: float) -> str:
     return f"{rounded_up(least, digits=3):g}"
 
 
+def below(value: float, limit: float) -> str:
+    """A number below a limit, of two digits or as many as show that it is."""
+    shown = (f"{value:.{digits}g}" for digits in range(2, 17))
+    return next((text for text in shown if float(text) < limit), repr(value))
+
+
 def rounded_up(value: float, digits: int = 2) -> float:
     """The next number of so many digits that is not less; what is not finite stays."""
     if not math.isfinite(value) or value <= 0:

@@ -48,11 +48,16 @@ def check_regular_file(path: Path) -> None:
     try:
         if path.is_file():
             return
-        kind = "not a regular file" if path.exists() else "no such file"
+        kind = "not a regular file" if path.exists() else f"no such file{_looked_in(path)}"
         kind = "a folder, not a file" if path.is_dir() else kind
     except (OSError, ValueError) as error:
         kind = f"cannot be read: {error}"
     raise UserError(f"{path}: {kind}")
+
+
+def _looked_in(path: Path) -> str:
+    """Where a relative path was looked for."""
+    return "" if path.is_absolute() else f" in {path.absolute().parent}"
 
 
 @contextmanager

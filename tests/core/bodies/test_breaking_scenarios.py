@@ -121,6 +121,7 @@ def test_bonds_of_a_checkpoint_are_looked_at(core, load, value):
         ("material.clay.fracture=brittle", "grady_kipp"),
         ("material.water.fracture=cohesive", "is for solids"),
         ("body.left.radius=0.07", "needs at least 8"),
+        ("body.left.radius=0.0799", ": 7.99 particles across a body that breaks"),
         ("body.left.flaw_seed=3", "no random flaws"),
     ],
 )

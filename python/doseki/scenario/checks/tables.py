@@ -115,7 +115,7 @@ def _check_resolved(scenario: Scenario) -> None:
     for keys, wall in scenario.walls.items():
         key, objection = WallKeys.needed_by_wall.get(wall.given("wall") or "", ("", ""))
         if key and wall.given(key) is None:
-            raise scenario.where.error((*keys, key), f"{'.'.join(keys)}: {objection}")
+            raise scenario.where.error((*keys, "wall"), f"{'.'.join(keys)}: {objection}")
     for name, body in scenario.body.items():
         keys = ("body", name)
         normal = body.given("normal")

@@ -51,8 +51,8 @@ def check_terrain(scenario: Scenario) -> None:
     columns = float((side * tiles).prod())
     if columns >= MAX_COLUMNS:
         raise error(
-            ("terrain",),
-            f"terrain: {columns:.3g} columns of dp cover the map; at most "
+            ("dp",),
+            f"dp = {scenario.dp:g} m: {columns:.3g} columns of dp cover the terrain; at most "
             f"{MAX_COLUMNS:.3g}: give terrain.window, or increase dp",
         )
 

@@ -36,6 +36,7 @@ LENGTHS = {
     "string_too_short": ("min_length", "characters", "at least {} needed"),
     "string_too_long": ("max_length", "characters", "at most {} allowed"),
 }
+TAGS = ("union_tag_not_found", "union_tag_invalid")
 RANGES = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most"}
 
 
@@ -60,7 +61,7 @@ def to_user_error(
     keys = above + _keys_in(table, first)
     for key in reversed(above):
         table = {str(key): table}
-    return where.error(keys, _sentence(keys, first, table, kind_at))
+    return where.error(keys + _tag_key(keys, first), _sentence(keys, first, table, kind_at))
 
 
 def _keys_in(table: Any, objection: Any) -> KeyPath:
@@ -82,19 +83,15 @@ def _holds(table: Any, key: str | int) -> bool:
 
 
 def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: KindAt) -> str:
-    name, kind, value = dotted(keys), objection["type"], objection["input"]
+    name, kind, value = dotted(keys), _type_of(objection), objection["input"]
     context = objection.get("ctx", {})
     about = _description(keys, table, kind_at)
     if kind == "extra_forbidden":
         return f"{name} is not a known key{_nearest_key(keys, table, kind_at)}"
     if kind == "missing":
         return f"{name} is missing{about}"
-    if kind == "union_tag_not_found" and not isinstance(value, dict):
-        kind = "dict_type"
-    if kind in ("union_tag_not_found", "union_tag_invalid"):
-        section = SECTIONS[str(keys[0])]
-        assert isinstance(section, Kinds)
-        return _tag_sentence(name, section, context.get("tag"))
+    if kind in TAGS:
+        return _tag_sentence(name, _kinds_at(keys), context.get("tag"))
     if kind == "literal_error":
         return f"{name} = {_shown(value)} is not allowed; choose {context['expected']}{about}"
     if kind == "value_error":
@@ -117,6 +114,24 @@ def _sentence(keys: KeyPath, objection: Any, table: dict[str, Any], kind_at: Kin
             limit = f"{words} {context[bound]:g}"
             return f"{name} = {_shown(value)} is out of range; must be {limit}{about}"
     return f"{name} = {_shown(value)} is not allowed{about}"
+
+
+def _type_of(objection: Any) -> str:
+    """The type of an objection; to what is no table where one should be, that it is none."""
+    kind = str(objection["type"])
+    is_table = isinstance(objection["input"], dict)
+    return "dict_type" if kind == "union_tag_not_found" and not is_table else kind
+
+
+def _kinds_at(keys: KeyPath) -> Kinds:
+    kinds = SECTIONS[str(keys[0])]
+    assert isinstance(kinds, Kinds)
+    return kinds
+
+
+def _tag_key(keys: KeyPath, objection: Any) -> KeyPath:
+    """The key that says of which kind a table is, where the objection is to that."""
+    return (_kinds_at(keys).key,) if _type_of(objection) in TAGS else ()
 
 
 def _tag_sentence(name: str, kinds: Kinds, tag: str | None) -> str:

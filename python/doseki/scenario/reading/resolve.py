@@ -15,11 +15,13 @@ from ..tables.root import ScenarioTable
 from ..tables.sections import (
     EXCLUSIVE,
     SECTIONS,
+    SINGLE_TABLES,
     TOP_LEVEL_KEYS,
     can_be_switched_off,
     table_at,
 )
 from ..values.expressions import (
+    CONSTANTS,
     POSITION_NAMES,
     RESERVED_NAMES,
     ExpressionError,
@@ -59,9 +61,24 @@ def _check_names(table: dict[str, Any], where: Where) -> None:
         if all(key in table for key in pair):
             raise where.error(pair[:1], f"{pair[0]} and {pair[1]} exclude each other: give one")
     for name in _dict(table.get("parameters")):
-        if name in TOP_LEVEL_KEYS or name in RESERVED_NAMES or iskeyword(name):
-            message = f"parameters.{name}: the name has another meaning; choose another one"
+        if meaning := _meaning_of(name):
+            message = f"parameters.{name}: the name has another meaning, {meaning}; choose another"
             raise where.error(("parameters", name), message)
+
+
+def _meaning_of(name: str) -> str:
+    """What a name means that no parameter may have; "" of one that is free."""
+    if name in {*SECTIONS, *SINGLE_TABLES}:
+        return f"the table [{name}]"
+    if name in TOP_LEVEL_KEYS:
+        fields = ScenarioTable.model_fields
+        about = next((f.description for k, f in fields.items() if (f.alias or k) == name), None)
+        return f"the key {name} of a scenario" + (f" ({about})" if about else "")
+    if name in POSITION_NAMES:
+        return "a coordinate in expressions"
+    if name in RESERVED_NAMES:
+        return "a constant in expressions" if name in CONSTANTS else "a function in expressions"
+    return "a word of the language of expressions" if iskeyword(name) else ""
 
 
 def _enabled(section: Any, key: str, names: Names) -> Any:

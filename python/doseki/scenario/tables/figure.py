@@ -21,6 +21,7 @@ from ..values.types import (
     SMALLEST,
     Direction,
     GaugeName,
+    NonNegative,
     OptionalMaterialName,
     OptionalWindowName,
     Position,
@@ -42,7 +43,7 @@ def _known_quantities(names: list[str], info: ValidationInfo) -> list[str]:
 Quantities = Annotated[
     list[str], Field(min_length=1, max_length=8), AfterValidator(_known_quantities)
 ]
-Times = Annotated[list[float], Field(max_length=24), Measured(TIME)]  # panels on a page
+Times = Annotated[list[NonNegative], Field(max_length=24), Measured(TIME)]  # panels on a page
 BinWidth = Annotated[float, Field(ge=SMALLEST, le=LARGEST), Measured(SPEED)]
 MAX_BINS = 2000
 
@@ -75,7 +76,7 @@ class FigureOfSnapshots(Figure):
         None, description="name of a [window.NAME]; default: everything"
     )
     times: Times = Field(
-        default_factory=list, description="s; nearest snapshots; default: see `when`"
+        default_factory=list, description="s; nearest snapshots; [], the default: see `when`"
     )
     when: Literal["all", "events", "first", "last", "before_flow", "with_flow"] = Field(
         "last",
@@ -144,7 +145,8 @@ class GaugeFigure(Figure):
         default_factory=list, description="columns of the gauge; default: all"
     )
     times: Times = Field(
-        default_factory=list, description="of profiles, s; default: some spread over the run"
+        default_factory=list,
+        description="of profiles, s; [], the default: some spread over the run",
     )
 
     def objections(self, around: Drawable) -> Iterator[tuple[str, str]]:

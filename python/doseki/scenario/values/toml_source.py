@@ -221,8 +221,15 @@ class Where:
         self._written[keys] = written
 
     def error(self, keys: KeyPath, message: str) -> UserError:
-        """A UserError about `keys`, which names the file and line, or the option, to look at."""
-        return UserError(f"{self._place(self._as_written(keys))}: {message}")
+        """A UserError about `keys`, which names the file and line, or the option, to look at.
+
+        What disagrees with other keys of its table may be said of the table, or of one of them:
+        where options gave some, the one that the message names first is that to look at.
+        """
+        written = self._as_written(keys)
+        table = written[:-1] if written[1:] and not self._is_table(written) else written
+        change = self._change(written) or self._change_inside(table, message)
+        return UserError(f"{self._place(written) if change is None else change.said}: {message}")
 
     def _as_written(self, keys: KeyPath) -> KeyPath:
         """Where the file has the value at `keys`."""
@@ -240,6 +247,22 @@ class Where:
         """The change that gave `keys`, or a table they are in."""
         prefixes = (keys[:length] for length in range(len(keys), 0, -1))
         return next((self._changes[p] for p in prefixes if p in self._changes), None)
+
+    def _change_inside(self, table: KeyPath, text: str) -> Change | None:
+        """The change of a key in the table that a text about it names first."""
+        found = {}
+        sentence = text.removeprefix(dotted(table)).split(" (")[0]  # without what keys mean
+        for keys, change in self._changes.items():
+            named = re.search(rf"(?<![\w/-]){re.escape(str(keys[-1]))}(?![\w/-])", sentence)
+            if named and table and keys[: len(table)] == table:
+                found[named.start()] = change
+        return found[min(found)] if found else None
+
+    def _is_table(self, keys: KeyPath) -> bool:
+        table: Any = self._deepest(keys).table
+        for key in keys:
+            table = table.get(key) if isinstance(table, dict) else None
+        return isinstance(table, dict)
 
     def _deepest(self, keys: KeyPath) -> Source:
         """The source that holds the most of `keys`, an extending file before what it extends."""

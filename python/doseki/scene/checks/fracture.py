@@ -9,7 +9,7 @@ from typing import Any
 
 from ...errors import UserError
 from ...scenario.materials import MOST_FLAWS, NO_FRACTURE, Material
-from ...util.finding import Finding, no_less_than, no_more_than
+from ...util.finding import Finding, below, no_less_than, no_more_than
 from ..groups import Group
 from ..kinds.body import Body
 
@@ -85,8 +85,8 @@ def _breakable(body: Body[Any], group: Group, material: Material) -> Iterator[Fi
         enough = no_more_than(width / MIN_ACROSS_BREAKABLE)
         whole = f'a material with fracture = "{NO_FRACTURE}"'
         raise body.error(
-            f": {across:.2g} particles across a body that breaks; it needs at least "
-            f"{MIN_ACROSS_BREAKABLE}: dp = {enough} would do, or "
+            f": {below(across, MIN_ACROSS_BREAKABLE)} particles across a body that breaks; it "
+            f"needs at least {MIN_ACROSS_BREAKABLE}: dp = {enough} would do, or "
             + ('kinematics = "rigid"' if group.breakable else whole)
         )
     if material.fracture == "cohesive":
