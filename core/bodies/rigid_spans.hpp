@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <span>
 
 #include "base/matrix.hpp"
@@ -85,7 +86,7 @@ struct RigidBodiesMoved {
         if (!seen.is_free(k)) return 0.0;
         RigidBodyState<D>& state = states[k];
         const Vec3 turn = seen.free_turn(k, dt);
-        const double distance = dt * norm(state.velocity);
+        const double distance = std::abs(dt) * norm(state.velocity);
         state.centre = state.centre + dt * state.velocity;
         const bool is_ball = seen.shape(k).is_ball();
         if (is_ball && seen.turns_alike[k]) {

@@ -323,7 +323,7 @@ DOSEKI_FN T in_front_of(const WallFields<T, D>& w, int k, const Vec<T, D>& to,
            inverse_support;
 }
 
-/// The same of what is in front of none: a little of the film at a face, where nothing else may be.
+/// How much everything is in front of a face beyond that: nothing else may bear the film there.
 constexpr double in_front_of_none = 1e-4;
 
 /// The force of the film of w that a particle at `to` from it bears, with this share of w. At an
@@ -333,14 +333,13 @@ template <class T, int D>
 DOSEKI_FN Vec<T, D> film_force_on(const WallFields<T, D>& w, const Vec<T, D>& to, const T& share,
                                   const T& inverse_support) {
     Vec<T, D> of_faces, force, in_front;
-    T all(0);
+    for (int k = 0; k < D; ++k) in_front[k] = in_front_of<T, D>(w, k, to, inverse_support);
     for (int k = 0; k < D; ++k) {
-        in_front[k] = in_front_of<T, D>(w, k, to, inverse_support);
-        all += in_front[k];
-    }
-    for (int k = 0; k < D; ++k) {
+        T others(0);
+        for (int l = 0; l < D; ++l)
+            if (l != k) others += in_front[l];
         const T along = w.film_traction[k] * (in_front[k] + number<T>(in_front_of_none)) +
-                        w.film_aside[k] * (all - in_front[k]);
+                        w.film_aside[k] * others;
         of_faces = of_faces + along * row(w.faces, k);
     }
     const auto at_edge = is_at_edge<T, D>(w, inverse_support);

@@ -124,13 +124,13 @@ private:
                                    const WallAccumulators<double, D>& sums) const {
         WallState<D>& wall = state_.wall;
         const Vec<double, D> along = along_faces(p, hidden), aside = area_aside(p, along, sums);
-        double all = 0.0;
-        for (int k = 0; k < D; ++k) all += sums.facing[k];
         for (int k = 0; k < D; ++k) {
             wall.film_traction[p][k] = of_area * (along[k] + aside[k]) * sums.cover /
                                        (sums.facing[k] + in_front_of_none * sums.cover);
-            if (aside[k] > 0.0)
-                wall.film_aside[p][k] = -of_area * aside[k] * sums.cover / (all - sums.facing[k]);
+            double others = 0.0;
+            for (int l = 0; l < D; ++l)
+                if (l != k) others += sums.facing[l];
+            if (others > 0.0) wall.film_aside[p][k] = -of_area * aside[k] * sums.cover / others;
         }
     }
 
@@ -147,31 +147,34 @@ private:
         return found;
     }
 
-    /// Eq. (182): what an edge lacks of a face that goes on, where others cover it and one beside
-    /// it: what goes on there is the other body, which presses aside on it as water would.
-    DOSEKI_DEVICE_FN Vec<double, D> area_aside(std::size_t p, const Vec<double, D>& along,
+    /// Eq. (182): what an edge lacks of a face that goes on, where others cover it and a face
+    /// beside it. What goes on there is another body, which presses aside on it as water would;
+    /// what is `hidden` along each face lacks nothing of that where there is water.
+    DOSEKI_DEVICE_FN Vec<double, D> area_aside(std::size_t p, const Vec<double, D>& hidden,
                                                const WallAccumulators<double, D>& sums) const {
         const WallState<D>& wall = state_.wall;
+        const Vec<double, D> own = along_faces(p, wall.area[p]);
         Vec<double, D> covered{}, aside{};
         for (int k = 0; k < D; ++k)
             covered[k] = std::min(1.0, met_by_faces(p, row(wall.edge_normals[p], k), sums)) *
-                         with_much(sums.facing[k], sums);
+                         much_in_front(sums.facing[k], sums.cover);
         for (int k = 0; k < D; ++k) {
             double beside = 0.0;
-            for (int j = 0; j < D; ++j)
-                if (j != k) beside = std::max(beside, covered[j]);
-            const double flat = volume(p) * model_.flat_area.at(wall.edge_depths[p][k]);
-            aside[k] = covered[k] * beside * std::max(0.0, flat - along[k]);
+            for (int l = 0; l < D; ++l)
+                if (l != k) beside = std::max(beside, covered[l]);
+            const double flat = volume(p) * model_.flat_area.at(wall.edge_depths[p][k]),
+                         lacks = std::min(flat - own[k], flat - hidden[k]);
+            aside[k] = covered[k] * beside * std::max(0.0, lacks);
         }
         return aside;
     }
-    /// From 0 to 1 as more is in front of faces. Forces of a step go by what is there in the next:
-    /// little would soon be many times as much.
-    DOSEKI_DEVICE_FN static double with_much(double facing,
-                                             const WallAccumulators<double, D>& sums) {
-        constexpr double little = 0.003;  // a plane face has some 0.05
+
+    /// From 0 to 1 as more of what covers a particle is in front of a face. The force of a step is
+    /// dealt out by what is there in the next, where little may be many times as much.
+    DOSEKI_DEVICE_FN static double much_in_front(double facing, double cover) {
+        constexpr double little = 0.003;  // of the cover; a plane face has some 0.05
         const double square = facing * facing;
-        return square > 0.0 ? square / (square + little * little * sums.cover * sums.cover) : 0.0;
+        return square > 0.0 ? square / (square + little * little * cover * cover) : 0.0;
     }
 
     DOSEKI_DEVICE_FN double farthest(std::size_t p) const {
@@ -197,7 +200,7 @@ private:
     DOSEKI_DEVICE_FN double to_face(std::size_t p, const WallAccumulators<double, D>& sums) const {
         double least = farthest(p);
         for (int k = 0; k < D; ++k)
-            if (sums.facing[k] > 0.0)
+            if (sums.facing[k] > in_front_of_none * sums.cover)
                 least = std::min(least, sums.facing_height[k] / sums.facing[k]);
         return least;
     }

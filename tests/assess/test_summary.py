@@ -65,8 +65,8 @@ interval = 1.0
         (
             2.0,
             -3.2,
-            "flow from 1 s on, peak -3.2 m3/s at 1 s, -3.2 m3 passed the other way than its banks "
-            "say (swap left and right), depth up to 0.5 m",
+            "flow from 1 s on, peak -3.2 m3/s at 1 s, -3.2 m3 passed (against its direction: swap "
+            "left and right), depth up to 0.5 m",
         ),
     ],
 )

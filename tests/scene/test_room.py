@@ -133,5 +133,5 @@ def test_what_begins_in_time_is_not(told, tables):
 def test_an_interval_longer_than_the_run_is_told(told):
     gauge = '[gauge.deep]\nkind = "pressure"\nposition = [0.5, 0.1]\ninterval = {}\n'
     (said,) = told(gauge.format(1.5))
-    assert said.startswith("gauge.deep.interval = 1.5 s is longer than the run, time_max = 1 s")
+    assert said.startswith("gauge.deep.interval = 1.5 s is longer than the run, 1 s: it is due at")
     assert told(gauge.format(1)) == []

@@ -26,7 +26,7 @@ public:
 
     /// A half begins, in which the others have gone ahead by all of it, by this way at most.
     void begin(double half, double way, std::size_t bodies) {
-        ahead_ = half, counted_ = way, together_ = companions_;
+        ahead_ = half, way_ahead_ = way, together_ = companions_;
         is_ahead_.assign(bodies, 0);
         for (const std::uint32_t k : others_) is_ahead_[k] = 1;
     }
@@ -34,12 +34,12 @@ public:
     /// what of it is beyond the way of the others: that much farther has any gone.
     double catch_up(double step, double way) {
         ahead_ -= step;
-        const double beyond = std::max(0.0, way - counted_);
-        counted_ = std::max(0.0, counted_ - way);
+        const double beyond = std::max(0.0, way - way_ahead_);
+        way_ahead_ = std::max(0.0, way_ahead_ - way);
         return beyond;
     }
     /// From now on ways count from where bodies are, the others ahead.
-    void count_anew() { counted_ = 0.0; }
+    void count_anew() { way_ahead_ = 0.0; }
     /// Bodies from this number on, which were born where the short steps are.
     void take_born(std::size_t first, std::size_t end) {
         for (std::size_t k = first; k < end; ++k)
@@ -49,7 +49,7 @@ public:
 
     /// How far the others are ahead [s].
     double ahead() const { return ahead_; }
-    /// Companions that are ahead; they are no more.
+    /// Companions that are ahead, which the caller takes back.
     Array<std::uint32_t> take_late() {
         Array<std::uint32_t> late;
         for (const std::uint32_t k : companions_)
@@ -63,7 +63,7 @@ public:
 private:
     Array<std::uint32_t> companions_, others_, together_;
     Array<std::uint8_t> is_ahead_;
-    double ahead_ = 0.0, counted_ = 0.0;  // [s], [m]
+    double ahead_ = 0.0, way_ahead_ = 0.0;  // [s], [m]
 };
 
 }  // namespace doseki

@@ -192,8 +192,8 @@ def _passed(found: Passage, film: float) -> str:
     if not found.peak:
         return "nothing yet"
     passed = f"peak {found.peak:.3g} m3/s at {found.peak_time:.3g} s, {found.volume:.3g} m3 passed"
-    if found.volume < 0:
-        passed += " the other way than its banks say (swap left and right)"
+    if found.peak < 0 and found.volume < 0:
+        passed += " (against its direction: swap left and right)"
     if found.arrival is None:
         return f"{passed}, nowhere as deep as half a particle ({film:.3g} m)"
     return (

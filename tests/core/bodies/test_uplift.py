@@ -113,8 +113,8 @@ BLOCK_BESIDE = """
 [body.beside]
 shape = "box"
 material = "stone"
-min = ["= place + side/2", 0]
-max = ["= place + 1.5*side", "= side"]
+min = ["= place + side/2", "= fall"]
+max = ["= place + 1.5*side", "= side + fall"]
 """
 
 
@@ -122,7 +122,7 @@ def beside(folder, *overrides: str, gap: float = 0.0) -> Running:
     """Two blocks side by side, `gap` spacings apart; the second one is a spacing wider then."""
     text = (CASES / "grains" / f"{BLOCK}.toml").read_text() + BLOCK_BESIDE
     wider = "+ dp" if gap else ""
-    text = text.replace('side/2", 0]', f'side/2 + {gap}*dp", 0]')
+    text = text.replace('+ side/2", "= fall', f'+ side/2 + {gap}*dp", "= fall')
     text = text.replace('1.5*side"', f'1.5*side {wider}"')
     (folder / "two.toml").write_text(text)
     return Running(str(folder / "two.toml"), "across=10", "width=0.5", "place=0.2", *overrides)
@@ -147,9 +147,27 @@ def test_blocks_side_by_side_have_their_uplift(tmp_path, depth, tilt):
     assert force.sum(axis=0) == pytest.approx(2 * up, abs=2 * CLOSE)
 
 
+def test_a_row_of_water_below_them_does_not_press_twice(tmp_path):
+    """It presses on some of what their corners lack; the film would press on it once more."""
+    run = beside(tmp_path, "depth=0.6", "fall=0.01", "place=0.2")
+    up = forces(run)[:, 1]
+    assert np.all((up > 0.8) & (up < 1 + CLOSE))
+
+
+def test_bed_and_blocks_bear_the_weight_of_the_water(tmp_path):
+    """What lifts the blocks presses on the bed: each column of water and block counts once."""
+    run = beside(tmp_path, "depth=0.3")
+    state = run.simulation.state()
+    force = np.asarray(state["force"])[:, 1]
+    beneath = np.asarray(state["position"])[:, 1] < 0
+    middle = np.abs(np.asarray(state["position"])[:, 0] - 0.25) < 0.14
+    on_bed = force[beneath & middle].sum()
+    assert on_bed == pytest.approx(-9810 * 0.28 * 0.3, rel=CLOSE)
+
+
 def test_so_have_cubes_and_bricks(tmp_path):
     """Two side by side, in space, and in the plane with one on top of both."""
-    cubes = BLOCK_BESIDE.replace('2", 0]', '2", "= (width - side)/2", 0]')
+    cubes = BLOCK_BESIDE.replace('2", "=', '2", "= (width - side)/2", "=')
     cubes = cubes.replace('1.5*side", "=', '1.5*side", "= (width + side)/2", "=')
     on_top = """
 [body.on_top]
@@ -185,7 +203,7 @@ def test_a_narrow_gap_between_blocks_keeps_its_pressure(tmp_path, gap, tilt):
     force = np.mean(measured, axis=0)
     assert force @ up == pytest.approx(wide, abs=0.15)
     apart = force[0] - force[1]
-    assert abs(apart[0]) < 0.25  # pressed together by less than that; was 1.2
+    assert abs(apart[0]) < 0.25  # of what a block displaces
 
 
 @pytest.mark.parametrize(("across", "depth"), [(6, 1.5), (6, 3), (10, 3)])

@@ -125,12 +125,14 @@ class Ledger:
         return judged(name, value, NUMERICAL, counted, remedy, work=work, largest=largest)
 
     def contact_check(self, name: str, unseen: str) -> Check:
-        """What contacts gave: they begin without energy, so that they only take. `unseen`: why it
-        is not known, if it is not.
+        """What contacts gave: without energy at the start, they only take and give back.
+
+        Weight times spacing counts as in numerical_check.  `unseen`: why it is not known, if so.
         """
         if self.unknown or unseen:
             return unknown(name, CONTACTS, self.unknown or unseen)
-        gained, largest = float(np.max(self._column("contact_work"))), self.largest
+        gained = float(np.max(self._column("contact_work")))
+        largest = max(self.largest, float(self._weight.max()) * self.run.scenario["dp"])
         counted = "all rows of the history: the most that contacts of bodies had given"
         remedy = "this is a mistake in doseki: report it; a smaller time_out may help"
         value = gained / largest if largest else gained

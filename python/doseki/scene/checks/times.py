@@ -31,12 +31,12 @@ class LongInterval(Finding):
     """An interval between outputs that is longer than the run."""
 
     interval: float  # s
-    time_max: float  # s
+    length: float  # s, of the run
 
     def __str__(self) -> str:
         return (
-            f"{self.place} = {self.interval:g} s is longer than the run, time_max = "
-            f"{self.time_max:g} s: nothing is written between its start and its end"
+            f"{self.place} = {self.interval:g} s is longer than the run, {self.length:g} s: it is "
+            "due at the start and at the end alone"
         )
 
 
@@ -52,13 +52,14 @@ def late_findings(scenario: Scenario) -> Iterator[Finding]:
         times: list[float] = figure.given("times") or []
         if times and max(times) > scenario.time_max * (1 + ROUNDING):
             yield TooLate(f"figure.{name}.times", max(times), scenario.time_max)
+    length = scenario.time_max - scenario.begins_at
     for place, interval in _intervals(scenario):
-        if interval > scenario.time_max * (1 + ROUNDING):
-            yield LongInterval(place, interval, scenario.time_max)
+        if interval > length * (1 + ROUNDING):
+            yield LongInterval(place, interval, length)
 
 
 def _intervals(scenario: Scenario) -> Iterator[tuple[str, float]]:
-    """Those that are given."""
+    """Of snapshots and history, and those that gauges and maps have of their own."""
     yield "time_out", scenario.time_out
     yield "time_history", scenario.time_history
     for name, gauge in scenario.gauge.items():

@@ -16,7 +16,8 @@ from ...meeting import meeting_pairs
 from ..groups import Block, blocks_of
 
 NARROW, WIDE = 0.2, 0.75  # spacings: a film, or one column of particles that rattles
-ERROR = 0.6  # spacings: the uplift is off by the pressure at the foot on a strip so wide, at most
+ERROR = 0.7  # spacings: the uplift is off by the pressure at the foot on a strip so wide, or less
+NEAR = 4.0  # spacings around a body, in which the water is that it stands in
 MUCH = 0.15  # of the uplift
 OPPOSITE = 0.98  # minus the cosine between normals of faces that look at each other
 UPRIGHT = 0.7  # cosine between the normal of an upright face and gravity, at most
@@ -49,14 +50,13 @@ def gap_findings(scenario: Scenario, groups: list[Group], water: np.ndarray) -> 
         return
     blocks = [b for group in groups if not group.elastic for b in blocks_of(group, scenario)]
     up = -gravity / np.linalg.norm(gravity)
-    surface = (water @ up).max() + 0.5 * scenario.dp
     told = set[tuple[str, str]]()
     for one, other, gap in _gaps(blocks, up, WIDE * scenario.dp):
         for block, beside in ((one, other), (other, one)):
             names = block.name, beside.name
             if block.fixed or names in told or not NARROW * scenario.dp < gap:
                 continue
-            head = surface - (block.corners @ up).min()
+            head = _head(block, water, up, scenario.dp)
             error = ERROR * scenario.dp * head * _length(block, up) / _measure(block)
             if error > MUCH:
                 told.add(names)
@@ -91,6 +91,15 @@ def _gap(one: Block, other: Block) -> tuple[float, np.ndarray]:
         if apart.max() > best:
             best, along = float(apart.max()), near.normal[apart.argmax()]
     return best, along
+
+
+def _head(block: Block, water: np.ndarray, up: np.ndarray, dp: float) -> float:
+    """Of the water around it, above its foot, m; 0 where there is none."""
+    apart = water - block.centre
+    aside = np.linalg.norm(apart - np.outer(apart @ up, up), axis=1)
+    near = water[aside < block.reach + NEAR * dp]
+    top = float((near @ up).max(initial=-np.inf)) + 0.5 * dp
+    return max(0.0, top - float((block.corners @ up).min()))
 
 
 def _measure(block: Block) -> float:
