@@ -212,7 +212,7 @@ def test_a_run_without_snapshots_cannot_be_drawn(tmp_path, record_run):
 def test_a_figure_that_was_made_impossible_by_hand_is_named(two_grains):
     scenario = two_grains / "scenario.toml"
     scenario.write_text(scenario.read_text().replace('kind = "snapshot"', 'kind = "sculpture"'))
-    with pytest.raises(UserError, match=r"line 9: figure\.pair\.kind = .sculpture"):
+    with pytest.raises(UserError, match=r"line 10: figure\.pair\.kind = .sculpture"):
         plot_run(two_grains)
 
 
