@@ -327,19 +327,17 @@ DOSEKI_FN T in_front_of(const WallFields<T, D>& w, int k, const Vec<T, D>& to,
 constexpr double in_front_of_none = 1e-4;
 
 /// The force of the film of w that a particle at `to` from it bears, with this share of w. At an
-/// edge, along each face, it is by what is in front of that face, and by what is in front of
-/// others.
+/// edge, along each face, it is by what is in front of that face and, in the plane, by what is in
+/// front of the other one: in space a card has no registers left for that.
 template <class T, int D>
 DOSEKI_FN Vec<T, D> film_force_on(const WallFields<T, D>& w, const Vec<T, D>& to, const T& share,
                                   const T& inverse_support) {
-    Vec<T, D> of_faces, force, in_front;
-    for (int k = 0; k < D; ++k) in_front[k] = in_front_of<T, D>(w, k, to, inverse_support);
+    Vec<T, D> of_faces, force;
     for (int k = 0; k < D; ++k) {
-        T others(0);
-        for (int l = 0; l < D; ++l)
-            if (l != k) others += in_front[l];
-        const T along = w.film_traction[k] * (in_front[k] + number<T>(in_front_of_none)) +
-                        w.film_aside[k] * others;
+        const T in_front = in_front_of<T, D>(w, k, to, inverse_support);
+        T along = w.film_traction[k] * (in_front + number<T>(in_front_of_none));
+        if constexpr (D == 2)
+            along += w.film_aside[k] * in_front_of<T, D>(w, 1 - k, to, inverse_support);
         of_faces = of_faces + along * row(w.faces, k);
     }
     const auto at_edge = is_at_edge<T, D>(w, inverse_support);

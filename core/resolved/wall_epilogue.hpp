@@ -123,15 +123,16 @@ private:
     DOSEKI_DEVICE_FN void deal_out(std::size_t p, const Vec<double, D>& hidden, double of_area,
                                    const WallAccumulators<double, D>& sums) const {
         WallState<D>& wall = state_.wall;
-        const Vec<double, D> along = along_faces(p, hidden), aside = area_aside(p, along, sums);
-        for (int k = 0; k < D; ++k) {
+        const Vec<double, D> along = along_faces(p, hidden);
+        Vec<double, D> aside{};
+        if constexpr (D == 2) aside = area_aside(p, along, sums);
+        for (int k = 0; k < D; ++k)
             wall.film_traction[p][k] = of_area * (along[k] + aside[k]) * sums.cover /
                                        (sums.facing[k] + in_front_of_none * sums.cover);
-            double others = 0.0;
-            for (int l = 0; l < D; ++l)
-                if (l != k) others += sums.facing[l];
-            if (others > 0.0) wall.film_aside[p][k] = -of_area * aside[k] * sums.cover / others;
-        }
+        if constexpr (D == 2)
+            for (int k = 0; k < D; ++k)
+                if (const double other = sums.facing[1 - k]; other > 0.0)
+                    wall.film_aside[p][k] = -of_area * aside[k] * sums.cover / other;
     }
 
     /// What of an area is along each face at an edge.
@@ -159,12 +160,9 @@ private:
             covered[k] = std::min(1.0, met_by_faces(p, row(wall.edge_normals[p], k), sums)) *
                          much_in_front(sums.facing[k], sums.cover);
         for (int k = 0; k < D; ++k) {
-            double beside = 0.0;
-            for (int l = 0; l < D; ++l)
-                if (l != k) beside = std::max(beside, covered[l]);
             const double flat = volume(p) * model_.flat_area.at(wall.edge_depths[p][k]),
                          lacks = std::min(flat - own[k], flat - hidden[k]);
-            aside[k] = covered[k] * beside * std::max(0.0, lacks);
+            aside[k] = covered[0] * covered[1] * std::max(0.0, lacks);
         }
         return aside;
     }
