@@ -83,6 +83,11 @@ class Ledger:
         return max(self._rounding, *(float(np.max(np.abs(values))) for values in (*held, *moved)))
 
     @property
+    def _largest_at_rest(self) -> float:
+        """The same, or weight times spacing: what hardly moves has next to no other."""
+        return max(self.largest, float(self._weight.max()) * self.run.scenario["dp"])
+
+    @property
     def _rounding(self) -> float:
         speed = FAST * float(self.run.scenario.get("xi", 1.0))
         return ROUNDING * speed**2 * float(np.max(self._values("mass")))
@@ -113,12 +118,11 @@ class Ledger:
     def numerical_check(self) -> Check:
         """Work of shifting and of the relaxation of density.
 
-        Weight times spacing counts as an energy that took part: water that hardly moves has next
-        to no other, and that it rises or sinks by a hundredth of a spacing is good.
+        That water rises or sinks by a hundredth of a spacing is good.
         """
         name = "energy of corrections"
         work = float(np.max(np.abs(self._column("scheme_work"))))
-        largest = max(self.largest, float(self._weight.max()) * self.run.scenario["dp"])
+        largest = self._largest_at_rest
         counted = "largest work of shifting and of the relaxation of density"
         remedy = "lower dp; shifting = false tells what shifting takes"
         value = work / largest if largest else work
@@ -127,12 +131,12 @@ class Ledger:
     def contact_check(self, name: str, unseen: str) -> Check:
         """What contacts gave: without energy at the start, they only take and give back.
 
-        Weight times spacing counts as in numerical_check.  `unseen`: why it is not known, if so.
+        `unseen`: why it is not known, if so.
         """
         if self.unknown or unseen:
             return unknown(name, CONTACTS, self.unknown or unseen)
         gained = float(np.max(self._column("contact_work")))
-        largest = max(self.largest, float(self._weight.max()) * self.run.scenario["dp"])
+        largest = self._largest_at_rest
         counted = "all rows of the history: the most that contacts of bodies had given"
         remedy = "this is a mistake in doseki: report it; a smaller time_out may help"
         value = gained / largest if largest else gained
