@@ -54,6 +54,11 @@ depth = 0.4
 start = 0.5
 """
 
+RISING = SPRING.replace("hydrograph", "surge").replace("depth = 0.4\n", "")
+RISING = RISING.replace(
+    "[[0, 0], [{first}, 0], [9, 0.1]]", "[[0, {t0}, 1], [{first}, {t1}, {v1}], [9, 0.4, 1]]"
+)
+
 
 @pytest.fixture
 def told(write):
@@ -118,6 +123,7 @@ def test_a_figure_of_times_after_the_end_is_told(told):
         (GATE.format(times="start = 1.5"), "body.gate.motion.start: not before 1.5 s"),
         (GATE.format(times="removed_at = 7"), "body.gate.motion.removed_at: not before 7 s"),
         (SPRING.format(first=0.6), "inflow.spring: not before 1.1 s"),
+        (RISING.format(first=0.6, t0=0, t1=0, v1=1), "inflow.spring: not before 1.1 s"),
     ],
 )
 def test_what_begins_after_the_end_is_told(told, tables, place):
@@ -125,7 +131,16 @@ def test_what_begins_after_the_end_is_told(told, tables, place):
     assert said.startswith(f"{place}, and the run ends at time_max = 1 s")
 
 
-@pytest.mark.parametrize("tables", [GATE.format(times="start = 0.9"), SPRING.format(first=0.1)])
+@pytest.mark.parametrize(
+    "tables",
+    [
+        GATE.format(times="start = 0.9"),
+        SPRING.format(first=0.1),
+        RISING.format(first=0.6, t0=0, t1=0.4, v1=1),
+        RISING.format(first=0.6, t0=0.4, t1=0.4, v1=0),
+        RISING.format(first=0.6, t0=0.4, t1=0, v1=1),
+    ],
+)
 def test_what_begins_in_time_is_not(told, tables):
     assert told(tables) == []
 

@@ -10,7 +10,7 @@ from doseki.assess.preflight import check_scenario
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
 from doseki.scene.checks.terrain import terrain_findings
-from doseki.scene.inflow_sections import build_inflows, surge_volumes
+from doseki.scene.inflow_sections import build_inflows, surge_volumes, to_enter
 from doseki.solver.build import filled_simulation
 
 from .scenes import fluid, grid, profile, text
@@ -146,6 +146,22 @@ def test_a_surge_has_its_volume_whatever_the_spacing(path, dp):
     assert not [each for each in terrain_findings(scenario, {}) if each.place == "inflow.flood"]
 
 
+@pytest.mark.parametrize("end", [0.3, 0.75, 1.0])
+def test_check_tells_of_a_surge_what_the_ledger_asks_for(path, end):
+    """In a V-shaped channel that is half of thickness, width and speed, or less."""
+    path.write_text(text(3, dp=0.1, time=end, speed=5.0, more=SURGE))
+    scenario = load_scenario(path)
+    volume, most = to_enter(scenario, build_inflows(scenario, ["terrain", "flood"])[0])
+    simulation, _, _ = filled_simulation(scenario)
+    simulation.start()
+    simulation.advance(limit=end, pause=end, max_steps=10**6)
+    assert simulation.totals()["mass_asked"] == pytest.approx(1000 * volume, rel=1e-9)
+    at_peak = 0.8**2 / 0.5 * np.sqrt(1.04) * 2.0
+    assert most == pytest.approx(at_peak, rel=0.15) if end > 0.4 else most > 0
+    said = check_scenario(scenario, threads=1)
+    assert f"{volume:.4g} m3 water to enter, {most:.4g} m3/s at most" in said
+
+
 def test_a_thin_fast_row_of_a_surge_is_its_largest_speed(path):
     thin = SURGE.replace("[0.8, 0.4, 1.0]]", "[0.8, 0.1, 40.0]]")
     path.write_text(text(3, dp=0.1, speed=5.0, more=thin))
@@ -181,7 +197,7 @@ def test_in_2d_the_volume_of_a_surge_is_an_area(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(text(2, dp=0.1, more=thin.replace("[1, 0, -0.2]", "[1, -0.2]")))
     (said,) = [str(f) for f in terrain_findings(load_scenario(path), {}) if "layers" in str(f)]
-    assert "m2, and thickness and speed above the ground are" in said
+    assert "m2, and thickness and speed make" in said
     assert "m3" not in said
 
 

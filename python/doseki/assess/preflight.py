@@ -16,6 +16,7 @@ from ..record.particles import FIXED
 from ..record.units import unit_in
 from ..scenario.model import Scenario
 from ..scenario.tables.bodies import Box
+from ..scene.inflow_sections import build_inflows, to_enter
 from ..solver.build import load_core
 from ..solver.protocol import SimulationView
 from ..util.finding import Finding, rounded_up, sentences
@@ -146,14 +147,13 @@ def _particles(scenario: Scenario, state: dict[str, np.ndarray], names: list[str
         yield from (_line("", size) for size in _resized(scenario, name))
         if name in volumes:
             yield _line("", volumes[name])
-    for name, inflow in scenario.inflow.items():
-        across = 1.0 if scenario.dim == 3 else inflow.width
-        unit = unit_in("m3", scenario.dim)
-        volume = inflow.volume_between(scenario.begins_at, scenario.time_max) / across
-        most = inflow.peak_rate / across
+    unit = unit_in("m3", scenario.dim)
+    for section in build_inflows(scenario, names):
+        volume, most = to_enter(scenario, section)
+        material = scenario.material_names[section.material]
         yield _line(
-            f"inflow {name}",
-            f"{volume:.4g} {unit} {inflow.material} to enter, {most:.4g} {unit}/s at most",
+            f"inflow {section.name}",
+            f"{volume:.4g} {unit} {material} to enter, {most:.4g} {unit}/s at most",
         )
 
 

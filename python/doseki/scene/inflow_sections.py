@@ -13,6 +13,7 @@ from ..scenario.values.directions import section_axes
 from .ground import beyond_text, ground_of
 from .lattices import ROUNDING
 
+TINY = 1e-300  # m/s; in place of 0 in what is divided by
 INSTANTS = 2000  # at which the volume of a surge is looked at
 NEAREST = 0.4  # spacings between an inflow and a terrain
 NEAREST_WALL = 0.6  # between it and fixed particles
@@ -67,13 +68,24 @@ class InflowSection:
         """Largest mass that enters in a second, kg/s (2-D: kg/s/m)."""
         return self.mass * len(self.rows) * self.speed / self.spacing
 
-    def entered(self, time: np.ndarray) -> np.ndarray:
-        """Particles that have entered by each time, s, a fraction of a layer included."""
+    def gone(self, time: np.ndarray | float) -> np.ndarray:
+        """How far layers have gone by each time, s, in m."""
         t = np.clip(time, self.start, self.stop)
         k = np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.times) - 2)
         since, speed = t - self.times[k], np.interp(t, self.times, self.speeds)
-        gone = self.distances[k] + 0.5 * (self.speeds[k] + speed) * since
-        return gone / self.spacing * len(self.rows)
+        return np.asarray(self.distances[k] + 0.5 * (self.speeds[k] + speed) * since)
+
+    def time_of(self, distance: np.ndarray) -> np.ndarray:
+        """When layers have gone so far, m, in s: the inverse of `gone`."""
+        far = np.minimum(distance, self.distances[-1])
+        k = np.clip(np.searchsorted(self.distances, far, "right") - 1, 0, len(self.times) - 2)
+        more, slope = far - self.distances[k], np.diff(self.speeds) / np.diff(self.times)
+        then = np.sqrt(np.maximum(self.speeds[k] ** 2 + 2 * slope[k] * more, 0.0))
+        return np.asarray(self.times[k] + 2 * more / np.maximum(self.speeds[k] + then, TINY))
+
+    def entered(self, time: np.ndarray) -> np.ndarray:
+        """Particles that have entered by each time, s, a fraction of a layer included."""
+        return self.gone(time) / self.spacing * len(self.rows)
 
 
 def build_inflows(
@@ -236,10 +248,40 @@ def surge_volumes(scenario: Scenario, section: InflowSection) -> tuple[float, fl
     """What a surge asks for above the ground, and what its layers have, m3 (2-D: m2)."""
     time = np.linspace(section.start, section.stop, INSTANTS)
     thickness = np.interp(time, section.times, section.thickness)
-    speed = np.interp(time, section.times, section.speeds)
-    area = _areas(scenario, section.name, thickness)
-    layer = _cell(scenario) * np.searchsorted(np.sort(section.row_height), thickness)
-    return float(np.trapezoid(area * speed, time)), float(np.trapezoid(layer * speed, time))
+    asked = _areas(scenario, section.name, thickness) * np.interp(
+        time, section.times, section.speeds
+    )
+    return float(np.trapezoid(asked, time)), _of_layers(scenario, section, section.stop)
+
+
+def to_enter(scenario: Scenario, section: InflowSection) -> tuple[float, float]:
+    """What is to enter during the run, m3, and the largest discharge, m3/s (2-D: per metre).
+
+    Of a surge both are those of its layers, as in the ledger of the run.
+    """
+    inflow, start, end = scenario.inflow[section.name], scenario.begins_at, scenario.time_max
+    if inflow.surge is None:
+        across = 1.0 if scenario.dim == 3 else inflow.width
+        return inflow.volume_between(start, end) / across, inflow.peak_rate / across
+    time, rows = _layers(section, section.stop)
+    rate = rows * np.interp(time, section.times, section.speeds)
+    before, by = (_of_layers(scenario, section, each) for each in (start, end))
+    return by - before, _cell(scenario) * float(rate.max())
+
+
+def _of_layers(scenario: Scenario, section: InflowSection, time: float) -> float:
+    """What the layers of a surge have brought by a time, s, m3 (2-D: m2), the last one in part."""
+    _, rows = _layers(section, time)
+    share = np.minimum(float(section.gone(time)) / section.spacing - np.arange(len(rows)), 1.0)
+    return _cell(scenario) * section.spacing * float(rows @ share)
+
+
+def _layers(section: InflowSection, last: float) -> tuple[np.ndarray, np.ndarray]:
+    """When the middle of each layer (k,) of a surge crosses until a time, s, and its particles."""
+    number = np.arange(math.ceil(float(section.gone(last)) / section.spacing))
+    time = section.time_of((number + 0.5) * section.spacing)
+    thickness = np.interp(time, section.times, section.thickness)
+    return time, np.searchsorted(np.sort(section.row_height), thickness)
 
 
 def _check_clear(

@@ -37,7 +37,8 @@ class Inflow(Part):
         "with these columns; excludes rate, hydrograph and depth",
     )
     width: Length = Field(
-        description="from position towards positive axes, m; 2-D: rate/width enters"
+        description="from position towards positive axes, m; 2-D: rate/width enters, and "
+        "any width will do for a surge"
     )
     position: Position = Field(description="bottom point of the section, m")
     direction: Direction = Field(description="direction of the flow")
@@ -81,20 +82,14 @@ class Inflow(Part):
         return float(self.rows[:, 1].max())
 
     def volume_between(self, first: float, last: float) -> float:
-        """What enters between two times, s, in m3, by what it asks for."""
-        factors = np.array(self.surge, dtype=float).T if self.surge is not None else self.rows.T
-        times = factors[0] + (self.start if self.surge is not None else 0.0)
+        """What enters between two times, s, in m3, at the discharge that it asks for.
+
+        A surge has none: what it brings depends on the ground of its section.
+        """
+        assert self.surge is None
+        times, rates = self.rows.T
         low, high = max(first, times[0]), min(last, times[-1])
         if low >= high:
             return 0.0
         ends = np.unique([low, *times[(times > low) & (times < high)], high])
-
-        def rate(at: np.ndarray) -> np.ndarray:
-            """Each of the factors is linear between rows, so that Simpson's rule is exact."""
-            linear = [np.interp(at, times, factor) for factor in factors[1:]]
-            return np.asarray(np.prod(linear, axis=0))
-
-        middle = 0.5 * (ends[1:] + ends[:-1])
-        sums = rate(ends[:-1]) + 4 * rate(middle) + rate(ends[1:])
-        wide = self.width if self.surge is not None else 1.0
-        return float(wide * (np.diff(ends) * sums).sum() / 6)
+        return float(np.trapezoid(np.interp(ends, times, rates), ends))

@@ -197,10 +197,10 @@ class CoarseSurge(Finding):
     unit: str
 
     def __str__(self) -> str:
-        terms = "thickness, width and speed" if self.unit == "m3" else "thickness and speed"
+        terms = "area above the ground and speed" if self.unit == "m3" else "thickness and speed"
         return (
-            f"{self.place}: its layers have {self.volume:.3g} {self.unit}, and {terms} above the "
-            f"ground are {self.asked:.3g} {self.unit}: decrease dp"
+            f"{self.place}: its layers have {self.volume:.3g} {self.unit}, and {terms} make "
+            f"{self.asked:.3g} {self.unit}: decrease dp"
         )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from ...scenario.model import Scenario
 from ...scenario.tables.inflow import Inflow
 from ...util.finding import Finding
@@ -83,7 +85,7 @@ def _beginnings(scenario: Scenario) -> Iterator[tuple[str, float]]:
 
 
 def _begins(inflow: Inflow) -> float:
-    """When the first of it enters, s."""
-    times, rates = inflow.rows.T
-    first = int((rates > 0).argmax())
-    return float(times[first if inflow.surge is not None else max(first - 1, 0)])
+    """When the first of it enters, s: within the first stretch in which no factor stays at 0."""
+    rows = inflow.rows if inflow.surge is None else np.array(inflow.surge, dtype=float)
+    enters = (rows[1:, 1:] + rows[:-1, 1:] > 0).all(axis=1)
+    return float(inflow.rows[int(enters.argmax()), 0])
