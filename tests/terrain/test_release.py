@@ -11,7 +11,7 @@ import pytest
 from doseki.errors import ResourceError, UserError
 from doseki.geodata.raster import Raster, write_raster
 from doseki.scenario.load import load_scenario
-from doseki.scenario.releases import NotCompared
+from doseki.scenario.releases import NoArea, NotCompared
 from doseki.scene.build import build_scene
 from doseki.scene.ground import Ground
 from doseki.scene.kinds.registry import body_of
@@ -326,11 +326,41 @@ def test_a_raster_of_another_coordinate_system_is_refused(case, tmp_path):
             r"areas 1 and 2 share 0.03\d+ m2",
         ),
         (SQUARE + "\nfile_name = 'x'", "file_name is not a known key"),
+        (
+            "polygon = [[1, 1], [2, 2], [3, 3]]\nthickness = 0.5",
+            r"slide.polygon: has no area at \[2, 2\] m, where its corners lie on a line",
+        ),
+        ("polygon = [[1, 1], [2, 1], [3, 1]]\nthickness = 0.5", "slide.polygon: has no area"),
+        (hole("[[1, 1], [4, 1], [4, 3], [1, 3]]"), "slide.polygons: has no area .* holes take all"),
     ],
 )
 def test_what_is_no_release_is_refused(case, keys, said):
     with pytest.raises(UserError, match=said):
         build_scene(load_scenario(case(keys)))
+
+
+@pytest.mark.parametrize("line", [[[4, 1], [4.5, 1.5], [5, 2]], [[4, 1], [4.4, 1], [5, 1]]])
+def test_areas_and_holes_without_area_are_left_out_with_a_warning(case, tmp_path, line):
+    square, inner = [[1, 1], [4, 1], [4, 3], [1, 3]], [[2, 1.5], [2.5, 2.0], [3, 2.5]]
+    areas = [[line], [square, inner]]
+    (tmp_path / "area.geojson").write_text(
+        json.dumps({"type": "MultiPolygon", "coordinates": areas})
+    )
+    exact = volume_of(load_scenario(case()))
+    for key, name in (("file", f"{tmp_path}/area.geojson, feature 1"), ("polygons", "area 1")):
+        given = '"area.geojson"' if key == "file" else areas
+        path = case(f"{key} = {given}\nthickness = 0.5")
+        scenario = load_scenario(path)
+        assert scenario.body["slide"].polygons == [[square]]
+        assert volume_of(scenario) == exact
+        first, second = (str(each) for each in doubts_of(path) if isinstance(each, NoArea))
+        middle = f"[4.5, {1 if line[2][1] == 1 else 1.5}] m has no area: it is left out"
+        assert first.startswith(f"body.slide.{key}: ")
+        assert first.endswith(f"{name} at {middle}")
+        assert "hole 1 of " in second
+        assert "at [2.5, 2] m has no area" in second
+    path = case(f"polygons = {areas}\nthickness = [9.0, 0.5]")
+    assert load_scenario(path).body["slide"].thickness == [0.5]
 
 
 def test_a_hole_may_touch_its_outline(case):

@@ -11,6 +11,7 @@ import numpy as np
 from .inside import inside_rings, ring_area
 
 SAMPLES = 200  # along each side of a box
+FLAT = 1e-9  # of the square of its diagonal, an area that is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +22,14 @@ class Polygon:
         outer: vertices (n, 2) of its outer ring, m; the first is not repeated at the end.
         holes: the same for each hole.
         attributes: what the file says of it: names, and numbers, texts, truths or None.
+        source: the file and the number of the feature, for messages.
 
     """
 
     outer: np.ndarray
     holes: tuple[np.ndarray, ...] = ()
     attributes: Mapping[str, Any] = field(default_factory=dict)
+    source: str = ""
 
     @property
     def rings(self) -> tuple[np.ndarray, ...]:
@@ -37,6 +40,12 @@ class Polygon:
     def area(self) -> float:
         """Its area without holes, m2."""
         return abs(ring_area(self.outer)) - sum(abs(ring_area(hole)) for hole in self.holes)
+
+    @property
+    def has_area(self) -> bool:
+        """Whether it is more than a line, which rounding of coordinates may give some area."""
+        west, south, east, north = self.extent
+        return self.area > FLAT * ((east - west) ** 2 + (north - south) ** 2)
 
     @property
     def extent(self) -> tuple[float, float, float, float]:

@@ -19,7 +19,7 @@ def polygon_of(where: str, rings: Sequence[Any], attributes: Mapping[str, Any]) 
     if not rings:
         raise GeodataError(f"{where}: a polygon without vertices")
     outer, *holes = (_ring(where, ring) for ring in rings)
-    return Polygon(outer, tuple(holes), attributes)
+    return Polygon(outer, tuple(holes), attributes, where)
 
 
 def line_of(where: str, coordinates: Any, attributes: Mapping[str, Any]) -> Line:

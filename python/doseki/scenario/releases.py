@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ from ..geodata.crs import not_compared_text, same_crs, why_not_compared
 from ..geodata.features import Features, Polygon, read_features
 from ..geodata.inside import crossing_of
 from ..geodata.raster import holds_raster
-from ..util.finding import Finding
+from ..util.finding import Finding, place_text
 from ..util.spelling import suggestion
 from .tables.terrain.release import THICKEST, Release
 from .values.toml_source import Where
@@ -31,6 +33,17 @@ class NotCompared(Finding):
 
     def __str__(self) -> str:
         return f"{self.place}: {not_compared_text(self.file, self.why)}"
+
+
+@dataclass(frozen=True)
+class NoArea(Finding):
+    """An outline or a hole whose corners lie on a line, or an outline of which holes take all."""
+
+    what: str
+    at: tuple[float, float]  # m
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.what} at [{place_text(self.at)}] m has no area: it is left out"
 
 
 def completed_release(
@@ -54,46 +67,93 @@ def completed_release(
         features = _read(name, path, where, crs)
         if why := why_not_compared(features.crs, crs):
             doubts.append(NotCompared(f"body.{name}.file", path, why))
-        found["polygons"], thickness = _from_file(name, release, path, where, features)
+        areas, thickness = features.polygons, _thickness_in(name, release, path, where, features)
     else:
-        given = release.polygon
-        found["polygons"] = [[given]] if given is not None else release.polygons
-        thickness = release.thickness
-    _check_areas(name, found["polygons"], where)
-    count = len(found["polygons"])
+        areas, thickness = _given_areas(release), release.thickness
     if not isinstance(thickness, list):
-        thickness = [thickness] * count
-    if len(thickness) != count:
+        thickness = [thickness] * len(areas)
+    if len(thickness) != len(areas):
         raise where.error(
             ("body", name, "thickness"),
             f"body.{name}.thickness has {_counted(len(thickness), 'number')} for "
-            f"{_counted(count, 'polygon')}",
+            f"{_counted(len(areas), 'polygon')}",
         )
+    _check_areas(name, areas, where)
+    doubts += _without_area(name, release, areas, where)
+    kept = [(area, each) for area, each in zip(areas, thickness, strict=True) if area.has_area]
+    found["polygons"] = [_rings_with_area(area) for area, _ in kept]
+    thickness = [each for _, each in kept]
     return release.model_copy(update=found | {"thickness": thickness}), doubts
+
+
+def _given_areas(release: Release) -> tuple[Polygon, ...]:
+    """Those that stand in the scenario."""
+    given = [[release.polygon]] if release.polygon is not None else release.polygons or []
+    return tuple(
+        Polygon(outer, tuple(holes), source=f"area {k}")
+        for k, rings in enumerate(given, 1)
+        for outer, *holes in [[np.array(ring, float) for ring in rings]]
+    )
+
+
+def _rings_with_area(area: Polygon) -> list[Any]:
+    """The rings of an area, without holes that have none."""
+    holes = [hole for hole in area.holes if Polygon(hole).has_area]
+    return [ring.tolist() for ring in (area.outer, *holes)]
+
+
+def _without_area(
+    name: str, release: Release, areas: Sequence[Polygon], where: Where
+) -> Iterator[NoArea]:
+    """What has no area and is left out; raises UserError where nothing else is there."""
+    key = next(key for key in ("file", "polygon", "polygons") if getattr(release, key) is not None)
+    place = f"body.{name}.{key}"
+    if not any(area.has_area for area in areas):
+        raise where.error(
+            ("body", name, key),
+            f"{place}: has no area at [{place_text(_middle(areas[0].outer))}] m, where its corners "
+            "lie on a line or its holes take all of it: give corners around the area that is "
+            "released",
+        )
+    for area in areas:
+        if not area.has_area:
+            yield NoArea(place, _part_of(area), _middle(area.outer))
+            continue
+        for k, hole in enumerate(area.holes, 1):
+            if not Polygon(hole).has_area:
+                yield NoArea(place, f"hole {k} of {area.source}", _middle(hole))
+
+
+def _part_of(area: Polygon) -> str:
+    """What messages call one of the areas."""
+    return area.source if area.source.startswith("area ") else f"an area of {area.source}"
+
+
+def _middle(ring: np.ndarray) -> tuple[float, float]:
+    """The middle of its extent, m."""
+    x, y = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
+    return float(x), float(y)
 
 
 def _counted(count: int, thing: str) -> str:
     return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
 
 
-def _check_areas(name: str, polygons: list[Any], where: Where) -> None:
-    """Refuse rings that do not make an area, and areas that lie in each other."""
+def _check_areas(name: str, areas: Sequence[Polygon], where: Where) -> None:
+    """Refuse rings that cross themselves, and areas that lie in each other."""
     keys = ("body", name)
-    areas = []
-    for k, rings in enumerate(polygons, 1):
-        outer, *holes = (np.array(ring, float) for ring in rings)
-        areas.append(Polygon(outer, tuple(holes)))
-        if wrong := _wrong_ring(areas[-1], f"area {k}"):
+    for k, area in enumerate(areas, 1):
+        if wrong := _wrong_ring(area, f"area {k}"):
             raise where.error(keys, f"body.{name}: {wrong}")
-    for k, one in enumerate(areas):
-        for j, other in enumerate(areas[:k]):
-            shared = one.shared_with(other)
-            if shared > OVERLAP * min(one.area, other.area):
-                raise where.error(
-                    keys,
-                    f"body.{name}: areas {j + 1} and {k + 1} share {shared:.3g} m2, where "
-                    "particles of both would be: cut one of them, or make one area of both",
-                )
+    numbered = [(k, area) for k, area in enumerate(areas, 1) if area.has_area]
+    for (j, one), (k, other) in combinations(numbered, 2):
+        shared = one.shared_with(other)
+        if shared > OVERLAP * min(one.area, other.area):
+            raise where.error(
+                keys,
+                f"body.{name}: areas {j} and {k} share {shared:.3g} m2, where "
+                "particles of both would be: cut one of them, or make one area of both",
+            )
 
 
 def _wrong_ring(area: Polygon, name: str) -> str | None:
@@ -149,14 +209,11 @@ def _read(name: str, path: Path, where: Where, crs: str | None) -> Features:
     return features
 
 
-def _from_file(
-    name: str, release: Release, path: Path, where: Where, features: Features
-) -> tuple[Any, Any]:
-    """Polygons as lists of rings, and the thickness given or of each."""
+def _thickness_in(name: str, release: Release, path: Path, where: Where, features: Features) -> Any:
+    """The thickness given, or that of each polygon of a file."""
     keys, place = ("body", name, "file"), f"body.{name}.file"
-    polygons = [[ring.tolist() for ring in each.rings] for each in features.polygons]
     if release.thickness is not None:
-        return polygons, release.thickness
+        return release.thickness
     thickness = []
     for polygon in features.polygons:
         if FIELD not in polygon.attributes:
@@ -175,4 +232,4 @@ def _from_file(
                 f"0 and up to {THICKEST:g}; give body.{name}.thickness",
             )
         thickness.append(float(number))
-    return polygons, thickness
+    return thickness
