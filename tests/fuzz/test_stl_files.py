@@ -73,7 +73,20 @@ def image_of(kind: str) -> bytes:
     return image.getvalue()
 
 
-KINDS = {kind: image_of(kind) for kind in ("stl", "ply", "obj")}
+def mixed_ply() -> bytes:
+    """A wedge of two triangles and three faces of four corners."""
+    head = (
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 6\nproperty float x\n"
+        b"property float y\nproperty float z\nelement face 5\n"
+        b"property list uchar int vertex_indices\nend_header\n"
+    )
+    places = np.array([[x, y, z] for x in (0, 1) for y, z in ((0, 0), (1, 0), (0, 1))], "<f4")
+    faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]]
+    lists = b"".join(bytes([len(face)]) + np.array(face, "<i4").tobytes() for face in faces)
+    return head + places.tobytes() + lists
+
+
+KINDS = {kind: image_of(kind) for kind in ("stl", "ply", "obj")} | {"mixed.ply": mixed_ply()}
 
 
 @examples(60, 10_000)

@@ -16,6 +16,7 @@ from ..shapes import ShapeError, Triangles
 from ..shapes.making import quiet
 from ..shapes.mesh_lines import check_obj, check_ply_header
 from ..shapes.stl import in_utf8, readable_stl
+from .ply import mixed_faces
 
 LARGEST_FILE = 200_000_000  # bytes
 HEADER_PLY = 2**20  # bytes: scanners write long comments
@@ -76,13 +77,17 @@ def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarr
     options: dict[str, Any] = {"process": False, "skip_materials": True}
     if kind == "stl":
         options.pop("skip_materials")
-    image = io.BytesIO(_readable(file, kind, content))
-    try:
-        mesh = trimesh.load_mesh(image, file_type=kind, **options)
-    except IndexError:
-        raise UserError(f"{file}: {LOST}") from None
-    faces = np.asarray(getattr(mesh, "faces", np.zeros((0, 3))), np.int64)
-    vertices = np.asarray(mesh.vertices, float)
+    if kind == "ply" and (mixed := mixed_faces(content)) is not None:
+        vertices, corners = mixed
+        faces = trimesh.geometry.triangulate_quads(corners)
+    else:
+        image = io.BytesIO(_readable(file, kind, content))
+        try:
+            mesh = trimesh.load_mesh(image, file_type=kind, **options)
+        except IndexError:
+            raise UserError(f"{file}: {LOST}") from None
+        faces = np.asarray(getattr(mesh, "faces", np.zeros((0, 3))), np.int64)
+        vertices = np.asarray(mesh.vertices, float)
     if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
         raise UserError(f"{file}: its vertices are no points of space, or its faces no triangles")
     if not len(faces):
