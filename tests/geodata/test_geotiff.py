@@ -164,6 +164,62 @@ def test_more_cells_than_memory_are_refused(tmp_path, refusal):
     assert "more than this machine can hold" in refusal(read_raster, path)
 
 
+def masked(dataset):
+    dataset.write_mask(np.arange(30 * 40).reshape(30, 40) % 7 > 0)
+
+
+def stretched(dataset):
+    dataset.scales, dataset.offsets = (0.1,), (1000.0,)
+
+
+@pytest.mark.parametrize("tiled", [True, False])
+@pytest.mark.parametrize("upwards", [True, False])
+@pytest.mark.parametrize("about", [{}, {"nodata": 5.0}, {"after": masked}, {"after": stretched}])
+def test_a_window_of_a_file_is_that_of_its_raster(tiff, upwards, about, tiled):
+    values = np.random.default_rng(3).integers(0, 9, (30, 40)) / 7
+    place = (2.5, 0.0, 460_000.1, 0.0, *((2.5, 5_200_000.3) if upwards else (-2.5, 5_200_075.3)))
+    blocks = {"tiled": True, "blockxsize": 16, "blockysize": 16} if tiled else {}
+    with rasterio.Env(GDAL_TIFF_INTERNAL_MASK=True):
+        path = tiff(np.where(values > 1, 5.0, values), place=place, **about, **blocks)
+    whole = read_raster(path)
+    for low, size in (((7.3, 3.1), (31.0, 20.2)), ((0, 0), (100, 75)), ((97.5, 0), (2.5, 2.5))):
+        west, south = whole.west + low[0], whole.south + low[1]
+        box = (west, south, west + size[0], south + size[1])
+        part, expected = read_raster(path, box), whole.window(*box)
+        np.testing.assert_array_equal(part.values, expected.values)
+        assert part.values.flags.c_contiguous
+        assert part.extent == expected.extent
+        assert (part.crs, part.driver, part.nodata) == (whole.crs, whole.driver, whole.nodata)
+
+
+def test_of_a_large_file_only_the_window_is_read(tmp_path, refusal, monkeypatch):
+    """Of 10^10 cells those of 2 x 3, however little memory there is."""
+    path = tmp_path / "large.tif"
+    about = {"driver": "GTiff", "dtype": "float32", "count": 1, "sparse_ok": True, "tiled": True}
+    size = {"width": 100_000, "height": 100_000, "blockxsize": 512, "blockysize": 512}
+    place = {"transform": rasterio.Affine(2, 0, 0, 0, -2, 200_000)}
+    with rasterio.open(path, "w", **about, **size, **place) as dataset:
+        window = rasterio.windows.Window(50_000, 40_000, 3, 2)
+        dataset.write(np.arange(1, 7, dtype="float32").reshape(2, 3), 1, window=window)
+    monkeypatch.setattr("doseki.geodata.geotiff.available_bytes", lambda: 1000)
+    raster = read_raster(path, (100_000, 119_996, 100_006, 120_000))
+    np.testing.assert_array_equal(raster.values, [[1, 2, 3], [4, 5, 6]])
+    said = refusal(read_raster, path, (0, 0, 20, 20))
+    assert "10 x 10 cells are more than this machine can hold" in said
+    assert "reaches beyond the raster" in refusal(read_raster, path, (-2, 0, 20, 20))
+
+
+@pytest.mark.parametrize("upwards", [True, False])
+def test_a_cell_of_a_window_is_named_as_in_the_file(tiff, refusal, upwards):
+    values = np.ones((20, 30))
+    values[12, 7] = np.inf
+    path = tiff(values, place=(5.0, 0.0, 0.0, 0.0, *((5.0, 0.0) if upwards else (-5.0, 100.0))))
+    y = 62.5 if upwards else 37.5
+    for window in (None, (30.0, y - 10, 60.0, y + 10)):
+        assert "row 13, column 8 holds inf, which" in refusal(read_raster, path, window)
+    read_raster(path, (50.0, 0.0, 100.0, 100.0))
+
+
 def test_a_file_that_points_at_another_is_not_followed(tmp_path, tiff, refusal):
     """GDAL would take this text for a raster made of another file."""
     source = f"<SourceFilename>{tiff()}</SourceFilename>"

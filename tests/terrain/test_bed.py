@@ -60,6 +60,29 @@ def test_window_cell_and_smoothing(path):
     assert coarse.heights == pytest.approx(plane, abs=1e-9)  # a plane stays a plane
 
 
+@pytest.mark.parametrize("suffix", [".asc", ".tif"])
+def test_a_window_is_what_is_used_of_the_map(path, tmp_path, suffix):
+    """Resampled and smoothed by itself; what lies beyond it is not looked at."""
+    values = np.random.default_rng(5).normal(10, 1, (40, 60))
+    values[2, 3] = -9999.0
+    values[3, 3] = 1e6
+    whole = Raster(values, 0.0, 0.0, 0.1, nodata=-1.0)
+    write_raster(tmp_path / f"terrain{suffix}", whole)
+    path.write_text(path.read_text().replace("terrain.asc", f"terrain{suffix}"))
+    settings = ["terrain.resample=0.2", "terrain.smoothing=0.5"]
+    bed = load_scenario(path, ["terrain.window=[0.5, 0.5, 3.5, 2.5]", *settings]).bed
+    expected = whole.window(0.5, 0.5, 3.5, 2.5).resampled(0.2).smoothed(0.5)
+    np.testing.assert_array_equal(bed.raster.values, expected.values)
+    assert bed.raster.extent == expected.extent
+    np.testing.assert_array_equal(bed.as_read.values, whole.window(0.5, 0.5, 3.5, 2.5).values)
+    with pytest.raises(UserError, match=r"terrain.window: .* reaches beyond the raster"):
+        load_scenario(path, ["terrain.window=[0.5, 0.5, 3.5, 4.5]"])
+    with pytest.raises(UserError, match="1 cells hold -9999"):
+        load_scenario(path, ["terrain.window=[0.1, 0.5, 3.5, 4]"])
+    with pytest.raises(UserError, match="in the window: row 1, column 3 holds 1e\\+06"):
+        load_scenario(path, ["terrain.window=[0.1, 0.5, 3.5, 3.7]"])
+
+
 def test_numbers_that_are_no_heights_are_refused(path, tmp_path):
     """A map that does not say that -9999 means no data would have a pit of ten kilometres."""
     kept = (tmp_path / "terrain.asc").read_text()

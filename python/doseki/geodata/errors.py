@@ -12,6 +12,10 @@ class GeodataError(UserError, ValueError):
     """A raster, a polygon or a line that cannot be used as asked, in one sentence."""
 
 
+class WindowError(GeodataError):
+    """A window that is empty, or reaches beyond its raster."""
+
+
 def needed(module: str, path: object, what: str) -> ModuleType:
     """A module of the extra `terrain`; raises GeodataError where it is not installed."""
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from ..util.memory import available_bytes
 from .ascii_grid import SQUARE, not_square
 from .crs import check_map_coordinates, heights_not_metres
 from .errors import GeodataError, needed
-from .grid import Raster, means_no_data
+from .grid import Frame, Raster, means_no_data
 
 MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 WHAT = "a GeoTIFF"
@@ -28,11 +29,14 @@ def is_tiff(start: bytes) -> bool:
     return start[:4] in MAGIC
 
 
-def read_geotiff(path: Path) -> Raster:
-    """The raster of a file with one band.
+def read_geotiff(path: Path, window: Sequence[float] | None = None) -> Raster:
+    """The raster of a file with one band, or the whole cells that cover a window of it, m.
+
+    Nothing else is read than these.
 
     Raises:
         GeodataError: it is damaged, not in metres, not of square cells, or rasterio is missing.
+        WindowError: the window is empty, or reaches beyond the raster.
         UserError: it cannot be read.
 
     """
@@ -43,7 +47,7 @@ def read_geotiff(path: Path) -> Raster:
         # Within an Env what GDAL has to say does not go to the terminal.
         with rasterio.Env(), rasterio.open(path, driver="GTiff") as dataset:
             _check(path, dataset)
-            return _raster(path, dataset)
+            return _raster(path, dataset, window)
 
 
 def _check(path: Path, dataset: Any) -> None:
@@ -69,44 +73,51 @@ def _check(path: Path, dataset: Any) -> None:
         raise GeodataError(heights_not_metres(path, unit))
     if np.dtype(dataset.dtypes[0]).kind not in "iuf":
         raise GeodataError(f"{path}: holds {dataset.dtypes[0]}, and numbers are needed")
-    if dataset.width * dataset.height * BYTES > available_bytes():
-        raise GeodataError(
-            f"{path}: {dataset.width} x {dataset.height} cells are more than this machine can hold"
-        )
 
 
-def _raster(path: Path, dataset: Any) -> Raster:
-    raw, unknown = _read_whole(path, dataset)
+def _raster(path: Path, dataset: Any, window: Sequence[float] | None) -> Raster:
+    at = dataset.transform
+    upwards = at.e > 0  # its rows run from south to north
+    south = at.f + min(at.e, 0.0) * dataset.height
+    frame, left, below = Frame(at.c, south, at.a, dataset.shape), 0, 0
+    if window is not None:
+        frame, left, below = frame.window(window)
+    above = below if upwards else dataset.height - below - frame.shape[0]
+    raw, unknown = _read(path, dataset, (above, left), frame.shape)
     values = raw.astype(np.float64) * dataset.scales[0] + dataset.offsets[0]
     values[unknown] = np.nan
     endless = np.argwhere(np.isinf(values))
     if len(endless):
-        row, column = endless[0] + 1
+        row, column = endless[0]
         more = f", and {len(endless) - 1} more cells do" if len(endless) > 1 else ""
         raise GeodataError(
-            f"{path}: row {row}, column {column} holds {values[row - 1, column - 1]}{more}, which "
-            "is no height: mend it, or let the file say that it means no data"
+            f"{path}: row {row + above + 1}, column {column + left + 1} holds "
+            f"{values[row, column]}{more}, which is no height: mend it, or let the file say that "
+            "it means no data"
         )
-    at = dataset.transform
-    if at.e > 0:  # its rows run from south to north
-        values = values[::-1]
     return Raster(
-        np.ascontiguousarray(values),
-        at.c,
-        at.f + min(at.e, 0.0) * dataset.height,
-        at.a,
+        np.ascontiguousarray(values[::-1] if upwards else values),
+        frame.west,
+        frame.south,
+        frame.cell,
         dataset.crs.to_wkt() if dataset.crs else None,
         "GTiff",
         dataset.nodata,
     )
 
 
-def _read_whole(path: Path, dataset: Any) -> tuple[np.ndarray, np.ndarray]:
-    """The numbers of the file, and where they mean no data."""
+def _read(
+    path: Path, dataset: Any, start: tuple[int, int], shape: tuple[int, int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The numbers of so many rows and columns of the file, and where they mean no data."""
     rasterio = needed("rasterio", path, WHAT)
+    rows, columns = shape
+    if rows * columns * BYTES > available_bytes():
+        raise GeodataError(f"{path}: {columns} x {rows} cells are more than this machine can hold")
+    part = rasterio.windows.Window(start[1], start[0], columns, rows)
     try:
-        raw = dataset.read(1)
-        return raw, _unknown(raw, dataset)
+        raw = dataset.read(1, window=part)
+        return raw, _unknown(raw, dataset, part)
     except rasterio.errors.RasterioIOError:
         raise GeodataError(
             f"{path}: begins as a GeoTIFF but cannot be read to its end: it is damaged, or was cut "
@@ -114,9 +125,9 @@ def _read_whole(path: Path, dataset: Any) -> tuple[np.ndarray, np.ndarray]:
         ) from None
 
 
-def _unknown(raw: np.ndarray, dataset: Any) -> np.ndarray:
+def _unknown(raw: np.ndarray, dataset: Any, part: Any) -> np.ndarray:
     """Where there is no data: by the mask of the file, or by its number."""
-    unknown = dataset.read_masks(1) == 0
+    unknown = dataset.read_masks(1, window=part) == 0
     if raw.dtype.kind == "f":
         unknown |= np.isnan(raw)
     nodata = dataset.nodata

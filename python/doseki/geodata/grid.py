@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from .errors import GeodataError
+from .errors import GeodataError, WindowError
 from .interpolation import area_mean, bilinear, locally_linear
 
 TOLERANCE = 1e-6  # of a cell, by which edges of grids may differ
@@ -29,6 +29,49 @@ def means_no_data(values: np.ndarray, nodata: float) -> np.ndarray:
         single = np.float32(nodata)
         alike = values.astype(np.float32) == single
     return np.asarray((values == nodata) | (alike if np.isfinite(single) else False))
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where the square cells of a raster lie: outer corner and side, m, rows and columns."""
+
+    west: float
+    south: float
+    cell: float
+    shape: tuple[int, int]
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Outer edges: west, south, east, north, m."""
+        rows, cols = self.shape
+        return self.west, self.south, self.west + self.cell * cols, self.south + self.cell * rows
+
+    def window(self, window: Sequence[float], named: str = "window") -> tuple[Frame, int, int]:
+        """The whole cells that cover [west, south, east, north], m.
+
+        With them comes how many columns are west of them, and how many rows south.
+
+        Raises:
+            WindowError: it is empty, or reaches beyond the raster.
+
+        """
+        west, south, east, north = window
+        asked = f"{named} [{west:.10g}, {south:.10g}, {east:.10g}, {north:.10g}]"
+        if not (west < east and south < north):
+            raise WindowError(f"{asked} must be west < east and south < north")
+        first, last = self._cells(west - self.west, east - self.west)
+        low, high = self._cells(south - self.south, north - self.south)
+        rows, cols = self.shape
+        if first < 0 or low < 0 or last > cols or high > rows:
+            edges = ", ".join(f"{edge:.10g}" for edge in self.extent)
+            raise WindowError(f"{asked} reaches beyond the raster, which has [{edges}]")
+        corner = self.west + first * self.cell, self.south + low * self.cell
+        return Frame(*corner, self.cell, (high - low, last - first)), first, low
+
+    def _cells(self, start: float, end: float) -> tuple[int, int]:
+        """The first cell, and the one after the last, that cover a stretch from an edge, m."""
+        first = math.floor(start / self.cell + TOLERANCE)
+        return first, max(math.ceil(end / self.cell - TOLERANCE), first + 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,21 +187,14 @@ class Raster:
         """The whole cells that cover a rectangle of the map, m.
 
         Raises:
-            GeodataError: it is empty, or reaches beyond the raster.
+            WindowError: it is empty, or reaches beyond the raster.
 
         """
-        asked = f"{named} [{west:.10g}, {south:.10g}, {east:.10g}, {north:.10g}]"
-        if not (west < east and south < north):
-            raise GeodataError(f"{asked} must be west < east and south < north")
-        first, last = self._cells(west - self.west, east - self.west)
-        low, high = self._cells(south - self.south, north - self.south)
-        rows, cols = self.shape
-        if first < 0 or low < 0 or last > cols or high > rows:
-            edges = ", ".join(f"{edge:.10g}" for edge in self.extent)
-            raise GeodataError(f"{asked} reaches beyond the raster, which has [{edges}]")
-        values = self.values[rows - high : rows - low, first:last].copy()
-        west, south = self.west + first * self.cell, self.south + low * self.cell
-        return replace(self, values=values, west=west, south=south)
+        frame = Frame(self.west, self.south, self.cell, self.shape)
+        part, first, low = frame.window((west, south, east, north), named)
+        (rows, cols), end = part.shape, self.shape[0] - low
+        values = self.values[end - rows : end, first : first + cols].copy()
+        return replace(self, values=values, west=part.west, south=part.south)
 
     def for_maps(
         self, cell: float | None, extent: Sequence[float] | None, named: str = "maps.cell"
@@ -178,11 +214,6 @@ class Raster:
             )
         raster = self.resampled(cell) if cell is not None and times > 1 else self
         return raster if extent is None else raster.window(*extent, named="extent")
-
-    def _cells(self, start: float, end: float) -> tuple[int, int]:
-        """The first cell, and the one after the last, that cover a stretch from an edge, m."""
-        first = math.floor(start / self.cell + TOLERANCE)
-        return first, max(math.ceil(end / self.cell - TOLERANCE), first + 1)
 
     def resampled(self, cell: float) -> Raster:
         """The raster on cells of another size, from the same south-western corner.

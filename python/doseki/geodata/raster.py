@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +22,8 @@ TIFF_SUFFIXES = (".tif", ".tiff", ".geotiff")
 START = 64  # bytes that tell what a file is
 
 
-def read_raster(path: Path | str) -> Raster:
-    """A raster, by what its file holds, not by its name.
+def read_raster(path: Path | str, window: Sequence[float] | None = None) -> Raster:
+    """A raster, by what its file holds, not by its name; or the cells that cover a window of it, m.
 
     Of a GeoTIFF: any compression, tiling and kind of number, scale and offset applied; one band.
     Of an ESRI ASCII grid: lines xllcorner or xllcenter, in capitals or not; its .prj beside it.
@@ -31,15 +31,17 @@ def read_raster(path: Path | str) -> Raster:
     Raises:
         GeodataError: it is damaged or of another format, has no square cells with north up, is not
             in metres, or rasterio is missing.
+        WindowError: the window is empty, or reaches beyond the raster.
         UserError: it cannot be read.
 
     """
     path = Path(path)
     start = _start(path)
     if is_tiff(start):
-        raster = read_geotiff(path)
+        raster = read_geotiff(path, window)
     elif is_ascii_grid(start):
         raster = read_ascii_grid(path)
+        raster = raster if window is None else raster.window(*window)
     else:
         raise GeodataError(
             f"{path}: neither a GeoTIFF nor an ESRI ASCII grid; convert it with "

@@ -13,7 +13,7 @@ from scipy.ndimage import distance_transform_edt
 
 from ..errors import UserError
 from ..geodata.crs import MapScale, map_scale
-from ..geodata.errors import GeodataError
+from ..geodata.errors import GeodataError, WindowError
 from ..geodata.ground import Profile
 from ..geodata.raster import Raster, read_raster
 from .islands import MAX_CELLS, Islands, islands_of
@@ -124,7 +124,7 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     try:
         if dim == 2 and path.suffix.lower() == ".csv":
             return _bed_of_profile(path, terrain, dp, where)
-        as_read = _windowed(_with_heights(path, _read(path, where)), terrain, where)
+        as_read = _with_heights(path, _read(path, terrain, where), terrain)
         raster = _remade(as_read, terrain, where)
         kept = as_read if as_read.values.size <= MAX_CELLS else None
     except GeodataError as error:
@@ -140,17 +140,19 @@ def read_bed(path: Path, terrain: Terrain, dim: int, dp: float, where: Where) ->
     return replace(_bed_of_section(path, raster, terrain, dp, where), as_read=kept)
 
 
-def _read(path: Path, where: Where) -> Raster:
-    """The raster of a file; one that cannot be opened or is damaged is named with its key."""
+def _read(path: Path, terrain: Terrain, where: Where) -> Raster:
+    """What is used of the map; one that cannot be opened or is damaged is named with its key."""
     try:
-        return read_raster(path)
+        return read_raster(path, terrain.window)
+    except WindowError as error:
+        raise where.error(("terrain", "window"), f"terrain.window: {error}") from None
     except GeodataError:
         raise
     except UserError as error:
         raise _error(where, str(error)) from None
 
 
-def _with_heights(path: Path, raster: Raster) -> Raster:
+def _with_heights(path: Path, raster: Raster, terrain: Terrain) -> Raster:
     """The raster, unless it has numbers that are no heights, as those that mean no data."""
     for number in NO_HEIGHTS:
         cells = int((raster.values == number).sum())
@@ -160,9 +162,10 @@ def _with_heights(path: Path, raster: Raster) -> Raster:
                 f"it means no data (gdal_edit -a_nodata {number:g} IN; .asc: a line NODATA_value)"
             )
     if cell := raster.beyond(HIGHEST):
+        part = "" if terrain.window is None else ", in the window"
         raise GeodataError(
-            f"{path}: {cell}, and heights are within {HIGHEST:g} m of 0: mend it, or let the file "
-            "say that it means no data (gdal_edit -a_nodata; .asc: a line NODATA_value)"
+            f"{path}{part}: {cell}, and heights are within {HIGHEST:g} m of 0: mend it, or let the "
+            "file say that it means no data (gdal_edit -a_nodata; .asc: a line NODATA_value)"
         )
     return raster
 
@@ -174,12 +177,6 @@ def _asked_by(key: str, where: Where) -> Iterator[None]:
         yield
     except GeodataError as error:
         raise where.error(("terrain", key), f"terrain.{key}: {error}") from None
-
-
-def _windowed(raster: Raster, terrain: Terrain, where: Where) -> Raster:
-    """What is used of the map."""
-    with _asked_by("window", where):
-        return raster if terrain.window is None else raster.window(*terrain.window)
 
 
 def _remade(raster: Raster, terrain: Terrain, where: Where) -> Raster:

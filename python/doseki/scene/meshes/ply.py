@@ -90,7 +90,8 @@ def _alike(
     content: bytes, element: Element, start: int, lengths: list[int]
 ) -> tuple[Columns, int] | None:
     """The same where lists are as long in all records as in the first; None where they are not."""
-    fields, names = [], [str(k) for k in range(len(lengths))]
+    names = [str(k) for k in range(len(lengths))]
+    fields: list[tuple[str, np.dtype, tuple[int, ...]]] = []
     for name, of, length in zip(names, element.properties, lengths, strict=True):
         if of.counted_by is not None:
             fields.append((f"count {name}", of.counted_by, ()))
