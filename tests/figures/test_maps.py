@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.colors import LightSource
 from matplotlib.image import imread
 
 from doseki.cli.app import app
@@ -15,6 +16,7 @@ from doseki.figures.maps.drawing import draw_map, draw_profile
 from doseki.figures.maps.output import MapOptions, map_makers, write_pictures
 from doseki.figures.maps.structures import COLOUR, OVER, Structures
 from doseki.figures.nothing import NothingToDrawError
+from doseki.figures.space.ground import hillshade
 from doseki.geodata.grid import Raster
 from doseki.geodata.raster import read_raster, write_raster
 from doseki.measure.maps.profile import along_path
@@ -335,6 +337,20 @@ def test_nothing_of_a_map_is_cut_off(shape, title):
         assert box.y0 >= 0
         assert box.x1 <= figure.bbox.x1
         assert box.y1 <= figure.bbox.y1
+
+
+def test_the_edge_of_what_is_known_is_no_cliff():
+    """Beside cells without data, and far from them, the relief is the one that it has without."""
+    whole = hill().values
+    holes = whole.copy()
+    holes[5:12, 10:20] = holes[:, 35:] = holes[20, 3] = np.nan
+    known = np.isfinite(holes)
+    full, cut = hillshade(whole, 2.0), hillshade(holes, 2.0)
+    assert np.abs(cut - full)[known].max() < 0.1
+    sun = LightSource(azdeg=315, altdeg=45)
+    np.testing.assert_allclose(full, sun.hillshade(whole, dx=2.0, dy=2.0), atol=1e-12)
+    plane = np.where(known, hill().x[None, :] - 0.3 * hill().y[:, None], np.nan)
+    assert np.ptp(hillshade(plane, 2.0)[known]) < 1e-9
 
 
 def test_nothing_is_no_picture():

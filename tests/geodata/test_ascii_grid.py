@@ -145,6 +145,8 @@ def test_a_projection_beside_it_is_kept(tmp_path, grid):
         ('GEOGCS["WGS 84",UNIT["degree",0.0174]]', "gdalwarp -t_srs"),
         ('PROJCS["x",GEOGCS["g"],UNIT["Foot_US",0.3048]]', "Foot_US"),
         ("Projection UTM\nZone 33", "WKT"),
+        ("Projection    GEOGRAPHIC\nDatum WGS84\nUnits DD\n", "coordinates are degrees"),
+        ("projection geographic\nunits dd\nparameters\n", "gdalwarp -t_srs"),
     ],
 )
 def test_a_projection_that_is_not_in_metres_is_refused(tmp_path, grid, refusal, wkt, word):

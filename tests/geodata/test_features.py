@@ -164,13 +164,13 @@ def geopackage(tmp_path):
     pyogrio = pytest.importorskip("pyogrio", reason="pyogrio: pip install 'doseki[terrain]'")
     shapely = pytest.importorskip("shapely")
 
-    def write(*texts):
+    def write(*texts, **more):
         path, shapes = (
             tmp_path / "x.gpkg",
             [text and shapely.to_wkb(shapely.from_wkt(text)) for text in texts],
         )
         about = {"geometry_type": "Polygon", "crs": "EPSG:32633", "driver": "GPKG"}
-        pyogrio.raw.write(path, np.array(shapes, object), [], [], **about)
+        pyogrio.raw.write(path, np.array(shapes, object), [], [], **about | more)
         return path
 
     return write
@@ -196,9 +196,15 @@ def test_of_several_layers_one_is_chosen(tmp_path, geojson, refusal, gdal):
     source, target = geojson(collection(FRAME, crs=CRS)), tmp_path / "two.gpkg"
     subprocess.run(["ogr2ogr", str(target), str(source), "-nln", "one"], check=True)
     subprocess.run(["ogr2ogr", "-append", str(target), str(source), "-nln", "two"], check=True)
-    assert "choose one of one, two" in refusal(read_features, target)
-    assert "choose one of one, two" in refusal(read_features, target, "three")
+    assert 'no layer "three"; it has one, two' in refusal(read_features, target, "three")
     assert len(read_features(target, "two").polygons) == 1
+
+
+def test_a_file_of_several_layers_is_refused_with_what_to_do(geopackage, refusal):
+    geopackage(AREA, layer="one")
+    said = refusal(read_features, geopackage(AREA, layer="two", append=True))
+    assert "has the layers one, two, and one is read; write it into a file of its own" in said
+    assert said.endswith("ogr2ogr NEW.gpkg x.gpkg LAYER")
 
 
 def test_tables_of_styles_are_no_layers(tmp_path, geojson, gdal):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from doseki.util.finding import Finding, below, sentences
+from doseki.util.finding import Finding, below, percent, sentences
 
 
 @dataclass(frozen=True)
@@ -35,3 +35,10 @@ def test_copies_are_told_of_together():
 )
 def test_what_is_below_a_limit_is_so_as_it_is_printed(value, said):
     assert below(value, 8) == said
+
+
+@pytest.mark.parametrize(
+    ("share", "said"), [(1.0, "100 %"), (0.997, "100 %"), (0.994, "99 %"), (0.0123, "1.2 %")]
+)
+def test_all_of_a_thing_is_100_per_cent(share, said):
+    assert percent(share) == said

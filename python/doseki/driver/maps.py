@@ -16,7 +16,7 @@ from ..measure.maps.standing import clamped_bodies, flowing
 from ..record.folder import RunFolder
 from ..scenario.model import Scenario
 from ..solver.protocol import Simulation
-from ..util.finding import Finding
+from ..util.finding import Finding, percent
 from .ranks import OneRank
 from .schedule import OutputTimes
 
@@ -69,7 +69,7 @@ class RunningMaps:
         if peaks is None or peaks.outside < LOST:
             return []
         return [
-            f"maps: up to {100 * peaks.outside:.2g} % of the volume was beside the map; a larger"
+            f"maps: up to {percent(peaks.outside)} of the volume was beside the map; a larger"
             " extent, or a larger terrain, would show it"
         ]
 

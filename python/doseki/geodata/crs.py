@@ -34,6 +34,8 @@ COMPOUND = ("COMPD_CS", "COMPOUNDCRS")
 MAP_PART = re.compile(r"(?:PROJC(?:S|RS)|GEO[A-Z]*C(?:S|RS)|LOCAL_CS|ENGCRS)\[")
 MIN_CONFIDENCE = 70  # per cent; names of ESRI's WKT differ from those of EPSG
 IN_DEGREES = re.compile(r"(?:^|[:/])CRS(?:84h?|83|27)$", re.IGNORECASE)
+# Of the lines that ArcInfo wrote before there was WKT.
+OLD_DEGREES = re.compile(r"^\s*(?:Projection\s+GEO|Units\s+D)", re.IGNORECASE | re.MULTILINE)
 CONVERT = (
     "convert it with gdalwarp -t_srs EPSG:CODE IN OUT (vectors: ogr2ogr -t_srs EPSG:CODE OUT IN), "
     "such as 32633 for UTM zone 33 N"
@@ -59,6 +61,10 @@ def check_map_coordinates(path: object, crs: str) -> None:
         raise GeodataError(f"{path}: coordinates are degrees, and metres are needed; {CONVERT}")
     if word in PROJECTED:
         _check_units(path, crs)
+    elif OLD_DEGREES.search(crs):
+        raise GeodataError(
+            f"{path}: its lines say that coordinates are degrees, and metres are needed; {CONVERT}"
+        )
     elif "[" in crs or ":" not in crs:
         raise GeodataError(
             f'{path}: "{crs[:40]}" is no coordinate reference system of a map in WKT; write one '

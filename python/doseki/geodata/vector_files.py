@@ -67,10 +67,13 @@ def _layer(path: Path, layer: str | None) -> str:
     if layer is None and len(names) == 1:
         return names[0]
     if layer not in names:
-        what = f'no layer "{layer}"' if layer else "has several layers"
+        those = ", ".join(names)
+        if layer is not None or not names:
+            what = f'no layer "{layer}"' if names else "no layer of areas or lines"
+            raise GeodataError(f"{path}: {what}{f'; it has {those}' if names else ''}")
         raise GeodataError(
-            f"{path}: {what}; choose one of {', '.join(names) or 'none'} (in a file of its own: "
-            f"ogr2ogr NEW.gpkg {path.name} LAYER)"
+            f"{path}: has the layers {those}, and one is read; write it into a file of its own: "
+            f"ogr2ogr NEW.gpkg {path.name} LAYER"
         )
     return str(layer)
 

@@ -26,6 +26,11 @@ def place_text(place: Iterable[float]) -> str:
     return ", ".join(f"{x:.4g}" if abs(x) < MAP else f"{x:.1f}" for x in place)
 
 
+def percent(share: float) -> str:
+    """A share in per cent, of two digits: 100 where `.2g` would say 1e+02."""
+    return f"{float(f'{100 * share:.2g}'):g} %"
+
+
 def no_more_than(most: float) -> str:
     """The largest number of two digits that is no larger: what a remedy may say would do."""
     unit = 10.0 ** (math.floor(math.log10(most)) - 1)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...measure.maps.leaving import EDGE, HOLE, OUTFLOW
 from ...record.units import unit_in
-from ...util.finding import Finding, place_text
+from ...util.finding import Finding, percent, place_text
 
 LOST = 0.01  # share of the mass from which on it is told of
 LACK = "run-out, maps and deposit are without it"
@@ -25,7 +25,7 @@ class LeftTheMap(Finding):
     def __str__(self) -> str:
         most = f", most by the {self.side} side" if self.side else ""
         return (
-            f"{self.place}: {100 * self.share:.2g} % of the mass left over the edge of the map"
+            f"{self.place}: {percent(self.share)} of the mass left over the edge of the map"
             f"{most}; {LACK}: take a larger map, {MEANT}"
         )
 
@@ -39,7 +39,7 @@ class LeftIntoHoles(Finding):
 
     def __str__(self) -> str:
         return (
-            f"{self.place}: {100 * self.share:.2g} % of the mass vanished into cells without data, "
+            f"{self.place}: {percent(self.share)} of the mass vanished into cells without data, "
             f"around ({place_text(self.at)}) m; {LACK}: fill these cells (gdal_fillnodata IN OUT), "
             f"{MEANT}"
         )
@@ -53,7 +53,7 @@ class LeftUnseen(Finding):
 
     def __str__(self) -> str:
         return (
-            f"{self.place}: {100 * self.share:.2g} % of the mass came and left between two "
+            f"{self.place}: {percent(self.share)} of the mass came and left between two "
             "snapshots, so that it is not known whether over the edge of the map, into cells "
             "without data or through outflows: a shorter time_out would tell"
         )

@@ -74,12 +74,28 @@ def relief(run: Run, extent: Extent, width: int) -> np.ndarray | None:
 def hillshade(height: np.ndarray, cell: float) -> np.ndarray:
     """Heights (rows, columns), m, rows from the north, lit from the north-west: from 0 to 1.
 
-    It means nothing where a height is unknown.  There are two rows and columns or more, and one
-    height that is known.
+    It means nothing where a height is unknown, and beside it slopes are those on the other side, so
+    that the edge of what is known is no cliff.  One height is known or more.
     """
     known = np.isfinite(height)
-    filled = np.where(known, height, np.mean(height[known]))
-    return np.asarray(LightSource(**SUN).hillshade(filled, dx=cell, dy=cell))
+    south, east = (_slope(height, cell, axis) for axis in (0, 1))
+    normal = np.stack([-east, south, np.ones(height.shape)], axis=-1)
+    normal[~known] = normal[known][0]  # so that it is neither the brightest nor the darkest place
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    return np.asarray(LightSource(**SUN).shade_normals(normal))
+
+
+def _slope(height: np.ndarray, cell: float, axis: int) -> np.ndarray:
+    """Rise along an axis of the rows or columns: the mean of both sides, as far as they are known.
+
+    It is 0 where neither is.
+    """
+    step = np.diff(height, axis=axis) / cell
+    around = [(1, 1) if axis == k else (0, 0) for k in range(2)]
+    step = np.pad(step, around, constant_values=np.nan)
+    before, after = np.delete(step, -1, axis), np.delete(step, 0, axis)
+    sides = np.isfinite(before).astype(int) + np.isfinite(after)
+    return np.asarray((np.nan_to_num(before) + np.nan_to_num(after)) / np.maximum(sides, 1))
 
 
 def ground_behind(

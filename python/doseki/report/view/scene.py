@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import UserError
 from ...measure.census.grains import keep_their_shape
 from ...record.reader import Run, Snapshot
+from ...util.finding import percent
 from .box import Box, box_of
 from .colours import Field, fields_of, scale
 from .particles import Block, ParticlePacker
@@ -264,7 +265,7 @@ def _left_out(
     if thinning.shell or thinning.share < 1:
         share = f"{100 * shown / max(1, there):.3g} % of the particles that move are shown"
         hidden = "those inside, which no one sees, are left out" if thinning.shell else ""
-        lots = f"a random {100 * thinning.share:.2g} % are kept" if thinning.share < 1 else ""
+        lots = f"a random {percent(thinning.share)} are kept" if thinning.share < 1 else ""
         notes.append(f"{share}: {' and of the others '.join(filter(None, (hidden, lots)))}.")
     elif shown < there:
         notes.append(f"{there - shown} particles far from all others are left out (all snapshots).")

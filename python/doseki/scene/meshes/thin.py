@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...util.finding import Finding, no_more_than
+from ...util.finding import Finding, no_more_than, percent
 from ..shapes import MeshShape
 
 SHARE = 0.01  # of the surface; on less of it a wall may be thinner, as beside a sharp edge
@@ -29,7 +29,7 @@ class ThinWall(Finding):
         enough = no_more_than(self.spacing * self.thickness / self.needed)
         holes = ", and leaks where it is thinner than dp" if self.thickness < self.spacing else ""
         return (
-            f"{self.place}: {100 * self.share:.2g} % of its surface is that of walls down to "
+            f"{self.place}: {percent(self.share)} of its surface is that of walls down to "
             f"{self.thickness:.3g} m thick; the kernel sees {self.needed:.3g} m, so that water on "
             f"one side feels the water on the other{holes}: dp = {enough} would do, or a thicker "
             "wall"
