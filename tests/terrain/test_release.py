@@ -339,7 +339,14 @@ def test_what_is_no_release_is_refused(case, keys, said):
         build_scene(load_scenario(case(keys)))
 
 
-@pytest.mark.parametrize("line", [[[4, 1], [4.5, 1.5], [5, 2]], [[4, 1], [4.4, 1], [5, 1]]])
+@pytest.mark.parametrize(
+    "line",
+    [
+        [[4, 1], [4.5, 1.5], [5, 2]],
+        [[4, 1], [4.4, 1], [5, 1]],
+        [[4, 1], [5, 2], [4.4, 1.4 + 1e-11], [4.6, 1.6 - 1e-11]],  # rounding crosses itself
+    ],
+)
 def test_areas_and_holes_without_area_are_left_out_with_a_warning(case, tmp_path, line):
     square, inner = [[1, 1], [4, 1], [4, 3], [1, 3]], [[2, 1.5], [2.5, 2.0], [3, 2.5]]
     areas = [[line], [square, inner]]

@@ -6,11 +6,19 @@ from collections.abc import Iterable
 
 import numpy as np
 
+ROUNDING = 1e-9  # of the length of a line, its width
+
 
 def ring_area(ring: np.ndarray) -> float:
     """Area of a ring (n, 2), m2, above 0 where it runs counter-clockwise (shoelace formula)."""
     x, y = (ring - ring[0]).T
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)
+
+
+def is_line(ring: np.ndarray) -> bool:
+    """Whether the vertices (n, 2) of a ring lie on a line, but for the rounding of coordinates."""
+    length, width = np.linalg.svd(ring - ring.mean(axis=0), compute_uv=False)
+    return bool(width <= ROUNDING * length)
 
 
 def crossing_of(ring: np.ndarray) -> np.ndarray | None:

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import UserError
 from ..geodata.crs import not_compared_text, same_crs, why_not_compared
 from ..geodata.features import Features, Polygon, read_features
-from ..geodata.inside import crossing_of
+from ..geodata.inside import crossing_of, is_line
 from ..geodata.raster import holds_raster
 from ..util.finding import Finding, place_text
 from ..util.spelling import suggestion
@@ -70,20 +70,26 @@ def completed_release(
         areas, thickness = features.polygons, _thickness_in(name, release, path, where, features)
     else:
         areas, thickness = _given_areas(release), release.thickness
+    each = _one_each(name, thickness, len(areas), where)
+    _check_areas(name, areas, where)
+    doubts += _without_area(name, release, areas, where)
+    kept = [pair for pair in zip(areas, each, strict=True) if pair[0].has_area]
+    found["polygons"] = [_rings_with_area(area) for area, _ in kept]
+    found["thickness"] = [thick for _, thick in kept]
+    return release.model_copy(update=found), doubts
+
+
+def _one_each(name: str, thickness: Any, count: int, where: Where) -> list[Any]:
+    """A thickness for each of so many polygons."""
     if not isinstance(thickness, list):
-        thickness = [thickness] * len(areas)
-    if len(thickness) != len(areas):
+        return [thickness] * count
+    if len(thickness) != count:
         raise where.error(
             ("body", name, "thickness"),
             f"body.{name}.thickness has {_counted(len(thickness), 'number')} for "
-            f"{_counted(len(areas), 'polygon')}",
+            f"{_counted(count, 'polygon')}",
         )
-    _check_areas(name, areas, where)
-    doubts += _without_area(name, release, areas, where)
-    kept = [(area, each) for area, each in zip(areas, thickness, strict=True) if area.has_area]
-    found["polygons"] = [_rings_with_area(area) for area, _ in kept]
-    thickness = [each for _, each in kept]
-    return release.model_copy(update=found | {"thickness": thickness}), doubts
+    return thickness
 
 
 def _given_areas(release: Release) -> tuple[Polygon, ...]:
@@ -159,7 +165,7 @@ def _check_areas(name: str, areas: Sequence[Polygon], where: Where) -> None:
 def _wrong_ring(area: Polygon, name: str) -> str | None:
     """What is wrong with the outline of an area or with one of its holes."""
     for k, ring in enumerate(area.rings):
-        at = crossing_of(ring)
+        at = None if is_line(ring) else crossing_of(ring)
         if at is not None:
             return (
                 f"{f'hole {k}' if k else 'the outline'} of {name} crosses itself at "
