@@ -214,6 +214,13 @@ def test_a_profile_along_a_path(slide, tmp_path, as_file):
     assert (slide / "maps/profile.png").is_file()
 
 
+def test_a_path_that_leaves_the_map_is_told(slide):
+    path = f"{WEST + 1},{SOUTH + 24.5} {WEST + 100},{SOUTH + 24.5}"
+    said = write_pictures(slide, MapOptions(path=path))
+    (line,) = (line for line in said if "beside the map, where" in line)
+    assert line.startswith("along the path: 20 of its 99 m")
+
+
 @pytest.mark.parametrize(
     "path", ["", "1,2", "1,2 3", "a,b c,d", "nan,1 2,3", "1,2,3 4,5,6", 99 * "1;2 "]
 )
