@@ -11,7 +11,7 @@ from matplotlib.image import imread
 
 from doseki.cli.app import app
 from doseki.errors import UserError
-from doseki.figures.maps.drawing import draw_map, draw_profile
+from doseki.figures.maps.drawing import DARKEST, draw_map, draw_profile
 from doseki.figures.maps.output import MapOptions, map_makers, write_pictures
 from doseki.figures.maps.structures import COLOUR, OVER, Structures
 from doseki.figures.nothing import NothingToDrawError
@@ -149,6 +149,28 @@ def test_a_dam_does_not_cut_the_numbers_of_contours(dammed):
     axes = dict(map_makers(load(path)))["peak_depth"]().axes[0]
     assert len(axes.texts) > 2
     assert min(text.get_zorder() for text in axes.texts) > OVER
+
+
+@pytest.mark.parametrize("angle", [0, 37, 90])
+def test_no_number_of_a_contour_lies_on_a_dam(dammed, angle):
+    """Their lines are hidden there. There are as many numbers as beside no dam, or nearly."""
+    path = dammed(angle)
+    bed = hill()
+    figure = draw_map(
+        PEAK_DEPTH, bed.with_values(np.ones(bed.shape)), bed, "", Structures.of(load(path))
+    )
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    inside = axes.transData.transform(dam(angle)[:, :2])
+    assert len(axes.texts) > 5
+    for text in axes.texts:
+        box = text.get_window_extent()
+        assert not any(box.contains(x, y) for x, y in inside), text.get_text()
+
+
+def test_bodies_are_darker_than_any_slope():
+    """The relief is drawn from DARKEST, which stands for black, to white."""
+    assert float(COLOUR) < 0.7 * DARKEST / (DARKEST - 1)
 
 
 def test_runs_with_other_dams_share_none(dammed):
@@ -329,14 +351,25 @@ def test_what_a_map_shows():
     assert west < WEST + 10 < WEST + 60 < east
 
 
-@pytest.mark.parametrize("shape", [(34, 67), (60, 24), (40, 40), (12, 90)])
-@pytest.mark.parametrize("title", [TITLE, 8 * "a long title "])
-def test_nothing_of_a_map_is_cut_off(shape, title):
-    bed = Raster(np.add.outer(np.arange(shape[0]), np.arange(shape[1])) * 0.5, WEST, SOUTH, 2.0)
-    figure = draw_map(PEAK_DEPTH, bed.with_values(np.ones(shape)), bed, title)
+@pytest.mark.parametrize("shape", [(34, 67), (60, 24), (40, 40), (12, 90), (18, 12), (90, 12)])
+@pytest.mark.parametrize(
+    ("title", "south", "depth"), [("", -12345678.5, 1e-4), (8 * "a long title ", SOUTH, 1.0)]
+)
+def test_nothing_of_a_map_is_cut_off(shape, title, south, depth):
+    bed = Raster(np.add.outer(np.arange(shape[0]), np.arange(shape[1])) * 0.5, WEST, south, 2.0)
+    place = np.array([[WEST + shape[1], south + shape[0]]])
+    figure = draw_map(
+        PEAK_DEPTH, bed.with_values(np.full(shape, depth)), bed, title, Structures(place, 2.0)
+    )
     figure.canvas.draw()
+    drawn, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+    assert min(drawn.x0, drawn.y0, width - drawn.x1, height - drawn.y1) >= 0
+    words = figure.axes[0].get_legend().get_window_extent()
+    assert figure.bbox.x0 <= words.x0 < words.x1 <= figure.bbox.x1
     axes, key = figure.axes
     for text in (axes.title, axes.xaxis.label, axes.yaxis.label, key.yaxis.label):
+        if not text.get_text():
+            continue
         box = text.get_window_extent()
         assert box.x0 >= 0
         assert box.y0 >= 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -51,13 +53,11 @@ def test_wrong_tables_are_refused(tmp_path, table, said):
         build_simulation(scenario_of(tmp_path, text))
 
 
-def covered_or_refused(tmp_path, text, *overrides):
-    try:
-        build_simulation(scenario_of(tmp_path, text, *overrides))
-    except UserError as error:
-        assert "reach beyond the face" in str(error)
-        return False
-    return True
+def build(tmp_path, fits, text, *overrides):
+    """Build what fits; what does not is refused."""
+    scenario = scenario_of(tmp_path, text, *overrides)
+    with nullcontext() if fits else pytest.raises(UserError, match="reach beyond the face"):
+        build_simulation(scenario)
 
 
 @pytest.mark.parametrize("panels", [1, 4, 13])
@@ -66,18 +66,14 @@ def test_a_grid_reaches_beyond_its_face_by_a_spacing_at_most(tmp_path, panels, b
     """Whatever the size of a panel: what is missing is of whole particles."""
     length = 0.52 + beyond * 0.01
     face = f"origin = [0.4, 0]\nedges = [[0, {length}]]\ndirection = [-1, 0]\npanels = [{panels}]"
-    text = f"{DAM}\n[gauge.long]\n{FACE}{face}\n"
-    assert covered_or_refused(tmp_path, text) == fits
+    build(tmp_path, fits, f"{DAM}\n[gauge.long]\n{FACE}{face}\n")
 
 
 @pytest.mark.parametrize(("beyond", "fits"), [(0.8, True), (1.2, False)])
 def test_a_grid_in_space_does_so_along_each_edge(tmp_path, beyond, fits):
     """The face is 8 spacings wide between its banks, and 10 high."""
     edges = f"gauge.face.edges=[[0, 0.4, 0], [0, 0, {0.5 + 0.05 * beyond}]]"
-    assert (
-        covered_or_refused(tmp_path, DAM_3D, edges, "particles=8", "gauge.face.panels=[3, 3]")
-        == fits
-    )
+    build(tmp_path, fits, DAM_3D, edges, "particles=8", "gauge.face.panels=[3, 3]")
 
 
 def test_edges_are_at_right_angles(tmp_path):

@@ -429,7 +429,7 @@ def test_a_path_that_runs_uphill_is_called_that():
 def test_how_much_of_a_path_lies_beside_the_map_is_told(path, said):
     """Exactly, whatever the cells are; cells without data are on the map."""
     grid = bed()
-    points = np.array(path, float) + [WEST, SOUTH]
+    points = np.array(path, float) + np.array([WEST, SOUTH])
     assert list(beside_map(grid.with_values(np.full(grid.shape, np.nan)), points)) == list(
         beside_map(grid, points)
     )

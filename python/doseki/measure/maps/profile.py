@@ -62,8 +62,8 @@ def beside_map(bed: Raster, path: np.ndarray) -> Iterator[str]:
     beside = whole - _length_within(bed, path)
     if beside > ROUNDING * whole:
         yield (
-            f"along the path: {beside:.4g} of its {whole:.4g} m lie beside the map, where nothing is "
-            "known"
+            f"along the path: {beside:.4g} of its {whole:.4g} m lie beside the map, where "
+            "nothing is known"
         )
 
 
