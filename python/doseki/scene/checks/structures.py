@@ -131,8 +131,8 @@ class BodiesInFlow(Finding):
         loads = " and ".join(f"gauge.{gauge}" for gauge in self.gauges)
         flow = f'"{self.liquids[0]}"' if len(self.liquids) == 1 else "that of the flow"
         return (
-            f"{self.place}: has no `material`, so that it counts {_listed(self.bodies)} as flow, "
-            f"and the design formulas of {loads} with it: set its `material` to {flow}; `contact` has "
+            f"{self.place}: has no `material`, so it counts {_listed(self.bodies)} as flow, and "
+            f"the design formulas of {loads} with it: set its `material` to {flow}; `contact` has "
             "what bodies give"
         )
 
