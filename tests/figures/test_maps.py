@@ -151,21 +151,28 @@ def test_a_dam_does_not_cut_the_numbers_of_contours(dammed):
     assert min(text.get_zorder() for text in axes.texts) > OVER
 
 
-@pytest.mark.parametrize("angle", [0, 37, 90])
-def test_no_number_of_a_contour_lies_on_a_dam(dammed, angle):
-    """Their lines are hidden there. There are as many numbers as beside no dam, or nearly."""
-    path = dammed(angle)
-    bed = hill()
-    figure = draw_map(
-        PEAK_DEPTH, bed.with_values(np.ones(bed.shape)), bed, "", Structures.of(load(path))
-    )
-    figure.canvas.draw()
-    axes = figure.axes[0]
-    inside = axes.transData.transform(dam(angle)[:, :2])
-    assert len(axes.texts) > 5
-    for text in axes.texts:
-        box = text.get_window_extent()
-        assert not any(box.contains(x, y) for x, y in inside), text.get_text()
+def test_no_number_of_a_contour_lies_on_a_body():
+    """A body hides the bends of two lines, where numbers stand; they move to what is seen."""
+    grid = Raster(np.zeros((18, 12)), WEST, SOUTH, 1.0)
+    x, y = grid.x[None, :] - WEST, grid.y[:, None] - SOUTH
+    bed = grid.with_values(180 - 0.45 * x + 0.03 * (y - 9) ** 2)
+    place = np.stack(np.meshgrid(np.arange(5.05, 10, 0.1), np.arange(7.05, 11, 0.1)), axis=-1)
+    place = place.reshape(-1, 2) + np.array([WEST, SOUTH])
+
+    def on_body(structures):
+        depth = bed.with_values(np.ones(bed.shape))
+        figure = draw_map(PEAK_DEPTH, depth, bed, "", structures)
+        figure.canvas.draw()
+        axes = figure.axes[0]
+        inside = axes.transData.transform(place)
+        boxes = {text.get_text(): text.get_window_extent() for text in axes.texts}
+        return {k: any(box.contains(*at) for at in inside) for k, box in boxes.items()}
+
+    alone, beside = on_body(None), on_body(Structures(place, 0.1))
+    assert alone["176"]
+    assert alone["177"]
+    assert beside.keys() == alone.keys()
+    assert not any(beside.values())
 
 
 def test_bodies_are_darker_than_any_slope():
