@@ -12,7 +12,7 @@ from matplotlib.image import imread
 
 from doseki.cli.app import app
 from doseki.errors import UserError
-from doseki.figures.maps.drawing import draw_map, draw_profile
+from doseki.figures.maps.drawing import DARKEST, draw_map, draw_profile
 from doseki.figures.maps.output import MapOptions, map_makers, write_pictures
 from doseki.figures.maps.structures import COLOUR, OVER, Structures
 from doseki.figures.nothing import NothingToDrawError
@@ -153,6 +153,35 @@ def test_a_dam_does_not_cut_the_numbers_of_contours(dammed):
     assert min(text.get_zorder() for text in axes.texts) > OVER
 
 
+def test_no_number_of_a_contour_lies_on_a_body():
+    """A body hides the bends of two lines, where numbers stand; they move to what is seen."""
+    grid = Raster(np.zeros((18, 12)), WEST, SOUTH, 1.0)
+    x, y = grid.x[None, :] - WEST, grid.y[:, None] - SOUTH
+    bed = grid.with_values(180 - 0.45 * x + 0.03 * (y - 9) ** 2)
+    place = np.stack(np.meshgrid(np.arange(5.05, 10, 0.1), np.arange(7.05, 11, 0.1)), axis=-1)
+    place = place.reshape(-1, 2) + np.array([WEST, SOUTH])
+
+    def on_body(structures):
+        depth = bed.with_values(np.ones(bed.shape))
+        figure = draw_map(PEAK_DEPTH, depth, bed, "", structures)
+        figure.canvas.draw()
+        axes = figure.axes[0]
+        inside = axes.transData.transform(place)
+        boxes = {text.get_text(): text.get_window_extent() for text in axes.texts}
+        return {k: any(box.contains(*at) for at in inside) for k, box in boxes.items()}
+
+    alone, beside = on_body(None), on_body(Structures(place, 0.1))
+    assert alone["176"]
+    assert alone["177"]
+    assert beside.keys() == alone.keys()
+    assert not any(beside.values())
+
+
+def test_bodies_are_darker_than_any_slope():
+    """The relief is drawn from DARKEST, which stands for black, to white."""
+    assert float(COLOUR) < 0.7 * DARKEST / (DARKEST - 1)
+
+
 def test_runs_with_other_dams_share_none(dammed):
     runs = [load(dammed(angle)) for angle in (0, 90)]
     assert len(Structures.of_all(runs).place) == len(dam(0)) // 2
@@ -214,6 +243,13 @@ def test_a_profile_along_a_path(slide, tmp_path, as_file):
     covered = table[:, 4] > 0
     assert np.ptp(table[covered, 0]) == pytest.approx(58, abs=4)
     assert (slide / "maps/profile.png").is_file()
+
+
+def test_a_path_that_leaves_the_map_is_told(slide):
+    path = f"{WEST + 1},{SOUTH + 24.5} {WEST + 100},{SOUTH + 24.5}"
+    said = write_pictures(slide, MapOptions(path=path))
+    (line,) = (line for line in said if "beside the map, where" in line)
+    assert line.startswith("along the path: 20 of its 99 m")
 
 
 @pytest.mark.parametrize(
@@ -324,14 +360,25 @@ def test_what_a_map_shows():
     assert west < WEST + 10 < WEST + 60 < east
 
 
-@pytest.mark.parametrize("shape", [(34, 67), (60, 24), (40, 40), (12, 90)])
-@pytest.mark.parametrize("title", [TITLE, 8 * "a long title "])
-def test_nothing_of_a_map_is_cut_off(shape, title):
-    bed = Raster(np.add.outer(np.arange(shape[0]), np.arange(shape[1])) * 0.5, WEST, SOUTH, 2.0)
-    figure = draw_map(PEAK_DEPTH, bed.with_values(np.ones(shape)), bed, title)
+@pytest.mark.parametrize("shape", [(34, 67), (60, 24), (40, 40), (12, 90), (18, 12), (90, 12)])
+@pytest.mark.parametrize(
+    ("title", "south", "depth"), [("", -12345678.5, 1e-4), (8 * "a long title ", SOUTH, 1.0)]
+)
+def test_nothing_of_a_map_is_cut_off(shape, title, south, depth):
+    bed = Raster(np.add.outer(np.arange(shape[0]), np.arange(shape[1])) * 0.5, WEST, south, 2.0)
+    place = np.array([[WEST + shape[1], south + shape[0]]])
+    figure = draw_map(
+        PEAK_DEPTH, bed.with_values(np.full(shape, depth)), bed, title, Structures(place, 2.0)
+    )
     figure.canvas.draw()
+    drawn, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+    assert min(drawn.x0, drawn.y0, width - drawn.x1, height - drawn.y1) >= 0
+    words = figure.axes[0].get_legend().get_window_extent()
+    assert figure.bbox.x0 <= words.x0 < words.x1 <= figure.bbox.x1
     axes, key = figure.axes
     for text in (axes.title, axes.xaxis.label, axes.yaxis.label, key.yaxis.label):
+        if not text.get_text():
+            continue
         box = text.get_window_extent()
         assert box.x0 >= 0
         assert box.y0 >= 0

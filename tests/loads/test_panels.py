@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -49,6 +51,29 @@ def test_wrong_tables_are_refused(tmp_path, table, said):
     text = f"{DAM}\n[gauge.bad]\n{FACE}{table}\n"
     with pytest.raises(UserError, match=said):
         build_simulation(scenario_of(tmp_path, text))
+
+
+def build(tmp_path, fits, text, *overrides):
+    """Build what fits; what does not is refused."""
+    scenario = scenario_of(tmp_path, text, *overrides)
+    with nullcontext() if fits else pytest.raises(UserError, match="reach beyond the face"):
+        build_simulation(scenario)
+
+
+@pytest.mark.parametrize("panels", [1, 4, 13])
+@pytest.mark.parametrize(("beyond", "fits"), [(0.0, True), (0.9, True), (1.2, False), (3, False)])
+def test_a_grid_reaches_beyond_its_face_by_a_spacing_at_most(tmp_path, panels, beyond, fits):
+    """Whatever the size of a panel: what is missing is of whole particles."""
+    length = 0.52 + beyond * 0.01
+    face = f"origin = [0.4, 0]\nedges = [[0, {length}]]\ndirection = [-1, 0]\npanels = [{panels}]"
+    build(tmp_path, fits, f"{DAM}\n[gauge.long]\n{FACE}{face}\n")
+
+
+@pytest.mark.parametrize(("beyond", "fits"), [(0.8, True), (1.2, False)])
+def test_a_grid_in_space_does_so_along_each_edge(tmp_path, beyond, fits):
+    """The face is 8 spacings wide between its banks, and 10 high."""
+    edges = f"gauge.face.edges=[[0, 0.4, 0], [0, 0, {0.5 + 0.05 * beyond}]]"
+    build(tmp_path, fits, DAM_3D, edges, "particles=8", "gauge.face.panels=[3, 3]")
 
 
 def test_edges_are_at_right_angles(tmp_path):
@@ -113,18 +138,56 @@ def test_the_map_of_a_face_stands_above_its_curves(dam):
     assert 0 < scale.get_window_extent().x0 - face.x1 < 0.1 * face.width
 
 
-def limits_of_parts(across, along):
-    """Limits of the panels of a load with forces of these sizes along x and y."""
+def test_curves_of_a_face_take_the_width_of_its_figure(dam):
+    """Their legend stands above them, not beside all of it."""
+    figure = draw(dam, "face", tables(dam, "figure", Figure)["face"])
+    figure.canvas.draw()
+    curves = figure.axes[1]
+    assert curves.get_window_extent().width > 0.75 * figure.bbox.width
+    names = [text.get_text() for text in curves.get_legend().get_texts()]
+    assert names == ["mean", "highest panel"]
+    assert not figure.legends
+    assert curves.get_legend().get_window_extent().y0 >= curves.get_window_extent().y1 - 1
+
+
+def load_record(across, along, contact):
+    """A load with forces of these sizes along x and y, of which contacts are a factor apart."""
     time = np.linspace(0, 1, 11)
     parts = ("", "static_", "dynamic_", "contact_", "peak_")
     columns = {"time": time, "peak_time": time}
     for k, axis in enumerate("xy"):
         size = (across, along)[k]
         columns |= {f"{part}force_{axis}": size * (2 + np.sin(9 * time)) for part in parts}
+        columns[f"contact_force_{axis}"] *= contact
     columns |= {f"{part}moment": np.sin(9 * time) for part in parts}
     rows = [[repr(float(x)) for x in row] for row in zip(*columns.values(), strict=True)]
-    record = GaugeRecord([f"{name} [N]" for name in columns], rows, "dam.csv")
+    return GaugeRecord([f"{name} [N]" for name in columns], rows, "dam.csv")
+
+
+def limits_of_parts(across, along):
+    """Limits of the panels of such a load."""
+    record = load_record(across, along, 1.0)
     return [axes.get_ylim() for axes in _draw_parts(record, 2, "dam").axes]
+
+
+@pytest.mark.parametrize(("contact", "apart"), [(0.0, False), (2.0, False), (200.0, True)])
+def test_contacts_squash_nothing_that_the_flow_gives(contact, apart):
+    """Where they are large, they stand beside it, in the same colours and at the same times."""
+    record = load_record(1.0, 2.0, contact)
+    axes = _draw_parts(record, 2, "dam").axes
+    if not apart:
+        assert len(axes) == 3
+        return
+    flow, both = axes[::2], axes[1::2]
+    assert [each.get_title(loc="left") for each in axes[:2]] == ["flow", "flow and contacts"]
+    assert [line.get_label() for line in flow[0].lines] == ["static", "dynamic"]
+    assert [line.get_label() for line in both[0].lines] == ["total", "contact", "largest step"]
+    assert [line.get_color() for line in (*both[0].lines[:2], *flow[0].lines)] == [
+        "C0", "C3", "C1", "C2",
+    ]  # fmt: skip
+    largest = np.abs(record["static_force_y"]).max()
+    assert largest <= flow[1].get_ylim()[1] < 1.2 * largest
+    assert both[1].get_ylim()[1] > 100 * largest
 
 
 @pytest.mark.parametrize("along", [1e3, 1e-3])

@@ -13,7 +13,7 @@ from doseki.measure.maps.columns import columns_over
 from doseki.measure.maps.files import rasters_of, read_maps, write_maps
 from doseki.measure.maps.grid import MapSettings, few_particles, map_grid
 from doseki.measure.maps.peaks import Peaks, beside_deposit, deposit
-from doseki.measure.maps.profile import along_path, path_lines
+from doseki.measure.maps.profile import along_path, beside_map, path_lines
 from doseki.measure.maps.runout import runout, runout_lines
 from doseki.record.folder import RunFolder
 
@@ -413,6 +413,30 @@ def test_a_path_that_runs_uphill_is_called_that():
     for points, said in ((path, "m, at 26.6 degrees"), (path[::-1], "26.6 degrees uphill: ")):
         (line,) = path_lines(along_path(maps, grid, points))
         assert said in line
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ([[1, 1], [9, 1]], None),
+        ([[0, 0], [0, 8]], None),
+        ([[1, 1], [9, 1], [9, -90]], "90 of its 99 m"),
+        ([[-3, -4], [3, 4]], "5 of its 10 m"),
+        ([[-6, 5], [-2, 5], [2, 5], [2, 1]], "6 of its 12 m"),
+        ([[-1, 1], [-1, 5], [1, 5]], "5 of its 6 m"),
+    ],
+)
+def test_how_much_of_a_path_lies_beside_the_map_is_told(path, said):
+    """Exactly, whatever the cells are; cells without data are on the map."""
+    grid = bed()
+    points = np.array(path, float) + np.array([WEST, SOUTH])
+    assert list(beside_map(grid.with_values(np.full(grid.shape, np.nan)), points)) == list(
+        beside_map(grid, points)
+    )
+    found = list(beside_map(grid, points))
+    assert len(found) == (said is not None)
+    if said is not None:
+        assert said in found[0]
 
 
 @pytest.mark.parametrize("driver", ["AAIGrid", "GTiff"])

@@ -29,6 +29,7 @@ from ..util.finding import Finding
 
 FORMAT = 1  # of loads.json
 HEADER = ("gauge", "what", "quantity", "value", "unit", "time [s]")
+WITH = ", with bodies"  # after the name of a formula
 TOLERANCE = 1e-9  # of the masses of a dam, over the largest of them
 
 
@@ -110,7 +111,17 @@ def _body_lines(body: BodyLoad) -> Iterator[tuple[str, str]]:
     for each in [*body.design, *([body.boulder] if body.boulder else [])]:
         unit = "N" if each is body.boulder else body.unit
         pressure = "" if each.pressure is None else f", {each.pressure.value:.4g} Pa"
-        yield "", f"{each.formula}: {_at(each.force, unit)}{pressure}"
+        yield "", f"{_formula(body, each)}: {_at(each.force, unit)}{pressure}"
+    if body.design and body.with_bodies:
+        yield (
+            "",
+            f"with bodies: gauge.{body.with_bodies} has no `material`, and counts them as flow",
+        )
+
+
+def _formula(body: BodyLoad, each: Expected) -> str:
+    """Its name, which says where the flow that it is fed with has bodies in it."""
+    return each.formula + (WITH if body.with_bodies and each is not body.boulder else "")
 
 
 def _peaks_text(body: BodyLoad) -> str:
@@ -175,6 +186,7 @@ def as_json(loads: Loads) -> dict[str, Any]:
                     for part, series in body.parts.items()
                 },
                 "design": [_expected(each) for each in body.design],
+                "design_with_bodies": bool(body.design and body.with_bodies),
                 "boulder": None if body.boulder is None else _expected(body.boulder),
             }
             for body in loads.bodies
@@ -217,10 +229,11 @@ def _body_rows(body: BodyLoad) -> Iterator[tuple[object, ...]]:
             yield body.name, part, quantity, mean.value, body.unit, mean.time
         yield body.name, part, "impulse", series.impulse, _impulse_unit(body.unit), ""
     for each in body.design:
-        yield body.name, each.formula, "force", each.force.value, body.unit, each.force.time
+        name = _formula(body, each)
+        yield body.name, name, "force", each.force.value, body.unit, each.force.time
         if each.pressure is not None:
             pressure = each.pressure
-            yield body.name, each.formula, "pressure", pressure.value, "Pa", pressure.time
+            yield body.name, name, "pressure", pressure.value, "Pa", pressure.time
     if body.boulder is not None:
         force = body.boulder.force
         yield body.name, body.boulder.formula, "force", force.value, "N", force.time

@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..record.particles import BOUND, DRIVEN, FREE
 from ..record.reader import GaugeRecord, Run
 from ..record.units import unit_in
 from ..scenario.gauges.gauge import Gauge
 from ..scenario.gauges.loads.approach import Approach
 from ..scenario.gauges.loads.load import PARTS, Load
 from . import design
+from .maps.standing import KEYS, clamped_bodies, standing
 from .views import gauge_record, tables
 
 WINDOWS = (0.010, 0.100)  # s, of the running means
@@ -65,6 +67,7 @@ class BodyLoad:
     interval: float  # s, the longest between samples
     design: list[Expected] = field(default_factory=list)
     boulder: Expected | None = None
+    with_bodies: str = ""  # the section that takes bodies which move for flow, for the formulas
 
 
 @dataclass(frozen=True)
@@ -116,7 +119,19 @@ def _body_load(
         interval=float(np.diff(time).max()),
         design=expected,
         boulder=_boulder(record),
+        with_bodies=str(gauge.approach) if section and _takes_bodies(run, section) else "",
     )
+
+
+def _takes_bodies(run: Run, section: Approach) -> bool:
+    """Whether bodies move beside a liquid that a section cannot tell them from."""
+    if section.material is not None or not len(run):
+        return False
+    state = {key: run[0].stored(key) for key in KEYS}
+    clamped = clamped_bodies(run[0].body_names, run.scenario.get("body", {}))
+    moving = (state["motion"] == BOUND) & ~standing(state, clamped)
+    flows = np.isin(state["motion"], (FREE, DRIVEN)).any() or "inflow" in run.scenario
+    return bool(flows and moving.any())
 
 
 def _prefix(part: str) -> str:

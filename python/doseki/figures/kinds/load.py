@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,11 +16,16 @@ from ...scenario.gauges.loads.load import PARTS, Load
 from ...scenario.gauges.loads.panels import Panels
 from ...scenario.tables.figure import LoadFigure
 from ...util.spelling import suggestion
-from ..layout import chart_grid, figure_legend
+from ..layout import SMALL, chart_grid, figure_legend
 from ..nothing import NothingToDrawError
-from .series import draw_curves
+from .series import draw_curve, draw_curves
 
 ROUNDING = 1e-9  # of the largest component: a force or a moment below is drawn on its scale
+WHOLE = "total"
+ALL = (WHOLE, *PARTS)
+LARGE = 4.0  # times what the flow gives, from which on contacts stand beside it
+TOGETHER = {"": ALL}  # parts by the heading of a column of panels
+BESIDE = {"flow": ("static", "dynamic"), "flow and contacts": (WHOLE, "contact")}
 TALL, LOW = 2.4, 1.8  # inches of a panel; of one of more than three
 
 
@@ -47,29 +52,57 @@ def draw_load(run: Run, name: str, table: LoadFigure) -> Figure:
 
 
 def _draw_parts(record: GaugeRecord, dim: int, title: str) -> Figure:
-    """A panel for each component of the force, and in 2-D the moment: the total and its parts."""
+    """A panel for each component of the force, and in 2-D the moment: the total and its parts.
+
+    Where contacts would squash what the flow gives they have panels of their own beside it.
+    """
     shown = [f"force_{axis}" for axis in "xyz"[:dim]]
     shown += ["moment"] if dim == 2 else [f"moment_{axis}" for axis in "xyz"]
+    columns = BESIDE if _contacts_are_large(record, shown) else TOGETHER
     height = TALL if len(shown) <= 3 else LOW
-    figure, grid = chart_grid(len(shown), 1, (7.0, height), title)
-    time = 0.5 * (record["time"][1:] + record["time"][:-1])  # of means
-    sizes = []
+    wide = 7.0 if len(columns) == 1 else 4.5
+    figure, grid = chart_grid(len(shown), len(columns), (wide, height), title)
+    for (heading, parts), panels in zip(columns.items(), grid.T, strict=True):
+        sizes = [
+            _draw_component(axes, record, column, parts)
+            for axes, column in zip(panels, shown, strict=True)
+        ]
+        for kind in ("force", "moment"):
+            alike = [k for k, column in enumerate(shown) if column.startswith(kind)]
+            _share_scale([panels[k] for k in alike], [sizes[k] for k in alike])
+        panels[0].set_title(heading, **SMALL)
+        panels[-1].set_xlabel("time (s)")
     for axes, column in zip(grid[:, 0], shown, strict=True):
-        curves = {"total": record[column][1:]}
-        curves |= {part: record[f"{part}_{column}"][1:] for part in PARTS}
-        draw_curves(axes, time, curves)
-        sizes.append(_size(curves.values()))
+        axes.set_ylabel(f"{column.replace('_', ' ')} ({record.units[column]})")
+    figure_legend(figure, grid[0])
+    return figure
+
+
+def _contacts_are_large(record: GaugeRecord, shown: Iterable[str]) -> bool:
+    """Whether the largest contact force or moment is so many times what the flow gives."""
+    for kind in ("force", "moment"):
+        contact, static, dynamic = (
+            _size(record[f"{part}_{c}"][1:] for c in shown if c.startswith(kind))
+            for part in ("contact", "static", "dynamic")
+        )
+        if max(static, dynamic) > 0 and contact > LARGE * max(static, dynamic):
+            return True
+    return False
+
+
+def _draw_component(axes: Axes, record: GaugeRecord, column: str, parts: Sequence[str]) -> float:
+    """Some parts of a component over time, always in the same colours; returns their size."""
+    time = 0.5 * (record["time"][1:] + record["time"][:-1])  # of means
+    curves = {part: record[column if part == WHOLE else f"{part}_{column}"][1:] for part in parts}
+    for part, values in curves.items():
+        draw_curve(axes, time, values, part, ALL.index(part))
+    axes.grid(alpha=0.3)
+    if WHOLE in parts:
         seen = axes.get_ylim()  # single steps of a collision would squash the means
         steps = record["peak_time"][1:], record[f"peak_{column}"][1:]
         axes.plot(*steps, ".", color="0.6", markersize=2, zorder=0, label="largest step")
         axes.set_ylim(seen)
-        axes.set_ylabel(f"{column.replace('_', ' ')} ({record.units[column]})")
-    for kind in ("force", "moment"):
-        alike = [k for k, column in enumerate(shown) if column.startswith(kind)]
-        _share_scale([grid[k, 0] for k in alike], [sizes[k] for k in alike])
-    grid[-1, 0].set_xlabel("time (s)")
-    figure_legend(figure, grid[:1, 0])
-    return figure
+    return _size(curves.values())
 
 
 def _size(curves: Iterable[np.ndarray]) -> float:
@@ -111,7 +144,10 @@ def _draw_panels(record: GaugeRecord, gauge: Panels, title: str) -> Figure:
         draw_curves(below, middles, curves)
         below.set_xlabel("time (s)")
         below.set_ylabel(f"{part}: pressure (Pa)")
-    figure_legend(figure, grid[1:2, 0])
+    grid[1, 0].legend(
+        loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False, fontsize="small",
+        borderaxespad=0.2,
+    )  # fmt: skip
     return figure
 
 

@@ -50,11 +50,14 @@ def draw_history(run: Run, columns: Sequence[str], title: str) -> Figure:
 def draw_curves(axes: Axes, times: np.ndarray, curves: Mapping[str, np.ndarray]) -> None:
     """Named curves over time, for a legend of the figure; a curve called "" is not named."""
     for number, (name, values) in enumerate(curves.items(), start=len(axes.lines)):
-        style = STYLES[number % len(STYLES)]
-        axes.plot(
-            times, values, style, color=f"C{number}" if name else "black", label=name, linewidth=1.5
-        )
+        draw_curve(axes, times, values, name, number)
     axes.grid(alpha=0.3)
+
+
+def draw_curve(axes: Axes, times: np.ndarray, values: np.ndarray, name: str, number: int) -> None:
+    """One of them, in the colour and style of a number."""
+    style, color = STYLES[number % len(STYLES)], f"C{number}" if name else "black"
+    axes.plot(times, values, style, color=color, label=name, linewidth=1.5)
 
 
 def axis_label(columns: Sequence[str], dim: int) -> str:

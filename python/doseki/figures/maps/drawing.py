@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
@@ -28,6 +30,8 @@ LEAST_AROUND = 5.0  # cells
 DARKEST = -1.2  # of the grey that stands for no light, below white's 1
 HALO = (1.0, 1.0, 1.0, 0.6)  # around numbers, which may lie on structures
 CONTOURS = 14  # lines at most
+NUMBERS: dict[str, Any] = {"fontsize": "x-small", "fmt": "%g"}  # of contours
+NUMBER = 0.25  # inches from bodies to the middle of a number, so that it is beside them
 COLOURS = {ARRIVAL_TIME.name: "viridis_r", DEPOSIT.name: "YlOrBr"}
 OTHERS = "plasma_r"
 
@@ -58,7 +62,7 @@ def draw_map(
     title = fill(title, LETTERS)
     figure, axes = _map_axes(east - west, north - south, title.count("\n") + 1)
     extent = (west, east, south, north)
-    _draw_bed(axes, bed, extent)
+    _draw_bed(axes, bed, extent, structures)
     image = axes.imshow(
         np.where(shown, values.values, np.nan), extent=extent, interpolation="nearest", alpha=0.85,
         cmap=COLOURS.get(quantity.name, OTHERS), zorder=2,
@@ -100,6 +104,7 @@ def _map_axes(wide: float, high: float, lines: int) -> tuple[Figure, Axes]:
     scale = LONGEST / max(wide, high)
     width, height = (max(side * scale, SHORTEST) for side in (wide, high))
     figure, panels = chart_grid(1, 1, (width + SIDE - 1.5, height + BELOW + LINE * lines), "")
+    figure.set_layout_engine("compressed")  # which knows that equal units move what is beside
     axes = panels[0, 0]
     axes.set_aspect("equal")
     lengths_in_full(axes)
@@ -112,7 +117,12 @@ def _map_axes(wide: float, high: float, lines: int) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _draw_bed(axes: Axes, bed: Raster, extent: tuple[float, float, float, float]) -> None:
+def _draw_bed(
+    axes: Axes,
+    bed: Raster,
+    extent: tuple[float, float, float, float],
+    structures: Structures | None,
+) -> None:
     """Relief lit from the north-west, and contour lines with their heights."""
     axes.set_xlim(extent[:2])
     axes.set_ylim(extent[2:])
@@ -128,16 +138,31 @@ def _draw_bed(axes: Axes, bed: Raster, extent: tuple[float, float, float, float]
         vmax=1.0,
         zorder=1,
     )
+    if np.ptp(bed.values[known]) == 0.0:
+        return
     levels = MaxNLocator(CONTOURS, steps=[1, 2, 5, 10]).tick_values(
         float(np.nanmin(bed.values)), float(np.nanmax(bed.values))
     )
-    if np.ptp(bed.values[known]) == 0.0:
-        return
     lines = axes.contour(
         bed.x, bed.y, bed.values, levels=levels, colors="0.25", linewidths=0.5, zorder=3
     )
     lines.set_in_layout(False)
-    for label in axes.clabel(lines, fontsize="x-small", fmt="%g", zorder=OVER + 1):
+    _number_contours(axes, lines, bed, structures)
+
+
+def _number_contours(
+    axes: Axes, lines: ContourSet, bed: Raster, structures: Structures | None
+) -> None:
+    """Heights on contour lines, where these are not hidden by bodies."""
+    seen = bed.values
+    if structures is not None:
+        inch = max(bed.extent[2] - bed.extent[0], bed.extent[3] - bed.extent[1]) / LONGEST
+        seen = np.where(structures.near(bed, NUMBER * inch), np.nan, seen)
+    # Lines of what is seen tell the places; the numbers stand on those of the whole bed.
+    finder = axes.contour(bed.x, bed.y, seen, levels=lines.levels, alpha=0.0)
+    places = [label.get_position() for label in axes.clabel(finder, inline=False, **NUMBERS)]
+    finder.remove()
+    for label in axes.clabel(lines, manual=places, zorder=OVER + 1, **NUMBERS):
         label.set_in_layout(False)  # it lies in the map, and would push it aside
         label.set_path_effects([withStroke(linewidth=1.5, foreground=HALO)])
 

@@ -18,7 +18,7 @@ from ...geodata.grid import Raster
 from ...measure.maps.files import read_maps, write_maps
 from ...measure.maps.grid import MapSettings, few_particles, map_grid
 from ...measure.maps.peaks import beside_deposit
-from ...measure.maps.profile import COLUMNS, along_path, path_lines
+from ...measure.maps.profile import COLUMNS, along_path, beside_map, path_lines
 from ...measure.maps.quantities import QUANTITIES
 from ...measure.maps.runout import runout, runout_lines
 from ...measure.maps.snapshots import flowing_in, maps_from_snapshots
@@ -56,7 +56,7 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
     if options.path is not None:
         path, doubts = _path(options.path, bed.crs)
         profile = along_path(maps, bed, path)
-        said += doubts
+        said += [*doubts, *beside_map(bed, path)]
     drawn = Drawn()
     for name, make in _makers(run, maps, bed):
         drawn.add(run.folder.maps / f"{name}.png", make)

@@ -15,7 +15,7 @@ from ...measure.maps.standing import KEYS, clamped_bodies, standing
 from ...record.reader import Run
 from ..space.ground import terrain_of
 
-COLOUR, EDGE = "0.55", "0.15"
+COLOUR, EDGE = "0.25", "white"  # darker than any slope; flows that press on them are dark, too
 LABEL = "fixed bodies"
 ACROSS = 800  # nodes along the longer side of a map, at most
 BETWEEN = 4  # nodes in a spacing, where there is room for them
@@ -46,6 +46,15 @@ class Structures:
             return None
         volume = (snapshot["mass"] / snapshot["density"])[chosen][out]
         return cls(position[out, :2], float(np.cbrt(volume.max())))
+
+    def near(self, grid: Raster, distance: float) -> np.ndarray:
+        """Mask of the cells of a grid whose middles are in a body, or within a distance, m."""
+        from scipy.spatial import cKDTree
+
+        middles = np.stack(np.meshgrid(grid.x, grid.y), axis=-1)
+        reach = distance + 0.5 * self.spacing
+        found = cKDTree(self.place).query(middles, distance_upper_bound=reach)[0]
+        return np.asarray(np.isfinite(found))
 
     @classmethod
     def of_all(cls, runs: Sequence[Run]) -> Structures | None:

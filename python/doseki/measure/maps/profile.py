@@ -10,6 +10,8 @@ from ...errors import UserError
 from ...geodata.grid import Raster
 from .quantities import PEAK_DEPTH, QUANTITIES
 
+ROUNDING = 1e-9  # of the length of a path
+NO_STEP = 1e-300  # in place of 0, for what runs along an edge
 COLUMNS = {"distance": "m", "x": "m", "y": "m", "bed": "m"} | {q.name: q.unit for q in QUANTITIES}
 
 
@@ -49,6 +51,32 @@ def _sides(bed: Raster) -> Iterator[tuple[float, float]]:
     west, south, east, north = bed.extent
     yield west, east
     yield south, north
+
+
+def beside_map(bed: Raster, path: np.ndarray) -> Iterator[str]:
+    """A sentence about a path (n, 2) of which a part lies beside the map; none where all is on it.
+
+    A cell without data is on the map.
+    """
+    whole = float(np.hypot(*np.diff(path, axis=0).T).sum())
+    beside = whole - _length_within(bed, path)
+    if beside > ROUNDING * whole:
+        yield (
+            f"along the path: {beside:.4g} of its {whole:.4g} m lie beside the map, where "
+            "nothing is known"
+        )
+
+
+def _length_within(bed: Raster, path: np.ndarray) -> float:
+    """How long a path is within the edges of the map, m."""
+    low, high = np.reshape(bed.extent, (2, 2))
+    start, step = path[:-1], np.diff(path, axis=0)
+    slope = np.where(step == 0, NO_STEP, step)
+    with np.errstate(over="ignore"):
+        crossed = np.sort([(low - start) / slope, (high - start) / slope], axis=0)
+    enters, leaves = crossed[0].max(axis=1), crossed[1].min(axis=1)
+    share = np.clip(leaves, 0, 1) - np.clip(enters, 0, 1)
+    return float(np.maximum(share, 0.0) @ np.hypot(*step.T))
 
 
 def path_lines(profile: Mapping[str, np.ndarray]) -> Iterator[str]:

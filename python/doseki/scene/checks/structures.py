@@ -1,4 +1,4 @@
-"""Checks of structures whose loads are read: of their foundations, and of thin boxes."""
+"""Checks of structures whose loads are read: foundations, thin boxes, and the flow that comes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ...record.particles import FIXED, ParticleSet
+from ...record.particles import BOUND, FIXED, ParticleSet
+from ...scenario.gauges.loads.approach import Approach
 from ...scenario.gauges.loads.load import Load
 from ...scenario.gauges.loads.metered import Metered
 from ...scenario.gauges.loads.panels import Panels
@@ -118,11 +119,37 @@ class OneFace(Finding):
         )
 
 
+@dataclass(frozen=True)
+class BodiesInFlow(Finding):
+    """A section that takes bodies which move for the flow that comes to a structure."""
+
+    gauges: tuple[str, ...]  # of the loads that design formulas are for
+    bodies: tuple[str, ...]
+    liquids: tuple[str, ...]
+
+    def __str__(self) -> str:
+        loads = " and ".join(f"gauge.{gauge}" for gauge in self.gauges)
+        flow = f'"{self.liquids[0]}"' if len(self.liquids) == 1 else "that of the flow"
+        return (
+            f"{self.place}: has no `material`, so it counts {_listed(self.bodies)} as flow, and "
+            f"the design formulas of {loads} with it: set its `material` to {flow}; `contact` has "
+            "what bodies give"
+        )
+
+
+def _listed(bodies: tuple[str, ...]) -> str:
+    """Names of tables, of many the first two."""
+    named = [f"body.{name}" for name in bodies[:2]]
+    more = f" and {len(bodies) - 2} more" if len(bodies) > 2 else ""
+    return (", " if more else " and ").join(named) + more
+
+
 def structure_findings(
     scenario: Scenario, particles: ParticleSet, names: list[str], normal: np.ndarray,
     depth: np.ndarray,
 ) -> Iterator[Finding]:  # fmt: skip
-    """A doubt about each fixed body whose load is read."""
+    """A doubt about each fixed body whose load is read, and each flow that comes to it."""
+    yield from _bodies_in_flow(scenario, particles, names)
     faces = _Faces(particles, normal, depth < scenario.dp)
     for name, gauges in _metered_bodies(scenario).items():
         gauge, of_it = gauges[0], _fixed_of(scenario, particles, names, [name])
@@ -142,6 +169,25 @@ def structure_findings(
         loads = [each for each in gauges if isinstance(scenario.gauge[each], Load)]
         if loads and isinstance(table, Box):
             yield from _one_face(scenario, name, loads[0], table)
+
+
+def _bodies_in_flow(
+    scenario: Scenario, particles: ParticleSet, names: list[str]
+) -> Iterator[Finding]:
+    """Looks for sections that take bodies for flow; where there is no liquid, they are the flow."""
+    if scenario.is_dry:
+        return
+    moving = {names[k] for k in np.unique(particles.body[particles.motion == BOUND])}
+    bodies = tuple(
+        name
+        for name, table in scenario.body.items()
+        if getattr(table, "clamped", None) is None and moving & set(scenario.names_of_bodies(name))
+    )
+    loads = {n: gauge for n, gauge in scenario.gauge.items() if isinstance(gauge, Load)}
+    for name, section in scenario.gauge.items():
+        read = tuple(each for each, load in loads.items() if load.approach == name)
+        if bodies and read and isinstance(section, Approach) and section.material is None:
+            yield BodiesInFlow(f"gauge.{name}", read, bodies, tuple(scenario.liquids))
 
 
 def _metered_bodies(scenario: Scenario) -> dict[str, list[str]]:
