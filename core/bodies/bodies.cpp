@@ -102,12 +102,14 @@ void Bodies<D>::give_face(Particles<D>& particles, std::size_t p) const {
     if (k < rigid_at_start_) return;
     const BreakableBody<D>* const body = breakable_.of_rigid(static_cast<std::size_t>(k));
     if (!body) return;
-    const double spacing = deformable.solids().material(body->deformable).spacing,
-                 depth = particles.wall.depth[p];
+    // Of a crack that goes up and down, the points in its hollows are in the row below.
+    constexpr double first_row = 0.75, second_row = 2.0;  // spacings
+    const double depth =
+        particles.wall.depth[p] / deformable.solids().material(body->deformable).spacing;
     std::int32_t& face = particles.wall.face[p];
     face = Face::none;
-    if (!rigid_particles_.has_area(particles, p) || !(depth < 2.0 * spacing)) return;
-    face = depth < spacing ? Face::first_body + k : -(Face::first_body + k);
+    if (!rigid_particles_.has_area(particles, p) || !(depth < second_row)) return;
+    face = depth < first_row ? Face::first_body + k : -(Face::first_body + k);
 }
 
 template <int D>
