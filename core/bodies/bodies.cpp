@@ -82,8 +82,47 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     for (std::size_t n = 0; n < grain.points.size(); ++n) {
         const std::uint32_t p = grain.points[n];
         dust_points_[p] =
-            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n]);
+            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n], {});
     }
+}
+
+template <int D>
+void Bodies<D>::rebind(Particles<D>& particles) {
+    if (!rebinds_) return;
+    for_each_particle(particles.size(), [&](std::size_t p) {
+        deformable.rebind(particles, p, breakable_.deformable_points());
+        give_face(particles, p);
+    });
+    rebinds_ = false;
+}
+
+template <int D>
+void Bodies<D>::give_face(Particles<D>& particles, std::size_t p) const {
+    const std::int32_t k = rigid_particles_.body_of(particles, p);
+    if (k < rigid_at_start_) return;
+    const BreakableBody<D>* const body = breakable_.of_rigid(static_cast<std::size_t>(k));
+    if (!body) return;
+    // Of a crack that goes up and down, the points in its hollows are in the row below.
+    constexpr double first_row = 0.75, second_row = 2.0;  // spacings
+    const double depth =
+        particles.wall.depth[p] / deformable.solids().material(body->deformable).spacing;
+    std::int32_t& face = particles.wall.face[p];
+    face = Face::none;
+    if (!rigid_particles_.has_area(particles, p) || !(depth < second_row)) return;
+    face = depth < first_row ? Face::first_body + k : -(Face::first_body + k);
+}
+
+template <int D>
+void Bodies<D>::bind_dust(Particles<D>& particles) {
+    if (dust_points_.empty()) return;
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        if (!deformable.has(particles, p)) continue;
+        const auto found = dust_points_.find(particles.point(p));
+        if (found == dust_points_.end()) continue;
+        particles.wall.depth[p] = 0.5 * deformable.solids().body_of(found->first).spacing;
+        particles.set_point(p, BodyKind::rigid, found->second);
+    }
+    dust_points_.clear();
 }
 
 /// Outlines touch and do not overlap: so does dust beside them that takes the room there is, Eq.

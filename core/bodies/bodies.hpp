@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <span>
+#include <utility>
 
 #include "base/array.hpp"
 #include "bodies/body_energy.hpp"
@@ -15,6 +16,7 @@
 #include "bodies/loads/load_meters.hpp"
 #include "bodies/particles/rigid_particles.hpp"
 #include "bodies/rigid_bodies.hpp"
+#include "physics/wall.hpp"
 
 namespace doseki {
 
@@ -26,8 +28,11 @@ class Bodies {
 public:
     /// `memory`: time over which accelerations are averaged, as the fluid sees them [s].
     Bodies(const Domain<D>& domain, const Vec<double, D>& gravity, const ContactOptions& options,
-           Array<ContactProperties> materials, double memory)
-        : gravity_(gravity), memory_(memory), contacts_(domain, options, std::move(materials)) {}
+           Array<ContactProperties> materials, double memory, const PairArea& pair_area)
+        : gravity_(gravity),
+          memory_(memory),
+          pair_area_(pair_area),
+          contacts_(domain, options, std::move(materials)) {}
 
     RigidBodies<D> rigid;
     DeformableBodies<D> deformable;
@@ -137,6 +142,8 @@ public:
         const double bent = deformable.place(particles, contacts_.domain(), dt);
         return std::max(bent, rigid_particles_.place(particles, rigid, contacts_.domain(), dt));
     }
+    /// Whether lists know too few faces to meet one another: parts have got some.
+    bool take_new_faces() { return std::exchange(new_faces_, false); }
     /// Gives particles the velocity that they have when the fluid will have acted for `ahead` more.
     void set_velocities(Particles<D>& particles, double ahead) {
         if (!any_moves()) return;
@@ -221,13 +228,9 @@ private:
     /// Particles of what has become dust are points of rigid bodies from now on.
     void bind_dust(Particles<D>& particles);
     /// Particles of breakable bodies are points of what those are now.
-    void rebind(Particles<D>& particles) {
-        if (!rebinds_) return;
-        for_each_particle(particles.size(), [&](std::size_t p) {
-            deformable.rebind(particles, p, breakable_.deformable_points());
-        });
-        rebinds_ = false;
-    }
+    void rebind(Particles<D>& particles);
+    /// Faces of parts have the numbers of their rigid bodies.
+    void give_face(Particles<D>& particles, std::size_t p) const;
 
     void start_breakable() {
         if (!breakable_.any()) return;
@@ -332,10 +335,12 @@ private:
 
     Vec<double, D> gravity_;
     double memory_;
+    PairArea pair_area_;
     Contacts<D> contacts_;
     BreakableBodies<D> breakable_;
     Companions companions_;
-    bool rebinds_ = false;  // whether bodies have changed since place()
+    bool rebinds_ = false;    // whether bodies have changed since place()
+    bool new_faces_ = false;  // whether parts have got some since take_new_faces()
     RigidParticles<D> rigid_particles_;
     Origins rigid_origins_, deformable_origins_;
     std::int32_t numbers_ = 0;                        // of bodies, given so far
@@ -378,19 +383,6 @@ void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
         deformable.choose(contact_, contacts_.points_of_deformable());
         find_companions();
     }
-}
-
-template <int D>
-void Bodies<D>::bind_dust(Particles<D>& particles) {
-    if (dust_points_.empty()) return;
-    for (std::size_t p = 0; p < particles.size(); ++p) {
-        if (!deformable.has(particles, p)) continue;
-        const auto found = dust_points_.find(particles.point(p));
-        if (found == dust_points_.end()) continue;
-        particles.wall.depth[p] = 0.5 * deformable.solids().body_of(found->first).spacing;
-        particles.set_point(p, BodyKind::rigid, found->second);
-    }
-    dust_points_.clear();
 }
 
 // Compiled once: bodies.cpp.

@@ -206,6 +206,32 @@ struct FullCover {
     }
 };
 
+/// What another particle of the same body takes of the area (87) of one, over both volumes, by
+/// their distance r: that times the vector to the other one. Schemes without films have none.
+struct PairArea {
+    static constexpr int steps = 256;
+    double support = 0.0;                    // [m]
+    std::array<double, steps + 1> factor{};  // [1/m^(D+2)], of r^2 that rises evenly
+
+    double at(double square) const {
+        const double x = square / (support * support) * steps;
+        if (!(x < steps)) return 0.0;
+        const int k = static_cast<int>(x);
+        return factor[k] + (x - k) * (factor[k + 1] - factor[k]);
+    }
+
+    /// `scale` is that of kernel gradients, Eq. (25).
+    template <class Kernel>
+    static PairArea of(double support, double scale) {
+        PairArea area{support, {}};
+        for (int k = 0; k <= steps; ++k) {
+            const double r = support * std::sqrt(static_cast<double>(k) / steps);
+            area.factor[k] = 2.0 * scale * Kernel::gradient_factor(r, 1.0 / support);
+        }
+        return area;
+    }
+};
+
 /// The area (87) of a particle below a plane face that goes on all around, over its volume.
 struct FlatArea {
     static constexpr int steps = 12;

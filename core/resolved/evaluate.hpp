@@ -276,6 +276,11 @@ double Resolved<D, real, Backend>::kernel_support() const {
 }
 
 template <int D, class real, class Backend>
+const PairArea& Resolved<D, real, Backend>::pair_area() const {
+    return model_->pair_area;
+}
+
+template <int D, class real, class Backend>
 const Array<Material>& Resolved<D, real, Backend>::materials() const {
     return model_->materials;
 }

@@ -94,6 +94,7 @@ struct ResolvedModel {
     double own_gradient_factor = 0.0;                             // of a particle with itself
     FullCover full_cover;
     FlatArea flat_area;
+    PairArea pair_area;
     NarrowGap narrow_gap;
     std::array<double, D + 1> spacing_power{1.0};  // dp^k
 
@@ -123,6 +124,8 @@ struct ResolvedModel {
         const double scale = constants.gradient_scale = 1.0 / lattice.moment;
         flat_area = flow.wide_kernel ? FlatArea::of<WendlandC6<D>, D>(flow.dp, support, scale)
                                      : FlatArea::of<WendlandC2<D>, D>(flow.dp, support, scale);
+        pair_area = flow.wide_kernel ? PairArea::of<WendlandC6<D>>(support, scale)
+                                     : PairArea::of<WendlandC2<D>>(support, scale);
         own_gradient_factor = flow.wide_kernel ? own_factor<WendlandC6<D>>(constants, support)
                                                : own_factor<WendlandC2<D>>(constants, support);
         constants.exchange = 1.0 / (lattice.concentration - lattice.own_share);

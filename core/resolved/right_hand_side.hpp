@@ -11,6 +11,7 @@
 #include "model/options.hpp"
 #include "model/scheme_work.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
+#include "physics/wall.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "resolved/records.hpp"
@@ -80,6 +81,7 @@ public:
     }
 
     double kernel_support() const;
+    const PairArea& pair_area() const;
     double timestep() const { return timestep_; }
     /// By the viscosity of fluid and scheme, of the particles of this rank [W], 2-D: [W/m].
     double dissipated_power() const { return power_; }

@@ -20,6 +20,7 @@
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
+#include "physics/wall.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "run/account.hpp"
@@ -93,6 +94,8 @@ public:
     virtual std::int64_t limiting_particle() const = 0;
 
     virtual double kernel_support() const = 0;
+    /// Of the particles of bodies, on which films press; of nothing where the scheme has none.
+    virtual PairArea pair_area() const = 0;
     virtual const Array<Material>& materials() const = 0;
     virtual PhaseTimer& phases() = 0;
     virtual ThermodynamicState<double> equation_of_state(std::size_t p) const = 0;

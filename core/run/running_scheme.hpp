@@ -100,6 +100,7 @@ public:
     std::int64_t limiting_particle() const override { return scheme_.limiting_particle(); }
 
     double kernel_support() const override { return scheme_.kernel_support(); }
+    PairArea pair_area() const override { return scheme_.pair_area(); }
     const Array<Material>& materials() const override { return scheme_.materials(); }
     PhaseTimer& phases() override { return scheme_.phases(); }
     ThermodynamicState<double> equation_of_state(std::size_t p) const override {

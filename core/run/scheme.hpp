@@ -13,6 +13,7 @@
 #include "model/particles.hpp"
 #include "model/scheme_work.hpp"
 #include "pairs/backend.hpp"
+#include "physics/wall.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 
@@ -47,6 +48,7 @@ concept Scheme = SchemeState<typename S::State> && Backend<typename S::Backend, 
                      { known.dissipated_power() } -> std::same_as<double>;
                      { known.work() } -> std::same_as<SchemeWork<S::dim>>;
                      { known.kernel_support() } -> std::same_as<double>;
+                     { known.pair_area() } -> std::convertible_to<PairArea>;
                      { known.fault() } -> std::same_as<const Fault&>;
                      { known.limiting_particle() } -> std::same_as<std::int64_t>;
                      { known.materials() } -> std::same_as<const Array<Material>&>;

@@ -32,7 +32,7 @@ public:
         : scheme_(std::move(scheme)),
           particles(scheme_->particles()),
           bodies(domain, options.gravity, options.contact, contact_properties(materials()),
-                 averaging_time(materials(), options)),
+                 averaging_time(materials(), options), scheme_->pair_area()),
           options_(options),
           domain_(domain),
           lists_(*scheme_, domain, options.skin, options.auto_skin),
@@ -307,7 +307,7 @@ double Simulation<Lists>::next_end(double limit, double longest) const {
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
     open_boundaries.planes.count(particles);
-    const bool worn = lists_.wear(particles, moved);
+    const bool worn = bodies.take_new_faces() || lists_.wear(particles, moved);
     const bool added = open_boundaries.inject(particles, time_);
     bool changed = moving_walls.remove(particles, before, time_, open_boundaries.removed) || added;
     moved_since_outflow_ += moved;

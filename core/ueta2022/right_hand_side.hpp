@@ -14,6 +14,7 @@
 #include "model/scheme_work.hpp"
 #include "model/step_summary.hpp"
 #include "physics/equation_of_state/thermodynamic_state.hpp"
+#include "physics/wall.hpp"
 #include "ranks/balance.hpp"
 #include "ranks/halo.hpp"
 #include "ueta2022/records.hpp"
@@ -65,6 +66,7 @@ public:
     }
 
     double kernel_support() const;
+    static PairArea pair_area() { return {}; }
     /// Pressure, sound speed and energy of a particle.
     ThermodynamicState<double> equation_of_state(const State& particles, std::size_t p) const;
     /// Elastic energy of a particle in shear [J], 2-D: [J/m].

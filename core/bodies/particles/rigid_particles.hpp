@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <numeric>
 
 #include "base/array.hpp"
@@ -38,8 +39,9 @@ public:
                            each_row(particles.wall.edge_normals[p], back)});
     }
     /// Adds a point of a body that is not turned, and returns its number.
-    std::size_t add(std::size_t body, const Vec<double, D>& offset, const Vec<double, D>& normal) {
-        points_.push_back({static_cast<double>(body), offset, normal, {}, {}});
+    std::size_t add(std::size_t body, const Vec<double, D>& offset, const Vec<double, D>& normal,
+                    const Vec<double, D>& area) {
+        points_.push_back({static_cast<double>(body), offset, normal, area, {}});
         return points_.size() - 1;
     }
     bool has(const Particles<D>& particles, std::size_t p) const {
@@ -48,6 +50,17 @@ public:
     /// Index of the body of particle p; -1: none.
     std::int32_t body_of(const Particles<D>& particles, std::size_t p) const {
         return has(particles, p) ? static_cast<std::int32_t>(point_of(particles, p).index()) : -1;
+    }
+
+    /// Whether films press on particle p.
+    bool has_area(const Particles<D>& particles, std::size_t p) const {
+        const Vec<double, D>& area = point_of(particles, p).area;
+        return dot(area, area) > 0.0;
+    }
+    /// The same of any point.
+    bool have_areas() const {
+        return std::ranges::any_of(
+            points_, [](const auto& point) { return dot(point.area, point.area) > 0.0; });
     }
 
     /// Hands the force of the fluid on to the bodies. All ranks have all bodies: each point is a

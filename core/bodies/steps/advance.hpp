@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bodies/bodies.hpp"
+#include "bodies/fragments/part_areas.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
 
 namespace doseki {
@@ -302,10 +303,18 @@ void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int3
     rigid.add(body, state, deformable.shape_of(contact_, shown, b, motion));
     rigid_origins_.add(deformable_origins_[b]);
     breakable_.give_rigid(n, k, motion.rest_centre, deformable);
-    for (const std::uint32_t p : deformable.solids().points_of(b))
+    const auto& solids = deformable.solids();
+    const Array<std::uint32_t> points = solids.points_of(b);
+    const bool has_faces = rigid_particles_.have_areas();
+    const Array<Vec<double, D>> area =
+        areas_of(solids, points, has_faces ? pair_area_ : PairArea{});
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const std::uint32_t p = points[n];
         deformable.set_rigid_point(
-            p, rigid_particles_.add(k, rotated_back(turn, deformable.solids().x[p] - motion.centre),
-                                    rotated_back(turn, deformable.normal(p))));
+            p, rigid_particles_.add(k, rotated_back(turn, solids.x[p] - motion.centre),
+                                    rotated_back(turn, deformable.normal(p)), area[n]));
+    }
+    new_faces_ |= has_faces;
 }
 
 /// Whether it has had time for waves to go to and fro, and has lately had but a small

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from keyword import iskeyword
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import ValidationError, create_model
 
 from ..schemes import RESOLVED, UETA2022
-from ..table import Kinds, limited_keys
+from ..table import Kinds, Table, limited_keys
 from ..tables.parameter import Parameter
 from ..tables.root import ScenarioTable
 from ..tables.sections import (
@@ -188,7 +188,7 @@ class Names(Mapping[str, Any]):
             if name in self._parameters:
                 return self._parameter_value(name)
             found = self.resolve(self._top_level[name], (name,))
-            return _defaults().get(name) if found is ABSENT else found
+            return _defaults().get(name) if found is ABSENT else self._top_level_value(name, found)
         finally:
             self._waiting.pop()
 
@@ -199,6 +199,17 @@ class Names(Mapping[str, Any]):
             return Parameter.model_validate(table).value
         except ValidationError as error:
             raise to_user_error(error, table, self._where, keys) from None
+
+    def _top_level_value(self, name: str, value: Any) -> Any:
+        """`value`, once it is what the key may be: else what uses it would be blamed."""
+        field = ScenarioTable.model_fields.get(name)
+        if field is not None and name != "dim":
+            alone = create_model(name, __base__=Table, **{name: (field.annotation, field)})
+            try:
+                alone.model_validate({name: value}, context={"dim": self._dim})
+            except ValidationError as error:
+                raise to_user_error(error, {name: value}, self._where) from None
+        return value
 
     def _checked_dim(self) -> int:
         if "dim" not in self._top_level:
@@ -220,8 +231,14 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
         key: value
         for key, value in table.items()
         if key in TOP_LEVEL_KEYS - WORDS
-        and (not isinstance(value, dict | list) or chooses(value) is not None)
+        and (not isinstance(value, dict | list) or chooses(value) is not None or _needed(key))
     }
+
+
+def _needed(key: str) -> bool:
+    """Whether no scenario can do without the key, so that it is a number whatever was given."""
+    field = ScenarioTable.model_fields.get(key)
+    return field is not None and field.is_required()
 
 
 def chooses(value: Any) -> str | None:

@@ -1,0 +1,98 @@
+"""Parts of a body that broke under water have their uplift once they are rigid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doseki.validate import cases
+from doseki.validate.running import Running
+
+SIDE = 0.1  # m, of the block
+WEAK = (
+    "body.block.kinematics=breakable", "body.block.damping=0.3", "material.stone.fracture=cohesive",
+    "material.stone.young_modulus=1e9", "material.stone.poisson_ratio=0.2",
+    "material.stone.tensile_strength=1e6", "material.stone.fracture_energy=1000",
+)  # fmt: skip
+# What strikes the block makes it deformable, and breaks nothing of it.
+PEBBLE = """
+[body.pebble]
+shape = { d2 = "disc", d3 = "sphere" }
+material = "ground"
+centre = { d2 = ["= place", "= 1.135*side"], d3 = ["= place", "= width/2", "= 1.135*side"] }
+radius = "= 0.12*side"
+velocity = { d2 = [0, -3], d3 = [0, 0, -3] }
+
+[contact]
+speed = 4
+"""
+AT_REST = 0.3, 0.5  # s
+
+
+def upper(x):
+    return x[:, -1] > SIDE / 2
+
+
+def above_a_slant(x):
+    """The crack is a staircase of points, of one up for two along."""
+    return x[:, -1] > 0.3 * SIDE + 0.5 * (x[:, 0] - SIDE)
+
+
+def right(x):
+    return x[:, 0] > 1.5 * SIDE
+
+
+def uplift_of_parts(folder, label, **given) -> np.ndarray:
+    """Of the two halves of a block, over Archimedes', in the mean."""
+    given = {"across": 16, "time_max": 1, **given}
+    path = Path(cases.__file__).parent / "grains/block-under-water.toml"
+    (folder / "pebble.toml").write_text(path.read_text(encoding="utf-8") + PEBBLE, encoding="utf-8")
+    values = [f"{key}={value}" for key, value in given.items()]
+    run = Running(str(folder / "pebble.toml"), *WEAK, *values)
+    run.advance(0.0008)
+    state, core = run.simulation.state(), getattr(run.simulation, "_core", run.simulation)
+    grains = run.grains()
+    (block,) = np.flatnonzero(grains["body"] == run.body_names.index("block"))
+    whole = grains["mass"][block]
+    own = state["position"][state["grain"] == block]
+    core.cut_bodies(np.ascontiguousarray(label(own), np.int32))
+    return np.mean([uplift(run, time, whole) for time in np.linspace(*AT_REST, 11)], axis=0)
+
+
+def uplift(run: Running, time: float, whole: float) -> np.ndarray:
+    """Of the parts that have a fifth of the mass of the `whole` block or more."""
+    run.advance(time)
+    grains, gravity = run.grains(), np.asarray(run.scenario.gravity)
+    large = (grains["mass"] > 0.2 * whole) & ~grains["removed"]
+    large &= grains["body"] == run.body_names.index("block")
+    displaced = grains["mass"][large] / 2  # the block is twice as dense as water
+    return -(grains["flow_force"][large] @ gravity) / (displaced * (gravity @ gravity))
+
+
+@pytest.mark.parametrize(
+    ("label", "given"),
+    [
+        (upper, {}),
+        (upper, {"tilt": 20}),
+        (above_a_slant, {"tilt": 20}),
+        (above_a_slant, {"across": 24}),
+        (upper, {"dim": 3, "across": 8}),
+    ],
+)
+def test_they_have_their_uplift(tmp_path, label, given):
+    """They have slid by a part of a spacing, so that the faces of the crack do not fit."""
+    found = uplift_of_parts(tmp_path, label, **given)
+    assert len(found) == 2
+    np.testing.assert_allclose(found, 1.0, atol=0.25)
+
+
+def test_parts_side_by_side_have_most_of_it(tmp_path):
+    """They have no edges, which (182) goes by."""
+    assert uplift_of_parts(tmp_path, right).min() > 0.8
+
+
+def test_without_films_they_are_pressed_down(tmp_path):
+    """The control, as parts had none."""
+    assert uplift_of_parts(tmp_path, right, uplift="false").max() < 0.2
