@@ -93,6 +93,6 @@ def test_parts_side_by_side_have_most_of_it(tmp_path):
     assert uplift_of_parts(tmp_path, right).min() > 0.8
 
 
-def test_without_films_they_are_pressed_down(tmp_path):
-    """The control, as parts had none."""
-    assert uplift_of_parts(tmp_path, right, uplift="false").max() < 0.2
+def test_without_films_they_have_not(tmp_path):
+    """The control."""
+    assert abs(uplift_of_parts(tmp_path, upper, uplift="false") - 1.0).max() > 1.0
