@@ -116,3 +116,9 @@ def test_what_a_change_has_nothing_to_do_with_is_of_the_file(write, error_of, gi
     said = error_of(path, given)
     assert said.startswith(f"{path}, line ")
     assert "window.w: every entry of min must be below that of max" in said
+
+
+@pytest.mark.parametrize("given", ["nan", "inf", "[0.1, 0.2]", "0", "true"])
+def test_a_key_is_blamed_itself_and_not_what_uses_it(write, error_of, given):
+    tables = '[parameters]\nside = "= round(1/dp)*dp"\n' + BLOCK
+    assert error_of(write(tables=tables), f"dp={given}").startswith("--set dp: dp = ")

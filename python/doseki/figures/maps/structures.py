@@ -15,7 +15,7 @@ from ...measure.maps.standing import KEYS, clamped_bodies, standing
 from ...record.reader import Run
 from ..space.ground import terrain_of
 
-COLOUR, EDGE = "0.25", "white"  # darker than any slope; flows that press on them are dark, too
+COLOUR, EDGE = "0.0", "white"  # no slope is black, nor is any flow
 LABEL = "fixed bodies"
 ACROSS = 800  # nodes along the longer side of a map, at most
 BETWEEN = 4  # nodes in a spacing, where there is room for them

@@ -204,7 +204,8 @@ class Names(Mapping[str, Any]):
         """`value`, once it is what the key may be: else what uses it would be blamed."""
         field = ScenarioTable.model_fields.get(name)
         if field is not None and name != "dim":
-            alone = create_model(name, __base__=Table, **{name: (field.annotation, field)})
+            of_it: dict[str, Any] = {name: (field.annotation, field)}
+            alone = create_model(name, __base__=Table, **of_it)
             try:
                 alone.model_validate({name: value}, context={"dim": self._dim})
             except ValidationError as error:
