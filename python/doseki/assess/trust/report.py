@@ -23,6 +23,7 @@ from .checks import (
 from .deformable import deformable_checks
 from .faces import faces_check
 from .ground import ground_check
+from .inflows import inflows_check
 from .ledger import ledger_of
 from .snapshots import is_resolved, look
 from .tension import tension_check
@@ -42,6 +43,7 @@ def trust_checks(run: Run) -> list[Check]:
         momentum_check(run, seen),
         depth_check(run, seen),
         *ground_check(run),
+        *inflows_check(run),
         contact_check(seen, *given),
         *deformable_checks(run, seen),
         *contact_energy_check(run, seen),
