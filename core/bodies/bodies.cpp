@@ -89,27 +89,28 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
 template <int D>
 void Bodies<D>::rebind(Particles<D>& particles) {
     if (!rebinds_) return;
+    const bool have_faces = rigid_particles_.have_areas();
     for_each_particle(particles.size(), [&](std::size_t p) {
         deformable.rebind(particles, p, breakable_.deformable_points());
-        give_face(particles, p);
+        if (have_faces) give_face(particles, p);
     });
     rebinds_ = false;
 }
 
 template <int D>
 void Bodies<D>::give_face(Particles<D>& particles, std::size_t p) const {
+    // Of a crack that goes up and down, the points in its hollows are in the row below.
+    constexpr double first_row = 0.75, second_row = 2.0;  // spacings
     const std::int32_t k = rigid_particles_.body_of(particles, p);
     if (k < rigid_at_start_) return;
     const BreakableBody<D>* const body = breakable_.of_rigid(static_cast<std::size_t>(k));
     if (!body) return;
-    // Of a crack that goes up and down, the points in its hollows are in the row below.
-    constexpr double first_row = 0.75, second_row = 2.0;  // spacings
-    const double depth =
-        particles.wall.depth[p] / deformable.solids().material(body->deformable).spacing;
-    std::int32_t& face = particles.wall.face[p];
-    face = Face::none;
-    if (!rigid_particles_.has_area(particles, p) || !(depth < second_row)) return;
-    face = depth < first_row ? Face::first_body + k : -(Face::first_body + k);
+    const std::int32_t point = breakable_.deformable_point(particles.point(p));
+    const double depth = particles.wall.depth[p] =
+        deformable.depth(static_cast<std::size_t>(point));
+    const double rows = depth / deformable.solids().material(body->deformable).spacing;
+    const std::int32_t face = Face::first_body + k;
+    particles.wall.face[p] = rows < first_row ? face : rows < second_row ? -face : Face::none;
 }
 
 template <int D>
@@ -120,6 +121,7 @@ void Bodies<D>::bind_dust(Particles<D>& particles) {
         const auto found = dust_points_.find(particles.point(p));
         if (found == dust_points_.end()) continue;
         particles.wall.depth[p] = 0.5 * deformable.solids().body_of(found->first).spacing;
+        particles.wall.face[p] = Face::none;
         particles.set_point(p, BodyKind::rigid, found->second);
     }
     dust_points_.clear();

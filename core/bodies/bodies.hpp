@@ -367,7 +367,8 @@ void Bodies<D>::serialise(Archive& archive, const MovingWalls<D>& walls) {
     archive.nested("deformable_origin_", deformable_origins_);
     archive("body_numbers", numbers_), archive("bodies_at_start", rigid_at_start_);
     if (archive.loads()) {
-        dust_points_.clear(), rebinds_ = false, companions_ = {};  // of the state that was there
+        dust_points_.clear(), rebinds_ = new_faces_ = false,
+                              companions_ = {};  // of the state that was there
         expect_fit(rigid_origins_.size() == rigid.size() &&
                        deformable_origins_.size() == deformable.bodies(),
                    "body_numbers");

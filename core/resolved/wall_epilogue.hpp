@@ -74,9 +74,10 @@ private:
     static constexpr double min_filled = 0.05;  // of the kernel, by fluid
     static constexpr double min_weight = 1e-9;  // the same; less presses with nothing
 
-    /// Share of what it would see of a plane face that a plane face sees at least beside one that
-    /// curves, and that one sees which is none itself: a crack goes up and down by a spacing.
-    static constexpr double beside_curved = 0.9, uneven = 0.6;
+    /// Share of what it would see of a plane face that a face sees at least where no air is: one of
+    /// a shape with edges, beside one that curves; and one of balls and of what breaks, where a
+    /// crack goes up and down by a spacing.
+    static constexpr double of_edged = 0.9, of_others = 0.6;
 
     DOSEKI_DEVICE_FN double volume(std::size_t p) const { return records_[p - first_wall_].volume; }
 
@@ -189,14 +190,15 @@ private:
     DOSEKI_DEVICE_FN double with_air(std::size_t p, const WallAccumulators<double, D>& sums) const {
         const double seen = sums.weight + sums.cover, least = std::max(seen, least_cover(p));
         if (state_.wall.face[p] < Face::first_body) return least;
-        const double lacks = is_even(p) ? beside_curved : uneven,
-                     share = std::min(1.0, seen / (lacks * model_.full_cover.at(to_face(p, sums)))),
+        const double least_share = has_edges(p) ? of_edged : of_others,
+                     share = std::min(
+                         1.0, seen / (least_share * model_.full_cover.at(to_face(p, sums)))),
                      square = share * share;
         return std::max(least, 2.0 * seen / (square * square * (1.0 + met_beyond_edges(p, sums))));
     }
 
-    /// Whether it is one of a shape with plane faces.
-    DOSEKI_DEVICE_FN bool is_even(std::size_t p) const {
+    /// Whether its body tells of edges.
+    DOSEKI_DEVICE_FN bool has_edges(std::size_t p) const {
         const Vec<double, D> nearest = row(state_.wall.edge_normals[p], 0);
         return dot(nearest, nearest) > 0.0;
     }
@@ -226,7 +228,7 @@ private:
     DOSEKI_DEVICE_FN Vec<double, D> without_air(std::size_t p, const Vec<double, D>& hidden,
                                                 const WallAccumulators<double, D>& sums) const {
         const WallState<D>& wall = state_.wall;
-        if (!is_even(p)) return met(p, wall.normal[p], sums) * hidden;
+        if (!has_edges(p)) return met(p, wall.normal[p], sums) * hidden;
         Vec<double, D> pressed = hidden;
         for (int k = 0; k < D; ++k) {
             const Vec<double, D> n = row(wall.edge_normals[p], k);

@@ -307,7 +307,7 @@ double Simulation<Lists>::next_end(double limit, double longest) const {
 template <class Lists>
 void Simulation<Lists>::update_lists(double before, double moved) {
     open_boundaries.planes.count(particles);
-    const bool worn = bodies.take_new_faces() || lists_.wear(particles, moved);
+    const bool faces = bodies.take_new_faces(), worn = lists_.wear(particles, moved) || faces;
     const bool added = open_boundaries.inject(particles, time_);
     bool changed = moving_walls.remove(particles, before, time_, open_boundaries.removed) || added;
     moved_since_outflow_ += moved;

@@ -263,6 +263,8 @@ public:
 
     /// The normal of a point now.
     Vec<double, D> normal(std::size_t k) const;
+    /// Below the surface of its body, at rest [m].
+    double depth(std::size_t k) const { return depth_[k]; }
     /// The surfaces as contacts have them.
     const DeformableSurfaces<D>& surfaces() const { return surfaces_; }
 

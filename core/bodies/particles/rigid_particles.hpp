@@ -52,12 +52,7 @@ public:
         return has(particles, p) ? static_cast<std::int32_t>(point_of(particles, p).index()) : -1;
     }
 
-    /// Whether films press on particle p.
-    bool has_area(const Particles<D>& particles, std::size_t p) const {
-        const Vec<double, D>& area = point_of(particles, p).area;
-        return dot(area, area) > 0.0;
-    }
-    /// The same of any point.
+    /// Whether films press on any point.
     bool have_areas() const {
         return std::ranges::any_of(
             points_, [](const auto& point) { return dot(point.area, point.area) > 0.0; });

@@ -306,13 +306,13 @@ void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int3
     const auto& solids = deformable.solids();
     const Array<std::uint32_t> points = solids.points_of(b);
     const bool has_faces = rigid_particles_.have_areas();
-    const Array<Vec<double, D>> area =
-        areas_of(solids, points, has_faces ? pair_area_ : PairArea{});
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        const std::uint32_t p = points[n];
+    const auto area =
+        has_faces ? areas_of(solids, points, pair_area_) : Array<Vec<double, D>>(points.size());
+    for (std::size_t q = 0; q < points.size(); ++q) {
+        const std::uint32_t p = points[q];
         deformable.set_rigid_point(
             p, rigid_particles_.add(k, rotated_back(turn, solids.x[p] - motion.centre),
-                                    rotated_back(turn, deformable.normal(p)), area[n]));
+                                    rotated_back(turn, deformable.normal(p)), area[q]));
     }
     new_faces_ |= has_faces;
 }

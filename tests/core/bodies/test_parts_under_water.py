@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from doseki.solver.build import empty_simulation
 from doseki.validate import cases
 from doseki.validate.running import Running
 
@@ -44,21 +45,27 @@ def right(x):
     return x[:, 0] > 1.5 * SIDE
 
 
-def uplift_of_parts(folder, label, **given) -> np.ndarray:
-    """Of the two halves of a block, over Archimedes', in the mean."""
-    given = {"across": 16, "time_max": 1, **given}
+def broken(folder, label, **given) -> tuple[Running, float]:
+    """A block on its bed under water that has just come apart, and the mass that it had."""
     path = Path(cases.__file__).parent / "grains/block-under-water.toml"
     (folder / "pebble.toml").write_text(path.read_text(encoding="utf-8") + PEBBLE, encoding="utf-8")
-    values = [f"{key}={value}" for key, value in given.items()]
+    values = [f"{key}={value}" for key, value in ({"across": 16, "time_max": 1} | given).items()]
     run = Running(str(folder / "pebble.toml"), *WEAK, *values)
     run.advance(0.0008)
     state, core = run.simulation.state(), getattr(run.simulation, "_core", run.simulation)
     grains = run.grains()
     (block,) = np.flatnonzero(grains["body"] == run.body_names.index("block"))
-    whole = grains["mass"][block]
     own = state["position"][state["grain"] == block]
     core.cut_bodies(np.ascontiguousarray(label(own), np.int32))
-    return np.mean([uplift(run, time, whole) for time in np.linspace(*AT_REST, 11)], axis=0)
+    return run, grains["mass"][block]
+
+
+def uplift_of_parts(folder, label, **given) -> np.ndarray:
+    """Of the two halves of a block, over Archimedes', in the mean."""
+    run, whole = broken(folder, label, **given)
+    found = [uplift(run, time, whole) for time in np.linspace(*AT_REST, 11)]
+    assert {len(each) for each in found} == {2}
+    return np.mean(found, axis=0)
 
 
 def uplift(run: Running, time: float, whole: float) -> np.ndarray:
@@ -76,6 +83,7 @@ def uplift(run: Running, time: float, whole: float) -> np.ndarray:
     [
         (upper, {}),
         (upper, {"tilt": 20}),
+        (above_a_slant, {}),
         (above_a_slant, {"tilt": 20}),
         (above_a_slant, {"across": 24}),
         (upper, {"dim": 3, "across": 8}),
@@ -84,8 +92,7 @@ def uplift(run: Running, time: float, whole: float) -> np.ndarray:
 def test_they_have_their_uplift(tmp_path, label, given):
     """They have slid by a part of a spacing, so that the faces of the crack do not fit."""
     found = uplift_of_parts(tmp_path, label, **given)
-    assert len(found) == 2
-    np.testing.assert_allclose(found, 1.0, atol=0.25)
+    np.testing.assert_allclose(found, 1.0, atol=0.4)
 
 
 def test_parts_side_by_side_have_most_of_it(tmp_path):
@@ -96,3 +103,17 @@ def test_parts_side_by_side_have_most_of_it(tmp_path):
 def test_without_films_they_have_not(tmp_path):
     """The control."""
     assert abs(uplift_of_parts(tmp_path, upper, uplift="false") - 1.0).max() > 1.0
+
+
+def test_a_restored_run_goes_on_with_the_same_bits(tmp_path):
+    run, _ = broken(tmp_path, above_a_slant)
+    run.advance(0.2)
+    other = empty_simulation(run.scenario, run.body_names)
+    assert other.restore(run.simulation.checkpoint())
+    ends = []
+    for simulation in (run.simulation, other):
+        simulation.advance(limit=0.21, pause=0.21, max_steps=10**6)
+        ends.append(simulation.state())
+    assert ends[0].keys() == ends[1].keys()
+    for key, values in ends[0].items():
+        np.testing.assert_array_equal(values, ends[1][key], err_msg=key)
