@@ -85,7 +85,6 @@ def uplift(run: Running, time: float, whole: float) -> np.ndarray:
         (upper, {"tilt": 20}),
         (above_a_slant, {}),
         (above_a_slant, {"tilt": 20}),
-        (above_a_slant, {"across": 24}),
         (upper, {"dim": 3, "across": 8}),
     ],
 )
