@@ -245,6 +245,19 @@ def test_contacts_squash_nothing_that_the_flow_gives(contact, apart):
     assert both[1].get_ylim()[1] > 100 * largest
 
 
+@pytest.mark.parametrize(("flow", "columns"), [(0.0, 1), (1e-12, 1), (1e-3, 2)])
+def test_contacts_of_a_dry_load_stand_alone(flow, columns):
+    """What rounding gives of a flow that is not there is no column of its own."""
+    record = load_record(flow, flow, 1.0)
+    for name in record.units:
+        if name.startswith(("static_moment", "dynamic_moment")):
+            record[name][:] *= flow
+        elif name.startswith("contact_"):
+            record[name][:] = 1e3
+    figure = _draw_parts(record, 2, "dam")
+    assert len(figure.axes) == 3 * columns
+
+
 @pytest.mark.parametrize("along", [1e3, 1e-3])
 @pytest.mark.parametrize("share", [0.0, 1e-13, 1e-3])
 def test_what_is_rounding_has_the_scale_of_the_others(share, along):
