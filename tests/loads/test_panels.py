@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import trimesh
 
 from doseki.errors import UserError
 from doseki.figures.kinds.load import _draw_parts
@@ -14,6 +16,7 @@ from doseki.figures.nothing import NothingToDrawError
 from doseki.measure.views import tables
 from doseki.record.reader import GaugeRecord
 from doseki.scenario.tables.figure import Figure
+from doseki.scene.checks.panels import _bare_panel
 from doseki.solver.build import build_simulation
 
 from .scenes import DAM, DAM_3D, run_of, scenario_of
@@ -74,6 +77,58 @@ def test_a_grid_in_space_does_so_along_each_edge(tmp_path, beyond, fits):
     """The face is 8 spacings wide between its banks, and 10 high."""
     edges = f"gauge.face.edges=[[0, 0.4, 0], [0, 0, {0.5 + 0.05 * beyond}]]"
     build(tmp_path, fits, DAM_3D, edges, "particles=8", "gauge.face.panels=[3, 3]")
+
+
+SLANT = """\
+dim = 3
+dp = 0.05
+time_max = 0.1
+time_out = 0.1
+scheme = "resolved"
+speed_max = 2
+gravity = [0, 0, -9.8]
+[body.dam]
+shape = "mesh"
+file = "dam.stl"
+material = "aluminium"
+[gauge.face]
+kind = "panels"
+bodies = ["dam"]
+origin = [0, 0, 0]
+edges = [[0, {long}, 0], [0.1, 0, 0.5]]
+panels = [{count}, 5]
+direction = [-0.5, 0, 0.1]
+"""
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize(("beyond", "fits"), [(0.0, True), (0.9, True), (4, False)])
+def test_long_panels_of_a_slant_may_lack_a_row_and_a_spacing_at_their_ends(
+    tmp_path, count, beyond, fits
+):
+    """The two panels from top and foot of this face lack 8 % of a row that lies along them."""
+    ends = [(x, y, z) for x, z in ((0, 0), (1.5, 0), (0.4, 0.5), (0.1, 0.5)) for y in (0, 3.0)]
+    trimesh.convex.convex_hull(np.array(ends)).export(tmp_path / "dam.stl")
+    build(tmp_path, fits, SLANT.format(long=3.0 + 0.05 * beyond, count=count))
+
+
+@pytest.mark.parametrize(
+    ("panels", "covered", "bare"),
+    [
+        ([3, 3], [[0.5, 1, 0.5], [1, 1, 1], [0.5, 1, 0.5]], None),
+        ([3, 3], [[1, 1, 1], [0.5, 0.5, 0.5], [1, 1, 1]], None),  # a row that is not there
+        ([3, 3], [[1, 1, 1], [0.5, 0.4, 0.5], [1, 1, 1]], 4),
+        ([3, 3], [[1, 1, 0.9], [1, 1, 0.9], [1, 1, 0.9]], 2),  # nothing at an end of long panels
+        ([3, 3], [[0.9, 0.9, 0.9]] * 3, None),  # all of the face is like that
+        ([1, 4], [[1], [0.5], [0.5], [1]], None),
+        ([1, 4], [[0.9], [0.5], [0.5], [0.9]], 0),
+        ([2, 2], [[0.48, 0.95], [0.95, 0.95]], 0),
+        ([2, 2], [[0.5, 0.95], [0.95, 0.95]], None),
+    ],
+)
+def test_what_a_panel_of_two_spacings_by_twenty_may_lack(panels, covered, bare):
+    face = SimpleNamespace(size=np.array([1.0, 0.1]), panels=panels)
+    assert _bare_panel(face, np.ravel(covered), 0.05) == bare
 
 
 def test_edges_are_at_right_angles(tmp_path):
@@ -188,6 +243,19 @@ def test_contacts_squash_nothing_that_the_flow_gives(contact, apart):
     largest = np.abs(record["static_force_y"]).max()
     assert largest <= flow[1].get_ylim()[1] < 1.2 * largest
     assert both[1].get_ylim()[1] > 100 * largest
+
+
+@pytest.mark.parametrize(("flow", "columns"), [(0.0, 1), (1e-12, 1), (1e-3, 2)])
+def test_contacts_of_a_dry_load_stand_alone(flow, columns):
+    """What rounding gives of a flow that is not there is no column of its own."""
+    record = load_record(flow, flow, 1.0)
+    for name in record.units:
+        if name.startswith(("static_moment", "dynamic_moment")):
+            record[name][:] *= flow
+        elif name.startswith("contact_"):
+            record[name][:] = 1e3
+    figure = _draw_parts(record, 2, "dam")
+    assert len(figure.axes) == 3 * columns
 
 
 @pytest.mark.parametrize("along", [1e3, 1e-3])

@@ -334,6 +334,18 @@ def test_a_wrong_key_is_to_blame_and_not_the_tank_that_needs_it(
     assert f"case.toml, line 1: {part}" in error_of(str(path))
 
 
+@pytest.mark.parametrize("value", ["[1, 2]", "{ a = 1 }", "true"])
+@pytest.mark.parametrize("key", ["dp", "speed_max", "eta", "skin", "time_history", "slope"])
+def test_a_key_that_is_no_number_is_to_blame_and_not_the_parameter_that_uses_it(
+    tmp_path, error_of, key, value
+):
+    path = tmp_path / "case.toml"
+    head = [line for line in HEAD.format(dim=2).splitlines() if not line.startswith(f"{key} =")]
+    uses = f'[parameters]\nquarter = "= {key}/4"\n'
+    path.write_text("\n".join([f"{key} = {value}", *head, uses]))
+    assert error_of(str(path)).startswith(f"{path}, line 1: {key} = {value}")
+
+
 def test_boxes_that_dp_does_not_divide_are_reported_with_the_size_they_got(load):
     box = '[body.{}]\nshape = "box"\nmaterial = "water"\nmin = [{}, 0]\nmax = [{}, 0.2]\n'
     lines = check_scenario(load(box.format("whole", 0, 0.4) + box.format("odd", 1, 1.405)))

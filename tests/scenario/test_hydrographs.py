@@ -84,6 +84,7 @@ def test_the_effective_scenario_no_longer_needs_the_file(write, tmp_path):
         (LIST, "[[0, 1], [2, true]]", ["row 2: Q = True"]),
         (LIST, "[[0, 1], [2, inf]]", ["row 2: Q = inf"]),
         (LIST, "[[0, 0], [2, 0]]", ["nothing would enter"]),
+        (LIST, "[[0, 0], [1, 0], [1, 5], [1, 0], [2, 0]]", ["i.hydrograph", "nothing would enter"]),
         (LIST, '"none.csv"', ["i.hydrograph", "none.csv: no such file"]),
         ("start", 'rate = "3 L/s"\nstart', ["inflow.i.rate and inflow.i.hydrograph exclude"]),
         ("start", "duration = 1\nstart", ["inflow.i.duration and inflow.i.hydrograph exclude"]),
@@ -124,6 +125,45 @@ def test_the_volume_that_enters_is_that_of_the_rows(write):
         scenario = load_scenario(write(tables=surge), [f"time_max={end}", "dp=0.01"])
         (section,) = build_inflows(scenario, ["i"])
         assert to_enter(scenario, section)[0] == pytest.approx(volume, rel=0.02)
+
+
+def surge_of(rows):
+    """The inflow with a surge in place of its hydrograph."""
+    return INFLOW.replace(f"hydrograph = {LIST}", f"surge = {rows}").replace("depth = 0.4\n", "")
+
+
+JUMP = [[0, 0.4, 1], [1, 0.4, 1], [1, 0.2, 2], [2, 0.2, 2]]
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_surge_may_jump(write):
+    """Two rows of one time: no time passes between them."""
+    scenario = load_scenario(write(tables=surge_of(JUMP)), ["time_max=9", "dp=0.02"])
+    (section,) = build_inflows(scenario, ["i"])
+    when = np.array([0.6, 1.5, 1.6, 2.4])
+    np.testing.assert_allclose(section.time_of(section.gone(when)), when)
+    assert to_enter(scenario, section)[0] == pytest.approx(0.8, rel=1e-6)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("rows", [JUMP, [[0, 0.4, 0], [1, 0, 2], [2, 0.4, 0]]])
+def test_a_surge_of_which_some_stretch_carries_is_taken(write, rows):
+    """Thickness and speed need not be above 0 in the same row."""
+    check_scenario(load_scenario(write(tables=surge_of(rows)), ["time_max=9", "xi=0.2"]))
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [[0, 0.4, 0], [1, 0.4, 0], [1, 0.4, 2], [1, 0.4, 0], [2, 0.4, 0]],
+        [[0, 0, 2], [1, 0, 2], [1, 0.4, 0], [2, 0.4, 0]],
+    ],
+)
+def test_a_surge_of_which_no_stretch_carries_is_refused(write, error_of, rows):
+    message = error_of(write(tables=surge_of(rows)))
+    assert "case.toml" in message
+    assert "inflow.i.surge" in message
+    assert "nothing would enter; times must go on while thickness and velocity" in message
 
 
 def test_a_check_tells_the_volume(write):

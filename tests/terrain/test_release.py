@@ -190,26 +190,6 @@ max = [6, 0.8]
     assert scene.particles.mass.sum() == pytest.approx(1000 * 4 / 3 * 0.8 * 2, rel=0.03)
 
 
-@pytest.mark.parametrize(
-    ("about", "said"),
-    [
-        ({"Thickness": 0.5}, "no attribute thickness, .*; did you mean Thickness?"),
-        ({"depth": 0.5}, "no attribute thickness, .*; known: depth"),
-        ({}, "no attribute thickness, .* give body.slide.thickness$"),
-        ({"thickness": "0.5"}, "thickness = '0.5', not a length"),
-        ({"thickness": True}, "thickness = True, not a length"),
-        ({"thickness": 1e20}, r"thickness = 1e\+20, not a length in m above 0 and up to 10000"),
-    ],
-)
-def test_polygons_without_a_thickness_are_refused(case, tmp_path, about, said):
-    ring = [[1, 1], [4, 1], [4, 3], [1, 3], [1, 1]]
-    area = {"type": "Polygon", "coordinates": [ring]}
-    feature = {"type": "Feature", "properties": about, "geometry": area}
-    (tmp_path / "area.geojson").write_text(json.dumps(feature))
-    with pytest.raises(UserError, match=said):
-        load_scenario(case('file = "area.geojson"'))
-
-
 @pytest.mark.parametrize("dim", [2, 3])
 def test_one_that_is_far_away_is_refused_before_it_is_filled(case, monkeypatch, dim):
     """As that of another map; filled, it would be as many layers as the machine has memory for."""

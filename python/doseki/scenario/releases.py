@@ -216,12 +216,15 @@ def _read(name: str, path: Path, where: Where, crs: str | None) -> Features:
 
 
 def _thickness_in(name: str, release: Release, path: Path, where: Where, features: Features) -> Any:
-    """The thickness given, or that of each polygon of a file."""
+    """The thickness given, or that of each polygon of a file; None of one without area."""
     keys, place = ("body", name, "file"), f"body.{name}.file"
     if release.thickness is not None:
         return release.thickness
-    thickness = []
+    thickness: list[float | None] = []
     for polygon in features.polygons:
+        if not polygon.has_area:  # it is left out, whatever is said of it
+            thickness.append(None)
+            continue
         if FIELD not in polygon.attributes:
             like = suggestion(FIELD, polygon.attributes)
             raise where.error(

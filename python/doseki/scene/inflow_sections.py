@@ -79,7 +79,9 @@ class InflowSection:
         """When layers have gone so far, m, in s: the inverse of `gone`."""
         far = np.minimum(distance, self.distances[-1])
         k = np.clip(np.searchsorted(self.distances, far, "right") - 1, 0, len(self.times) - 2)
-        more, slope = far - self.distances[k], np.diff(self.speeds) / np.diff(self.times)
+        lasts = np.diff(self.times)  # no time at all where a surge jumps
+        slope = np.diff(self.speeds) / np.where(lasts > 0, lasts, np.inf)
+        more = far - self.distances[k]
         then = np.sqrt(np.maximum(self.speeds[k] ** 2 + 2 * slope[k] * more, 0.0))
         return np.asarray(self.times[k] + 2 * more / np.maximum(self.speeds[k] + then, TINY))
 

@@ -20,7 +20,7 @@ from ..layout import SMALL, chart_grid, figure_legend
 from ..nothing import NothingToDrawError
 from .series import draw_curve, draw_curves
 
-ROUNDING = 1e-9  # of the largest component: a force or a moment below is drawn on its scale
+ROUNDING = 1e-9  # of the largest component, or of contacts: what is below is no force or moment
 WHOLE = "total"
 ALL = (WHOLE, *PARTS)
 LARGE = 4.0  # times what the flow gives, from which on contacts stand beside it
@@ -85,7 +85,8 @@ def _contacts_are_large(record: GaugeRecord, shown: Iterable[str]) -> bool:
             _size(record[f"{part}_{c}"][1:] for c in shown if c.startswith(kind))
             for part in ("contact", "static", "dynamic")
         )
-        if max(static, dynamic) > 0 and contact > LARGE * max(static, dynamic):
+        flow = max(static, dynamic)
+        if flow > ROUNDING * contact and contact > LARGE * flow:
             return True
     return False
 

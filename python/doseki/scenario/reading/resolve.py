@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from keyword import iskeyword
-from typing import Any
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import ValidationError, create_model
 
@@ -232,14 +233,25 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
         key: value
         for key, value in table.items()
         if key in TOP_LEVEL_KEYS - WORDS
-        and (not isinstance(value, dict | list) or chooses(value) is not None or _needed(key))
+        and (not isinstance(value, dict | list) or chooses(value) is not None or _is_number(key))
     }
 
 
-def _needed(key: str) -> bool:
-    """Whether no scenario can do without the key, so that it is a number whatever was given."""
+def _is_number(key: str) -> bool:
+    """Whether a key is a number, so that expressions may use it whatever was given."""
     field = ScenarioTable.model_fields.get(key)
-    return field is not None and field.is_required()
+    return field is not None and _has_numbers(field.annotation)
+
+
+def _has_numbers(kind: Any) -> bool:
+    """Whether numbers are of this kind, alone or beside None and texts."""
+    if get_origin(kind) is Annotated:
+        return _has_numbers(get_args(kind)[0])
+    if get_origin(kind) in (Union, UnionType):
+        return any(_has_numbers(each) for each in get_args(kind))
+    if get_origin(kind) is Literal:
+        return all(isinstance(value, int) for value in get_args(kind))
+    return kind in (int, float)
 
 
 def chooses(value: Any) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import numpy as np
@@ -101,6 +102,14 @@ def _hydrograph(value: Any) -> str | list[list[float]]:
 
 def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
     """Rows [t, Q] in s and m3/s; raises ValueError where they are no hydrograph."""
+    _check_rows(rows)
+    if not _carries(rows):
+        raise ValueError("nothing would enter; times must go on while some Q is above 0")
+    return [[float(t), float(rate)] for t, rate in rows]
+
+
+def _check_rows(rows: Sequence[tuple[Any, Any]]) -> None:
+    """Two rows [t, Q] or more, of numbers, in the order of time; raises ValueError."""
     if len(rows) < 2:
         there = ("no rows", "1 row")[len(rows)]
         raise ValueError(f"{there}; two or more are needed")
@@ -115,9 +124,14 @@ def checked_hydrograph(rows: Sequence[tuple[Any, Any]]) -> list[list[float]]:
         if number > 1 and t < rows[number - 2][0]:
             before = rows[number - 2][0]
             raise ValueError(f"row {number}: t = {t:g} s goes back; allowed: {before:g} s or later")
-    if rows[0][0] == rows[-1][0] or not any(rate > 0 for _, rate in rows):
-        raise ValueError("nothing would enter; times must go on and some Q be above 0")
-    return [[float(t), float(rate)] for t, rate in rows]
+
+
+def _carries(rows: Sequence[Sequence[Any]]) -> bool:
+    """Whether some time passes between two rows while all that follows their time is above 0."""
+    return any(
+        first[0] < second[0] and all(max(pair) > 0 for pair in zip(first, second, strict=True))
+        for first, second in pairwise(rows)
+    )
 
 
 def _surge(value: Any) -> str | list[list[float]]:
@@ -141,7 +155,11 @@ def checked_surge(rows: Sequence[Sequence[Any]]) -> list[list[float]]:
                 raise ValueError(
                     f"row {number}: {name} = {shown}; allowed: numbers from 0 to {LARGEST:g}"
                 )
-    checked_hydrograph([(t, thickness * velocity) for t, thickness, velocity in rows])
+    _check_rows([(t, thickness * velocity) for t, thickness, velocity in rows])
+    if not _carries(rows):
+        raise ValueError(
+            "nothing would enter; times must go on while thickness and velocity are both above 0"
+        )
     return [[float(value) for value in row] for row in rows]
 
 

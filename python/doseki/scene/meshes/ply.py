@@ -1,4 +1,6 @@
-"""Binary PLY files whose faces have different numbers of corners, which trimesh does not read."""
+"""Faces of PLY files: of different numbers of corners in binary, which trimesh does not read, and
+of fewer than three, which it leaves out without a word.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +15,7 @@ TYPES = {
 }  # fmt: skip
 ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 CORNERS = ("vertex_index", "vertex_indices")  # what programs call those of a face
+FEWEST = 3  # corners of a face
 READ_ELSEWHERE = ({3}, {4})  # numbers of corners of all faces of a file
 Column = np.ndarray | list[np.ndarray]  # a number, or a list of them, of each record
 Columns = dict[str, Column]
@@ -42,9 +45,8 @@ def mixed_faces(content: bytes) -> tuple[np.ndarray, Column] | None:
     None for other files, without faces too, and where all are triangles, or all have four corners.
     Raises ValueError where it is damaged.
     """
-    head, _, data = content.partition(b"end_header")
-    lines = [line.split() for line in head.decode("ascii", "replace").splitlines()]
-    order = next((ORDERS.get(words[1]) for words in lines if words[:1] == ["format"]), None)
+    lines, data = _header(content)
+    order = ORDERS.get(_format(lines))
     if order is None:
         return None
     start = len(content) - len(data) + data.index(b"\n") + 1
@@ -57,6 +59,45 @@ def mixed_faces(content: bytes) -> tuple[np.ndarray, Column] | None:
     if not len(faces) or {len(face) for face in faces} in READ_ELSEWHERE:
         return None
     return np.column_stack([np.asarray(found["vertex"][axis], float) for axis in "xyz"]), faces
+
+
+def text_corners(content: bytes) -> list[int]:
+    """How many corners each face of a text PLY has; none of other files.
+
+    Raises ValueError or IndexError where it is damaged.
+    """
+    lines, data = _header(content)
+    if _format(lines) != "ascii":
+        return []
+    rows = [row for row in data.splitlines()[1:] if row.strip()]
+    start, found = 0, []
+    for element in _elements(lines, "<"):
+        if element.name == "face":
+            found = [_corners_in(row.split(), element) for row in rows[start:][: element.count]]
+        start += element.count
+    return found
+
+
+def _corners_in(words: list[bytes], face: Element) -> int:
+    """How many corners a line says that its face has."""
+    at = 0
+    for of in face.properties:
+        length = 1 if of.counted_by is None else int(float(words[at]))
+        if of.name in CORNERS or len(face.properties) == 1:
+            return length
+        at += length + (of.counted_by is not None)
+    return FEWEST
+
+
+def _header(content: bytes) -> tuple[list[list[str]], bytes]:
+    """The words of each line before the end of the header, and what follows these."""
+    head, _, data = content.partition(b"end_header")
+    return [line.split() for line in head.decode("ascii", "replace").splitlines()], data
+
+
+def _format(lines: list[list[str]]) -> str:
+    """What the header calls the form of what follows it."""
+    return next((words[1] for words in lines if words[:1] == ["format"]), "")
 
 
 def _elements(lines: list[list[str]], order: str) -> list[Element]:

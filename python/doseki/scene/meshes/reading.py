@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from ..shapes import ShapeError, Triangles
 from ..shapes.making import quiet
 from ..shapes.mesh_lines import check_obj, check_ply_header
 from ..shapes.stl import in_utf8, readable_stl
-from .ply import mixed_faces
+from .ply import FEWEST, mixed_faces, text_corners
 
 LARGEST_FILE = 200_000_000  # bytes
 HEADER_PLY = 2**20  # bytes: scanners write long comments
@@ -77,7 +78,10 @@ def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarr
     options: dict[str, Any] = {"process": False, "skip_materials": True}
     if kind == "stl":
         options.pop("skip_materials")
-    if kind == "ply" and (mixed := mixed_faces(content)) is not None:
+    mixed = mixed_faces(content) if kind == "ply" else None
+    if kind == "ply":
+        _check_corners(file, text_corners(content) if mixed is None else map(len, mixed[1]))
+    if mixed is not None:
         vertices, corners = mixed
         faces = trimesh.geometry.triangulate_quads(corners)
     else:
@@ -95,6 +99,14 @@ def _parsed(file: Path, kind: str, content: bytes) -> tuple[np.ndarray, np.ndarr
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise UserError(f"{file}: {LOST}")
     return vertices, faces
+
+
+def _check_corners(file: Path, counts: Iterable[int]) -> None:
+    """Refuse a face of fewer than three vertices, as in OBJ files."""
+    for number, count in enumerate(counts, start=1):
+        if count < FEWEST:
+            of = "1 vertex" if count == 1 else f"{count} vertices"
+            raise UserError(f"{file}: face {number} has {of}; three or more are needed")
 
 
 def _joined(file: Path, vertices: np.ndarray, faces: np.ndarray, scale: float) -> Triangles:
