@@ -169,7 +169,7 @@ def test_fractions_on_the_command_line(write):
         ("eta = '3 mm'", None, ["eta = '3 mm' must be a number"]),
         ("", "depth=3 kg", ['depth.value = "3 kg" is not a length']),
         ("", "depth=0.01 mm", ["parameters.depth", "out of range; must be 0.1 m or more"]),
-        ("eta = 'big'\nalpha = '= 2*eta'", None, ["arithmetic needs numbers, not 'big'"]),
+        ("eta = 'big'\nalpha = '= 2*eta'", None, ["eta = 'big' must be a number"]),
     ],
 )
 def test_what_is_no_such_quantity_is_refused(write, error_of, top, override, parts):

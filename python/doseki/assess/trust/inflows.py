@@ -6,13 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...errors import UserError
 from ...record.particles import FREE
 from ...record.reader import Run
 from ...scenario.load import load_scenario
 from ...scenario.model import Scenario
 from ...scenario.values.directions import section_axes
-from .verdicts import Check, judged
+from .verdicts import Check, judged, unknown
 
+NAME = "flow back past an inflow"
 BACK = (0.001, 0.02)  # share of the mass that has entered
 BEHIND = 1.0  # spacings: the layers of an inflow swing by less
 AROUND = 20.0  # spacings, or the height of the section: farther off it may have come another way
@@ -27,7 +29,10 @@ def inflows_check(run: Run) -> list[Check]:
     """
     if not run.scenario.get("inflow"):
         return []
-    scenario = load_scenario(run.folder.scenario)
+    try:
+        scenario = load_scenario(run.folder.scenario)
+    except UserError:  # of a run whose files have gone, or of another version
+        return [unknown(NAME, BACK, "the scenario of the run cannot be read")]
     back = {name: _most_behind(run, scenario, name) for name in scenario.inflow}
     entered = run.summary.get("mass_entered", 0.0)
     worst = sorted(filter(back.get, back), key=back.__getitem__, reverse=True)
@@ -38,7 +43,7 @@ def inflows_check(run: Run) -> list[Check]:
         f"{', '.join(worst[:3])}: water stood higher than the layers, or ran back beside them; "
         "give the inflow a larger depth, or a wall behind it"
     )
-    return [judged("flow back past an inflow", share, BACK, counted, remedy)]
+    return [judged(NAME, share, BACK, counted, remedy)]
 
 
 def _most_behind(run: Run, scenario: Scenario, name: str) -> float:
