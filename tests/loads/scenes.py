@@ -177,6 +177,44 @@ gauge = "face"
 kind = "load"
 gauge = "dam"
 """
+# Water that falls on a wall.
+RUSH = """
+dim = 2
+dp = 0.05
+scheme = "resolved"
+speed_max = 4
+time_max = 0.3
+time_out = 0.3
+gravity = [9.81, 0]
+[body.water]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [0.5, 0.4]
+[body.dam]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [1, -0.2]
+max = [1.2, 0.6]
+[body.floor]
+shape = "box"
+material = "basalt"
+fixed = true
+min = [0, -0.2]
+max = [1, 0]
+[gauge.dam]
+kind = "load"
+bodies = ["dam"]
+about = [1, 0]
+approach = "before"
+interval = 0.01
+[gauge.before]
+kind = "approach"
+position = [0.5, 0]
+direction = [1, 0]
+interval = 0.01
+"""
 # A tank into which grains fall on water beside a sill; everything that is fixed has one gauge.
 RAIN = """\
 dim = 2

@@ -33,7 +33,7 @@ def inflows_check(run: Run) -> list[Check]:
         scenario = load_scenario(run.folder.scenario)
     except UserError:  # of a run whose files have gone, or of another version
         return [unknown(NAME, BACK, "the scenario of the run cannot be read")]
-    back = {name: _most_behind(run, scenario, name) for name in scenario.inflow}
+    back = _most_behind(run, scenario)
     entered = run.summary.get("mass_entered", 0.0)
     worst = sorted(filter(back.get, back), key=back.__getitem__, reverse=True)
     share = max(back.values(), default=0.0) / entered if entered else 0.0
@@ -46,19 +46,22 @@ def inflows_check(run: Run) -> list[Check]:
     return [judged(NAME, share, BACK, counted, remedy)]
 
 
-def _most_behind(run: Run, scenario: Scenario, name: str) -> float:
-    """The most mass just behind one inflow in any snapshot, kg (2-D: kg/m)."""
-    behind, before = _behind(scenario, name), None
-    most = 0.0
+def _most_behind(run: Run, scenario: Scenario) -> dict[str, float]:
+    """The most mass just behind each inflow in any snapshot, kg (2-D: kg/m)."""
+    behind = {name: _behind(scenario, name) for name in scenario.inflow}
+    before: dict[str, np.ndarray] = {}
+    most = dict.fromkeys(behind, 0.0)
     for snapshot in run:
         free = snapshot["motion"] == FREE
-        position, number = snapshot["position"][free], snapshot["id"][free]
-        there = behind(position)
-        if before is None:  # what begins there may be a lake, or what another inflow feeds
-            before = number[~there]
-            continue
-        own = (np.asarray(snapshot["body"])[free] == name) | np.isin(number, before)
-        most = max(most, float(snapshot["mass"][free][there & own].sum()))
+        position, number, mass = (snapshot[key][free] for key in ("position", "id", "mass"))
+        body = np.asarray(snapshot["body"])[free]
+        for name, is_behind in behind.items():
+            there = is_behind(position)
+            if name not in before:  # what begins there may be a lake, or of another inflow
+                before[name] = number[~there]
+                continue
+            own = (body == name) | np.isin(number, before[name])
+            most[name] = max(most[name], float(mass[there & own].sum()))
     return most
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from keyword import iskeyword
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -203,12 +204,9 @@ class Names(Mapping[str, Any]):
 
     def _top_level_value(self, name: str, value: Any) -> Any:
         """`value`, once it is what the key may be: else what uses it would be blamed."""
-        field = ScenarioTable.model_fields.get(name)
-        if field is not None and name != "dim":
-            of_it: dict[str, Any] = {name: (field.annotation, field)}
-            alone = create_model(name, __base__=Table, **of_it)
+        if name in ScenarioTable.model_fields and name != "dim":
             try:
-                alone.model_validate({name: value}, context={"dim": self._dim})
+                _table_of(name).model_validate({name: value}, context={"dim": self._dim})
             except ValidationError as error:
                 raise to_user_error(error, {name: value}, self._where) from None
         return value
@@ -235,6 +233,14 @@ def _scalars(table: dict[str, Any]) -> dict[str, Any]:
         if key in TOP_LEVEL_KEYS - WORDS
         and (not isinstance(value, dict | list) or chooses(value) is not None or _is_number(key))
     }
+
+
+@cache
+def _table_of(key: str) -> type[Table]:
+    """A table that has one key of ScenarioTable alone."""
+    field = ScenarioTable.model_fields[key]
+    of_it: dict[str, Any] = {key: (field.annotation, field)}
+    return create_model(key, __base__=Table, **of_it)
 
 
 def _is_number(key: str) -> bool:
