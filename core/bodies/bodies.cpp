@@ -22,8 +22,9 @@ void Bodies<D>::number_bodies() {
 
 template <int D>
 auto Bodies<D>::part(double time, double dt, const Course& course) -> Parted {
-    const Fragments<D> fragments = deformable.divide(dt);
+    const Fragments<D> fragments = deformable.divide(dt, pair_area_);
     if (!fragments.any()) return {};
+    new_faces_ = true;
     auto origin = [&](std::int32_t parent) -> Origin {
         return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
     };
@@ -82,35 +83,17 @@ void Bodies<D>::add_dust(const DustGrain<D>& grain, const Array<Vec<double, D>>&
     for (std::size_t n = 0; n < grain.points.size(); ++n) {
         const std::uint32_t p = grain.points[n];
         dust_points_[p] =
-            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n], {});
+            rigid_particles_.add(k, deformable.solids().x[p] - grain.state.centre, normals[n]);
     }
 }
 
 template <int D>
 void Bodies<D>::rebind(Particles<D>& particles) {
     if (!rebinds_) return;
-    const bool have_faces = rigid_particles_.have_areas();
     for_each_particle(particles.size(), [&](std::size_t p) {
         deformable.rebind(particles, p, breakable_.deformable_points());
-        if (have_faces) give_face(particles, p);
     });
     rebinds_ = false;
-}
-
-template <int D>
-void Bodies<D>::give_face(Particles<D>& particles, std::size_t p) const {
-    // Of a crack that goes up and down, the points in its hollows are in the row below.
-    constexpr double first_row = 0.75, second_row = 2.0;  // spacings
-    const std::int32_t k = rigid_particles_.body_of(particles, p);
-    if (k < rigid_at_start_) return;
-    const BreakableBody<D>* const body = breakable_.of_rigid(static_cast<std::size_t>(k));
-    if (!body) return;
-    const std::int32_t point = breakable_.deformable_point(particles.point(p));
-    const double depth = particles.wall.depth[p] =
-        deformable.depth(static_cast<std::size_t>(point));
-    const double rows = depth / deformable.solids().material(body->deformable).spacing;
-    const std::int32_t face = Face::first_body + k;
-    particles.wall.face[p] = rows < first_row ? face : rows < second_row ? -face : Face::none;
 }
 
 template <int D>

@@ -229,8 +229,6 @@ private:
     void bind_dust(Particles<D>& particles);
     /// Particles of breakable bodies are points of what those are now.
     void rebind(Particles<D>& particles);
-    /// Faces of parts have the numbers of their rigid bodies.
-    void give_face(Particles<D>& particles, std::size_t p) const;
 
     void start_breakable() {
         if (!breakable_.any()) return;

@@ -117,10 +117,11 @@ struct BedSpring {
 };
 
 /// Numbers of the faces of walls. Those of a body share one: films lie between two that differ.
+/// Parts of bodies that broke have theirs from `first_part` on, which single precision holds.
 /// Particles below the first row of a face have its number with a minus: films press on them, but
 /// no other face sees them.
 struct Face {
-    static constexpr std::int32_t none = 0, fixed = 1, first_body = 2;
+    static constexpr std::int32_t none = 0, fixed = 1, first_body = 2, first_part = 1 << 23;
 
     /// Whether there may be a film between them; of numbers, or of packs of them.
     template <class T>

@@ -121,10 +121,9 @@ private:
                                           : (1.0 - walls.cut[p]) * model.spacing_power[D];
         record.no_slip = model.wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
         record.inverse_density = state.is_bound(p) ? 1.0 / state.density[p] : 0.0;
-        // Areas of faces are those of a body that keeps its shape.
         const bool deforms = state.is_point_of(p, BodyKind::deformable);
         record.spin = deforms ? Turn<double, D>{} : walls.spin[p];
-        record.face = deforms ? Face::none : walls.face[p], record.pressure = walls.pressure[p];
+        record.face = walls.face[p], record.pressure = walls.pressure[p];
         record.film_density = walls.film_density[p];
         record.film_cover = walls.film_cover[p];
         record.film_traction = walls.film_traction[p];

@@ -239,7 +239,7 @@ void DeformableBodies<D>::start(Particles<D>& particles, const Vec<double, D>& g
         for (std::size_t k = 0; k < by_number.size(); ++k) result[solids_.slot(k)] = by_number[k];
         return result;
     };
-    normal_ = sorted(normal_), depth_ = sorted(depth_), rigid_point_ = sorted(rigid_point_);
+    faces_.sort(sorted), rigid_point_ = sorted(rigid_point_);
     surfaces_.start(solids_);
     flow_force_.assign(solids_.size(), {}), acceleration_.assign(solids_.size(), {});
     sudden_.assign(solids_.size(), {}), owed_.assign(solids_.size(), {});
@@ -270,12 +270,12 @@ void DeformableBodies<D>::find_sudden_forces() {
     SuddenForces<D>(solids_, flow_force_).split(step_, sudden_);
 }
 
-/// Normals turn as surfaces do, with F^-T.
+/// Surfaces turn with F^-T; what they stretch is left out.
 template <int D>
-Vec<double, D> DeformableBodies<D>::normal(std::size_t k) const {
-    const Vec<double, D> n = cofactors(solids_.deformation(k)) * normal_[k];
-    const double length = std::sqrt(dot(n, n));
-    return length > 0.0 ? (1.0 / length) * n : n;
+Vec<double, D> DeformableBodies<D>::turned(std::size_t k, const Vec<double, D>& at_rest) const {
+    const Vec<double, D> n = cofactors(solids_.deformation(k)) * at_rest;
+    const double square = dot(n, n);
+    return square > 0.0 ? std::sqrt(dot(at_rest, at_rest) / square) * n : n;
 }
 
 template <int D>

@@ -101,6 +101,7 @@ void DeformableBodies<D>::rebind(Particles<D>& particles, std::size_t p,
         particles.set_point(p, BodyKind::rigid, static_cast<std::size_t>(rigid_point_[k]));
     else
         particles.set_point(p, BodyKind::deformable, k);
+    particles.wall.depth[p] = faces_.depth[k], particles.wall.face[p] = faces_.face[k];
 }
 
 }  // namespace doseki

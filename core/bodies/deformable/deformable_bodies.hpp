@@ -7,6 +7,7 @@
 #include "bodies/deformable/surfaces.hpp"
 #include "bodies/elastic/total_lagrangian.hpp"
 #include "bodies/fragments/dust.hpp"
+#include "bodies/fragments/point_faces.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
@@ -39,7 +40,8 @@ struct Fragments {
 /// A point as its particle shows it to the fluid.
 template <int D>
 struct ShownPoint {
-    Vec<double, D> place, normal, acceleration, velocity;
+    Vec<double, D> place, normal, area, acceleration, velocity;
+    Mat<double, D> edge_normals;
     double depth;
 };
 
@@ -52,7 +54,7 @@ public:
     /// Points of all bodies.
     std::size_t size() const { return solids_.size(); }
 
-    /// Makes the particles `members`, with the normals that they have, the points of one body.
+    /// Makes the particles `members`, with the faces that they have, the points of one body.
     /// Vertices of its surface are carried by points numbered within the body. Where it is to be
     /// rigid at first, `is_rigid`, the particles stay points of the rigid body that they are of.
     void add(Particles<D>& particles, const DeformableBody& body, std::int32_t material,
@@ -74,8 +76,7 @@ public:
             const auto p = static_cast<std::size_t>(members[k]);
             rigid_point_.push_back(is_rigid ? static_cast<std::int32_t>(particles.point(p)) : -1);
             if (!is_rigid) particles.set_point(p, BodyKind::deformable, solids_.size() + k);
-            normal_.push_back(particles.wall.normal[p]);
-            depth_.push_back(particles.wall.depth[p]);
+            faces_.add(particles.wall, p);
         }
         solids_.add(body, points, is_rigid);
         material_.push_back(material);
@@ -158,7 +159,7 @@ public:
     }
     /// Makes bodies of the parts of those that do not hold together any more, where there are any,
     /// in a step `dt` whose forces have acted.
-    Fragments<D> divide(double dt);
+    Fragments<D> divide(double dt, const PairArea& pair_area);
     /// Ends the bonds between points with different labels, in the order of adding; only bodies
     /// that may break have bonds.
     void cut(std::span<const std::int32_t> label);
@@ -243,8 +244,8 @@ public:
     void serialise(Archive& archive, const Vec<double, D>& gravity) {
         solids_.serialise(archive, gravity);
         surfaces_.serialise(archive, solids_);
-        archive("deformable_normal", normal_), archive("deformable_material", material_);
-        archive("deformable_depth", depth_), archive("deformable_group", group_);
+        archive.nested("deformable_face_", faces_);
+        archive("deformable_material", material_), archive("deformable_group", group_);
         archive("deformable_rigid_point", rigid_point_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_steady_force", solids_.steady),
@@ -252,19 +253,20 @@ public:
         archive("deformable_sudden_force", sudden_), archive("deformable_owed", owed_);
         if (archive.loads()) {
             const std::size_t n = solids_.size();
-            expect_fit(normal_.size() == n && flow_force_.size() == n &&
-                           solids_.steady.size() == n && sudden_.size() == n && owed_.size() == n &&
-                           acceleration_.size() == n && depth_.size() == n &&
+            expect_fit(faces_.fit(n) && flow_force_.size() == n && solids_.steady.size() == n &&
+                           sudden_.size() == n && owed_.size() == n && acceleration_.size() == n &&
                            rigid_point_.size() == n && material_.size() == solids_.bodies() &&
                            group_.size() == solids_.bodies(),
-                       "deformable_normal");
+                       "deformable_face_normal");
         }
     }
 
-    /// The normal of a point now.
-    Vec<double, D> normal(std::size_t k) const;
-    /// Below the surface of its body, at rest [m].
-    double depth(std::size_t k) const { return depth_[k]; }
+    /// Of a point now: its normal, its area, and in rows the normals of the faces beside an edge.
+    Vec<double, D> normal(std::size_t k) const { return turned(k, faces_.normal[k]); }
+    Vec<double, D> area(std::size_t k) const { return turned(k, faces_.area[k]); }
+    Mat<double, D> edge_normals(std::size_t k) const {
+        return each_row(faces_.edge_normals[k], [&](const auto& n) { return turned(k, n); });
+    }
     /// The surfaces as contacts have them.
     const DeformableSurfaces<D>& surfaces() const { return surfaces_; }
 
@@ -272,9 +274,10 @@ private:
     TotalLagrangian<D> solids_;
     Division division();
     void find_sudden_forces();
+    /// As the surface turns at a point.
+    Vec<double, D> turned(std::size_t k, const Vec<double, D>& at_rest) const;
 
-    Array<Vec<double, D>> normal_;          // at rest
-    Array<double> depth_;                   // below the surface [m]
+    PointFaces<D> faces_;
     Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
     Array<Vec<double, D>> flow_force_, acceleration_, before_;

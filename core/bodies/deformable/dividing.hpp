@@ -89,7 +89,7 @@ Division DeformableBodies<D>::division() {
 }
 
 template <int D>
-Fragments<D> DeformableBodies<D>::divide(double dt) {
+Fragments<D> DeformableBodies<D>::divide(double dt, const PairArea& pair_area) {
     Fragments<D> fragments{};
     const Division parts = division();
     if (!parts.any()) return fragments;
@@ -110,7 +110,9 @@ Fragments<D> DeformableBodies<D>::divide(double dt) {
     const Array<std::int32_t> number = surfaces_.divide(solids_, parts, before, crack, places);
     for (std::int32_t& vertex : shown) vertex = number[static_cast<std::size_t>(vertex)];
     fragments.vertex = shown;
-    turn_to_cracks(solids_, crack, before, parts.body, normal_, depth_);
+    const Array<std::int32_t> faces = faces_.renumber(before, material_.size(), parts);
+    const CrackFaces<D> cracks(solids_, crack, before, parts.body, faces);
+    cracks.turn(faces_), cracks.uncover(faces_, pair_area);
     for (const std::int32_t parent : parts.parent) {
         const auto k = static_cast<std::size_t>(parent);
         material_.push_back(std::int32_t{material_[k]}), group_.push_back(std::int32_t{group_[k]});

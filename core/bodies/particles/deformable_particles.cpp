@@ -24,6 +24,7 @@ struct PlaceShown {
         particles.wall.bend[p] =
             turned_bend(particles.wall.bend[p], particles.wall.normal[p], point.normal);
         particles.wall.normal[p] = point.normal, particles.wall.depth[p] = point.depth;
+        particles.wall.area[p] = point.area, particles.wall.edge_normals[p] = point.edge_normals;
         particles.acceleration[p] = point.acceleration;
         if (dt > 0.0) particles.velocity[p] = (1.0 / dt) * step;
         return dot(step, step);
@@ -58,7 +59,8 @@ double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& doma
     shown_.resize(size());
     solids_.stepped().for_each([&](std::size_t k) {
         ShownPoint<D>& point = shown_[k];
-        point.place = solids_.x[k], point.normal = normal(k), point.depth = depth_[k];
+        point.place = solids_.x[k], point.normal = normal(k), point.depth = faces_.depth[k];
+        point.area = area(k), point.edge_normals = edge_normals(k);
         point.acceleration = acceleration_[k];
     });
     const PlaceShown<D> place{particles, shown_, domain, dt};

@@ -40,8 +40,8 @@ public:
     }
     /// Adds a point of a body that is not turned, and returns its number.
     std::size_t add(std::size_t body, const Vec<double, D>& offset, const Vec<double, D>& normal,
-                    const Vec<double, D>& area) {
-        points_.push_back({static_cast<double>(body), offset, normal, area, {}});
+                    const Vec<double, D>& area = {}, const Mat<double, D>& edge_normals = {}) {
+        points_.push_back({static_cast<double>(body), offset, normal, area, edge_normals});
         return points_.size() - 1;
     }
     bool has(const Particles<D>& particles, std::size_t p) const {
@@ -50,12 +50,6 @@ public:
     /// Index of the body of particle p; -1: none.
     std::int32_t body_of(const Particles<D>& particles, std::size_t p) const {
         return has(particles, p) ? static_cast<std::int32_t>(point_of(particles, p).index()) : -1;
-    }
-
-    /// Whether films press on any point.
-    bool have_areas() const {
-        return std::ranges::any_of(
-            points_, [](const auto& point) { return dot(point.area, point.area) > 0.0; });
     }
 
     /// Hands the force of the fluid on to the bodies. All ranks have all bodies: each point is a

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "bodies/bodies.hpp"
-#include "bodies/fragments/part_areas.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
 
 namespace doseki {
@@ -304,17 +303,12 @@ void Bodies<D>::add_rigid(std::size_t n, const RigidMotion<D>& motion, std::int3
     rigid_origins_.add(deformable_origins_[b]);
     breakable_.give_rigid(n, k, motion.rest_centre, deformable);
     const auto& solids = deformable.solids();
-    const Array<std::uint32_t> points = solids.points_of(b);
-    const bool has_faces = rigid_particles_.have_areas();
-    const auto area =
-        has_faces ? areas_of(solids, points, pair_area_) : Array<Vec<double, D>>(points.size());
-    for (std::size_t q = 0; q < points.size(); ++q) {
-        const std::uint32_t p = points[q];
+    auto at_rest = [&turn](const Vec<double, D>& v) { return rotated_back(turn, v); };
+    for (const std::uint32_t p : solids.points_of(b))
         deformable.set_rigid_point(
-            p, rigid_particles_.add(k, rotated_back(turn, solids.x[p] - motion.centre),
-                                    rotated_back(turn, deformable.normal(p)), area[q]));
-    }
-    new_faces_ |= has_faces;
+            p, rigid_particles_.add(k, at_rest(solids.x[p] - motion.centre),
+                                    at_rest(deformable.normal(p)), at_rest(deformable.area(p)),
+                                    each_row(deformable.edge_normals(p), at_rest)));
 }
 
 /// Whether it has had time for waves to go to and fro, and has lately had but a small

@@ -20,8 +20,8 @@ NEXT_ROW = 0.9  # spacings from where a row would go on to one that is there, on
 class ContactFaces(NamedTuple):
     """Of each particle: which face it belongs to, and how large its part of it is."""
 
-    # (N,) int32: none, that of all fixed bodies, or FIRST_BODY + index of a body; with a minus
-    # below its first row
+    # (N,) int32: none, that of all fixed bodies, or FIRST_BODY + index of a body, rigid ones first;
+    # with a minus below its first row
     face: np.ndarray
     area: np.ndarray  # (N, dim) outwards, m2 (2-D: m): what its own body leaves of its kernel
 
@@ -33,7 +33,7 @@ def contact_faces(
     depth: np.ndarray,
     normal: np.ndarray,
 ) -> ContactFaces:
-    """The faces of all rigid bodies and fixed walls: their first row, less than dp deep.
+    """The faces of all bodies and fixed walls: their first row, less than dp deep.
 
     Of bodies that move the row below as well: the kernel reaches from there to another face.
     `depth` (N,) below the surface, m, whose `normal` (N, dim) points outwards.
@@ -44,11 +44,12 @@ def contact_faces(
     fixed = np.flatnonzero(first_row & (particles.motion == FIXED))
     surface = particles.position[fixed] + depth[fixed, None] * normal[fixed]
     face[fixed[~_is_covered(scenario, particles, surface, normal[fixed])]] = FIXED_FACE
-    of_body = (depth < 2 * scenario.dp) & (bodies.grain >= 0)
-    number = FIRST_BODY + bodies.grain[of_body]
+    body = _body_of_each(bodies)
+    of_body = (depth < 2 * scenario.dp) & (body >= 0)
+    number = FIRST_BODY + body[of_body]
     face[of_body] = np.where(first_row[of_body], number, -number)
     volume = particles.mass / particles.density
-    for members, offset in _members(scenario, particles, bodies):
+    for members, offset in _members(scenario, particles, body):
         area[members] = _Pairs.of(offset, scenario).areas(volume[members])
     return ContactFaces(face, area)
 
@@ -67,13 +68,22 @@ def _is_covered(
     return above & (gap < NEXT_ROW * scenario.dp)
 
 
+def _body_of_each(bodies: Bodies) -> np.ndarray:
+    """Index (N,) of the body of each particle, of rigid ones and then of deformable ones, or -1."""
+    body = bodies.grain.copy()
+    deformable = [elastic for elastic in bodies.elastic if not elastic.rigid_first]
+    for k, elastic in enumerate(deformable):
+        body[elastic.members] = len(bodies) + k
+    return body
+
+
 def _members(
-    scenario: Scenario, particles: ParticleSet, bodies: Bodies
+    scenario: Scenario, particles: ParticleSet, body: np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Of each body: indices of its particles, and their positions about its centre, m."""
-    bound = np.flatnonzero(bodies.grain >= 0)
-    order = bound[np.argsort(bodies.grain[bound], kind="stable")]
-    ends = np.flatnonzero(np.diff(bodies.grain[order])) + 1
+    bound = np.flatnonzero(body >= 0)
+    order = bound[np.argsort(body[bound], kind="stable")]
+    ends = np.flatnonzero(np.diff(body[order])) + 1
     period = periods(scenario)
     for members in np.split(order, ends) if len(order) else []:
         apart = particles.position[members] - particles.position[members[0]]

@@ -296,7 +296,7 @@ def _fill(simulation: CoreSimulation, scenario: Scenario, scene: Scene) -> list[
     simulation.set_edges(
         normals=edges.normals.reshape(len(depth), scenario.dim**2), depths=edges.depths
     )
-    if scenario.uplift and len(bodies):
+    if scenario.uplift and (len(bodies) or bodies.elastic):
         faces = contact_faces(scenario, particles, bodies, depth, normal)
         simulation.set_faces(face=faces.face, area=faces.area)
     add_bodies(simulation, scenario, bodies, body_names)

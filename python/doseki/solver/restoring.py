@@ -23,9 +23,11 @@ ALIKE = (
     ("contact_a", "contact_b", "contact_springs", "contact_normals", "contact_vertex"),
     (
         "elastic_rest", "elastic_position", "elastic_velocity", "elastic_body", "elastic_clamped",
-        "elastic_slot", "elastic_acceleration", "elastic_deformation", "deformable_normal",
-        "deformable_flow_force", "deformable_steady_force", "deformable_acceleration",
-        "deformable_depth", "deformable_rigid_point", "elastic_gone", "elastic_held_shape",
+        "elastic_slot", "elastic_acceleration", "elastic_deformation",
+        "deformable_face_normal", "deformable_face_area", "deformable_face_edge_normals",
+        "deformable_face_depth", "deformable_face_face", "deformable_flow_force",
+        "deformable_steady_force", "deformable_acceleration", "deformable_rigid_point",
+        "elastic_gone", "elastic_held_shape",
     ),
     (
         "surface_point", "surface_offset", "surface_crease", "surface_radius", "surface_key",
@@ -61,6 +63,8 @@ PLACES = {
 }  # m  # fmt: skip
 BALL = 0  # the kind of a shape without sides
 OF_METER = re.compile(r"\d+_(load|plane)_")  # arrays of a load meter, or of a plane that counts
+FACES = {"face", "deformable_face_face"}  # numbers of faces, with a minus below the first row
+MAX_FACES = 2**24  # that single precision tells apart
 MAX_COUNT = 2**53  # no run counts so far; the core goes on counting from what it is given
 # Infinite where nothing limits a step.
 MAY_BE_INFINITE = {"next_timestep"}
@@ -133,6 +137,8 @@ def _check_values(name: str, values: np.ndarray) -> None:
         _expect(good, name, "is not finite, or out of range")
     if values.dtype == np.int64:
         _expect((values >= -MAX_COUNT) & (values <= MAX_COUNT), name, "is out of range")
+    if plain in FACES:
+        _expect((values > -MAX_FACES) & (values < MAX_FACES), name, "is out of range")
     if plain in POSITIVE:
         _expect(values > 0, name, "is not above 0")
     if plain in NOT_NEGATIVE:

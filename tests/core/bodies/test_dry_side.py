@@ -30,6 +30,9 @@ rho0 = 2500
 young_modulus = 1e8
 poisson_ratio = 0.25
 friction = 0
+fracture = "cohesive"
+tensile_strength = 1e7
+fracture_energy = 1e5
 """
 BOX = """
 [body.{name}]
@@ -111,6 +114,13 @@ def test_water_presses_on_a_body_with_a_dry_side_as_on_a_wall(forces, angle, sid
 
 def test_it_converges_to_the_thrust_of_still_water(forces):
     found = forces(dp=0.02)
+    assert found["gate"][0] == pytest.approx(THRUST, rel=0.03)
+    assert found["gate"][1] == pytest.approx(0.5 * FULL, rel=0.06)
+
+
+@pytest.mark.parametrize("kinematics", ["breakable", "elastic"])
+def test_what_deforms_has_the_same(forces, kinematics):
+    found = forces(dp=0.02, gate=f'kinematics = "{kinematics}"')
     assert found["gate"][0] == pytest.approx(THRUST, rel=0.03)
     assert found["gate"][1] == pytest.approx(0.5 * FULL, rel=0.06)
 

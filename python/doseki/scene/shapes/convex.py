@@ -87,16 +87,14 @@ class Convex:
         return position - share @ position, share
 
     def elastic_particles(self, dp: float) -> Particles:
-        """Those of a rigid body with equal shares, whose edges bend and are not known.
+        """Those of a rigid body with equal shares.
 
         All lie inside: some of a rigid one may be outside by a part of dp.  In a sharp corner there
         are only those that others hold from more than one side.
         """
         position = spanned(self._drawn_in(self.filling(dp)[0], LEAST_DEPTH * dp), dp)
-        n = len(position)
-        share = alike(n)
-        own = self.beneath(position - share @ position, share, dp)
-        return own._replace(edges=no_edges(n, self.dim))
+        share = alike(len(position))
+        return self.beneath(position - share @ position, share, dp)
 
     def _drawn_in(self, position: np.ndarray, depth: float) -> np.ndarray:
         """The positions, those less deep than `depth`, m, moved to it, as far as corners let."""
