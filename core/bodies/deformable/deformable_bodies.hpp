@@ -9,6 +9,7 @@
 #include "bodies/fragments/dust.hpp"
 #include "bodies/fragments/point_faces.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
+#include "bodies/particles/flow_on_points.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
@@ -79,11 +80,15 @@ public:
             faces_.add(particles.wall, p);
         }
         solids_.add(body, points, is_rigid);
-        material_.push_back(material);
+        material_.push_back(material), unwetted_.push_back(0.0);
         group_.push_back(
             members.empty() ? 0 : particles.tag[static_cast<std::size_t>(members[0])].body);
     }
 
+    /// Share of its area that water around a body does not see, Eq. (152), also of one that is
+    /// rigid where this is told.
+    double unwetted(std::size_t body) const { return unwetted_[body]; }
+    void set_unwetted(std::size_t body, double share) { unwetted_[body] = share; }
     /// Of each point: its number among those of rigid bodies, of which it is one while its body is
     /// rigid; -1: none.
     const Array<std::int32_t>& rigid_points() const { return rigid_point_; }
@@ -246,7 +251,7 @@ public:
         surfaces_.serialise(archive, solids_);
         archive.nested("deformable_face_", faces_);
         archive("deformable_material", material_), archive("deformable_group", group_);
-        archive("deformable_rigid_point", rigid_point_);
+        archive("deformable_rigid_point", rigid_point_), archive("deformable_unwetted", unwetted_);
         archive("deformable_flow_force", flow_force_),
             archive("deformable_steady_force", solids_.steady),
             archive("deformable_acceleration", acceleration_);
@@ -256,7 +261,8 @@ public:
             expect_fit(faces_.fit(n) && flow_force_.size() == n && solids_.steady.size() == n &&
                            sudden_.size() == n && owed_.size() == n && acceleration_.size() == n &&
                            rigid_point_.size() == n && material_.size() == solids_.bodies() &&
-                           group_.size() == solids_.bodies(),
+                           group_.size() == solids_.bodies() &&
+                           unwetted_.size() == solids_.bodies(),
                        "deformable_face_normal");
         }
     }
@@ -274,12 +280,18 @@ private:
     TotalLagrangian<D> solids_;
     Division division();
     void find_sudden_forces();
+    void wet();
+    Vec<double, D> seen_area(std::size_t k) const {
+        return (1.0 - unwetted_[static_cast<std::size_t>(solids_.body(k))]) * area(k);
+    }
     /// As the surface turns at a point.
     Vec<double, D> turned(std::size_t k, const Vec<double, D>& at_rest) const;
 
     PointFaces<D> faces_;
     Array<std::int32_t> rigid_point_;       // see rigid_points
     Array<std::int32_t> material_, group_;  // by body
+    Array<double> unwetted_;                // the same
+    Array<FlowOnPoint<D>> flow_;            // as it was last gathered
     Array<Vec<double, D>> flow_force_, acceleration_, before_;
     Array<Vec<double, D>> sudden_;  // of flow_force_, see SuddenForces
     Array<Vec<double, D>> owed_;    // impulse of it, within a step the force that gives it

@@ -116,6 +116,7 @@ Fragments<D> DeformableBodies<D>::divide(double dt, const PairArea& pair_area) {
     for (const std::int32_t parent : parts.parent) {
         const auto k = static_cast<std::size_t>(parent);
         material_.push_back(std::int32_t{material_[k]}), group_.push_back(std::int32_t{group_[k]});
+        unwetted_.push_back(double{unwetted_[k]});
     }
     fragments.parent = parts.parent, fragments.dust_parent = parts.dust_parent;
     fragments.divided = parts.divides;

@@ -2,7 +2,6 @@
 
 #include "base/bulk.hpp"
 #include "bodies/deformable/deformable_bodies.hpp"
-#include "bodies/particles/force_on_points.hpp"
 #include "physics/wall.hpp"
 
 namespace doseki {
@@ -47,10 +46,28 @@ struct MoveShown {
 template <int D>
 void DeformableBodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
     if (empty()) return;
-    if (!ranks.alone()) std::fill(flow_force_.begin(), flow_force_.end(), Vec<double, D>{});
-    bulk::for_each(particles.size(), ForceOnPoint<D>{particles, BodyKind::deformable, flow_force_});
-    ranks.sum(numbers_of(flow_force_));
+    flow_.assign(size(), {});
+    bulk::for_each(particles.size(), FlowOnPoints<D>{particles, BodyKind::deformable, flow_});
+    ranks.sum(numbers_of(flow_));
+    for_each_particle(size(), [&](std::size_t k) { flow_force_[k] = flow_[k].force; });
+    wet();
     find_sudden_forces();
+}
+
+template <int D>
+void DeformableBodies<D>::wet() {
+    Array<Unwetted> found;
+    for (const double before : unwetted_) found.push_back(Unwetted(before));
+    auto of = [&](std::uint32_t k) -> Unwetted& {
+        return found[static_cast<std::size_t>(solids_.body(k))];
+    };
+    const Array<std::uint32_t>& points = solids_.stepped().points();
+    for (const std::uint32_t k : points) of(k).press(flow_[k].pressure);
+    for (const std::uint32_t k : points) {
+        const Vec<double, D>& area = faces_.area[k];
+        of(k).see(dot(area, area), flow_[k].wetted, flow_[k].pressure);
+    }
+    for (std::size_t body = 0; body < found.size(); ++body) unwetted_[body] = found[body].now();
 }
 
 template <int D>
@@ -60,7 +77,7 @@ double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& doma
     solids_.stepped().for_each([&](std::size_t k) {
         ShownPoint<D>& point = shown_[k];
         point.place = solids_.x[k], point.normal = normal(k), point.depth = faces_.depth[k];
-        point.area = area(k), point.edge_normals = edge_normals(k);
+        point.area = seen_area(k), point.edge_normals = edge_normals(k);
         point.acceleration = acceleration_[k];
     });
     const PlaceShown<D> place{particles, shown_, domain, dt};
@@ -80,9 +97,11 @@ void DeformableBodies<D>::set_velocities(Particles<D>& particles, double ahead) 
 }
 
 template void DeformableBodies<2>::gather(const Particles<2>&, const Ranks&);
+template void DeformableBodies<2>::wet();
 template double DeformableBodies<2>::place(Particles<2>&, const Domain<2>&, double);
 template void DeformableBodies<2>::set_velocities(Particles<2>&, double);
 template void DeformableBodies<3>::gather(const Particles<3>&, const Ranks&);
+template void DeformableBodies<3>::wet();
 template double DeformableBodies<3>::place(Particles<3>&, const Domain<3>&, double);
 template void DeformableBodies<3>::set_velocities(Particles<3>&, double);
 

@@ -112,26 +112,6 @@ struct MoveBound {
     }
 };
 
-/// As numbers, which ranks add up.
-template <int D>
-std::span<double> numbers_of(Array<FlowOnPoint<D>>& points) {
-    static_assert(sizeof(FlowOnPoint<D>) % sizeof(double) == 0);
-    if (points.empty()) return {};
-    return {&points.data()->force[0], sizeof(FlowOnPoint<D>) / sizeof(double) * points.size()};
-}
-template <int D>
-struct FlowAtPoint {
-    const Particles<D>& particles;
-    std::span<FlowOnPoint<D>> flow;
-
-    DOSEKI_DEVICE_FN void operator()(std::size_t p) const {
-        const WallState<D>& wall = particles.wall;
-        if (particles.is_point_of(p, BodyKind::rigid))
-            flow[particles.point(p)] = {wall.force[p], wall.moment[p], wall.pressure[p],
-                                        wall.wetted[p]};
-    }
-};
-
 /// The sum over the points of a body, in rising order, whatever threads there are.
 template <int D>
 struct SumOfBody {
@@ -157,28 +137,15 @@ struct SumOfBody {
     }
 
 private:
-    static constexpr double deep = 0.5;    // of the highest pressure, that counts
-    static constexpr double least = 0.6;   // of its area, that a point in water has
-    static constexpr double steps = 10.0;  // over which the share goes to what is seen
-
-    /// Eq. (152). What is near the surface of the water, or only splashed on, sees less of it for
-    /// that reason.
     DOSEKI_DEVICE_FN void wet(std::size_t k) const {
-        const double before = 1.0 - states[k].unwetted;
-        double highest = 0.0, seen = 0.0, wet = 0.0, all = 0.0;
+        Unwetted unwetted(states[k].unwetted);
         for (std::size_t n = first[k]; n < first[k + 1]; ++n)
-            highest = max(highest, flow[order[n]].pressure);
+            unwetted.press(flow[order[n]].pressure);
         for (std::size_t n = first[k]; n < first[k + 1]; ++n) {
-            const FlowOnPoint<D>& point = flow[order[n]];
             const Vec<double, D>& area = points[order[n]].area;
-            const double square = dot(area, area), share = before * point.wetted;
-            all += square;
-            if (share < least || !(point.pressure > deep * highest)) continue;
-            seen += square * share, wet += square;
+            unwetted.see(dot(area, area), flow[order[n]].wetted, flow[order[n]].pressure);
         }
-        if (!(wet > 0.0)) return;
-        const double now = before + wet / (wet + steps * all) * (seen / wet - before);
-        states[k].unwetted = max(-0.1, 1.0 - now);
+        states[k].unwetted = unwetted.now();
     }
 };
 
@@ -188,7 +155,7 @@ template <int D>
 void RigidParticles<D>::gather(const Particles<D>& particles, RigidBodies<D>& bodies,
                                const Ranks& ranks) {
     flow_.assign(points_.size(), {});
-    bulk::for_each(particles.size(), FlowAtPoint<D>{particles, flow_});
+    bulk::for_each(particles.size(), FlowOnPoints<D>{particles, BodyKind::rigid, flow_});
     ranks.sum(numbers_of(flow_));
     sort_by_body(bodies.size());
     bulk::for_each(bodies.size(),

@@ -5,21 +5,13 @@
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "base/matrix.hpp"
+#include "bodies/particles/flow_on_points.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"
 
 namespace doseki {
-
-/// What the fluid does to a point: force, its moment about the point, and what Eq. (152) takes, the
-/// pressure and the share of its area that water sees.
-template <int D>
-struct FlowOnPoint {
-    Vec<double, D> force{};
-    Turn<double, D> moment{};
-    double pressure = 0.0, wetted = 0.0;
-};
 
 /// The particles of rigid bodies, which the fluid meets as it meets a wall: they bring the force of
 /// the fluid to the bodies and go where these are.

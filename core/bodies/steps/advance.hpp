@@ -243,6 +243,7 @@ void Bodies<D>::make_deformable(const Array<std::size_t>& struck, Course& course
             body.deformable,
             {body.centre, state.centre, state.velocity, state.angular_momentum, body.turned(rigid)},
             state.acceleration);
+        deformable.set_unwetted(body.deformable, state.unwetted);
         rigid.take_out(body.rigid);
         body.deforms_for = body.loudness = 0.0;
     }
@@ -286,6 +287,7 @@ void Bodies<D>::make_rigid(std::size_t n, std::int32_t shown) {
                                                                    in_space(motion.velocity));
     rigid.put_back(body.rigid, centre, motion.velocity, motion.orientation.after(body.orientation),
                    own);
+    rigid.state(body.rigid).unwetted = deformable.unwetted(body.deformable);
     deformable.make_rigid(body.deformable, motion, rigid.kinetic_energy_of(body.rigid));
     breakable_.weigh_cracks(n, deformable);
 }

@@ -35,7 +35,7 @@ ALIKE = (
     ),
     (
         "elastic_apart", "elastic_rigid", "elastic_held_energy", "deformable_material",
-        "deformable_group", "deformable_origin_number",
+        "deformable_group", "deformable_unwetted", "deformable_origin_number",
         "deformable_origin_parent", "deformable_origin_born",
     ),
     (
