@@ -106,6 +106,37 @@ def test_what_another_wall_covers_has_no_water(tmp_path):
     assert abs(force[1]) < 1e-9 * thrust
 
 
+ACROSS = 'shape = "box"\nmin = [0.4, 0, 0]\nmax = [0.6, 0.6, 0.5]\n'
+ROCK = """
+[body.rock]
+material = "basalt"
+shape = "box"
+min = [0.28, 0.24, {bottom}]
+max = [{face}, 0.36, 0.42]
+"""
+
+
+@pytest.mark.parametrize(("bottom", "gap"), [(0, 0), (0.1, 0), (0, 0.02)])
+def test_a_rock_in_front_is_no_water(tmp_path, bottom, gap):
+    """It leans on a dam and stands out of the water, to twice its depth."""
+    level = 0.2
+    alone, _ = static_of(tmp_path, 3, ACROSS, level)
+    (tmp_path / "rock").mkdir()
+    rock = ROCK.format(bottom=bottom, face=0.4 - gap)
+    force, _ = static_of(tmp_path / "rock", 3, ACROSS + rock, level)
+    assert alone[0] == pytest.approx(0.5 * 1000 * G * level**2 * 0.6, rel=0.03)
+    assert force[0] == pytest.approx(alone[0], rel=0.03)
+
+
+def test_rocks_on_dry_ground_are_none(tmp_path):
+    """Some water is far below the place where they lean on the dam."""
+    rock = ROCK.format(bottom=0.2, face=0.4)
+    alone, _ = static_of(tmp_path, 3, ACROSS, 0.06)
+    (tmp_path / "rock").mkdir()
+    force, _ = static_of(tmp_path / "rock", 3, ACROSS + rock, 0.06)
+    assert force[0] == pytest.approx(alone[0], rel=0.03)
+
+
 def test_half_of_it_under_water(tmp_path):
     """Only what is below the level counts, and level water pushes no way."""
     stone = 'shape = "box"\nmin = [0.3, 0.1]\nmax = [0.5, 0.5]'

@@ -1,4 +1,4 @@
-"""What is along vertical lines, many at once: how full of flow and walls, and how dense."""
+"""What is along vertical lines, many at once: how full of water, bodies, walls, and how dense."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ class Profiles:
     """Shares of the space at heights of k lines, from below upwards."""
 
     height: np.ndarray  # (m,) m, `STEP` apart
-    filled: np.ndarray  # (k, m) by what moves, of the space that walls leave
+    filled: np.ndarray  # (k, m) by water, of the space that walls and bodies leave
     wall: np.ndarray  # (k, m)
+    body: np.ndarray  # (k, m) by bodies that move
     density: np.ndarray  # (k, m) of the water there, kg/m3
 
     def weight(self, line: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -41,13 +42,22 @@ class Profiles:
         return np.asarray(above - below)
 
     def is_wet(self, line: np.ndarray, height: np.ndarray) -> np.ndarray:
-        """Whether there is a flow on lines at heights (n,)."""
+        """Whether there is water on lines at heights (n,)."""
         inside = height <= self.height[-1]
         return np.asarray(inside & (self._between(self.filled, line, height) >= INSIDE))
 
+    def is_in_body(self, line: np.ndarray, height: np.ndarray) -> np.ndarray:
+        """Whether a body that moves is on lines at heights (n,): it tells of no water."""
+        inside = height <= self.height[-1]
+        return np.asarray(inside & (self._between(self.body, line, height) > WITHIN))
+
     def level(self, line: np.ndarray, height: np.ndarray) -> np.ndarray:
-        """Where the flow that is at heights (n,) ends above them; nan below something that caps."""
-        gone, capped = self.filled < INSIDE, self.wall > CAPPED
+        """Where the water that is at heights (n,) ends above them.
+
+        It goes on through bodies that move; nan where one of these, or a wall, is the end of it.
+        """
+        in_body = self.body > WITHIN
+        gone, capped = (self.filled < INSIDE) & ~in_body, self.wall > CAPPED
         capped |= gone & (self.wall > WITHIN)
         for above in range(1, UNDER + 1):  # flows end before walls do
             capped[:, :-above] |= gone[:, :-above] & (self.wall[:, above:] > CAPPED)
@@ -57,7 +67,7 @@ class Profiles:
         first_from = np.pad(first_from, ((0, 0), (0, 1)), constant_values=m)
         first = first_from[line, np.searchsorted(self.height, height, side="right")]
         last = np.minimum(first, m - 1)
-        ended = (first < m) & ~capped[line, last]
+        ended = (first < m) & ~capped[line, last] & ~in_body[line, np.maximum(last - 1, 0)]
         return np.where(ended, np.maximum(height, self._crossings(line, last)), np.nan)
 
     def _crossings(self, line: np.ndarray, k: np.ndarray) -> np.ndarray:
@@ -125,11 +135,14 @@ def profiles(
     near = np.abs(around["position"] @ up - lowest - 0.5 * height[-1]) < 0.5 * height[-1] + radius
     solid = _beside(plan, around, walls & near, radius, up, lowest)
     wall = solid.filled(volume[solid.of], size, setting.dp, setting.dim)
-    filled = flow.filled(volume[flow.of], size, setting.dp, setting.dim)
-    filled /= np.maximum(1.0 - wall, MIN_VOID)
+    is_body = around["motion"][flow.of] == BOUND
+    water, of_bodies = flow.where(~is_body), flow.where(is_body)
+    filled, body = (
+        part.filled(volume[part.of], size, setting.dp, setting.dim) for part in (water, of_bodies)
+    )
+    filled /= np.maximum(1.0 - wall - body, MIN_VOID)
     wall[np.arange(size[1]) >= count[:, None]] = 0.0  # above the flow nothing caps it
-    water = flow.where(around["motion"][flow.of] != BOUND)
-    return Profiles(lowest + height, filled, wall, _densities(water, around, size, setting))
+    return Profiles(lowest + height, filled, wall, body, _densities(water, around, size, setting))
 
 
 def _beside(

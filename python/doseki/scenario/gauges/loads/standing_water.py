@@ -30,7 +30,7 @@ def standing_water(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (dim,) and moment (1,) or (3,) about a point of water at rest, N, N m (Eq. 96).
 
-    It stands in front of each piece of the surface as high as the flow does now, without a gap;
+    It stands in front of each piece of the surface as high as the water does now, without a gap;
     its pressure is that of its depth.  The bodies lie within `box`; `known` is what was found out
     about bodies that stand still.
     """
@@ -177,19 +177,31 @@ def _weights(
     along: Profiles, line: np.ndarray, plan: np.ndarray, height: np.ndarray, probed: np.ndarray
 ) -> np.ndarray:
     """Density times depth (n,) above heights of elements, whose probes are on lines, kg/m2."""
-    wet = along.is_wet(line, probed)
+    in_body = along.is_in_body(line, probed)
+    wet = along.is_wet(line, probed) & ~in_body
     level = np.where(wet, along.level(line, probed), np.nan)
-    known, lost = np.flatnonzero(np.isfinite(level)), np.flatnonzero(wet & np.isnan(level))
-    if len(known) and len(lost):
-        from scipy.spatial import cKDTree
-
-        nearest = known[cKDTree(plan[known]).query(plan[lost])[1]]
-        line = line.copy()
-        level[lost], line[lost] = level[nearest], line[nearest]
+    known, lost = np.isfinite(level), wet & np.isnan(level)
+    dry = ~np.isin(line, line[wet | in_body])
+    level[dry] = -np.inf
+    line = line.copy()
+    _take_nearest(level, line, plan, lost, known)
+    _take_nearest(level, line, plan, in_body, known | dry)
     below = level > height
     weight = np.zeros(len(height))
     weight[below] = along.weight(line[below], height[below], level[below])
     return weight
+
+
+def _take_nearest(
+    level: np.ndarray, line: np.ndarray, plan: np.ndarray, which: np.ndarray, known: np.ndarray
+) -> None:
+    """Give these elements the level and the line of the nearest one of which that is known."""
+    from scipy.spatial import cKDTree
+
+    of, lost = np.flatnonzero(known), np.flatnonzero(which)
+    if len(of) and len(lost):
+        nearest = of[cKDTree(plan[of]).query(plan[lost])[1]]
+        level[lost], line[lost] = level[nearest], line[nearest]
 
 
 def _outside_of_walls(elements: Elements, around: State, dp: float) -> tuple[Elements, np.ndarray]:
