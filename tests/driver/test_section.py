@@ -87,6 +87,18 @@ def test_upstream_is_negative():
     assert record(turned, stream, [2.0])["discharge"] == -record(gauge, stream, [2.0])["discharge"]
 
 
+def test_what_shifting_carries_counts():
+    """Particles go with their velocity and with what shifts them."""
+
+    class Shifted(Stream):
+        def sample(self, low, high):
+            state = super().sample(low, high)
+            return state | {"velocity": 0.75 * state["velocity"], "shift": 0.25 * state["velocity"]}
+
+    whole, shifted = (record(section(s), s, [2.0]) for s in (Stream(), Shifted()))
+    assert shifted["discharge"] == pytest.approx(whole["discharge"], rel=1e-12)
+
+
 @pytest.mark.parametrize("length", [None, 1.0])
 def test_what_passes_is_what_is_downstream(length):
     """The integral of the discharge is the volume beyond the section, while and after it passes.

@@ -56,5 +56,5 @@ class Discharge(FlowGauge):
         for axis, extent in ((up, self.depth), (across, self.width)):
             if axis is not None and extent is not None:
                 share *= (away @ axis >= 0) & (away @ axis <= extent)
-        speed = share * (around.velocity @ normal)
+        speed = share * (around.transport @ normal)
         return [[run.time, around.volume @ speed, around.mass @ speed]]

@@ -52,6 +52,8 @@ class Neighbourhood:
         volume = state["mass"] / state["density"]
         self.position = state["position"][counts]
         self.velocity = state["velocity"][counts]
+        # With which volume goes: schemes may shift particles beside their velocity.
+        self.transport = (state["velocity"] + state.get("shift", 0.0))[counts]
         self.pressure = state["pressure"][counts]
         self.mass = state["mass"][counts]
         self.volume = volume[counts]

@@ -88,7 +88,7 @@ class Section(Gauge):
         # A hat rather than a box: no particle comes in or goes out with a jump.
         share = np.maximum(0.0, 1 - np.abs(beyond) / (0.5 * length)) / (0.5 * length)
         share *= (across >= 0) & (across < wide)
-        speed = share * (around.velocity[:, :2] @ normal)
+        speed = share * (around.transport[:, :2] @ normal)
         discharge, area = float(around.volume @ speed), float(around.volume @ share)
         width, depth = _wet(across, around.volume * share, wide, setting.dp)
         mean = discharge / area if width else float("nan")
