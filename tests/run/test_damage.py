@@ -148,6 +148,27 @@ def test_a_record_with_missing_rows_is_refused(run):
         resume_run(run)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("time", "tiem", "'tiem' stands where a run of this version has the column 'time'"),
+        (",step", "", "'dt' stands where .* has the column 'step'"),
+        (",share_wait", "", "it ends where .* has the column 'share_wait'"),
+        (",share_wait", ",share_wait,more", "'more' stands where .* has nothing"),
+    ],
+)
+def test_a_history_with_another_header_is_refused_before_anything_is_touched(run, old, new, said):
+    history = run / "history.csv"
+    header, *rows = history.read_text().splitlines()
+    lost = len(new.split(",")) - len(old.split(","))
+    cells = [",".join([*row.split(","), "0"][: header.count(",") + 1 + lost]) for row in rows]
+    history.write_text("\n".join([header.replace(old, new, 1), *cells, ""]))
+    before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
+    with pytest.raises(UserError, match=rf"history\.csv, line 1: {said}"):
+        resume_run(run)
+    assert {file: file.read_bytes() for file in run.rglob("*") if file.is_file()} == before
+
+
 @pytest.mark.parametrize("name", ["film", "channel"])
 def test_a_checkpoint_of_another_run_is_refused(run, channel_file, tmp_path, name):
     """Also of one with the same bodies of the same materials, at other places."""

@@ -67,6 +67,19 @@ def test_particles_of_a_ball(dim, across):
     assert gaps.min(axis=1).max() < 0.14
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("dp", [1.0, 0.1])
+def test_no_two_particles_of_a_ball_are_in_one_place(dim, dp):
+    for steps in range(50, 401):
+        ball = Ball(dp * steps / 100, dim)
+        for made in (ball.particles(dp), ball.elastic_particles(dp)):
+            position, share = made.position, made.share
+            distance = cKDTree(position).query(position, k=2)[0][:, 1]
+            assert distance.min() > 0.3 * dp, f"{steps / 100} dp"
+            assert share.sum() == pytest.approx(1)
+            assert np.abs(share @ position).max() < 1e-12 * dp
+
+
 def test_inertia_of_polygon_and_box():
     shape, centre = polygon_shape(np.array([[0, 0], [3, 0], [3, 2], [0, 2.0]]))
     assert centre == pytest.approx([1.5, 1])

@@ -353,3 +353,22 @@ def test_a_header_with_long_comments_is_read(tmp_path):
     lines[2:2] = [f"comment {'scanned ' * 20}{k}\n" for k in range(40)]
     (tmp_path / "wall.ply").write_text("".join(lines))
     build_scene(load_scenario(str(scenario(tmp_path, file="wall.ply"))))
+
+
+PACKED = 'shape = "sphere"\nmaterial = "basalt"\nd = 0.1\ncount = 2\n'
+TURNED = {
+    "mesh": "",
+    "box": WATER.replace("water]", "turned]"),
+    "packing": f"[body.turned]\n{PACKED}min = [1, 1, 1]\nmax = [2, 2, 2]\n",
+}
+
+
+@pytest.mark.parametrize("axis", ["[0, 0, 0]", "[0, 0, 1e-320]"])
+@pytest.mark.parametrize("kind", TURNED)
+def test_an_axis_without_a_length_is_refused(tmp_path, kind, axis):
+    written(tmp_path, box())
+    rotated = f"rotate = 30\nrotate_axis = {axis}\n"
+    keys = rotated if kind == "mesh" else ""
+    path = scenario(tmp_path, keys=keys, body=TURNED[kind] + ("" if keys else rotated))
+    with pytest.raises(UserError, match=r"rotate_axis = .*: only a 3-D run has one, other than"):
+        build_scene(load_scenario(path))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import asdict
 
 import numpy as np
 import pytest
 
-from doseki.assess.ground.leaving import leaving_findings, lost_share
-from doseki.measure.maps.leaving import what_left
+from doseki.assess.ground.leaving import leaving_findings, left_text, lost_share
+from doseki.assess.trust.ground import ground_check
+from doseki.measure.maps.leaving import Left, what_left
 from doseki.record.reader import load
 from doseki.running.runner import RunOptions, run_scenario
 from doseki.scenario.load import load_scenario
@@ -108,7 +110,20 @@ def test_what_comes_and_leaves_between_snapshots_is_not_known(tmp_path):
     left = what_left(load(tmp_path / "run"), 30.0)
     said = {"mass_initial": 0.0, "mass_entered": 100.0, "left": asdict(left)}
     (doubt,) = map(str, leaving_findings(said))
-    assert "30 % of the mass came and left between two snapshots" in doubt
+    assert "30 % of the mass left before a snapshot had it" in doubt
+    assert lost_share(said) == pytest.approx(0.3)
+    assert left_text(said["left"], 3) == "left 30 kg before a snapshot had it"
+
+
+@pytest.mark.parametrize(("more", "verdict"), [("", "bad"), (OUTFLOW, "not available")])
+def test_what_no_snapshot_had_counts_unless_an_outflow_may_have_taken_it(tmp_path, more, verdict):
+    run(tmp_path, 0.5, more=more, time=0.01)
+    path = tmp_path / "run/summary.json"
+    summary = json.loads(path.read_text())
+    left = Left(0.0, 0.0, 0.0, unseen=0.5 * summary["mass_initial"])
+    path.write_text(json.dumps(summary | {"left": asdict(left)}))
+    _, check = ground_check(load(tmp_path / "run"))
+    assert (check.name, check.verdict) == ("left the map", verdict)
 
 
 def test_a_flow_in_a_plane_leaves_its_profile(tmp_path):

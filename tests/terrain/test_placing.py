@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from doseki.errors import UserError
 from doseki.scenario.load import load_scenario
-from doseki.scene.build import build_scene
+from doseki.scene.build import Settled, build_scene
 
-from .scenes import grid, text
+from .scenes import grid, profile, text
 
 SQUARE = """
 [body.slide]
@@ -95,6 +97,69 @@ def test_a_body_in_the_ground(said):
     assert said(DAM, 3, 1.0) == []
     (buried,) = said(DAM, 3, -0.2)
     assert "all of it lies in the ground" in buried
+
+
+BOULDER = '[body.one]\nshape = "sphere"\nmaterial = "basalt"\nradius = 0.4\n'
+LAKE = '[body.one]\nshape = "box"\nmaterial = "water"\n'
+PACKING = BOULDER.replace("radius = 0.4", "d = 0.4\ncount = 8")
+
+
+def holed(x, y):
+    return np.where(np.abs(x - 4.0) < 0.3, np.nan, hill(x, y))
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (BOULDER + "centre = [30, 2, 3]", "lies beyond the terrain, .* as at .30.0, 2.0. m"),
+        (BOULDER + "centre = [4, 2, 3]", "lies beyond the terrain, or where it has no data"),
+        (LAKE + "min = [8, 1, 1]\nmax = [9, 2, 2]", "all of its particles lie beyond"),
+        (LAKE + "min = [5, 1, 1]\nmax = [7, 2, 2]", r"1,?\d* of its .* particles \(\d+ %\) lie"),
+        (PACKING + "min = [5, 1, 1]\nmax = [7, 2, 2]", r"3 of its 8 bodies \(\d+ %\) lie beyond"),
+    ],
+)
+def test_what_moves_starts_on_the_map(tmp_path, more, said):
+    grid(tmp_path / "terrain.asc", holed)
+    path = tmp_path / "case.toml"
+    path.write_text(text(3, dp=0.1, more=SQUARE + more))
+    with pytest.raises(UserError, match=rf"body.one: {said}.* would leave at once"):
+        build_scene(load_scenario(path))
+
+
+def test_what_moves_starts_on_the_profile(tmp_path):
+    profile(tmp_path / "terrain.csv", lambda x: 0 * x)
+    path = tmp_path / "case.toml"
+    pool = LAKE + "min = [5.0, 0.0]\nmax = [7.0, 0.5]\n"
+    path.write_text(text(2, more=pool))
+    with pytest.raises(UserError, match=r"body.one: .* of its 100 particles .* lie beyond the ter"):
+        build_scene(load_scenario(path))
+
+
+@pytest.mark.parametrize("centre", ["[5.9, 2, 1.5]", "[0.1, 2, 2.5]"])
+def test_a_body_may_reach_beyond_the_map_and_water_below_its_ground(tmp_path, centre):
+    """Only the centre of a body tells where it is, and what lies in the ground is left out."""
+    grid(tmp_path / "terrain.asc", hill)
+    path = tmp_path / "case.toml"
+    lake = LAKE.replace("one", "low") + "min = [-1, 1, 1]\nmax = [5.5, 2, 1.5]\n"
+    path.write_text(text(3, dp=0.1, more=f"{BOULDER}centre = {centre}\n{lake}"))
+    build_scene(load_scenario(path))
+
+
+def test_grains_that_roll_off_the_map_are_told_of(tmp_path):
+    grid(tmp_path / "terrain.asc", hill)
+    path = tmp_path / "case.toml"
+    settles = "min = [4.5, 1, 2]\nmax = [5.9, 2, 3]\nsettle = true\n"
+    path.write_text(text(3, dp=0.1, more=SQUARE + PACKING + settles))
+
+    def away(scenario, groups, names):
+        moved = [
+            replace(g, centre=g.centre + np.array([0.5, 0, 0])) for g in groups if g.name == "one"
+        ]
+        return Settled(moved, [])
+
+    doubts = [str(each) for each in build_scene(load_scenario(path), away).warnings]
+    (doubt,) = (each for each in doubts if "settled beyond the terrain" in each)
+    assert doubt.startswith("body.one: ")
 
 
 @pytest.mark.parametrize("content", [None, b"II*\0 and no more"])

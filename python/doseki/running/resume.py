@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -14,7 +15,8 @@ from ..driver.checkpoint import Checkpoint, CheckpointFolder
 from ..driver.identity import CHANGEABLE, identity_of
 from ..driver.ranks import OneRank
 from ..errors import UserError
-from ..record.folder import RunFolder
+from ..record.folder import RunFolder, read_history
+from ..record.history import history_columns
 from ..record.reader import load
 from ..record.writer import Recorder
 from ..scenario.load import load_scenario
@@ -64,6 +66,7 @@ def resume_run(
         if checkpoint.time >= scenario.time_max and folder.summary.is_file():
             options.ranks.on_root(lambda: _check_unfinished(folder, scenario.time_max))
             return _told(folder, options.ranks), notes
+        options.ranks.on_root(lambda: _check_columns(folder.history, scenario))
         run = _restored(directory, scenario, checkpoint, notes, options.ranks)
         if overrides:
             # The last snapshot may have been made early, at the time_max of then.
@@ -105,6 +108,22 @@ def _check_identity(folder: RunFolder, checkpoint: Checkpoint) -> None:
             f"{folder.checkpoints / f'{checkpoint.step:012d}.h5'}: is a checkpoint of another run: "
             f"its scenario is not {folder.scenario}; bring back what belongs together"
         )
+
+
+def _check_columns(history: Path, scenario: Scenario) -> None:
+    """Raise UserError for a history whose header is not that of the rows to come."""
+    found = read_history(history)[0]
+    expected = history_columns(scenario.dim, scenario.material_names)
+    if not found or found == expected:
+        return
+    for column, other in zip_longest(expected, found):
+        if column != other:
+            here = "it ends" if other is None else f"{other[:40]!r} stands"
+            wanted = "nothing" if column is None else f"the column {column!r}"
+            raise UserError(
+                f"{history}, line 1: {here} where a run of this version has {wanted}; bring the "
+                "file back as the run wrote it"
+            )
 
 
 def _begun_anew(folder: RunFolder, overrides: Overrides, options: RunOptions) -> dict[str, Any]:

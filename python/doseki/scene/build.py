@@ -26,6 +26,7 @@ from .checks.bodies.clamping import clamp_findings, clamped_points
 from .checks.bodies.gaps import gap_findings
 from .checks.fracture import fracture_warnings
 from .checks.groups import check_overlaps, period_findings
+from .checks.on_map import check_bodies_on_map, check_particles_on_map, rolled_off
 from .checks.outflows import far_findings, outflow_findings
 from .checks.particle_overlaps import find_overlaps
 from .checks.particles import check_particles
@@ -101,6 +102,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     parts = placed_parts(scenario, carried, built, ways)
     made = [body.group() for body in bodies.values() if body.is_of_bodies]
     made = placed_groups(scenario, carried, made)
+    check_bodies_on_map(scenario, bodies, made)
     groups = sorted(made, key=lambda group: group.fixed)
     moves = any(not group.fixed for group in groups)
     loose = concatenate(list(parts.values()), scenario.dim)
@@ -114,7 +116,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
         check_overlaps(scenario, groups, settling(scenario))
         if settle is not None:
             groups, unsettled = settle(scenario, groups, names)
-            warnings += unsettled
+            warnings += [*unsettled, *rolled_off(scenario, groups, settling(scenario))]
     solids = groups if moves else [*groups, *walls]
     whole = {group.name for group in made}
     whole |= {n for n, body in bodies.items() if body.contact_shape() is not None}
@@ -124,6 +126,7 @@ def build_scene(scenario: Scenario, settle: Settle | None = None) -> Scene:
     if scenario.bed is not None:
         parts = {n: _above_ground(scenario, n, part) for n, part in parts.items()}
     warnings += room_findings(scenario, wished, parts, takers)
+    check_particles_on_map(scenario, bodies, parts)
     particles, rigid, origin = _joined(scenario, bodies, names, parts, groups, carried)
     _put_in_rows(scenario, particles, names, {n: way for n, way in ways.items() if n not in parts})
     check_particles(scenario, particles, names)

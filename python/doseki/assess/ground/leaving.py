@@ -11,6 +11,7 @@ from ...record.units import unit_in
 from ...util.finding import Finding, percent, place_text
 
 LOST = 0.01  # share of the mass from which on it is told of
+UNSEEN = "unseen"  # the key of what no snapshot had before it left
 LACK = "run-out, maps and deposit are without it"
 MEANT = "or give an [outflow] where it may leave"
 
@@ -53,9 +54,9 @@ class LeftUnseen(Finding):
 
     def __str__(self) -> str:
         return (
-            f"{self.place}: {percent(self.share)} of the mass came and left between two "
-            "snapshots, so that it is not known whether over the edge of the map, into cells "
-            "without data or through outflows: a shorter time_out would tell"
+            f"{self.place}: {percent(self.share)} of the mass left before a snapshot had it, so "
+            "that it is not known whether over the edge of the map, into cells without data or "
+            "through outflows: a shorter time_out would tell"
         )
 
 
@@ -68,14 +69,24 @@ def leaving_findings(said: Mapping[str, Any]) -> Iterator[Finding]:
         yield LeftTheMap("terrain", share, left["side"])
     if (share := left[HOLE] / mass) >= LOST:
         yield LeftIntoHoles("terrain", share, tuple(left["hole"]))
-    if (share := left["unseen"] / mass) >= LOST:
+    if (share := unseen_share(said)) >= LOST:
         yield LeftUnseen("terrain", share)
 
 
 def lost_share(said: Mapping[str, Any]) -> float:
-    """Share of the mass that went over the edge of the map and into cells without data."""
+    """Share of the mass that went over the edge of the map and into cells without data.
+
+    With it what no snapshot had before it left, which may have gone there.
+    """
     left, mass = said.get("left"), said["mass_initial"] + said["mass_entered"]
-    return float(left[EDGE] + left[HOLE]) / mass if left and mass else 0.0
+    seen = float(left[EDGE] + left[HOLE]) / mass if left and mass else 0.0
+    return seen + unseen_share(said)
+
+
+def unseen_share(said: Mapping[str, Any]) -> float:
+    """Share of the mass that left before a snapshot had it."""
+    left, mass = said.get("left"), said["mass_initial"] + said["mass_entered"]
+    return float(left.get(UNSEEN, 0.0)) / mass if left and mass else 0.0
 
 
 def left_text(left: Mapping[str, Any], dim: int) -> str:
@@ -84,6 +95,7 @@ def left_text(left: Mapping[str, Any], dim: int) -> str:
         EDGE: "over the edge of the map",
         HOLE: "into cells without data",
         OUTFLOW: "through outflows",
+        UNSEEN: "before a snapshot had it",
     }
     unit = unit_in("kg", dim)
     told = [f"{left[way]:.4g} {unit} {words}" for way, words in ways.items() if left.get(way)]

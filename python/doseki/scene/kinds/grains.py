@@ -123,7 +123,7 @@ class GrainsBody(Turned[Grains]):
             for edge, outwards in ((table.min, -0.5), (table.max, 0.5)):
                 centre = 0.5 * (table.min + table.max)
                 centre[axis] = edge[axis] + outwards * thickness
-                centre = rotated(centre[None, :], table.rotate, pivot, table.rotate_axis)
+                centre = rotated(centre[None, :], table.rotate, pivot, self.axis)
                 found.append(
                     Group(
                         self.name,

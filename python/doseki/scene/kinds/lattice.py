@@ -13,29 +13,43 @@ from .shaped import Shaped
 
 R = TypeVar("R", bound=TurnedBody)
 L = TypeVar("L", bound=LatticeBody)
+SHORTEST = 1e-100  # of an axis, of which the square is still a number
 
 
 class Turned(Shaped[R], Generic[R]):
     """A body that can be rotated."""
 
     @property
+    def axis(self) -> np.ndarray | None:
+        """The unit vector (3,) that it is rotated about, where one is given."""
+        axis = self.table.rotate_axis
+        if axis is None:
+            return None
+        length = float(np.linalg.norm(axis))
+        if self.dim == 2 or length < SHORTEST:
+            raise self.error(
+                f".rotate_axis = {axis.tolist()}: only a 3-D run has one, other than zero",
+                "rotate_axis",
+            )
+        return np.asarray(axis / length)
+
+    @property
     def orientation(self) -> np.ndarray:
         """The quaternion (4,) of its rotation."""
-        return quaternion_of(self.table.rotate, self.dim, self.table.rotate_axis)
+        return quaternion_of(self.table.rotate, self.dim, self.axis)
 
     @property
     def rotation(self) -> np.ndarray:
         """See Shaped."""
+        axis = self.axis
         if self.table.rotate == 0:
             return np.eye(self.dim)
-        return rotation_matrix(self.table.rotate, self.dim, self.table.rotate_axis)
+        return rotation_matrix(self.table.rotate, self.dim, axis)
 
     def turned(self, position: np.ndarray, pivot: np.ndarray) -> np.ndarray:
         """Positions (N, dim) as rotated about the given pivot, or about this one."""
         own = self.table.pivot
-        return rotated(
-            position, self.table.rotate, pivot if own is None else own, self.table.rotate_axis
-        )
+        return rotated(position, self.table.rotate, pivot if own is None else own, self.axis)
 
 
 class Lattice(Turned[L], Generic[L]):
@@ -55,12 +69,6 @@ class Lattice(Turned[L], Generic[L]):
         if self.table.jitter:
             random = np.random.default_rng(self.table.random_seed)
             position += self.table.jitter * self.spacing * random.uniform(-1, 1, position.shape)
-        axis = self.table.rotate_axis
-        if axis is not None and (self.dim == 2 or not np.any(axis)):
-            raise self.error(
-                f".rotate_axis = {axis.tolist()}: only a 3-D run has one, other than zero",
-                "rotate_axis",
-            )
         kept = self._kept(self.turned(position, pivot))
         return kept, self.table.mass_per_particle or self.mass_of_one()
 

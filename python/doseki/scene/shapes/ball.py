@@ -63,7 +63,8 @@ class Ball:
         measures = np.diff([0.0, *(ball_measure(r, self.dim) for r in edges)])
         position, share = [], []
         for k, (r, measure) in enumerate(zip(radii, measures, strict=True)):
-            unit, part = _directions(measure / dp**self.dim, self.dim, k % 2 == 1)
+            number = measure / dp**self.dim if r > 0 else 1.0
+            unit, part = _directions(number, self.dim, k % 2 == 1)
             position.append(r * unit)
             share.append(part * measure / measures.sum())
         return from_centre(
