@@ -16,6 +16,7 @@ from ..util.finding import Finding
 from .sound_speed import usual_speed
 
 KARMAN = 0.40
+NO_PART = 0.01  # of the friction of a mass: with less it has none
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,23 @@ class EddiesOnly(Finding):
             f'{self.place}: with turbulence = "{self.turbulence}" a rough wall has the friction of '
             f"turbulent water alone, on which {self.fluid} slides as if it had neither viscosity "
             'nor yield stress; set turbulence = "none", or wall = "no_slip"'
+        )
+
+
+@dataclass(frozen=True)
+class WeakGrains(Finding):
+    """A mass of mu(I) whose greatest viscosity is next to nothing beside its friction."""
+
+    most: float  # Pa s
+    own: float  # Pa s
+    depth: float  # m
+    speed: float  # m/s
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place} = {self.most:g} Pa s is less than a hundredth of the {self.own:.3g} Pa s"
+            f" that friction makes in a flow {self.depth:.3g} m deep at {self.speed:.3g} m/s: it "
+            "flows as a thin liquid, without friction; give it more than that"
         )
 
 
@@ -79,8 +97,11 @@ class TurnsTooFast(Finding):
         )
 
 
-def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
-    """Fluids whose friction inside or at walls would be another one."""
+def rheology_findings(scenario: Scenario, across: float) -> Iterator[Finding]:
+    """Fluids whose friction inside or at walls would be another one.
+
+    `across` are the particles over the depth of the deepest flow.
+    """
     for name in scenario.liquids:
         material = scenario.materials[name]
         others = [other for other in scenario.liquids if other != name]
@@ -88,6 +109,7 @@ def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
             yield GrainsUnderLiquid(f"material.{name}.rheology", others[0])
     yield from _suction_findings(scenario)
     yield from _turning_findings(scenario)
+    yield from _weak_grains(scenario, across * scenario.dp)
     if scenario.turbulence == "none":
         return
     for keys, wall in scenario.walls.items():
@@ -96,6 +118,22 @@ def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
         for name in scenario.liquids:
             if _is_viscous(scenario, scenario.materials[name], wall.given("ks")):
                 yield EddiesOnly(f"{'.'.join(keys)}.wall", scenario.turbulence, name)
+
+
+def _weak_grains(scenario: Scenario, depth: float) -> Iterator[WeakGrains]:
+    """Their friction is p mu_s over the rate of strain."""
+    for name in scenario.liquids:
+        fluid = scenario.materials[name]
+        speed = usual_speed(scenario, fluid)
+        if fluid.rheology != "mu_i" or speed <= 0:
+            continue
+        law = fluid.of_laws
+        g = float(np.linalg.norm(scenario.gravity))
+        carried = (1 - law["pore_pressure_ratio"]) * fluid.rho0 * g * depth / 2
+        own = law["mu_s"] * carried * depth / speed
+        if law["viscosity_max"] < NO_PART * own:
+            place = f"material.{name}.viscosity_max"
+            yield WeakGrains(place, law["viscosity_max"], own, depth, speed)
 
 
 def _suction_findings(scenario: Scenario) -> Iterator[Finding]:
