@@ -81,6 +81,16 @@ def test_a_viscous_fluid_on_a_rough_wall_with_eddies(said, fluid, turbulence, to
         assert 'set turbulence = "none"' in found[0]
 
 
+def test_a_thin_liquid_on_a_rough_wall_without_eddies(said):
+    (found,) = said("nu = 1e-6", across=10)
+    assert found.startswith('body.bed.wall = "rough" has the friction of a turbulent stream')
+    assert "the lowest of 10 particles" in found
+    assert 'set turbulence = "mixing_length"' in found
+    assert said("nu = 1e-6", across=4) == []
+    assert said("nu = 0.02", across=10) == said(MUD, across=10) == []
+    assert said("nu = 1e-6", "turbulence=mixing_length", across=10) == []
+
+
 def test_grains_whose_greatest_viscosity_leaves_no_friction(said):
     """0.38 times 980 Pa, over half of 3 m/s and 0.2 m, makes 49.7 Pa s."""
     thin, falls = GRAINS.replace("= 1000", "= 0.45"), "gravity=[0, -9.8]"

@@ -17,6 +17,7 @@ from .sound_speed import usual_speed
 
 KARMAN = 0.40
 NO_PART = 0.01  # of the friction of a mass: with less it has none
+FEW = 4.0  # particles over the depth of a flow, of which the lowest row is no small part
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,22 @@ class EddiesOnly(Finding):
             f'{self.place}: with turbulence = "{self.turbulence}" a rough wall has the friction of '
             f"turbulent water alone, on which {self.fluid} slides as if it had neither viscosity "
             'nor yield stress; set turbulence = "none", or wall = "no_slip"'
+        )
+
+
+@dataclass(frozen=True)
+class NoEddies(Finding):
+    """A rough wall under many particles of a thin liquid, in a run without eddies."""
+
+    fluid: str
+    across: float  # particles
+
+    def __str__(self) -> str:
+        return (
+            f'{self.place} = "rough" has the friction of a turbulent stream, and with turbulence = '
+            f'"none" the lowest of {self.across:.3g} particles over the depth alone feel it: where '
+            f"{self.fluid} streams, what is above them gets too fast; set turbulence = "
+            '"mixing_length"'
         )
 
 
@@ -110,14 +127,22 @@ def rheology_findings(scenario: Scenario, across: float) -> Iterator[Finding]:
     yield from _suction_findings(scenario)
     yield from _turning_findings(scenario)
     yield from _weak_grains(scenario, across * scenario.dp)
-    if scenario.turbulence == "none":
-        return
     for keys, wall in scenario.walls.items():
-        if wall.given("wall") != "rough":
-            continue
-        for name in scenario.liquids:
-            if _is_viscous(scenario, scenario.materials[name], wall.given("ks")):
-                yield EddiesOnly(f"{'.'.join(keys)}.wall", scenario.turbulence, name)
+        if wall.given("wall") == "rough":
+            yield from _at_rough_wall(scenario, f"{'.'.join(keys)}.wall", wall.given("ks"), across)
+
+
+def _at_rough_wall(
+    scenario: Scenario, place: str, ks: float, across: float
+) -> Iterator[EddiesOnly | NoEddies]:
+    """Viscous liquids on it in a run with eddies, thin ones in a run without."""
+    for name in scenario.liquids:
+        is_viscous = _is_viscous(scenario, scenario.materials[name], ks)
+        if scenario.turbulence == "none":
+            if not is_viscous and across > FEW:
+                yield NoEddies(place, name, across)
+        elif is_viscous:
+            yield EddiesOnly(place, scenario.turbulence, name)
 
 
 def _weak_grains(scenario: Scenario, depth: float) -> Iterator[WeakGrains]:
