@@ -93,6 +93,7 @@ def _is_cut(
 
 
 _YIELD_STRESS = _fluid("yield_stress", "Pa", "yield stress")
+_FLOW_INDEX = MaterialParameter("flow_index", "", "flow index", above=0.0, default=1.0, law="fluid")
 _REGULARISATION = _fluid("regularisation", "s", "Papanastasiou's regularisation")
 _VISCOSITY_MAX = _fluid("viscosity_max", "Pa s", "greatest viscosity")
 
@@ -105,7 +106,7 @@ RHEOLOGIES = _table(
         parameters=(
             _YIELD_STRESS,
             _fluid("consistency", "Pa s^n", "consistency"),
-            _fluid("flow_index", "", "flow index", default=1.0),
+            _FLOW_INDEX,
             _REGULARISATION,
             _VISCOSITY_MAX,
         ),
