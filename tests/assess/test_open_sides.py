@@ -225,6 +225,36 @@ def test_nothing_falls_without_gravity_or_along_a_periodic_axis(opened):
     assert opened(tank(), settings=[*no_floor, *ends, 'periodic=["y"]']) == []
 
 
+BED = """
+[body.bed]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [{left}, -0.06]
+max = [1, 0]
+[body.film]
+shape = "box"
+material = "water"
+min = [0, 0]
+max = [1, 0.1]
+velocity = [3, 0]
+"""
+PERIOD = ["domain_min=[0, -2]", "domain_max=[1, 2]", 'periodic=["x"]']
+
+
+def test_a_fast_film_on_a_bed_as_long_as_the_period_comes_down_on_it_again(opened):
+    assert opened(BED.format(left=0), settings=PERIOD) == []
+    assert "film: the scene is open below;" in opened(BED.format(left=0.2), settings=PERIOD)[0]
+
+
+def test_a_jet_that_is_thrown_over_the_top_leaves_beside_the_scene(opened):
+    jet = ["body.water.velocity=[0, 4]"]
+    assert "water: the scene is open at its side -x and +x;" in opened(tank(), settings=jet)[0]
+    assert opened(tank(left=1.2, right=1.2), settings=jet) == []
+    below = BELOW.format(end='"inf"')
+    assert opened(tank() + below, settings=jet) == []
+
+
 @pytest.mark.parametrize(("name", "dim"), CASES)
 def test_no_shipped_scenario_raises_an_alarm(name, dim):
     assert told(name, [f"dim={dim}", *(["dp=0.02"] if dim == 3 and "flume" in name else [])]) == []

@@ -55,10 +55,10 @@ GRAINS = (
 def said(tmp_path):
     """What is said of a fluid on a rough bed."""
 
-    def sentences(fluid, *settings, more=""):
+    def sentences(fluid, *settings, more="", across=4.0):
         file = tmp_path / "case.toml"
         file.write_text(SCENARIO.format(fluid=fluid) + more)
-        return [str(one) for one in rheology_findings(load_scenario(file, settings))]
+        return [str(one) for one in rheology_findings(load_scenario(file, settings), across)]
 
     return sentences
 
@@ -79,6 +79,26 @@ def test_a_viscous_fluid_on_a_rough_wall_with_eddies(said, fluid, turbulence, to
     if told:
         assert "body.bed.wall" in found[0]
         assert 'set turbulence = "none"' in found[0]
+
+
+def test_a_thin_liquid_on_a_rough_wall_without_eddies(said):
+    (found,) = said("nu = 1e-6", across=10)
+    assert found.startswith('body.bed.wall = "rough" has the friction of a turbulent stream')
+    assert "the lowest of 10 particles" in found
+    assert 'set turbulence = "mixing_length"' in found
+    assert said("nu = 1e-6", across=4) == []
+    assert said("nu = 0.02", across=10) == said(MUD, across=10) == []
+    assert said("nu = 1e-6", "turbulence=mixing_length", across=10) == []
+
+
+def test_grains_whose_greatest_viscosity_leaves_no_friction(said):
+    """0.38 times 980 Pa, over half of 3 m/s and 0.2 m, makes 49.7 Pa s."""
+    thin, falls = GRAINS.replace("= 1000", "= 0.45"), "gravity=[0, -9.8]"
+    (found,) = said(thin, falls, across=10)
+    assert found.startswith("material.fluid.viscosity_max = 0.45 Pa s is less than a hundredth of")
+    assert "the 49.7 Pa s" in found
+    assert said(GRAINS.replace("= 1000", "= 0.5"), falls, across=10) == []
+    assert said(thin + "\npore_pressure_ratio = 0.5", falls, across=10) == []
 
 
 def test_grains_under_water(said):

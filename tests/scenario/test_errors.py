@@ -66,7 +66,11 @@ from ..small_scenarios import BLOCK
         ("[parameters]\nmax = 3", ["parameters.max", "a function in expressions"]),
         ("[parameters]\nz = 3", ["parameters.z", "a coordinate in expressions"]),
         ("[parameters]\nn = { value = 7, choices = [1, 5] }", ["7 is not one of 1, 5"]),
-        ("[parameters]\nn = { value = 0, min = 1 }", ["parameters.n: 0 is out of range", "1"]),
+        (
+            "[parameters]\nn = { value = 0, min = 1 }",
+            ["parameters.n: 0 is out of range", "be 1 or more"],
+        ),
+        ("[parameters]\nn = { value = 2, max = 1 }", ["parameters.n: 2 is out", "be 1 or less"]),
         ("[parameters]\nn = { valu = 0 }", ["parameters.n.valu is not a known key"]),
         ("[parameters]\nn = {}", ["parameters.n.value is missing"]),
         ("[material.mud]\nlaw = 'fluid'", ["material.mud", "needs rho0, speedsound"]),

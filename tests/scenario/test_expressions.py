@@ -3,6 +3,7 @@
 import contextlib
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from doseki.scenario.values.expressions import (
+    SCALAR_FUNCTIONS,
     ExpressionError,
     evaluate,
     evaluate_at,
@@ -30,6 +32,10 @@ NAMES = {"a": 2, "b": 0.5, "word": "single"}
         ("= round(1.234, 4/2)", 1.23),
         ("= ceil(2.1) - floor(2.9)", 1),
         ("= max(a, b, 1)", 2),
+        ("= log(exp(a))", 2),
+        ("= log10(1000)", 3),
+        ("= sinh(a)/cosh(a) - tanh(a)", 0),
+        ("= cosh(a)**2 - sinh(a)**2", 1),
         ("= 'one' if a == 2 and not b > 1 else 'many'", "one"),
         ("= word", "single"),
         ("= 1 if 0 < a < 3 else 0", 1),
@@ -65,10 +71,13 @@ def test_value(text, value):
         ("= a in b", "has `in`: compare with =="),
         ("= 2j", "has 2j, which is no number"),
         ("= None", "has None, which is no number"),
-        ("= log(2)", "calls log, which is not one of sqrt"),
+        ("= ln(2)", "calls ln, which is not one of sqrt"),
         ("= a(2)", "a product is written *"),
         ("= 2(a)", "a product is written *"),
         ("= 2a", "a product is written *"),
+        ("= log(8, 2)", "gives log 2 values: it takes 1"),
+        ("= log(0)", "log(0) is no finite number"),
+        ("= cosh(1000)", "cosh(1000) is no finite number"),
         ("= sin(1, 2)", "gives sin 2 values: it takes 1"),
         ("= max(1)", "gives max 1 value: it takes 2 or more"),
         ("= round()", "gives round no values: it takes 1 or 2"),
@@ -175,7 +184,20 @@ def test_field_of_position():
     np.testing.assert_array_equal(position, kept)
 
 
-@pytest.mark.parametrize("text", ["= 1/x", "= z", "= 'word'", "= x.tofile('leak')"])
+@pytest.mark.parametrize("name", ["log", "log10", "sinh", "cosh", "tanh"])
+def test_functions_are_those_of_numpy_at_each_position(name):
+    position = np.array([[0.5, 1.0], [2.0, 3.0]])
+    values = evaluate_at(f"= {name}(x)", {}, position)
+    np.testing.assert_array_equal(values, getattr(np, name)(position[:, 0]))
+
+
+def test_the_page_of_scenarios_names_every_function():
+    page = (Path(__file__).parents[2] / "docs" / "scenarios.md").read_text()
+    (listed,) = re.findall(r"and these functions: (.*?)\n\n", page, re.DOTALL)
+    assert set(SCALAR_FUNCTIONS) <= set(re.findall(r"`(\w+)`", listed))
+
+
+@pytest.mark.parametrize("text", ["= log(x)", "= 1/x", "= z", "= 'word'", "= x.tofile('leak')"])
 def test_field_refusal(text):
     with pytest.raises(ExpressionError):
         evaluate_at(text, {}, np.zeros((3, 2)))

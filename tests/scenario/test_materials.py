@@ -118,6 +118,12 @@ def block_of(name):
         (ASPEN + 'based_on = "water"', ["based_on is decided by preset"]),
         (ASPEN + 'rheology = "casson"', ["rheology is decided by preset"]),
         ('[material.beads]\npreset = "glass_beads"', ["needs viscosity_max, greater than 0"]),
+        (MUD.replace("1e3", "0.05"), ["viscosity_max = 0.05 Pa s", "0.08325 Pa s or more"]),
+        (MUD.replace("0.5", "1").replace("1e3", "1"), ["viscosity_max = 1 Pa s", "2.02 Pa s"]),
+        (MUD.replace("0.5", "2").replace("1e3", "12"), ["viscosity_max = 12 Pa s", "12.65 Pa s"]),
+        (MUD.replace("0.5", "-1"), ["material.mud.flow_index = -1", "greater than 0"]),
+        (MUD.replace("0.5", "0"), ["material.mud.flow_index = 0", "greater than 0"]),
+        (PAINT.replace("1e3", "2"), ["viscosity_max = 2 Pa s", "2.42 Pa s or more"]),
     ],
 )
 def test_errors(write, error_of, tables, parts):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,6 +67,10 @@ class Fall:
     def is_below(self, axis: int, sign: int) -> bool:
         """Whether a side of the scene is its lower one."""
         return bool(sign * self.down[axis] > DOWNWARDS)
+
+    def is_above(self, axis: int, sign: int) -> bool:
+        """Whether a side of the scene is its upper one."""
+        return self.is_below(axis, -sign)
 
 
 def _along(
@@ -182,31 +187,36 @@ class Cells:
         return self.low + (np.argwhere(mask) + 0.5) * self.size
 
     def poured(self, points: np.ndarray, head: float, fall: Fall) -> Exits:
-        """The exits of a flow from the points that gets no higher than `head`, m."""
+        """The exits of a flow from the points that gets no higher than `head`, m.
+
+        What rises over the upper side comes down again: it gets out beside the scene or not at all.
+        """
         everywhere = self._centres(np.ones_like(self.wall))
         free = ~self.wall & (fall.height(everywhere) <= head).reshape(self.wall.shape)
         free.reshape(-1)[_in_outflows(everywhere, fall)] = False
-        inner = free.copy()
-        for axis in self._open_axes:
-            inner[_layer(self.wall, axis, 0)] = inner[_layer(self.wall, axis, -1)] = False
+        inner, borders = free.copy(), list(self._borders(fall))
+        for axis, _, border, _ in borders:
+            inner[_layer(self.wall, axis, border)] = False
         start = np.zeros_like(inner)
         start[self._index(points)] = True
         reached = self._spread(start & inner, inner)
         found, sides = [np.zeros((0, len(self.low)))], [np.zeros((0, 2), int)]
-        for axis in self._open_axes:
-            for sign, border, beside in ((-1, 0, 1), (1, -1, -2)):
-                out = np.zeros_like(free)
-                layer = _layer(self.wall, axis, border)
-                out[layer] = reached[_layer(self.wall, axis, beside)] & free[layer]
-                x = self._centres(out)
-                x = x[~fall.is_caught(x)]
-                found.append(x)
-                sides.append(np.tile([axis, sign], (len(x), 1)))
+        for axis, sign, border, beside in borders:
+            out = np.zeros_like(free)
+            layer = _layer(self.wall, axis, border)
+            out[layer] = reached[_layer(self.wall, axis, beside)] & free[layer]
+            x = self._centres(out)
+            x = x[~fall.is_caught(x)]
+            found.append(x)
+            sides.append(np.tile([axis, sign], (len(x), 1)))
         return Exits(np.concatenate(found), np.concatenate(sides))
 
-    @property
-    def _open_axes(self) -> list[int]:
-        return [axis for axis in range(self.wall.ndim) if axis not in self.wraps]
+    def _borders(self, fall: Fall) -> Iterator[tuple[int, int, int, int]]:
+        """The sides that something may leave for ever: axis, sign, their layer, the one inside."""
+        for axis in range(self.wall.ndim):
+            for sign, border, beside in ((-1, 0, 1), (1, -1, -2)):
+                if axis not in self.wraps and not fall.is_above(axis, sign):
+                    yield axis, sign, border, beside
 
     def _spread(self, start: np.ndarray, free: np.ndarray) -> np.ndarray:
         """The cells that are reached from face to face through free ones, also around a period."""

@@ -16,6 +16,8 @@ from ..util.finding import Finding
 from .sound_speed import usual_speed
 
 KARMAN = 0.40
+NO_PART = 0.01  # of the friction of a mass: with less it has none
+FEW = 4.0  # particles over the depth of a flow, of which the lowest row is no small part
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,39 @@ class EddiesOnly(Finding):
             f'{self.place}: with turbulence = "{self.turbulence}" a rough wall has the friction of '
             f"turbulent water alone, on which {self.fluid} slides as if it had neither viscosity "
             'nor yield stress; set turbulence = "none", or wall = "no_slip"'
+        )
+
+
+@dataclass(frozen=True)
+class NoEddies(Finding):
+    """A rough wall under many particles of a thin liquid, in a run without eddies."""
+
+    fluid: str
+    across: float  # particles
+
+    def __str__(self) -> str:
+        return (
+            f'{self.place} = "rough" has the friction of a turbulent stream, and with turbulence = '
+            f'"none" the lowest of {self.across:.3g} particles over the depth alone feel it: where '
+            f"{self.fluid} streams, what is above them gets too fast; set turbulence = "
+            '"mixing_length"'
+        )
+
+
+@dataclass(frozen=True)
+class WeakGrains(Finding):
+    """A mass of mu(I) whose greatest viscosity is next to nothing beside its friction."""
+
+    most: float  # Pa s
+    own: float  # Pa s
+    depth: float  # m
+    speed: float  # m/s
+
+    def __str__(self) -> str:
+        return (
+            f"{self.place} = {self.most:g} Pa s is less than a hundredth of the {self.own:.3g} Pa s"
+            f" that friction makes in a flow {self.depth:.3g} m deep at {self.speed:.3g} m/s: it "
+            "flows as a thin liquid, without friction; give it more than that"
         )
 
 
@@ -79,8 +114,11 @@ class TurnsTooFast(Finding):
         )
 
 
-def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
-    """Fluids whose friction inside or at walls would be another one."""
+def rheology_findings(scenario: Scenario, across: float) -> Iterator[Finding]:
+    """Fluids whose friction inside or at walls would be another one.
+
+    `across` are the particles over the depth of the deepest flow.
+    """
     for name in scenario.liquids:
         material = scenario.materials[name]
         others = [other for other in scenario.liquids if other != name]
@@ -88,14 +126,39 @@ def rheology_findings(scenario: Scenario) -> Iterator[Finding]:
             yield GrainsUnderLiquid(f"material.{name}.rheology", others[0])
     yield from _suction_findings(scenario)
     yield from _turning_findings(scenario)
-    if scenario.turbulence == "none":
-        return
+    yield from _weak_grains(scenario, across * scenario.dp)
     for keys, wall in scenario.walls.items():
-        if wall.given("wall") != "rough":
+        if wall.given("wall") == "rough":
+            yield from _at_rough_wall(scenario, f"{'.'.join(keys)}.wall", wall.given("ks"), across)
+
+
+def _at_rough_wall(
+    scenario: Scenario, place: str, ks: float, across: float
+) -> Iterator[EddiesOnly | NoEddies]:
+    """Viscous liquids on it in a run with eddies, thin ones in a run without."""
+    for name in scenario.liquids:
+        is_viscous = _is_viscous(scenario, scenario.materials[name], ks)
+        if scenario.turbulence == "none":
+            if not is_viscous and across > FEW:
+                yield NoEddies(place, name, across)
+        elif is_viscous:
+            yield EddiesOnly(place, scenario.turbulence, name)
+
+
+def _weak_grains(scenario: Scenario, depth: float) -> Iterator[WeakGrains]:
+    """Their friction is p mu_s over the rate of strain."""
+    for name in scenario.liquids:
+        fluid = scenario.materials[name]
+        speed = usual_speed(scenario, fluid)
+        if fluid.rheology != "mu_i" or speed <= 0:
             continue
-        for name in scenario.liquids:
-            if _is_viscous(scenario, scenario.materials[name], wall.given("ks")):
-                yield EddiesOnly(f"{'.'.join(keys)}.wall", scenario.turbulence, name)
+        law = fluid.of_laws
+        g = float(np.linalg.norm(scenario.gravity))
+        carried = (1 - law["pore_pressure_ratio"]) * fluid.rho0 * g * depth / 2
+        own = law["mu_s"] * carried * depth / speed
+        if law["viscosity_max"] < NO_PART * own:
+            place = f"material.{name}.viscosity_max"
+            yield WeakGrains(place, law["viscosity_max"], own, depth, speed)
 
 
 def _suction_findings(scenario: Scenario) -> Iterator[Finding]:

@@ -206,7 +206,8 @@ def findings(
     found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
     found += [*_voellmy(scenario, state, names), *_gauges(scenario, state), *_mach(scenario, state)]
     found += [*open_sides(scenario, state, names), *keys_without_effect(scenario, state, names)]
-    found += [*_films(scenario, state), *rheology_findings(scenario)]
+    across = max(flow_depths(scenario, state, names).values(), default=0.0)
+    found += [*_films(scenario, state), *rheology_findings(scenario, across)]
     return list(dict.fromkeys(found))
 
 

@@ -33,7 +33,7 @@ MATERIAL = {
     "consistency": ["5", "5 with {hb}"],
     "flow_index": ["0.5", "0.5 with {hb}"],
     "regularisation": ["0.5", "0.5 with {hb}"],
-    "viscosity_max": ["0.5", "0.5 with {hb}"],
+    "viscosity_max": ["0.5", "1.05 with {hb}"],
     "casson_viscosity": ["5", "5 with {casson}"],
     "mu_s": ["0.5", "0.5 with {mu}"],
     "mu_2": ["0.9", "0.9 with {mu}"],

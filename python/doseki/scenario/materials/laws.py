@@ -7,12 +7,15 @@ declared here and named there; what is not a parameter of every material stands 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from ..schemes import RESOLVED, UETA2022
 from .parameters import LIMIT, MaterialParameter
 
+FASTEST = 1000.0  # rate of strain, 1/s, up to which a law is asked for its least viscosity
+RATES = 100  # that are asked
 MOST_FLAWS = 1e99  # 1/m3, that `weibull_k` is below
 
 
@@ -52,7 +55,45 @@ def _friction_falls(numbers: Mapping[str, float]) -> str | None:
     return None
 
 
+def _plastic(numbers: Mapping[str, float], rate: float) -> float:
+    """Viscosity, Pa s, that the yield stress makes at a rate of strain, 1/s."""
+    return numbers["yield_stress"] / rate
+
+
+def _power_law(numbers: Mapping[str, float], rate: float) -> float:
+    """Viscosity, Pa s, of eq. 64 without its bounds."""
+    exponent = (numbers["flow_index"] - 1) * math.log(rate)
+    return _plastic(numbers, rate) + numbers["consistency"] * math.exp(min(exponent, 100.0))
+
+
+def _roots(numbers: Mapping[str, float], rate: float) -> float:
+    """Viscosity, Pa s, of eq. 66 without its bounds."""
+    return (_plastic(numbers, rate) ** 0.5 + numbers["casson_viscosity"] ** 0.5) ** 2
+
+
+def _is_cut(
+    viscosity: Callable[[Mapping[str, float], float], float],
+) -> Callable[[Mapping[str, float]], str | None]:
+    """The objection to a greatest viscosity that the law has at no rate of strain."""
+
+    def objection(numbers: Mapping[str, float]) -> str | None:
+        slowest = min(1 / numbers["regularisation"], FASTEST)
+        ratio = (FASTEST / slowest) ** (1 / RATES)
+        least = min(viscosity(numbers, slowest * ratio**k) for k in range(RATES + 1))
+        most = numbers["viscosity_max"]
+        if most >= least * (1 - 1e-9):
+            return None
+        return (
+            f"viscosity_max = {most:g} Pa s is less than the viscosity of the law itself, which is "
+            f"{least:.4g} Pa s or more at rates of strain from {slowest:.3g} to {FASTEST:g} 1/s: "
+            "give it more than that"
+        )
+
+    return objection
+
+
 _YIELD_STRESS = _fluid("yield_stress", "Pa", "yield stress")
+_FLOW_INDEX = MaterialParameter("flow_index", "", "flow index", above=0.0, default=1.0, law="fluid")
 _REGULARISATION = _fluid("regularisation", "s", "Papanastasiou's regularisation")
 _VISCOSITY_MAX = _fluid("viscosity_max", "Pa s", "greatest viscosity")
 
@@ -65,12 +106,13 @@ RHEOLOGIES = _table(
         parameters=(
             _YIELD_STRESS,
             _fluid("consistency", "Pa s^n", "consistency"),
-            _fluid("flow_index", "", "flow index", default=1.0),
+            _FLOW_INDEX,
             _REGULARISATION,
             _VISCOSITY_MAX,
         ),
         needed=("consistency", "regularisation", "flow_index", "viscosity_max"),
         schemes=(RESOLVED,),
+        objection=_is_cut(_power_law),
     ),
     Law(
         "casson",
@@ -83,6 +125,7 @@ RHEOLOGIES = _table(
         ),
         needed=("casson_viscosity", "regularisation", "viscosity_max"),
         schemes=(RESOLVED,),
+        objection=_is_cut(_roots),
     ),
     Law(
         "mu_i",

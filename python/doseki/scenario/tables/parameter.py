@@ -34,7 +34,10 @@ class Parameter(Table):
         if not abs(value) <= sys.float_info.max:
             raise ValueError("must be finite")
         if self.min is not None and value < self.min:
-            raise ValueError(f"{value!r} is out of range; must be {self.min:g} {self.unit} or more")
+            raise ValueError(f"{value!r} is out of range; must be {self._shown(self.min)} or more")
         if self.max is not None and value > self.max:
-            raise ValueError(f"{value!r} is out of range; must be {self.max:g} {self.unit} or less")
+            raise ValueError(f"{value!r} is out of range; must be {self._shown(self.max)} or less")
         return self
+
+    def _shown(self, bound: float) -> str:
+        return f"{bound:g} {self.unit}".rstrip()
