@@ -215,6 +215,8 @@ public:
             table["normal"] = ParticleTables<D>::column(wall.normal, order);
             table["depth"] = ParticleTables<D>::column(wall.depth, order);
         }
+        if (const OwnFields<D> own = sim_.scheme().own_fields(); own.shift)
+            table["shift"] = ParticleTables<D>::column(*own.shift, order);
         return table;
     }
 

@@ -66,6 +66,10 @@ struct FlowOptions {
     double smagorinsky = 0.12;
     Array<WallCondition> walls;  // by body
 
+    bool has_rough_walls() const {
+        return std::any_of(walls.begin(), walls.end(),
+                           [](const WallCondition& wall) { return wall.ks > 0.0; });
+    }
     bool has_voellmy_walls() const {
         return std::any_of(walls.begin(), walls.end(),
                            [](const WallCondition& wall) { return wall.voellmy; });

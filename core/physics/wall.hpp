@@ -95,6 +95,12 @@ DOSEKI_DEVICE_FN inline double bed_friction(double rho, double z, double ks) {
     return rho * root * root;
 }
 
+/// Slope of that law times the height, over the speed there: u*/kappa z/(z + z0) = z du/dz.
+DOSEKI_DEVICE_FN inline double bed_slope(double z, double ks) {
+    const double height = 30.0 * std::max(z, ks / 30.0) / ks;
+    return height / ((1.0 + height) * std::log1p(height));
+}
+
 /// Stress that Voellmy's bed takes from what slides over it at a speed |u| under the effective
 /// normal stress `normal_stress` (Voellmy, Schweiz. Bauzeitung 73, 1955): tau = mu sigma' + rho g
 /// u^2/xi [Pa]. An infinite xi leaves Coulomb's friction alone.

@@ -203,7 +203,9 @@ DOSEKI_FN void add_wall(ContinuityAccumulators<T, D>& sums, const FlowConstants&
     const T resolved = resolved_shear(i.mu, i.rho, sqrt(dot(contact.sliding, contact.sliding)),
                                       number<T>(constants.dp));
     // v_i less the velocity that the fluid goes on to at w. What sticks to a wall turns with it.
-    const Vec<T, D> jump = (resolved * contact.no_slip) * contact.sliding +
+    const T steep = (T(1) - resolved * w.no_slip) * contact.seen.in_front * contact.r_dot_n /
+                    max(contact.height, number<T>(0.25 * constants.dp));
+    const Vec<T, D> jump = (resolved * contact.no_slip) * contact.sliding + steep * w.shear +
                            T(2) * (contact.v_iw - contact.sliding) +
                            (resolved * w.no_slip) * turned_by<T, D>(w.spin, pair.r_ij);
     add_gradients(sums, pair.r_ij, VF, jump);

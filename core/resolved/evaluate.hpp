@@ -6,6 +6,7 @@
 
 #include "base/array.hpp"
 #include "base/poison.hpp"
+#include "physics/stress.hpp"
 #include "ranks/common_frame.hpp"
 #include "resolved/continuity_epilogue.hpp"
 #include "resolved/flow_depth.hpp"
@@ -268,6 +269,13 @@ ThermodynamicState<double> Resolved<D, real, Backend>::equation_of_state(const S
     const Material& material = model_->material(state.tag[p]);
     const auto at = thermodynamic_state(*material.laws, state.density[p]);
     return {model_->without_surface_tension(at.pressure, state, p), material.c0, at.bulk_energy};
+}
+
+/// Of viscosity and eddies.
+template <int D, class real, class Backend>
+Deviator<double, D> Resolved<D, real, Backend>::deviator(const State& state, std::size_t p) const {
+    if (state.is_wall(p)) return {};
+    return viscous_stress(state.velocity_gradient[p], model_->viscosity(state, p));
 }
 
 template <int D, class real, class Backend>

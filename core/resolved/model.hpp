@@ -173,6 +173,13 @@ struct ResolvedModel {
                                                                       : flow.smagorinsky * flow.dp;
         return l * l * strain_rate(state.velocity_gradient[p]);
     }
+    /// Of a liquid, and of the eddies that are not resolved [Pa s].
+    DOSEKI_DEVICE_FN double viscosity(const ResolvedState<D>& state, std::size_t p) const {
+        const double rho = state.density[p], rate = strain_rate(state.velocity_gradient[p]);
+        const ShearState<double> shear{rate, state.mean_pressure[p], rho};
+        return doseki::viscosity(*material(state.tag[p]).laws, shear) +
+               rho * eddy_viscosity(state, p);
+    }
 };
 
 }  // namespace doseki

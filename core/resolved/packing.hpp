@@ -65,17 +65,6 @@ struct FlowPacker {
         record.in_film = state.in_film[p];
         return record;
     }
-    DOSEKI_DEVICE_FN ShearState<double> sheared(std::size_t p) const {
-        return {strain_rate(state.velocity_gradient[p]), state.mean_pressure[p], state.density[p]};
-    }
-    /// Of the liquid, and of the eddies that are not resolved [Pa s].
-    DOSEKI_DEVICE_FN double molecular_viscosity(std::size_t p,
-                                                const ShearState<double>& shear) const {
-        return viscosity(*model.material(state.tag[p]).laws, shear);
-    }
-    DOSEKI_DEVICE_FN double eddy_viscosity(std::size_t p) const {
-        return state.density[p] * model.eddy_viscosity(state, p);
-    }
 };
 
 /// For densities: the middle of the step, at which velocities are. Positions are those of its end.
@@ -93,7 +82,7 @@ struct ContinuityPacker : FlowPacker<real, D> {
                           state.velocity[p]);
         FluidFields<double, D> record = this->fluid_fields(p);
         record.p += state.damping_pressure[p];
-        record.mu = this->molecular_viscosity(p, this->sheared(p)) + this->eddy_viscosity(p);
+        record.mu = model.viscosity(state, p);
         record.strain = {}, record.turning = {}, record.carried = {}, record.resolved_strain = 0.0;
         this->fluid[p] = converted<FluidRecord<real, D>>(record);
     }
@@ -116,7 +105,8 @@ private:
         }
         record.g_normal = record.faces * (state.acceleration[p] - model.options.gravity);
         record.bend = walls.bend[p];
-        record.traction = {};
+        record.traction = {},
+        record.shear = state.has_rough_beds ? state.bed_shear[p] : Vec<double, D>{};
         record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
                                           : (1.0 - walls.cut[p]) * model.spacing_power[D];
         record.no_slip = model.wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
@@ -152,15 +142,13 @@ struct ForcePacker : FlowPacker<real, D> {
         FluidFields<double, D> record = this->fluid_fields(p);
         update_mean_pressure(p, record.p, 2.0 * half_dt);
         record.p += state.damping_pressure[p];
-        const ShearState<double> shear = this->sheared(p);
         const Mat<double, D>& L = state.velocity_gradient[p];
-        const double mu = this->molecular_viscosity(p, shear), h = state.smoothing_length[p];
-        record.mu = mu + this->eddy_viscosity(p);
+        const double mu = record.mu = model.viscosity(state, p), rate = strain_rate(L),
+                     h = state.smoothing_length[p];
         // The outermost particles need all of what damps noise.
-        record.resolved_strain =
-            record.surface > FreeSurfaceIndicator::surface
-                ? 0.0
-                : shear.rate * resolved_shear(mu, shear.rho, shear.rate * h, h);
+        record.resolved_strain = record.surface > FreeSurfaceIndicator::surface
+                                     ? 0.0
+                                     : rate * resolved_shear(mu, state.density[p], rate * h, h);
         record.strain = symmetric_part(L), record.turning = turning_part(L);
         record.carried = L * state.shift[p];
         this->fluid[p] = converted<FluidRecord<real, D>>(record);

@@ -48,6 +48,7 @@ struct WallFields {
     Vec<T, D> g_normal;  // of each, see wall_excess_pressure
     Sym<T, D> bend;      // of the surface, see WallState
     Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
+    Vec<T, D> shear;     // of the law of a rough bed: u*/kappa, along the flow [m/s]
     T volume;
     T no_slip;          // 1: fluid sticks to it; 0: what friction there is comes from the wall pass
     T inverse_density;  // of a body that moves, else 0
@@ -59,8 +60,8 @@ struct WallFields {
     template <class F, class... Self>
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.faces...), f(self.depths...), f(self.g_normal...), f(self.bend...);
-        f(self.traction...), f(self.volume...), f(self.no_slip...), f(self.inverse_density...),
-            f(self.spin...), f(self.face...);
+        f(self.traction...), f(self.shear...), f(self.volume...), f(self.no_slip...),
+            f(self.inverse_density...), f(self.spin...), f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_cover...),
             f(self.film_traction...), f(self.film_aside...);
     }

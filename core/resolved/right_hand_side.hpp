@@ -94,7 +94,7 @@ public:
     const Array<Material>& materials() const;
     std::span<const MotionRecord<real, D>> motion_records() const { return motion_; }
     const CoordinateFrame<real, D>& frame() const { return frame_; }
-    Deviator<double, D> deviator(const State&, std::size_t) const { return {}; }
+    Deviator<double, D> deviator(const State& state, std::size_t p) const;
     double shear_energy(const State&, std::size_t) const { return 0.0; }
 
     /// Pressure and energy of a particle; of a wall particle, those of the fluid at its place. The

@@ -13,7 +13,8 @@ namespace doseki {
 template <int D>
 struct ResolvedState : Particles<D> {
     ResolvedState(const Array<Material>&, const Options<D>& options)
-        : has_voellmy_beds(options.flow.has_voellmy_walls()) {
+        : has_rough_beds(options.flow.has_rough_walls()),
+          has_voellmy_beds(options.flow.has_voellmy_walls()) {
         this->wall.in_use = true;
     }
 
@@ -30,7 +31,10 @@ struct ResolvedState : Particles<D> {
     FluidField<double> mixing_length;     // [m]
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
     FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
-    bool has_voellmy_beds;                // without, the fields below stay empty
+    bool has_rough_beds;                  // without, the field below stays empty
+    WallField<Vec<double, D>>
+        bed_shear;          // u*/kappa of the law of a rough bed, along the flow [m/s]
+    bool has_voellmy_beds;  // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
     WallField<Vec<double, D>> bed_slip;  // [m]
     WallField<double> bed_load;          // normal stress on them, over a time [Pa]
@@ -44,6 +48,7 @@ struct ResolvedState : Particles<D> {
         f("least_pressure", least_pressure), f("in_film", in_film);
         f("mixing_length", mixing_length), f("mean_pressure", mean_pressure);
         f("damping_pressure", damping_pressure);
+        if (has_rough_beds) f("bed_shear", bed_shear);
         if (has_voellmy_beds) f("bed_slip", bed_slip), f("bed_load", bed_load);
     }
 

@@ -293,9 +293,13 @@ private:
     DOSEKI_DEVICE_FN Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
                                              const WallCondition& wall) const {
         const bool is_first = state_.wall.depth[p] < model_.options.flow.dp;
-        if (!is_first || !(sums.weight > min_filled)) return {};
+        Vec<double, D>& shear = state_.bed_shear[p];
+        shear = {};
+        if (!(sums.weight > min_weight)) return {};
         const Vec<double, D> along = sliding(p, sums);
         const double rho = sums.density / sums.weight, height = sums.height / sums.weight;
+        shear = bed_slope(height, wall.ks) * along;
+        if (!is_first || !(sums.weight > min_filled)) return {};
         const double turbulent = bed_friction(rho, height, wall.ks) * std::sqrt(dot(along, along)),
                      viscosity = wall.no_slip ? sums.viscosity / sums.weight : 0.0,
                      viscous = viscosity / std::max(height, 0.25 * model_.options.flow.dp);

@@ -31,6 +31,7 @@ namespace doseki {
 template <int D>
 struct OwnFields {
     const FluidField<double>* surface = nullptr;
+    const FluidField<Vec<double, D>>* shift = nullptr;  // beside their velocity [m/s]
     const FluidField<Mat<double, D>>* velocity_gradient = nullptr;
     Field<Deviator<double, D>>* deviatoric_stress = nullptr;
 };

@@ -35,7 +35,8 @@ public:
     OwnFields<D> own_fields() override {
         OwnFields<D> own;
         if constexpr (requires { state_.velocity_gradient; })
-            own.surface = &state_.surface, own.velocity_gradient = &state_.velocity_gradient;
+            own.surface = &state_.surface, own.shift = &state_.shift,
+            own.velocity_gradient = &state_.velocity_gradient;
         if constexpr (requires { state_.deviatoric_stress; })
             if (state_.has_strength) own.deviatoric_stress = &state_.deviatoric_stress;
         return own;
