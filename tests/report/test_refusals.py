@@ -60,6 +60,13 @@ def test_a_damaged_file(drawn_flow, capsys, file, text):
     refused(capsys, drawn_flow)
 
 
+@pytest.mark.parametrize("file", ["summary.json", "provenance.json", "trust.json"])
+def test_a_damaged_file_is_told_before_figures_are_drawn(flow_folder, capsys, file):
+    (flow_folder / file).write_text("[")
+    assert file in refused(capsys, flow_folder)
+    assert not (flow_folder / "figures").exists()
+
+
 @pytest.mark.parametrize("harm", HARMS)
 def test_a_hostile_snapshot(run_folder, capsys, harm):
     spoil(run_folder / "snapshots" / "000001.vtkhdf", "VTKHDF/PointData/Pressure", harm)
