@@ -48,13 +48,15 @@ DOSEKI_DEVICE_FN inline double damping_beside_walls(double alpha, double wall_sh
                     std::min(alpha * (1.0 + 3.0 * std::min(wall_share / first_row, 1.0)), most));
 }
 
-/// Prandtl's mixing length of open-channel flow [m], l = kappa z sqrt(1 - z/d): with it the stress
-/// rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile. At least
-/// `min_length`; z: height over the bed, d: depth.
-DOSEKI_DEVICE_FN inline double mixing_length(double z, double d, double min_length) {
+/// Prandtl's mixing length of open-channel flow [m], l = kappa (z + z0) sqrt(1 - z/d): with it the
+/// stress rho l^2 |du/dz|^2 that falls from the bed to the surface gives the logarithmic profile.
+/// At least `min_length`; z: height over the bed, d: depth, z0: that of a rough bed's law (Rotta,
+/// Turbulente Stroemungen, 1972).
+DOSEKI_DEVICE_FN inline double mixing_length(double z, double d, double min_length,
+                                             double z0 = 0.0) {
     constexpr double von_karman = 0.40;
     const double inside = d > 0.0 ? std::clamp(z / d, 0.0, 1.0) : 0.0;
-    return std::max(min_length, von_karman * inside * d * std::sqrt(1.0 - inside));
+    return std::max(min_length, von_karman * (inside * d + z0) * std::sqrt(1.0 - inside));
 }
 
 }  // namespace doseki

@@ -89,8 +89,9 @@ template <int D, class real, class Backend>
 void Resolved<D, real, Backend>::set_mixing_lengths(State& state, const Lists& lists,
                                                     const Ranks& ranks) {
     const FlowOptions& flow = model_->options.flow;
-    const FlowDepth<D> depth(state, fluid_count_, lists.domain(),
-                             Upwards<D>(model_->options.gravity), 4.0 * flow.dp, ranks);
+    const ColumnsOfPlan<D> plan{lists.domain(), Upwards<D>(model_->options.gravity), 4.0 * flow.dp};
+    auto z0 = [&](std::size_t p) { return model_->wall_condition(state.tag[p]).ks / 30.0; };
+    const FlowDepth<D> depth(state, fluid_count_, plan, z0, ranks);
     const double min_length = flow.smagorinsky * flow.dp;
     for_each_particle(fluid_count_, [&](std::size_t p) {
         state.mixing_length[p] = depth.mixing_length(state.position[p], min_length);

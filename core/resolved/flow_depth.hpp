@@ -30,6 +30,14 @@ struct Upwards {
     double height(const Vec<double, D>& x) const { return sign * x[axis]; }
 };
 
+/// How the plan is cut into columns of a `width` [m]; somewhat more where whole ones fill a period.
+template <int D>
+struct ColumnsOfPlan {
+    Domain<D> domain;
+    Upwards<D> up;
+    double width;
+};
+
 /// Height over the bed and depth of the flow at each fluid particle, along an axis upwards, as a
 /// mixing length needs them. The plan is cut into columns: the bed is the highest wall particle of
 /// a column below its fluid, the depth is that of the volume in it, so that spray counts for what
@@ -37,10 +45,14 @@ struct Upwards {
 template <int D>
 class FlowDepth {
 public:
-    /// `width` of a column [m]; somewhat more where whole ones are to fill a period.
-    FlowDepth(const Particles<D>& particles, std::size_t fluid, const Domain<D>& domain,
-              const Upwards<D>& up, double width, const Ranks& ranks)
-        : domain_(domain), up_(up) {
+    /// z0(p): height in the law of a rough bed of which p is a particle [m], else 0.
+    template <class Z0>
+    FlowDepth(const Particles<D>& particles, std::size_t fluid, const ColumnsOfPlan<D>& plan,
+              const Z0& z0, const Ranks& ranks)
+        : domain_(plan.domain), up_(plan.up) {
+        const Domain<D>& domain = domain_;
+        const Upwards<D>& up = up_;
+        const double width = plan.width;
         for (int b = 0; b < D - 1; ++b) {
             const int a = of_plan(b);
             const double columns = std::max(1.0, std::floor(domain.length(a) / width));
@@ -63,10 +75,11 @@ public:
                 continue;
             Column& column = found->second;
             const double top = up.height(particles.position[p]) + particles.wall.depth[p];
-            if (top < column.height / column.count) column.bed = std::max(column.bed, top);
+            if (top < column.height / column.count)
+                column.bed = std::max(column.bed, top), column.z0 = std::max(column.z0, z0(p));
         }
         merge(ranks, [](Column& column, const Column& part) {
-            column.bed = std::max(column.bed, part.bed);
+            column.bed = std::max(column.bed, part.bed), column.z0 = std::max(column.z0, part.z0);
             column.volume = part.volume, column.height = part.height, column.count = part.count;
         });
     }
@@ -78,13 +91,14 @@ public:
         double area = 1.0;
         for (int a = 0; a < D - 1; ++a) area *= width_[a];
         const double depth = found->second.volume / area;
-        return doseki::mixing_length(up_.height(x) - found->second.bed, depth, min_length);
+        return doseki::mixing_length(up_.height(x) - found->second.bed, depth, min_length,
+                                     found->second.z0);
     }
 
 private:
     struct Column {
         double volume = 0.0, height = 0.0, count = 0.0,
-               bed = -std::numeric_limits<double>::infinity();
+               bed = -std::numeric_limits<double>::infinity(), z0 = 0.0;
     };
     using Key = std::array<std::int64_t, D - 1>;
 
@@ -93,11 +107,12 @@ private:
     template <class Add>
     void merge(const Ranks& ranks, Add&& add) {
         if (ranks.alone()) return;
-        constexpr std::size_t numbers = D + 3;
+        constexpr std::size_t numbers = D + 4;
         Array<double> part;
         for (const auto& [key, column] : columns_) {
             for (const std::int64_t k : key) part.push_back(static_cast<double>(k));
-            part.insert(part.end(), {column.volume, column.height, column.count, column.bed});
+            part.insert(part.end(),
+                        {column.volume, column.height, column.count, column.bed, column.z0});
         }
         const Array<double> all = ranks.gather(part);
         columns_.clear();
@@ -106,7 +121,7 @@ private:
             for (std::size_t a = 0; a < D - 1; ++a)
                 key[a] = static_cast<std::int64_t>(all[row + a]);
             const double* value = &all[row + D - 1];
-            add(columns_[key], Column{value[0], value[1], value[2], value[3]});
+            add(columns_[key], Column{value[0], value[1], value[2], value[3], value[4]});
         }
     }
 

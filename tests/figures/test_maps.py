@@ -418,3 +418,12 @@ def test_what_a_profile_shows():
     ]  # fmt: skip
     heights = figure.axes[0].lines[0].get_ydata()
     assert heights[0] > heights[-1]
+
+
+@pytest.mark.parametrize("text", ["[", '{"runout": [1]}'])
+def test_a_damaged_summary_is_told_before_maps_are_drawn(dammed, text):
+    path = dammed(0)
+    (path / "summary.json").write_text(text)
+    with pytest.raises(UserError, match=r"summary\.json: is "):
+        write_pictures(path, MapOptions())
+    assert not (path / "maps").exists()

@@ -11,6 +11,8 @@ from doseki.errors import UserError
 from doseki.record.between import Between
 from doseki.record.reader import load
 
+from ..synthetic_runs import random_state
+
 NAMES = {"material": ("water", "basalt", "aluminium"), "body": ("sea", "grain", "bed")}
 
 
@@ -216,3 +218,14 @@ def test_a_word_in_a_history_is_named_with_its_line(run_folder):
     file.write_text("\n".join([header, first, f"{time},oops,{rest}", ""]))
     with pytest.raises(UserError, match=r"history\.csv, line 3: step = 'oops' is not a number"):
         _ = load(run_folder).history
+
+
+def test_particles_of_bodies_need_their_table(tmp_path, record_run):
+    def state_at(time):
+        return {**random_state(20, 2), "grain": np.arange(20) - 10}
+
+    record_run(tmp_path / "run", state_at=state_at)
+    snapshot = load(tmp_path / "run")[0]
+    for read in (lambda: snapshot.grains, snapshot.overlaps):
+        with pytest.raises(UserError, match=r'000000.vtkhdf: "Grains" is missing'):
+            read()

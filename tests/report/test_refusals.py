@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+import h5py
 import pytest
 from tests.hostile_hdf5 import HARMS, spoil
 
@@ -58,6 +59,21 @@ def test_no_run(tmp_path, capsys):
 def test_a_damaged_file(drawn_flow, capsys, file, text):
     (drawn_flow / file).write_text(text, encoding="latin-1")
     refused(capsys, drawn_flow)
+
+
+@pytest.mark.parametrize("file", ["summary.json", "provenance.json", "trust.json"])
+def test_a_damaged_file_is_told_before_figures_are_drawn(flow_folder, capsys, file):
+    (flow_folder / file).write_text("[")
+    assert file in refused(capsys, flow_folder)
+    assert not (flow_folder / "figures").exists()
+
+
+def test_a_snapshot_without_its_bodies_is_named(map_run, capsys):
+    file = map_run / "snapshots" / "000002.vtkhdf"
+    with h5py.File(file, "a") as snapshot:
+        del snapshot["Grains"]
+    said = refused(capsys, map_run)
+    assert f'{file}: "Grains" is missing, the table of the bodies' in said
 
 
 @pytest.mark.parametrize("harm", HARMS)

@@ -76,7 +76,7 @@ HOSTILE = {
     "fewer": (put("VTKHDF/PointData/Density", np.ones(3)), "must hold"),
     "body": (put("VTKHDF/PointData/Body", 77, 0), "index is outside"),
     "a link": (put("VTKHDF/PointData/Mass", h5py.ExternalLink("x.h5", "/y")), "is a link"),
-    "no grains": (put("Grains", None), "holds no bodies"),
+    "no grains": (put("Grains", None), '"Grains" is missing'),
     "turned": (put("Grains/Orientation", 7.0, (0, 0)), "is no quaternion"),
     "larger": (put("Grains/Diameter", 7.0, 0), "bodies of another size"),
 }

@@ -74,12 +74,23 @@ def _field(file: Hdf5File, field: ParticleField, name: str, count: int, dim: int
 def read_grains(
     path: Path, dim: int, fields: Sequence[ParticleField] = GRAIN_FIELDS
 ) -> dict[str, np.ndarray]:
-    """Columns of the table of bodies that move, by their keys; empty where there are none."""
+    """Columns of the table of bodies that move, by their keys; empty where there are none.
+
+    Raises UserError where the table is missing.
+    """
     with _snapshot_file(path) as file:
         if GRAINS not in file:
+            _check_no_bodies(file)
             return {}
         count = len(file.dataset(f"{GRAINS}/Position"))
         return {f.key: _field(file, f, f"{GRAINS}/{f.file_name}", count, dim) for f in fields}
+
+
+def _check_no_bodies(file: Hdf5File) -> None:
+    """Raise UserError where particles of a file without a table of bodies belong to one."""
+    name = f"{ROOT}/PointData/Grain"
+    if name in file and (file.numbers(name) >= 0).any():
+        raise file.error(GRAINS, "is missing, the table of the bodies that its particles are of")
 
 
 def _decoded(file: Hdf5File, name: str, field: ParticleField, count: int, dim: int) -> np.ndarray:

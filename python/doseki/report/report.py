@@ -77,9 +77,9 @@ def write_report(
     run = load(directory)
     path = output or run.folder.report
     _check_free(path)
+    before, texts = _before(run), _texts(run)  # first: what is damaged is told at once
     notes = _draw_missing(run)
     terrain = _terrain(run, notes)
-    before, texts = _before(run), _texts(run)
     room = size_mb * MB - len(page("", [before, texts], Scene({})).encode("utf-8")) - SPARE
     pictures, album = _pictures(run, room)
     notes += album.notes

@@ -37,6 +37,7 @@ LARGEST_EXCESS = 0.5  # of a correction of gradients over 1
 LEAST_DENSITY = 0.98  # rho0
 EDGE_NOISE, EDGE_WHOLE = 0.15, 0.3  # share of what slides past an edge, Eq. (133)
 LARGEST_TURN = 0.3  # of a wall's normal, Eq. (130)
+LEAST_WEIGHT = 1e-9  # of fluid that a wall meets
 LEAST_FILLED = 0.05  # of a rough wall's kernel
 SHIFT_STRENGTH, SHIFT_MOST = 80.0, 10.0
 SHIFT_FASTEST = 0.05  # over the sound speed
@@ -163,6 +164,7 @@ class FlowReference:
         self.shift = np.zeros((n, self.dim))
         self.B = np.tile(np.eye(self.dim), (n, 1, 1))
         self.damping = np.zeros(n)
+        self.bed_shear = np.zeros_like(self.v_w)
         self.stressed = options.viscosity == "stress"
 
     def _take_fluid(self, particles: Any, materials: Sequence[Mapping[str, Any]]) -> None:
@@ -218,9 +220,8 @@ class FlowReference:
         """Pressures and viscosities as pairs see them; what walls and fluid make of each other."""
         p = self._pressure(self.surface)
         self.p = p + self.damping
-        molecular = self._molecular_viscosity()
-        self.resolved = self._resolved_strain(molecular)
-        self.mu = molecular + self.rho * self._eddy_viscosity()
+        self.mu = self._molecular_viscosity() + self.rho * self._eddy_viscosity()
+        self.resolved = self._resolved_strain(self.mu)
         return self._contact()
 
     def _pressure(self, surface: np.ndarray) -> np.ndarray:
@@ -305,11 +306,13 @@ class FlowReference:
             here = (column == key).all(axis=1)
             bed = (of_wall == key).all(axis=1) & (self.normal[:, -1] >= 0.5)
             top = (self.x_w[:, -1] + self.depth)[bed]
-            top = top[top < self.x[here, -1].mean()]
+            below = top < self.x[here, -1].mean()
+            top = top[below]
             if len(top):
                 d = self.volume[here].sum() / width.prod()
                 z = np.clip(self.x[i, -1] - top.max(), 0, d)
-                length[i] = max(least, KAPPA * z * np.sqrt(1 - z / d))
+                z0 = self.ks[np.flatnonzero(bed)[below]].max() / 30
+                length[i] = max(least, KAPPA * (z + z0) * np.sqrt(1 - z / d))
         return length
 
     # Walls
@@ -341,7 +344,8 @@ class FlowReference:
         sliding = v - np.where(pulled, 0, dot(v, foot))[..., None] * foot
         mu = (self.mu[:, None] * factor)[..., None]
         layer = 0.1 * self.rho[:, None] * np.linalg.norm(sliding, axis=-1) * dp
-        shear = factor * self.mu[:, None] / (self.mu[:, None] + layer)
+        resolved = self.mu[:, None] / (self.mu[:, None] + layer)
+        steep = (1 - self.stick * resolved) * in_front * r_n / np.maximum(r_n - depth, dp / 4)
         scale = -2 * self.V_w * pairs.F
         across_wall = self._stress_across_walls(foot, in_front)
         sheared = mu * sliding + across_wall[..., None] * foot
@@ -355,7 +359,9 @@ class FlowReference:
             "viscous_rate": scale * (mu[..., 0] + 2 * mu_across),
             "sliding_dot_r": 2 * dot(past_edge, corrected_r),
             "sliding_size": 2 * np.linalg.norm(v, axis=-1) * pairs.r,
-            "jump": shear[..., None] * sliding + 2 * (v - sliding),
+            "jump": (resolved * factor)[..., None] * sliding
+            + steep[..., None] * self.bed_shear
+            + 2 * (v - sliding),
             "power": scale * (dot(sheared, v) - extra * dot(across, v)),
         }
 
@@ -422,6 +428,9 @@ class FlowReference:
         z = np.maximum((share * contact["height"]).sum(axis=0) / filled, ks / 30)
         rho = (share * self.rho[:, None]).sum(axis=0) / filled
         turbulent = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * np.linalg.norm(u, axis=1)
+        steep = 30 * z / ks / ((1 + 30 * z / ks) * np.log(1 + 30 * z / ks))
+        meets = (self.ks > 0) & (weight > LEAST_WEIGHT)
+        self.bed_shear = np.where(meets, steep, 0)[:, None] * u
         mu = (share * self.mu[:, None]).sum(axis=0) / filled
         height = np.maximum((share * contact["height"]).sum(axis=0) / filled, 0.25 * dp)
         viscous = self.stick * mu / height

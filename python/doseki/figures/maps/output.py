@@ -26,6 +26,7 @@ from ...record.beginning import refuse_links
 from ...record.reader import Run, load
 from ...record.writer import jsonable
 from ...util.files import write_whole_text
+from ...util.foreign import REMEDY
 from ..saving import Drawn
 from .drawing import draw_map, draw_profile
 from .structures import Structures
@@ -51,6 +52,7 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
     """
     run = load(directory)
     refuse_links(run.folder)
+    told_of = _told_beside(run)  # first: what is damaged is told at once
     maps, bed, said = _maps(run, options)
     profile = None
     if options.path is not None:
@@ -65,9 +67,8 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
         title = str(run.scenario.get("title", ""))
         drawn.add(run.folder.maps / "profile.png", lambda: draw_profile(profile, title))
     settings = MapSettings.of(run.scenario.get("maps"), run.scenario["dp"])
-    found = replace(
-        runout(maps, bed, settings.speed_deposit), beside_deposit=_beside(run, bed, settings)
-    )
+    beside = told_of if _keeps_maps(run) else _beside(run, bed, settings)
+    found = replace(runout(maps, bed, settings.speed_deposit), beside_deposit=beside)
     told = [*runout_lines(found, settings), *(path_lines(profile) if profile is not None else ())]
     write_whole_text(run.folder.maps / "runout.json", json.dumps(jsonable(asdict(found))) + "\n")
     return [*said, *map(str, drawn.pictures), *told, *(f"warning: {t}" for t in drawn.remarks)]
@@ -105,17 +106,28 @@ def _maps(run: Run, options: MapOptions) -> tuple[dict[str, Raster], Raster, lis
     return maps, bed, said
 
 
-def _beside(run: Run, bed: Raster, settings: MapSettings) -> Mapping[str, float] | None:
-    """What is not in the deposit: as a run that kept maps told, else by its last snapshot."""
-    if run.scenario.get("maps") is not None:
-        return (run.summary.get("runout") or {}).get("beside_deposit")
+def _keeps_maps(run: Run) -> bool:
+    """Whether a run keeps maps while it goes on."""
+    return run.scenario.get("maps") is not None
+
+
+def _told_beside(run: Run) -> Mapping[str, float] | None:
+    """What is not in the deposit of a run that kept maps, as it told."""
+    said = run.summary.get("runout") or {}
+    if not isinstance(said, dict):
+        raise UserError(f"{run.folder.summary}: is damaged: runout must be a table; {REMEDY}")
+    return said.get("beside_deposit") if _keeps_maps(run) else None
+
+
+def _beside(run: Run, bed: Raster, settings: MapSettings) -> Mapping[str, float]:
+    """What is not in the deposit by the last snapshot."""
     state = flowing_in(run, run[-1])
     return beside_deposit(bed, state, settings.speed_deposit, settings.dry_below)
 
 
 def map_makers(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """The name of each map that a run has kept, and what draws it or raises NothingToDrawError."""
-    if run.scenario.get("maps") is None or not (maps := read_maps(run.folder)):
+    if not _keeps_maps(run) or not (maps := read_maps(run.folder)):
         return
     bed = map_grid(run.folder, MapSettings.of(run.scenario["maps"], run.scenario["dp"]))
     yield from _makers(run, maps, bed)
