@@ -9,7 +9,7 @@
 #include "bodies/fragments/dust.hpp"
 #include "bodies/fragments/point_faces.hpp"
 #include "bodies/fragments/rigid_motion.hpp"
-#include "bodies/particles/flow_on_points.hpp"
+#include "bodies/loads/flow_on_points.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
 #include "ranks/exchange.hpp"

@@ -5,7 +5,7 @@
 #include "base/array.hpp"
 #include "base/error.hpp"
 #include "base/matrix.hpp"
-#include "bodies/particles/flow_on_points.hpp"
+#include "bodies/loads/flow_on_points.hpp"
 #include "bodies/rigid_bodies.hpp"
 #include "model/domain.hpp"
 #include "model/particles.hpp"
