@@ -109,6 +109,10 @@ BODY = "[body.b]\nshape = 'box'\nmaterial = 'water'\nmin = [0, 0]\nmax = [1, 1]\
         (BODY.replace("'water'", "'watr'"), ['"watr" is not a known material', "water?"]),
         (BODY + "count = 101", ["body.b.count = 101: the box holds only 100 particles"]),
         (BODY + "count = 1.5", ["must be a whole number"]),
+        (
+            BODY.replace("max = [1, 1]", "max = [1, -1]"),
+            ["body.b.max = [1.0, -1.0]", "-1 m along y is not above 0 m of min"],
+        ),
         (BODY + "dp = 3", ["less than one particle thick"]),
         (BODY + "velocity = [1]", ["body.b.velocity: a 2-D run needs 2 entries here, not 1"]),
         (BODY + "velocity = [1, 'fast']", ['velocity.1 = "fast" is not a speed']),

@@ -31,6 +31,7 @@ class BoxBody(Lattice[Box]):
 
     def lattice(self) -> tuple[np.ndarray, np.ndarray]:
         """See Lattice."""
+        self._expect_sides()
         counts, low, high = self.counts, self.table.min, self.table.max
         if not (counts >= 1).all():
             raise self.error(
@@ -55,11 +56,21 @@ class BoxBody(Lattice[Box]):
 
     def group(self) -> Group:
         """See Body."""
+        self._expect_sides()
         low, high = self.table.min, self.table.max
-        if not np.all(high > low):
-            raise self.error(": every entry of min must be below that of max", "max")
         centre = self.turned(0.5 * (low + high)[None, :], low)[0]
         return self.single_group(box_shape(high - low), centre, self.orientation)
+
+    def _expect_sides(self) -> None:
+        """Raise UserError where an entry of min is not below that of max."""
+        low, high = self.table.min, self.table.max
+        if (wrong := np.flatnonzero(~(high > low))).size:
+            axis = "xyz"[wrong[0]]
+            raise self.error(
+                f".max = {high.tolist()}: {high[wrong[0]]:g} m along {axis} is not above "
+                f"{low[wrong[0]]:g} m of min; every entry must be",
+                "max",
+            )
 
     def contact_shape(self) -> Group | None:
         """See Body."""
