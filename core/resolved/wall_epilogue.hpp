@@ -288,8 +288,9 @@ private:
         return tangential((1.0 / sums.weight) * sums.velocity, state_.wall.normal[p]);
     }
 
-    /// On a particle of the first row that is near enough to the fluid, Eq. (39). Where fluid
-    /// sticks to the bed as well, its viscous stress there is a part of this one.
+    /// On a particle of the first row that is near enough to the fluid, Eq. (39), and the slope of
+    /// the law for all rows, Eq. (183). Where fluid sticks to the bed as well, its viscous stress
+    /// there is a part of this one.
     DOSEKI_DEVICE_FN Vec<double, D> bed_drag(std::size_t p, const WallAccumulators<double, D>& sums,
                                              const WallCondition& wall) const {
         const bool is_first = state_.wall.depth[p] < model_.options.flow.dp;
@@ -298,12 +299,14 @@ private:
         if (!(sums.weight > min_weight)) return {};
         const Vec<double, D> along = sliding(p, sums);
         const double rho = sums.density / sums.weight, height = sums.height / sums.weight;
-        shear = bed_slope(height, wall.ks) * along;
-        if (!is_first || !(sums.weight > min_filled)) return {};
         const double turbulent = bed_friction(rho, height, wall.ks) * std::sqrt(dot(along, along)),
                      viscosity = wall.no_slip ? sums.viscosity / sums.weight : 0.0,
                      viscous = viscosity / std::max(height, 0.25 * model_.options.flow.dp);
-        return std::max(0.0, turbulent - viscous) * model_.spacing_power[D - 1] * along;
+        const double added = std::max(0.0, turbulent - viscous);
+        if (!(added > 0.0)) return {};
+        shear = (added / turbulent * bed_slope(height, wall.ks)) * along;
+        const bool bears = is_first && sums.weight > min_filled;
+        return (bears ? added * model_.spacing_power[D - 1] : 0.0) * along;
     }
 
     /// Eqs. (92) and (93). Each row takes the friction of the force that the fluid presses on it

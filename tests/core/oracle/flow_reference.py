@@ -429,12 +429,14 @@ class FlowReference:
         rho = (share * self.rho[:, None]).sum(axis=0) / filled
         turbulent = rho * (KAPPA / np.log(1 + 30 * z / ks)) ** 2 * np.linalg.norm(u, axis=1)
         steep = 30 * z / ks / ((1 + 30 * z / ks) * np.log(1 + 30 * z / ks))
-        meets = (self.ks > 0) & (weight > LEAST_WEIGHT)
-        self.bed_shear = np.where(meets, steep, 0)[:, None] * u
         mu = (share * self.mu[:, None]).sum(axis=0) / filled
         height = np.maximum((share * contact["height"]).sum(axis=0) / filled, 0.25 * dp)
         viscous = self.stick * mu / height
-        drag = np.where(rough, np.maximum(turbulent - viscous, 0), 0)[:, None] * u
+        added = np.maximum(turbulent - viscous, 0)
+        meets = (self.ks > 0) & (weight > LEAST_WEIGHT) & (added > 0)
+        share = np.where(meets, added, 0) / np.where(meets, turbulent, 1)
+        self.bed_shear = (share * steep)[:, None] * u
+        drag = np.where(rough, added, 0)[:, None] * u
         drag *= dp ** (self.dim - 1)
         self.wall_force += drag
         self.power_to_rough_walls = dot(drag, self.v_w).sum()

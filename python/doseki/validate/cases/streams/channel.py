@@ -10,7 +10,7 @@ import numpy as np
 from ....scenario.hydrographs import normal_depth
 from ...case import Case, Control, Criterion, Curve, Outcome, Value, between, within
 from ...estimators import mean_velocity
-from ...running import Running, State, chosen, moving
+from ...running import Running, chosen, moving
 
 G, SLOPE, RATE = 9.81, math.radians(20), 0.03  # m2/s: 3 L/s through a width of 0.1 m
 PLANE, GRAINS = 4.7e-3, 10e-3  # m, ks of a plane bed and of one of 10 mm grains
@@ -25,11 +25,15 @@ def keulegan(ks: float) -> tuple[float, float]:
     return depth, RATE / depth
 
 
-def passing(state: State, low: float, high: float) -> float:
-    """Discharge per width in a reach, m2/s: sum of m u over rho and the length of the reach."""
-    x = state["position"][:, 0]
-    there = chosen(state, (x > low) & (x < high))
-    return float(-np.sum(there["mass"] * there["velocity"][:, 0])) / 1000 / (high - low)
+def passing(run: Running, low: float, high: float) -> float:
+    """Discharge per width in a reach, m2/s: sum of m u over rho and the length of the reach.
+
+    Particles go with their velocity and with what shifts them.
+    """
+    wide = [math.inf] * (run.scenario.dim - 1)
+    there = moving(run.simulation.sample([low, *(-x for x in wide)], [high, *wide]))
+    speed = there["velocity"][:, 0] + there["shift"][:, 0]
+    return float(-np.sum(there["mass"] * speed)) / 1000 / (high - low)
 
 
 def flow(ks: float, particles: float, *overrides: str) -> Outcome:
@@ -49,7 +53,7 @@ def flow(ks: float, particles: float, *overrides: str) -> Outcome:
     for last in map(moving, run.sampled(times)):
         near = chosen(last, last["position"][:, 0] < 0.4 * length)
         speeds.append(-mean_velocity(near))
-        rates.append(passing(last, 0.1 * length, 0.4 * length))
+        rates.append(passing(run, 0.1 * length, 0.4 * length))
     x, u = last["position"][:, 0], -last["velocity"][:, 0]
     reaches = np.linspace(0, length, 21)
     mean = [float(u[(x >= a) & (x < b)].mean()) for a, b in pairwise(reaches)]
