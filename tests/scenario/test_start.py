@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from doseki.errors import UserError
+from doseki.record.particles import FIXED
 from doseki.running.runner import run_scenario
 from doseki.scenario.load import load_scenario
 from doseki.scenario.start import start_text, write_start
+from doseki.scene.build import build_bodies
 
 KINDS = pytest.mark.parametrize("dry", [False, True], ids=["wet", "dry"])
 
@@ -22,6 +25,15 @@ def test_a_new_scenario_runs(tmp_path, dim, dry):
     assert scenario.dim == dim
     summary = run_scenario(scenario, tmp_path / "run")
     assert summary["time"] == pytest.approx(0.002)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_floor_under_dry_grains_is_a_small_part_of_the_work(tmp_path, dim):
+    file = tmp_path / "mine.toml"
+    write_start(file, dim, dry=True)
+    particles, _ = build_bodies(load_scenario(str(file)))
+    assert np.sum(particles.motion == FIXED) < 5000
+    assert np.sum(particles.motion != FIXED) >= 200
 
 
 @KINDS
