@@ -42,7 +42,6 @@ struct Fragments {
 template <int D>
 struct ShownPoint {
     Vec<double, D> place, normal, area, acceleration, velocity;
-    Mat<double, D> edge_normals;
     double depth;
 };
 

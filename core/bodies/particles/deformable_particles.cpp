@@ -7,7 +7,8 @@
 namespace doseki {
 namespace {
 
-/// The square of how far a particle went.
+/// The square of how far a particle went. While a body deforms it has no edges: water that strikes
+/// these would shake the points there.
 template <int D>
 struct PlaceShown {
     Particles<D>& particles;
@@ -23,7 +24,7 @@ struct PlaceShown {
         particles.wall.bend[p] =
             turned_bend(particles.wall.bend[p], particles.wall.normal[p], point.normal);
         particles.wall.normal[p] = point.normal, particles.wall.depth[p] = point.depth;
-        particles.wall.area[p] = point.area, particles.wall.edge_normals[p] = point.edge_normals;
+        particles.wall.area[p] = point.area, particles.wall.edge_normals[p] = {};
         particles.acceleration[p] = point.acceleration;
         if (dt > 0.0) particles.velocity[p] = (1.0 / dt) * step;
         return dot(step, step);
@@ -77,7 +78,7 @@ double DeformableBodies<D>::place(Particles<D>& particles, const Domain<D>& doma
     solids_.stepped().for_each([&](std::size_t k) {
         ShownPoint<D>& point = shown_[k];
         point.place = solids_.x[k], point.normal = normal(k), point.depth = faces_.depth[k];
-        point.area = seen_area(k), point.edge_normals = edge_normals(k);
+        point.area = seen_area(k);
         point.acceleration = acceleration_[k];
     });
     const PlaceShown<D> place{particles, shown_, domain, dt};

@@ -11,7 +11,7 @@ from ..scenario.kinematics import BREAKABLE, ELASTIC, FIXED, SINGLE, Kinematics
 from ..scenario.model import Scenario
 from .meshes.evening import evened
 from .periodic import nearest_image, periods, wrapped
-from .shapes import Ball, Convex, Edges, MeshShape, Particles, Shape
+from .shapes import Ball, Convex, Edges, MeshShape, Particles, Shape, no_edges
 
 WALL_DEPTH = 4.0  # spacings below the sides of a wall, within which particles act on a flow
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
@@ -137,7 +137,8 @@ def _own_particles(group: Group, shape: Shape, spacing: float) -> Particles:
     if group.single:
         return shape.single()
     if group.deforms:
-        return shape.elastic_particles(spacing)
+        own = shape.elastic_particles(spacing)
+        return own if group.breakable else own._replace(edges=no_edges(*own.position.shape))
     if not isinstance(shape, Convex):
         return shape.particles(spacing)
     position, share = shape.filling(spacing)

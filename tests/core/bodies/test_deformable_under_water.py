@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -15,26 +13,17 @@ ELASTIC = (
     "body.block.kinematics=elastic", "body.block.damping=0.3",
     "material.stone.young_modulus=1e8", "material.stone.poisson_ratio=0.25",
 )  # fmt: skip
-BESIDE = """
-[body.beside]
-shape = "box"
-material = "stone"
-kinematics = "elastic"
-damping = 0.3
-min = ["= place + side/2", 0]
-max = ["= place + 1.5*side", "= side"]
-"""
 
 
-def lift(run: Running, time: float, body: str = "block") -> float:
+def lift(run: Running, time: float) -> float:
     """Of the water on a block at a time, over the weight of the water that it displaces."""
     state, gravity = run.advance(time), np.asarray(run.scenario.gravity)
-    force = state["force"][state["body"] == run.body_names.index(body)].sum(0)
+    force = state["force"][state["body"] == run.body_names.index("block")].sum(0)
     return float(-force @ gravity / (1000 * SIDE**run.scenario.dim * (gravity @ gravity)))
 
 
-def late_lift(run: Running, body: str = "block") -> float:
-    return float(np.mean([lift(run, time, body) for time in np.linspace(0.15, 0.3, 7)]))
+def late_lift(run: Running) -> float:
+    return float(np.mean([lift(run, time) for time in np.linspace(0.15, 0.3, 7)]))
 
 
 @pytest.mark.parametrize("given", [("across=16",), ("across=16", "tilt=20"), ("dim=3", "across=6")])
@@ -48,14 +37,6 @@ def test_the_film_of_a_soft_one_turns_with_its_face():
     """It sags by its own weight, and swings."""
     run = Running(str(BLOCK), *ELASTIC, "across=16", "material.stone.young_modulus=1e6")
     assert late_lift(run) == pytest.approx(1, abs=0.1)
-
-
-def test_blocks_side_by_side_have_theirs(tmp_path: Path):
-    path = tmp_path / "blocks.toml"
-    path.write_text(BLOCK.read_text(encoding="utf-8") + BESIDE, encoding="utf-8")
-    run = Running(str(path), *ELASTIC, "width=0.4", "place=0.15")
-    assert lift(run, 0.0) == pytest.approx(1, abs=0.05)
-    assert lift(run, 0.0, "beside") == pytest.approx(1, abs=0.05)
 
 
 def test_without_films_it_is_pressed_down():

@@ -87,7 +87,7 @@ class Convex:
         return position - share @ position, share
 
     def elastic_particles(self, dp: float) -> Particles:
-        """Those of a rigid body with equal shares.
+        """Those of a rigid body with equal shares, with the edges that they have while it is rigid.
 
         All lie inside: some of a rigid one may be outside by a part of dp.  In a sharp corner there
         are only those that others hold from more than one side.
