@@ -41,10 +41,6 @@ def above_a_slant(x):
     return x[:, -1] > 0.3 * SIDE + 0.5 * (x[:, 0] - SIDE)
 
 
-def above_a_steep_slant(x):
-    return x[:, -1] > 0.5 * SIDE + (x[:, 0] - 1.5 * SIDE)
-
-
 def above_teeth(x):
     """Two spacings high."""
     return x[:, -1] > SIDE / 2 + SIDE / 8 * (np.floor(8 * x[:, 0] / SIDE) % 2)
@@ -95,7 +91,6 @@ def uplift(run: Running, time: float, whole: float) -> np.ndarray:
         (above_a_slant, {}),
         (above_a_slant, {"tilt": 20}),
         (above_a_slant, {"tilt": 20, "across": 24}),
-        (above_a_steep_slant, {}),
         (above_teeth, {}),
         (upper, {"dim": 3, "across": 8}),
     ],
