@@ -146,20 +146,28 @@ def test_strength_inflows_and_outflows_carry_over(tmp_path, dim, precision):
         assert later[key] == pytest.approx(since, rel=1e-9), key
 
 
-def test_it_is_near_the_run_that_went_on(tank, later):
-    """A snapshot has no rates, averages, springs or sudden forces: later states differ a little."""
-    file = later("time = 0.02")
+@pytest.mark.parametrize(("films", "most", "off"), [("true", 0.05, 2e-4), ("false", 0.003, 1e-4)])
+def test_it_is_near_the_run_that_went_on(tmp_path, films, most, off):
+    """A snapshot has no rates, averages, springs or sudden forces: later states differ a little.
+
+    Nor has it the pressure of the film below the soft block, which is at rest at the start.
+    """
+    text = TANK.replace("speed_max = 2\n", f"speed_max = 2\nuplift = {films}\n")
+    went = run(text, tmp_path / "tank.toml")
+    file = tmp_path / "later.toml"
+    later = text.replace("time_max = 0.03", "time_max = 0.05")
+    file.write_text(continued(later, went.directory, "time = 0.02"))
     simulation, _ = build_simulation(load_scenario(file))
     simulation.advance(limit=0.03, pause=0.03, max_steps=10**6)
-    state, went_on = simulation.state(), tank.at(0.03)
+    state, went_on = simulation.state(), went.at(0.03)
     free = state["motion"] == FREE
     assert free.sum() == (went_on["motion"] == FREE).sum()
     apart = state["velocity"][free] - went_on["velocity"][went_on["motion"] == FREE]
     scale = went_on["velocity"][went_on["motion"] == FREE]
-    assert np.sqrt((apart**2).sum() / (scale**2).sum()) < 0.03
+    assert np.sqrt((apart**2).sum() / (scale**2).sum()) < most
     grains = simulation.grains()
     centre = grains["centre"][~grains["fixed"]]
-    assert np.abs(centre - went_on.grains["position"]).max() < 1e-4
+    assert np.abs(centre - went_on.grains["position"]).max() < off
 
 
 def test_it_is_mirrored_with_the_scene(tank, tmp_path):

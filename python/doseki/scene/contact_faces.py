@@ -44,12 +44,12 @@ def contact_faces(
     fixed = np.flatnonzero(first_row & (particles.motion == FIXED))
     surface = particles.position[fixed] + depth[fixed, None] * normal[fixed]
     face[fixed[~_is_covered(scenario, particles, surface, normal[fixed])]] = FIXED_FACE
-    body = _body_of_each(bodies)
+    body, place = _body_of_each(bodies), _at_rest(particles, bodies)
     of_body = (depth < 2 * scenario.dp) & (body >= 0)
     number = FIRST_BODY + body[of_body]
     face[of_body] = np.where(first_row[of_body], number, -number)
     volume = particles.mass / particles.density
-    for members, offset in _members(scenario, particles, body):
+    for members, offset in _members(scenario, place, body):
         area[members] = _Pairs.of(offset, scenario).areas(volume[members])
     return ContactFaces(face, area)
 
@@ -77,16 +77,25 @@ def _body_of_each(bodies: Bodies) -> np.ndarray:
     return body
 
 
+def _at_rest(particles: ParticleSet, bodies: Bodies) -> np.ndarray:
+    """Positions (N, dim), those of bodies that deform where these have no stress, m."""
+    place = particles.position.copy()
+    for elastic in bodies.elastic:
+        if not elastic.rigid_first:
+            place[elastic.members] = elastic.rest
+    return place
+
+
 def _members(
-    scenario: Scenario, particles: ParticleSet, body: np.ndarray
+    scenario: Scenario, place: np.ndarray, body: np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Of each body: indices of its particles, and their positions about its centre, m."""
+    """Of each body: indices of its particles, and their places about the first of them, m."""
     bound = np.flatnonzero(body >= 0)
     order = bound[np.argsort(body[bound], kind="stable")]
     ends = np.flatnonzero(np.diff(body[order])) + 1
     period = periods(scenario)
     for members in np.split(order, ends) if len(order) else []:
-        apart = particles.position[members] - particles.position[members[0]]
+        apart = place[members] - place[members[0]]
         yield members, nearest_image(apart, period)
 
 
