@@ -256,10 +256,11 @@ SCATTERS = "places scatter from 0.80 to 1.03 at 10 across, with a mean of 0.92"
 def test_a_block_that_has_fallen_on_a_tilted_bed_has_its_friction(across):
     """The mean over places on the lattice of the water, once it lies on the bed.
 
-    The coarser the lattice, the more they scatter: at 8 across by 0.05, in the mean of 8 by 0.016.
+    The coarser the lattice, the more they scatter: at 8 across by 0.05, in the mean of 8 by 0.016;
+    at 16 across by 0.03, in the mean of 7 by 0.01.
     """
     slides = "width=0.8", "fall=0.02", "time_max=1.0"
-    places = np.linspace(0.142, 0.156, 8) if across < 16 else (0.146, 0.15, 0.154)
+    places = np.linspace(0.142, 0.156, 8) if across < 16 else np.linspace(0.143, 0.157, 7)
     friction = [sliding(across, *slides, f"place={place:.3f}") for place in places]
     assert np.mean(friction) == pytest.approx(1, abs=0.06)
 
