@@ -141,7 +141,7 @@ def test_what_is_doubtful_before_a_run_stands_in_its_summary(tmp_path, stopped):
         assert load(folder).summary["status"] == "stopped"
         resume_run(folder, (), RunOptions(1))
     warnings = load(folder).summary["warnings"]
-    for words in ("flows too slowly", "a wall of 1 layer has one face", "for Mach 0.1 set"):
+    for words in ("several per cent off", "a wall of 1 layer has one face", "for Mach 0.1 set"):
         assert sum(words in each for each in told) == 1
         assert sum(words in each for each in warnings) == 1
         assert words in (folder / "summary.txt").read_text()

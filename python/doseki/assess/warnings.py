@@ -64,7 +64,7 @@ class ShallowFlow(Finding):
         depth = "largest depth, upright" if self.on_slope else "depth"
         return (
             f"{self.place}: {self.across:.2g} particles over its {depth}; below {MIN_ACROSS_FLOW}"
-            f" it flows too slowly: dp = {no_more_than(enough)} would do"
+            f" its speed is several per cent off: dp = {no_more_than(enough)} would do"
         )
 
 
@@ -292,10 +292,11 @@ def _mach(scenario: Scenario, state: State) -> Iterator[Finding]:
 def _films(scenario: Scenario, state: State) -> Iterator[Finding]:
     """Doubts about water between bodies that move."""
     grains, liquids = _rigid_bodies(scenario, state), scenario.liquids
+    whole = [name for name in scenario.body if scenario.kinematics_of(name).is_whole]
+    if scenario.scheme == RESOLVED and whole and liquids and not scenario.uplift:
+        yield NoUplift("uplift")
     if not len(grains) or not liquids:
         return
-    if not scenario.uplift:
-        yield NoUplift("uplift")
     for name, table in scenario.body.items():
         if scenario.dim == 2 and isinstance(table, Grains) and _closes_pores(table):
             yield ClosedPores(f"body.{name}.wetted")

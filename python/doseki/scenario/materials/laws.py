@@ -55,20 +55,19 @@ def _friction_falls(numbers: Mapping[str, float]) -> str | None:
     return None
 
 
-def _plastic(numbers: Mapping[str, float], rate: float) -> float:
-    """Viscosity, Pa s, that the yield stress makes at a rate of strain, 1/s."""
-    return numbers["yield_stress"] / rate
-
-
 def _power_law(numbers: Mapping[str, float], rate: float) -> float:
-    """Viscosity, Pa s, of eq. 64 without its bounds."""
+    """Viscosity, Pa s, of eq. 64 without its upper bound."""
+    yields = -math.expm1(-numbers["regularisation"] * rate)
     exponent = (numbers["flow_index"] - 1) * math.log(rate)
-    return _plastic(numbers, rate) + numbers["consistency"] * math.exp(min(exponent, 100.0))
+    flow = numbers["consistency"] * math.exp(min(exponent, 100.0))
+    return numbers["yield_stress"] * yields / rate + flow
 
 
 def _roots(numbers: Mapping[str, float], rate: float) -> float:
-    """Viscosity, Pa s, of eq. 66 without its bounds."""
-    return (_plastic(numbers, rate) ** 0.5 + numbers["casson_viscosity"] ** 0.5) ** 2
+    """Viscosity, Pa s, of eq. 66 without its upper bound."""
+    yields = -math.expm1(-((numbers["regularisation"] * rate) ** 0.5))
+    plastic = (numbers["yield_stress"] / rate) ** 0.5 * yields
+    return (plastic + numbers["casson_viscosity"] ** 0.5) ** 2
 
 
 def _is_cut(
