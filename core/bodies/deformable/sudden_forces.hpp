@@ -108,7 +108,7 @@ private:
 
     /// Of displacements [m]: small for strain, and large for the rounding of coordinates.
     static double amplitude(double spacing, double farthest) {
-        constexpr double small = 1e-6, large = 1e-3, digits = 1e5;
+        constexpr double small = 1e-4, large = 1e-3, digits = 1e7;
         const double rounding = std::numeric_limits<double>::epsilon() * farthest;
         return std::clamp(digits * rounding, small * spacing, large * spacing);
     }
