@@ -24,7 +24,7 @@ template <int D>
 auto Bodies<D>::part(double time, double dt, const Course& course) -> Parted {
     const Fragments<D> fragments = deformable.divide(dt, pair_area_);
     if (!fragments.any()) return {};
-    new_faces_ = true;
+    new_faces_ |= deformable.have_faces();
     auto origin = [&](std::int32_t parent) -> Origin {
         return {numbers_++, deformable_origins_[static_cast<std::size_t>(parent)].number, time};
     };

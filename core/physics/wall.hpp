@@ -95,7 +95,7 @@ DOSEKI_DEVICE_FN inline double bed_friction(double rho, double z, double ks) {
     return rho * root * root;
 }
 
-/// Slope of that law times the height, over the speed there: u*/kappa z/(z + z0) = z du/dz.
+/// Slope of that law times the height, over the speed there: z/((z + z0) ln(1 + z/z0)).
 DOSEKI_DEVICE_FN inline double bed_slope(double z, double ks) {
     const double height = 30.0 * std::max(z, ks / 30.0) / ks;
     return height / ((1.0 + height) * std::log1p(height));

@@ -50,19 +50,16 @@ public:
     FlowDepth(const Particles<D>& particles, std::size_t fluid, const ColumnsOfPlan<D>& plan,
               const Z0& z0, const Ranks& ranks)
         : domain_(plan.domain), up_(plan.up) {
-        const Domain<D>& domain = domain_;
-        const Upwards<D>& up = up_;
-        const double width = plan.width;
         for (int b = 0; b < D - 1; ++b) {
             const int a = of_plan(b);
-            const double columns = std::max(1.0, std::floor(domain.length(a) / width));
-            width_[b] = domain.periodic[a] ? domain.length(a) / columns : width;
-            from_[b] = domain.periodic[a] ? domain.low[a] : 0.0;
+            const double columns = std::max(1.0, std::floor(domain_.length(a) / plan.width));
+            width_[b] = domain_.periodic[a] ? domain_.length(a) / columns : plan.width;
+            from_[b] = domain_.periodic[a] ? domain_.low[a] : 0.0;
         }
         for (std::size_t p = 0; p < fluid; ++p) {
             Column& column = columns_[key(particles.position[p])];
             column.volume += particles.mass[p] / particles.density[p];
-            column.height += up.height(particles.position[p]);
+            column.height += up_.height(particles.position[p]);
             column.count += 1.0;
         }
         merge(ranks, [](Column& column, const Column& part) {
@@ -71,10 +68,10 @@ public:
         for (std::size_t p = fluid; p < particles.size(); ++p) {
             const auto found = columns_.find(key(particles.position[p]));
             if (found == columns_.end() || particles.is_bound(p) ||
-                up.height(particles.wall.normal[p]) < 0.5)
+                up_.height(particles.wall.normal[p]) < 0.5)
                 continue;
             Column& column = found->second;
-            const double top = up.height(particles.position[p]) + particles.wall.depth[p];
+            const double top = up_.height(particles.position[p]) + particles.wall.depth[p];
             if (top < column.height / column.count)
                 column.bed = std::max(column.bed, top), column.z0 = std::max(column.z0, z0(p));
         }

@@ -105,7 +105,7 @@ private:
         }
         record.g_normal = record.faces * (state.acceleration[p] - model.options.gravity);
         record.bend = walls.bend[p];
-        record.traction = {},
+        record.traction = {};
         record.shear = state.has_rough_beds ? state.bed_shear[p] : Vec<double, D>{};
         record.volume = state.is_bound(p) ? state.mass[p] / state.density[p]
                                           : (1.0 - walls.cut[p]) * model.spacing_power[D];

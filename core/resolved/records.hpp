@@ -48,7 +48,7 @@ struct WallFields {
     Vec<T, D> g_normal;  // of each, see wall_excess_pressure
     Sym<T, D> bend;      // of the surface, see WallState
     Vec<T, D> traction;  // friction of a bed on a fluid particle over V_i W
-    Vec<T, D> shear;     // of the law of a rough bed: u*/kappa, along the flow [m/s]
+    Vec<T, D> shear;     // see ResolvedState::bed_shear
     T volume;
     T no_slip;          // 1: fluid sticks to it; 0: what friction there is comes from the wall pass
     T inverse_density;  // of a body that moves, else 0

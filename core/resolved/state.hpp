@@ -32,8 +32,8 @@ struct ResolvedState : Particles<D> {
     FluidField<double> mean_pressure;     // over a time, where friction depends on it [Pa]
     FluidField<double> damping_pressure;  // see physics/viscosity.hpp [Pa]
     bool has_rough_beds;                  // without, the field below stays empty
-    WallField<Vec<double, D>>
-        bed_shear;          // u*/kappa of the law of a rough bed, along the flow [m/s]
+    /// Of the law of a rough bed, as far as it adds to viscosity: slope times height [m/s].
+    WallField<Vec<double, D>> bed_shear;
     bool has_voellmy_beds;  // without, the fields below stay empty
     /// Of wall particles of Voellmy's beds: stretch of the spring that holds what does not slide.
     WallField<Vec<double, D>> bed_slip;  // [m]

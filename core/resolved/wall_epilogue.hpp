@@ -75,8 +75,8 @@ private:
     static constexpr double min_weight = 1e-9;  // the same; less presses with nothing
 
     /// Share of what it would see of a plane face that a face sees at least where no air is: one of
-    /// a shape with edges, beside one that curves; and one of balls and of what breaks, where a
-    /// crack goes up and down by a spacing.
+    /// a shape with edges, beside one that curves; and one without, of balls and of what deforms,
+    /// or beside a crack, which goes up and down by a spacing.
     static constexpr double of_edged = 0.9, of_others = 0.6;
 
     DOSEKI_DEVICE_FN double volume(std::size_t p) const { return records_[p - first_wall_].volume; }

@@ -272,6 +272,7 @@ public:
     Mat<double, D> edge_normals(std::size_t k) const {
         return each_row(faces_.edge_normals[k], [&](const auto& n) { return turned(k, n); });
     }
+    bool have_faces() const { return faces_.any(); }
     /// The surfaces as contacts have them.
     const DeformableSurfaces<D>& surfaces() const { return surfaces_; }
 

@@ -40,6 +40,10 @@ struct PointFaces {
                depth.size() == points && face.size() == points;
     }
 
+    /// Whether films may press on any.
+    bool any() const {
+        return std::ranges::any_of(face, [](std::int32_t of) { return of != Face::none; });
+    }
     /// The faces of each body have one number; of one without films none.
     Array<std::int32_t> numbers(std::span<const std::int32_t> body, std::size_t bodies) const {
         Array<std::int32_t> number(bodies, std::int32_t{Face::none});

@@ -46,12 +46,12 @@ struct MoveShown {
 
 template <int D>
 void DeformableBodies<D>::gather(const Particles<D>& particles, const Ranks& ranks) {
-    if (empty()) return;
+    if (!any_deforms()) return;
     flow_.assign(size(), {});
     bulk::for_each(particles.size(), FlowOnPoints<D>{particles, BodyKind::deformable, flow_});
     ranks.sum(numbers_of(flow_));
     for_each_particle(size(), [&](std::size_t k) { flow_force_[k] = flow_[k].force; });
-    wet();
+    if (have_faces()) wet();
     find_sudden_forces();
 }
 

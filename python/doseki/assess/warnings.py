@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -202,12 +202,13 @@ def findings(
     `of_scene` are those that came up when the scene was built; they come first.
     """
     names = dict(enumerate(body_names))
-    found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, state, names)]
-    found += [*_walls(scenario, state, names), *_roughness(scenario, state, names)]
-    found += [*_voellmy(scenario, state, names), *_gauges(scenario, state), *_mach(scenario, state)]
+    depths = flow_depths(scenario, state, names)
+    deepest = max(depths.values(), default=0.0)
+    found = [*of_scene, *_grains(scenario), *_flow_depth(scenario, depths)]
+    found += [*_walls(scenario, state, names), *_roughness(scenario, depths)]
+    found += [*_voellmy(scenario, depths), *_gauges(scenario, state), *_mach(scenario, state)]
     found += [*open_sides(scenario, state, names), *keys_without_effect(scenario, state, names)]
-    across = max(flow_depths(scenario, state, names).values(), default=0.0)
-    found += [*_films(scenario, state), *rheology_findings(scenario, across)]
+    found += [*_films(scenario, state), *rheology_findings(scenario, deepest)]
     return list(dict.fromkeys(found))
 
 
@@ -225,8 +226,8 @@ def _grains(scenario: Scenario) -> Iterator[Finding]:
         yield UnresolvedGrains("", across)
 
 
-def _flow_depth(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
-    for name, across in flow_depths(scenario, state, names).items():
+def _flow_depth(scenario: Scenario, depths: Mapping[str, float]) -> Iterator[Finding]:
+    for name, across in depths.items():
         if across < MIN_ACROSS_FLOW - 1e-6:
             on_slope = scenario.bed is not None and name not in scenario.inflow
             yield ShallowFlow(name, across, scenario.dp, on_slope)
@@ -248,8 +249,7 @@ def _walls(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[
             yield ThinWall(name, layers, needed, scenario.dp, faced)
 
 
-def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
-    depths = flow_depths(scenario, state, names)
+def _roughness(scenario: Scenario, depths: Mapping[str, float]) -> Iterator[Finding]:
     depth = min((across * scenario.dp for across in depths.values()), default=math.inf)
     rough = [(f"{'.'.join(keys)}.ks", wall.given("ks")) for keys, wall in scenario.walls.items()]
     rough += [(f"inflow.{name}.ks", inflow.ks) for name, inflow in scenario.inflow.items()]
@@ -258,13 +258,12 @@ def _roughness(scenario: Scenario, state: State, names: dict[int, str]) -> Itera
             yield LargeRoughness(place, ks, depth)
 
 
-def _voellmy(scenario: Scenario, state: State, names: dict[int, str]) -> Iterator[Finding]:
+def _voellmy(scenario: Scenario, depths: Mapping[str, float]) -> Iterator[Finding]:
     """Voellmy's law is one of a mass that slides as a whole."""
     beds = {keys: wall for keys, wall in scenario.walls.items() if wall.given("mu")}
     if not beds:
         return
-    depths = flow_depths(scenario, state, names).values()
-    depth = max(depths, default=math.inf) * scenario.dp
+    depth = max(depths.values(), default=math.inf) * scenario.dp
     for keys, wall in beds.items():
         mu, xi = wall.given("mu"), wall.given("turbulent_xi")
         for name in scenario.liquids:

@@ -13,7 +13,7 @@ from ..near import INSIDE, MIN_VOID, REACH, kernel
 
 STEP = 0.5  # spacings between two looks along a line
 CAPPED = 0.75  # share of walls around a point from which on a line ends there
-WITHIN = 0.5  # share of walls at their surface; beyond it no flow ends by itself
+WITHIN = 0.5  # share of walls, or bodies, at their surface; beyond it no flow ends by itself
 UNDER = 2  # looks below such a point, in which none does either
 MOST_LOOKS = 2_000_000  # of particles at heights, at once in memory
 
