@@ -172,6 +172,28 @@ def test_pores_between_discs_that_touch_are_told(doubts, wetted, settle, closed)
     assert any("body.discs.wetted: discs that touch close the pores" in t for t in told) is closed
 
 
+@pytest.mark.parametrize("uplift", [True, False])
+@pytest.mark.parametrize("kinematics", ["rigid", "elastic"])
+def test_bodies_without_uplift_are_told(doubts, kinematics, uplift):
+    """All that lie on a bed, also those that deform."""
+    block = f"""
+[body.block]
+shape = "box"
+material = "rubber"
+kinematics = "{kinematics}"
+min = [0.35, 0]
+max = [0.45, 0.1]
+[material.rubber]
+based_on = "basalt"
+law = "solid"
+young_modulus = 1e6
+poisson_ratio = 0.3
+"""
+    schema = ("schema = 1", f"schema = 1\nuplift = {str(uplift).lower()}")
+    told = doubts(more=block, scheme="resolved", replace=schema)
+    assert any("uplift: false: water does not press" in doubt for doubt in told) is not uplift
+
+
 # Water makes room for whole boxes, not for one that is cut.
 CUT_FLOOR = {"replace": ("max = [0.5, 0]", 'max = [0.5, 0]\nwhere = "= 0.49 - x"')}
 

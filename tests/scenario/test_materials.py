@@ -23,6 +23,8 @@ flow_index = 0.5
 regularisation = 100
 viscosity_max = 1e3
 """
+# Where its viscosity is least, its yield stress is not all there yet, Eq. (64).
+YOUNG_MUD = MUD.replace("= 0.5", "= 2").replace("= 100", "= 1")
 PAINT = """
 [material.paint]
 based_on = "water"
@@ -123,6 +125,7 @@ def block_of(name):
         (MUD.replace("0.5", "2").replace("1e3", "12"), ["viscosity_max = 12 Pa s", "12.65 Pa s"]),
         (MUD.replace("0.5", "-1"), ["material.mud.flow_index = -1", "greater than 0"]),
         (MUD.replace("0.5", "0"), ["material.mud.flow_index = 0", "greater than 0"]),
+        (YOUNG_MUD.replace("1e3", "12"), ["viscosity_max = 12 Pa s", "12.31 Pa s"]),
         (PAINT.replace("1e3", "2"), ["viscosity_max = 2 Pa s", "2.42 Pa s or more"]),
     ],
 )

@@ -13,7 +13,7 @@ from .shaped import Shaped
 
 R = TypeVar("R", bound=TurnedBody)
 L = TypeVar("L", bound=LatticeBody)
-SHORTEST = 1e-100  # of the coordinates of an axis: with less it has no direction
+SHORTEST = 1e-100  # of an axis, of which the square is still a number
 
 
 class Turned(Shaped[R], Generic[R]):
@@ -25,14 +25,13 @@ class Turned(Shaped[R], Generic[R]):
         axis = self.table.rotate_axis
         if axis is None:
             return None
-        longest = float(np.abs(axis).max())
-        if self.dim == 2 or longest < SHORTEST:
+        length = float(np.linalg.norm(axis))
+        if self.dim == 2 or length < SHORTEST:
             raise self.error(
                 f".rotate_axis = {axis.tolist()}: only a 3-D run has one, other than zero",
                 "rotate_axis",
             )
-        axis = axis / longest
-        return np.asarray(axis / np.linalg.norm(axis))
+        return np.asarray(axis / length)
 
     @property
     def orientation(self) -> np.ndarray:
