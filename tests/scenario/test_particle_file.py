@@ -112,7 +112,7 @@ def test_files_that_are_neither(write, tmp_path, error_of):
     path = tmp_path / "cloud.csv"
     assert "no such file" in error_of(write(tables=CLOUD))
     path.write_bytes(bytes(range(256)))
-    assert "neither HDF5 nor a CSV text in UTF-8" in error_of(write(tables=CLOUD))
+    assert "not a text in UTF-8" in error_of(write(tables=CLOUD))
     path.unlink()
     path.mkdir()
     assert "a folder, not a file" in error_of(write(tables=CLOUD))

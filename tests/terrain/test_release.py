@@ -236,7 +236,7 @@ def test_without_rasterio_systems_without_numbers_are_warned_about(
     assert said.endswith("pip install 'doseki[terrain]'")
     (tmp_path / "terrain.prj").write_text('PROJCS["zone",UNIT["metre",1],AUTHORITY["EPSG","2056"]]')
     (tmp_path / "depth.prj").write_text('PROJCS["n",UNIT["m",1],AUTHORITY["EPSG","32633"]]')
-    with pytest.raises(UserError, match="different coordinate reference systems"):
+    with pytest.raises(UserError, match="EPSG:32633, another .* EPSG:2056; convert it"):
         doubts_of(path)
 
 

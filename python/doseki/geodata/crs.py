@@ -235,6 +235,32 @@ def same_crs(one: str | None, other: str | None) -> bool | None:
     return bool(first == second) or (codes[0] is not None and codes[0] == codes[1])
 
 
+def check_same_crs(path: object, own: str | None, of_terrain: str | None) -> None:
+    """Raise GeodataError where a file in the system `own` is known not to lie on the terrain's map.
+
+    The sentence names both systems and the command that converts a file of polygons, lines or
+    cells.
+    """
+    if same_crs(own, of_terrain) is not False:
+        return
+    code = epsg_code(of_terrain)
+    target = "CODE (that of the terrain)" if code is None else str(code)
+    raise GeodataError(
+        f"{path}: is in {_name(own)}, another coordinate reference system than that of the terrain,"
+        f" {_name(of_terrain)}; convert it with ogr2ogr -t_srs EPSG:{target} OUT IN, a raster with "
+        f"gdalwarp -t_srs EPSG:{target} IN OUT"
+    )
+
+
+def _name(crs: str | None) -> str:
+    """The number with EPSG, or the name that a WKT begins with."""
+    code = epsg_code(crs)
+    if code is not None:
+        return f"EPSG:{code}"
+    quoted = re.search(r'"([^"]*)"', crs or "")
+    return f'"{quoted[1] if quoted else (crs or "")[:40]}"'
+
+
 def needs_rasterio(one: str | None, other: str | None) -> bool:
     """Whether only rasterio, which is not installed, could say if `one` is the system of `other`.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..util.foreign import check_regular_file
-from .crs import same_crs
+from .crs import check_same_crs
 from .errors import GeodataError
 from .geojson import read_geojson
 from .outlines import Features, Line, Polygon
@@ -49,9 +49,5 @@ def read_on_map(path: Path | str, crs: str | None) -> Features:
     Raises GeodataError too where it is in another coordinate reference system, as far as is known.
     """
     found = read_features(path)
-    if same_crs(found.crs, crs) is False:
-        raise GeodataError(
-            f"{path}: is in another coordinate reference system than the terrain; convert it with "
-            "ogr2ogr -t_srs"
-        )
+    check_same_crs(path, found.crs, crs)
     return found

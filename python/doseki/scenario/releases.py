@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
-from ..geodata.crs import not_compared_text, same_crs, why_not_compared
-from ..geodata.features import Features, Polygon, read_features
+from ..geodata.crs import not_compared_text, why_not_compared
+from ..geodata.features import Features, Polygon, read_on_map
 from ..geodata.inside import crossing_of, is_line
 from ..geodata.raster import holds_raster
 from ..util.finding import Finding, place_text
@@ -201,15 +201,9 @@ def _read(name: str, path: Path, where: Where, crs: str | None) -> Features:
     """What the file of a release holds, which must be polygons in the system of the terrain."""
     keys, place = ("body", name, "file"), f"body.{name}.file"
     try:
-        features = read_features(path)
+        features = read_on_map(path, crs)
     except UserError as error:
         raise where.error(keys, f"{place}: {error}") from None
-    if same_crs(features.crs, crs) is False:
-        raise where.error(
-            keys,
-            f"{place}: {path} and the terrain have different coordinate reference systems; convert "
-            "it with ogr2ogr -t_srs",
-        )
     if not features.polygons:
         raise where.error(keys, f"{place}: {path} has no polygon")
     return features

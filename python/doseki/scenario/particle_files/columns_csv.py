@@ -34,7 +34,9 @@ def read_csv_columns(path: Path, example: str = "x,y,vx,vy,...") -> dict[str, np
         try:
             return _read(path, _Lines(text), example)
         except UnicodeDecodeError:
-            raise UserError(f"{path}: neither HDF5 nor a CSV text in UTF-8") from None
+            raise UserError(
+                f'{path}: not a text in UTF-8; spreadsheets save that as "CSV UTF-8"'
+            ) from None
         except csv.Error as error:
             raise UserError(f"{path}: not a CSV file: {error}") from None
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...errors import UserError
-from ...geodata.crs import same_crs, why_not_compared
+from ...geodata.crs import check_same_crs, why_not_compared
 from ...geodata.features import Polygon
 from ...geodata.raster import Raster, read_raster
 from ...record.particles import FREE, ParticleSet, check_size
@@ -205,14 +205,9 @@ class ReleaseBody(Shaped[Release]):
         """Its raster of thickness, in the coordinate reference system of the terrain."""
         try:
             raster = read_raster(self._file)
+            check_same_crs(self._file, raster.crs, self._terrain_crs)
         except UserError as error:
             raise self.error(f".file: {error}", "file") from None
-        if same_crs(raster.crs, self._terrain_crs) is False:
-            raise self.error(
-                f".file: {self._file} and the terrain have different coordinate reference systems; "
-                "convert it with gdalwarp -t_srs",
-                "file",
-            )
         return raster
 
     @property
