@@ -179,6 +179,7 @@ public:
         table["impulse"] = list_of(account.impulse);
         table["gravity_work"] = account.gravity_work, table["wall_work"] = account.wall_work;
         table["contact_work"] = account.contact_work, table["scheme_work"] = account.scheme_work;
+        table["relaxation_work"] = account.relaxation_work;
         table["parting_work"] = account.parting_work;
         const DeformableTotals& of_bodies = sum.deformable;
         table["elastic_energy"] = of_bodies.elastic_energy;

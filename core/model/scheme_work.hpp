@@ -13,10 +13,12 @@ struct SchemeWork {
     // By which the relaxation of density and surfaces that part change the energy of compression in
     // the step, however short it is [J].
     double energy = 0.0;
+    double relaxation = 0.0;  // share of `energy` by which densities go to those of the arrangement
 
     DOSEKI_DEVICE_FN void add(const SchemeWork& other) {
         layer_force = layer_force + other.layer_force;
-        layer_power += other.layer_power, power += other.power, energy += other.energy;
+        layer_power += other.layer_power, power += other.power;
+        energy += other.energy, relaxation += other.relaxation;
     }
 };
 

@@ -90,12 +90,14 @@ private:
         double rate = of_pairs + rho * edge_rate(at.sums.sliding_rate, at.sums.sliding_size) +
                       dot(state_.pressure_gradient[p], state_.shift[p]) / (c * c);
         if (indicator.is_spray()) rate = std::min(0.0, rate);  // Eq. (147)
-        rate += relaxation(at, indicator.normalised_density, strain);
+        const double relaxed = relaxation(at, indicator.normalised_density, strain);
+        rate += relaxed;
         const double in_film = state_.in_film[p] = share_in_film(at);
         if (in_film > 0.0) rate += in_film * (rate_towards_film(at) - rate);
         rate = with_least_density(at, rate);
         SchemeWork<D>& work = summary(p).work;
         work.power -= state_.mass[p] * dot(model_.options.gravity, state_.shift[p]);
+        work.relaxation += dt_ * power_of_corrections(at, relaxed);
         work.energy += part_on_surface(at) + dt_ * power_of_corrections(at, rate - of_pairs);
         state_.density_rate[p] = rate;
         state_.density[p] = rho + dt_ * rate;

@@ -33,11 +33,12 @@ template <int D>
 struct Account {
     /// Of gravity, walls, contacts with fixed bodies and the layers behind inflows [N s].
     Vec<double, D> impulse{};
-    double gravity_work = 0.0;  // the potential that was released [J]
-    double wall_work = 0.0;     // of walls that have a velocity and of those layers [J]
-    double contact_work = 0.0;  // of contacts of bodies: less than nothing where they damp [J]
-    double scheme_work = 0.0;   // see SchemeWork::power and energy [J]
-    double parting_work = 0.0;  // that bodies lost when parts came off them [J]
+    double gravity_work = 0.0;     // the potential that was released [J]
+    double wall_work = 0.0;        // of walls that have a velocity and of those layers [J]
+    double contact_work = 0.0;     // of contacts of bodies: less than nothing where they damp [J]
+    double scheme_work = 0.0;      // see SchemeWork::power and energy [J]
+    double relaxation_work = 0.0;  // of it, see SchemeWork::relaxation [J]
+    double parting_work = 0.0;     // that bodies lost when parts came off them [J]
 
     /// Half a step of the forces on walls and of `scheme`, before the step or after it.
     void add_forces(const WallPush<D>& push, const SchemeWork<D>& scheme, double half_dt) {
@@ -49,6 +50,7 @@ struct Account {
     /// The second half of a step, and what happened at once in it.
     void add_evaluated(const WallPush<D>& push, const SchemeWork<D>& scheme, double half_dt) {
         add_forces(push, scheme, half_dt), scheme_work += scheme.energy;
+        relaxation_work += scheme.relaxation;
     }
 
     /// A step of gravity on the free particles.

@@ -241,7 +241,34 @@ def test_the_work_of_gravity_is_the_potential_that_was_released(tank):
 
 def test_energy_that_walls_and_relaxation_make_is_told(tank):
     """Eight particles across a stone that falls through three times that: no good run."""
-    assert checks_of(tank)["energy of corrections"].verdict == "bad"
+    checks = checks_of(tank)
+    assert "good" not in {
+        checks[f"energy of {name}"].verdict for name in ("corrections", "relaxation")
+    }
+
+
+@pytest.mark.parametrize(
+    ("relaxed", "dissipated", "verdict"),
+    [(-0.009, 0.5, "good"), (-0.2, 0.3, "doubtful"), (-0.2, 0.1, "bad"), (0.2, 0.3, "bad")],
+)
+def test_relaxation_may_take_less_than_viscosity_and_make_nothing(
+    tank, relaxed, dissipated, verdict
+):
+    """Over the work of gravity."""
+    rows = np.linspace(0, 1, len(tank.history["time"]))
+    still = without(tank, *HELD, *GIVEN, *TAKEN).run
+    columns = {"gravity_work": 1e3 * rows, "av_dissipation": 1e3 * dissipated * rows}
+    run = WithColumns(still, **columns, relaxation_work=1e3 * relaxed * rows)
+    _others, found = Ledger(run, "").numerical_checks()
+    assert (found.name, found.verdict) == ("energy of relaxation", verdict)
+    assert found.value == pytest.approx(abs(relaxed))
+
+
+def test_what_relaxation_takes_is_no_work_of_walls(tank):
+    relaxed = tank.history["relaxation_work"]
+    assert np.abs(relaxed).max() > 0.005 * tank.history["gravity_work"].max()
+    others = checks_of(tank)["energy of corrections"].details["work"]
+    assert others == pytest.approx(np.abs(tank.history["scheme_work"] - relaxed).max(), rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -252,8 +279,10 @@ def test_water_at_rest_is_judged_by_how_far_it_sinks(tank, spacings, verdict):
     still = without(tank, *HELD, *GIVEN, *TAKEN).run
     weight = 9.8 * tank.history["mass"].max()
     sunk = spacings * tank.scenario["dp"] * weight * np.linspace(0, 1, len(tank.history["time"]))
-    lake = Ledger(WithColumns(still, scheme_work=-sunk), "")
-    assert lake.numerical_check().verdict == verdict
+    for name in ("scheme_work", "relaxation_work"):
+        lake = Ledger(WithColumns(still, **{"scheme_work": -sunk, name: -sunk}), "")
+        walls, relaxed = lake.numerical_checks()
+        assert (walls if name == "scheme_work" else relaxed).verdict == verdict
 
 
 def test_contacts_take_what_a_bouncing_disc_loses(tmp_path):

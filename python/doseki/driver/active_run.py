@@ -48,6 +48,7 @@ def history_row(simulation: Simulation, material_names: list[str]) -> dict[str, 
     row["av_dissipation"] = totals["av_dissipation"]
     row["gravity_work"], row["wall_work"] = totals["gravity_work"], totals["wall_work"]
     row["contact_work"], row["scheme_work"] = totals["contact_work"], totals["scheme_work"]
+    row["relaxation_work"] = totals["relaxation_work"]
     row |= {name: totals[name] for name in (*BODY_ENERGIES, *BROKEN)}  # type: ignore[literal-required]
     row["energy_entered"], row["energy_left"] = totals["energy_entered"], totals["energy_left"]
     carried = {name: totals[name] for name in ("impulse", "momentum_entered", "momentum_left")}

@@ -21,7 +21,7 @@ from ..util.finding import rounded_up
 from ..util.foreign import read_bytes
 from ..util.hdf5 import open_hdf5
 
-VERSION = 13
+VERSION = 14
 KEPT = 2  # files; the older one serves where the newer one is damaged
 DIGEST_BYTES = 64
 AROUND_STATE = "doseki"  # JSON, as bytes

@@ -15,7 +15,7 @@ def history_columns(dim: int, material_names: Sequence[str]) -> list[str]:
     """Names of the columns, in order."""
     momentum = [f"momentum_{axis}" for axis in "xyz"[:dim]]
     energies = ["kinetic_energy", "bulk_energy", "shear_energy", "av_dissipation"]
-    work = ["gravity_work", "wall_work", "contact_work", "scheme_work"]
+    work = ["gravity_work", "wall_work", "contact_work", "scheme_work", "relaxation_work"]
     bodies = [*BODY_ENERGIES, *BROKEN]
     carried = ["energy_entered", "energy_left"]
     for name in ("impulse", "momentum_entered", "momentum_left"):

@@ -21,6 +21,7 @@ class Totals(TypedDict):
     wall_work: float  # J, of walls that have a velocity and of the layers behind inflows
     contact_work: float  # J, below 0 where contacts damp
     scheme_work: float  # J, by corrections and shifting
+    relaxation_work: float  # J, of that by the relaxation of density
     # Of deformable bodies: what they hold, and what they lost since the start.
     elastic_energy: float  # J, of strain and springs
     fracture_work: float  # J, by cracks

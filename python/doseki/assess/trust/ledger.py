@@ -19,6 +19,7 @@ OF_BODIES = "elastic_energy"  # without it in the history, nothing of deformable
 # Of the energy at a fifteenth of the speed of sound in water, reduced as in the run: where nothing
 # moves there is no more than rounding.
 ROUNDING, FAST = 1e-12, 100.0  # share, m/s
+RELAXATION = "relaxation_work"  # a part of scheme_work
 NUMERICAL = (0.01, 0.05)  # work of corrections over the largest energy that took part
 CONTACTS = (0.01, 0.05)  # what contacts gave, over the same
 
@@ -115,18 +116,44 @@ class Ledger:
         value = residual / largest if largest else residual
         return judged(name, value, limits, counted, remedy, residual=residual, **details)
 
-    def numerical_check(self) -> Check:
-        """Work of shifting and of the relaxation of density.
+    def numerical_checks(self) -> list[Check]:
+        """Work of walls, films and shifting, and of the relaxation of density.
 
         That water rises or sinks by a hundredth of a spacing is good.
         """
-        name = "energy of corrections"
-        work = float(np.max(np.abs(self._column("scheme_work"))))
-        largest = self._largest_at_rest
-        counted = "largest work of shifting and of the relaxation of density"
+        relaxed = self._column(RELAXATION)
+        others = self._column("scheme_work") - relaxed
+        counted = "largest work of walls beyond what they do to the density, films and shifting"
         remedy = "lower dp; shifting = false tells what shifting takes"
+        checks = [self._work_check("energy of corrections", others, NUMERICAL, counted, remedy)]
+        if RELAXATION in self.run.history:
+            checks.append(self._relaxation_check(relaxed))
+        return checks
+
+    def _relaxation_check(self, relaxed: np.ndarray) -> Check:
+        """Bad where it makes energy, or takes more than all else that dissipates."""
+        doubtful = NUMERICAL[1]
+        if -relaxed.min() >= relaxed.max() and self._largest_at_rest:
+            taken = float(self._column("av_dissipation").max()) / self._largest_at_rest
+            doubtful = max(doubtful, taken)
+        counted = "largest work of the relaxation of density, which takes the densities that "
+        counted += "continuity adds up to those of the arrangement; doubtful is what viscosity took"
+        remedy = "what splashes and meets again loses it at any dp, as eddies would take it; lower "
+        remedy += "dp where water stays together"
+        limits = (NUMERICAL[0], doubtful)
+        return self._work_check("energy of relaxation", relaxed, limits, counted, remedy)
+
+    def _work_check(
+        self,
+        name: str,
+        column: np.ndarray,
+        limits: tuple[float, float],
+        counted: str,
+        remedy: str,
+    ) -> Check:
+        work, largest = float(np.max(np.abs(column))), self._largest_at_rest
         value = work / largest if largest else work
-        return judged(name, value, NUMERICAL, counted, remedy, work=work, largest=largest)
+        return judged(name, value, limits, counted, remedy, work=work, largest=largest)
 
     def contact_check(self, name: str, unseen: str) -> Check:
         """What contacts gave: without energy at the start, they only take and give back.

@@ -39,7 +39,7 @@ def trust_checks(run: Run) -> list[Check]:
         mach_check(seen, *given),
         density_check(seen, tension, *given, scheme),
         energy_check(run, seen),
-        *([ledger.numerical_check()] if (ledger := ledger_of(run)) is not None else []),
+        *(ledger.numerical_checks() if (ledger := ledger_of(run)) is not None else []),
         momentum_check(run, seen),
         depth_check(run, seen),
         *ground_check(run),

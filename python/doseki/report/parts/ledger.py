@@ -27,6 +27,7 @@ FLOWS = {
     "wall_work": "work of walls and inflow layers",
     "contact_work": "work of contacts",
     "scheme_work": "made by corrections of the scheme",
+    "relaxation_work": "of that by the relaxation of density",
     "fracture_work": "taken by cracks",
     "parting_work": "lost when parts came off",
     "damping_work": "taken by dampers of deformable bodies",
