@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import doseki
+from doseki.assess.estimates import mach_number
 from doseki.assess.ground.sliding import Sliding
 from doseki.assess.preflight import brief_check, check_scenario
 from doseki.assess.warnings import ShallowFlow, thorough_findings
@@ -341,6 +342,48 @@ def test_estimates_are_within_30_percent(name, settings, tmp_path):
         print(f"{name:15s} {quantity:15s} {expected[quantity]:.4g} expected, {value:.4g} taken")
     for quantity in ("steps", "most_particles", "memory", "disk"):
         assert expected[quantity] == pytest.approx(taken[quantity], rel=0.3), quantity
+
+
+BASIN = """
+[body.{name}]
+shape = "box"
+material = "aluminium"
+fixed = true
+min = [{low}, 0]
+max = [{high}, {top}]
+"""
+
+
+def speed_in_basin(folder, gravity="[0, -10]", top=0.15, left=0.1, water=""):
+    """The largest speed that is expected of water that lies between two walls."""
+    sides = BASIN.format(name="left", low=left - 0.03, high=left, top=top)
+    sides += BASIN.format(name="right", low=0.3, high=0.33, top=top)
+    text = SCENARIO.format(xi=0.05, layers=3, bottom=0, top=0.12) + water + sides
+    path = folder / "basin.toml"
+    path.write_text(text.replace("slope = 0", f"gravity = {gravity}"))
+    scenario = load_scenario(path, ["scheme=resolved"])
+    return mach_number(scenario, build_simulation(scenario)[0].state())[0]
+
+
+def test_water_in_a_basin_falls_no_further_than_where_none_is(tmp_path):
+    """Of 0.12 m, and dry land beside it."""
+    waves, fall = (10 * 0.12) ** 0.5, (2 * 10 * 0.12) ** 0.5
+    assert speed_in_basin(tmp_path) == pytest.approx(waves, rel=0.03)
+    assert speed_in_basin(tmp_path, left=0.05) == pytest.approx(fall, rel=0.05)
+    assert speed_in_basin(tmp_path, top=0.1) > 1.05 * fall, "it runs over its sides"
+    step = 'velocity = [0.5, 0]\nwhere = "= 0.12*(x < 0.2) + 0.07*(x >= 0.2) - y"'
+    assert speed_in_basin(tmp_path, water=step) == pytest.approx((0.25 + 1.2) ** 0.5, rel=0.03)
+    low = 'where = "= 0.12*(x < 0.2) + 0.02*(x >= 0.2) - y"'
+    assert speed_in_basin(tmp_path, water=low) == pytest.approx((2 * 10 * 0.1) ** 0.5, rel=0.08)
+
+
+def test_a_basin_may_lie_on_its_side(tmp_path):
+    """Turned by a quarter, its floor is a wall, and what was a side its floor."""
+    upright = speed_in_basin(tmp_path, gravity="[-10, 0]", top=0.12)
+    assert upright > (2 * 10 * 0.2) ** 0.5, "nothing is above it"
+    lid = BASIN.format(name="lid", low=0.1, high=0.3, top=0.15).replace(", 0]", ", 0.12]")
+    shut = speed_in_basin(tmp_path, gravity="[-10, 0]", water=lid)
+    assert shut == pytest.approx((10 * 0.2) ** 0.5, rel=0.03)
 
 
 def test_bodies_alone_have_no_mach_number(doubts):

@@ -14,6 +14,7 @@ from ..scenario.materials import Material
 from ..scenario.model import Scenario
 from ..scene.ground import ground_of
 from ..scene.inflow_sections import build_inflows
+from .pouring import Cells, Fall
 
 State = Mapping[str, np.ndarray]
 MOST = 0.9  # of the particles of a flow on a map of steps
@@ -93,8 +94,9 @@ def mach_number(scenario: Scenario, state: State) -> tuple[float, float] | None:
     """Largest speed to expect, m/s, and what it is in sound speeds of the slowest material.
 
     The speed is that of the start, of an inflow or of a wall that goes (not: turns), or of a free
-    fall through all of the scene. In the resolved scheme bodies have no such sound: None where
-    there is nothing else.
+    fall through all of the scene. In a basin that stays closed it is that of a fall to the lowest
+    place without water, or of waves, whichever is larger. In the resolved scheme bodies have no
+    such sound: None where there is nothing else.
     """
     if scenario.has_bodies_alone:
         return None
@@ -117,11 +119,42 @@ def _given_speeds(scenario: Scenario) -> Iterator[float]:
 
 def _fall(scenario: Scenario, state: State) -> float:
     """g times the height that particles can fall through, m2/s2."""
+    through, in_basin = _fall_through(scenario, state), _fall_in_basin(scenario, state)
+    return through if in_basin is None else min(through, in_basin)
+
+
+def _fall_through(scenario: Scenario, state: State) -> float:
+    """The same where they may fall through all of the scene."""
     moving = np.isin(state["motion"], (FREE, BOUND))
     along = state["position"] @ scenario.gravity
     starts = [along[moving].min()] if moving.any() else []
     starts += [float(inflow.position @ scenario.gravity) for inflow in scenario.inflow.values()]
     return float(along.max(initial=max(starts)) - min(starts)) if starts else 0.0
+
+
+def _fall_in_basin(scenario: Scenario, state: State) -> float | None:
+    """The same where what moves cannot leave its basin, or half the square of the speed of waves.
+
+    Water does not fall through water that is there already. None of a scene that is open, that
+    changes its walls, or that is too large to be looked at.
+    """
+    fall = Fall.of(scenario)
+    wraps = ["xyz".index(axis) for axis in scenario.periodic]
+    changes = any(body.prescribed_motion is not None for body in scenario.body.values())
+    if fall is None or scenario.bed is not None or scenario.inflow or changes:
+        return None
+    fixed = state["motion"] == FIXED
+    points = state["position"][~fixed]
+    if np.any(scenario.gravity[wraps]) or not len(points):
+        return None
+    cells = Cells.of(scenario, state["position"][fixed], [points])
+    fastest = float(np.linalg.norm(state["velocity"][~fixed], axis=1).max())
+    head = fall.head(points, fastest)
+    if cells.is_coarse or cells.poured(points, head, fall):
+        return None
+    height = fall.height(points)
+    drop = float(height.max()) - cells.lowest_room(points, head, fall)
+    return fall.g * max(drop, 0.5 * float(np.ptp(height) + scenario.dp))
 
 
 def _extent(position: np.ndarray, scenario: Scenario) -> np.ndarray:

@@ -138,6 +138,7 @@ class Cells:
     size: np.ndarray  # (dim,), of a cell, m
     wall: np.ndarray  # bool, one entry a cell
     wraps: tuple[int, ...]  # periodic axes
+    asked: float  # m, what walls of particles ask cells to be
 
     @classmethod
     def of(cls, scenario: Scenario, walls: np.ndarray, others: list[np.ndarray]) -> Cells:
@@ -145,8 +146,10 @@ class Cells:
         points = np.concatenate([walls, *others])
         low, high = points.min(axis=0), points.max(axis=0)
         spacings = [body.given("dp") or scenario.dp for body in scenario.body.values()]
-        cell = CELL * max([scenario.dp, *spacings])
-        cell = max(cell, (float(np.prod(high - low + 2 * cell)) / MAX_CELLS) ** (1 / scenario.dim))
+        asked = CELL * max([scenario.dp, *spacings])
+        cell = max(
+            asked, (float(np.prod(high - low + 2 * asked)) / MAX_CELLS) ** (1 / scenario.dim)
+        )
         low, high = low - 1.5 * cell, high + 1.5 * cell
         wraps = tuple("xyz".index(axis) for axis in scenario.periodic)
         for axis in wraps:
@@ -156,7 +159,7 @@ class Cells:
         for axis in wraps:
             count[axis] = max(1, int((high[axis] - low[axis]) / cell))
             size[axis] = (high[axis] - low[axis]) / count[axis]
-        return cls(low, size, np.zeros(count, bool), wraps).filled(walls)
+        return cls(low, size, np.zeros(count, bool), wraps, asked).filled(walls)
 
     def filled(self, points: np.ndarray) -> Cells:
         """These cells with walls at points (n, dim) as well."""
@@ -168,6 +171,11 @@ class Cells:
     def is_wall(self, x: np.ndarray) -> np.ndarray:
         """Mask (n,) of the positions in cells that walls fill."""
         return np.asarray(self.wall[self._index(x)])
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether cells are larger than walls ask for, so that narrow ways are closed."""
+        return self.cell > 2 * self.asked
 
     @property
     def cell(self) -> float:
@@ -191,17 +199,10 @@ class Cells:
 
         What rises over the upper side comes down again: it gets out beside the scene or not at all.
         """
-        everywhere = self._centres(np.ones_like(self.wall))
-        free = ~self.wall & (fall.height(everywhere) <= head).reshape(self.wall.shape)
-        free.reshape(-1)[_in_outflows(everywhere, fall)] = False
-        inner, borders = free.copy(), list(self._borders(fall))
-        for axis, _, border, _ in borders:
-            inner[_layer(self.wall, axis, border)] = False
-        start = np.zeros_like(inner)
-        start[self._index(points)] = True
-        reached = self._spread(start & inner, inner)
+        free = self._below(head, fall)
+        reached = self._reached(points, free, fall)
         found, sides = [np.zeros((0, len(self.low)))], [np.zeros((0, 2), int)]
-        for axis, sign, border, beside in borders:
+        for axis, sign, border, beside in self._borders(fall):
             out = np.zeros_like(free)
             layer = _layer(self.wall, axis, border)
             out[layer] = reached[_layer(self.wall, axis, beside)] & free[layer]
@@ -210,6 +211,32 @@ class Cells:
             found.append(x)
             sides.append(np.tile([axis, sign], (len(x), 1)))
         return Exits(np.concatenate(found), np.concatenate(sides))
+
+    def lowest_room(self, points: np.ndarray, head: float, fall: Fall) -> float:
+        """Height of the lowest place, m, that such a flow reaches where none of the points is.
+
+        That of the highest point where there is none.
+        """
+        reached = self._reached(points, self._below(head, fall), fall)
+        reached[self._index(points)] = False
+        rooms = fall.height(self._centres(reached) + 0.5 * self.size * np.sign(fall.down))
+        return float(rooms.min(initial=float(fall.height(points).max())))
+
+    def _below(self, head: float, fall: Fall) -> np.ndarray:
+        """The cells up to a height that neither walls nor outflows fill."""
+        everywhere = self._centres(np.ones_like(self.wall))
+        free = ~self.wall & (fall.height(everywhere) <= head).reshape(self.wall.shape)
+        free.reshape(-1)[_in_outflows(everywhere, fall)] = False
+        return free
+
+    def _reached(self, points: np.ndarray, free: np.ndarray, fall: Fall) -> np.ndarray:
+        """The free cells within the borders that a flow from the points reaches."""
+        inner = free.copy()
+        for axis, _, border, _ in self._borders(fall):
+            inner[_layer(self.wall, axis, border)] = False
+        start = np.zeros_like(inner)
+        start[self._index(points)] = True
+        return self._spread(start & inner, inner)
 
     def _borders(self, fall: Fall) -> Iterator[tuple[int, int, int, int]]:
         """The sides that something may leave for ever: axis, sign, their layer, the one inside."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doseki.solver.build import empty_simulation
 from doseki.validate.running import CASES, Running
 
 BLOCK = CASES / "grains/block-under-water.toml"
@@ -42,3 +43,16 @@ def test_the_film_of_a_soft_one_turns_with_its_face():
 def test_without_films_it_is_pressed_down():
     """The control."""
     assert late_lift(Running(str(BLOCK), *ELASTIC, "across=16", "uplift=false")) < 0.5
+
+
+def test_a_restored_run_goes_on_with_the_same_bits():
+    run = Running(str(BLOCK), *ELASTIC, "across=8")
+    run.advance(0.02)
+    other = empty_simulation(run.scenario, run.body_names)
+    assert other.restore(run.simulation.checkpoint())
+    ends = []
+    for simulation in (run.simulation, other):
+        simulation.advance(limit=0.03, pause=0.03, max_steps=10**6)
+        ends.append(simulation.state())
+    for key, values in ends[0].items():
+        np.testing.assert_array_equal(values, ends[1][key], err_msg=key)
