@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from doseki.assess.trust.ledger import GIVEN, HELD, TAKEN, Ledger, ledger_of
+from doseki.assess.trust.ledger import GIVEN, HELD, RELAXATION, TAKEN, Ledger, ledger_of
 from doseki.assess.trust.report import trust_checks
 from doseki.record.reader import load
 from doseki.running.resume import resume_run
@@ -256,7 +256,7 @@ def test_relaxation_may_take_less_than_viscosity_and_make_nothing(
 ):
     """Over the work of gravity."""
     rows = np.linspace(0, 1, len(tank.history["time"]))
-    still = without(tank, *HELD, *GIVEN, *TAKEN).run
+    still = without(tank, *HELD, *GIVEN, *TAKEN, RELAXATION).run
     columns = {"gravity_work": 1e3 * rows, "av_dissipation": 1e3 * dissipated * rows}
     run = WithColumns(still, **columns, relaxation_work=1e3 * relaxed * rows)
     _others, found = Ledger(run, "").numerical_checks()
@@ -276,7 +276,7 @@ def test_what_relaxation_takes_is_no_work_of_walls(tank):
 )
 def test_water_at_rest_is_judged_by_how_far_it_sinks(tank, spacings, verdict):
     """Nothing else takes part in the energy of a lake, whatever its depth is."""
-    still = without(tank, *HELD, *GIVEN, *TAKEN).run
+    still = without(tank, *HELD, *GIVEN, *TAKEN, RELAXATION).run
     weight = 9.8 * tank.history["mass"].max()
     sunk = spacings * tank.scenario["dp"] * weight * np.linspace(0, 1, len(tank.history["time"]))
     for name in ("scheme_work", "relaxation_work"):
