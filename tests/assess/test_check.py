@@ -397,4 +397,4 @@ def test_thickness_and_depth_of_a_release_are_told_apart():
     """One is normal to the slope and a mean, the other upright and the largest."""
     thin, shallow = ThinRelease("slide", 2.0, 0.62), ShallowFlow("slide", 4.0, 1.25, on_slope=True)
     assert "slide: 2 particles over its mean thickness, normal to the slope" in str(thin)
-    assert "slide: 4 particles over its largest depth, upright; below 10 it flows" in str(shallow)
+    assert "slide: 4 particles over its largest depth, upright; below 10 its speed" in str(shallow)
