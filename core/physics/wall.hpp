@@ -54,6 +54,18 @@ DOSEKI_DEVICE_FN Sym<double, D> turned_bend(const Sym<double, D>& bend,
     return bend_of_ball(normal, sum / (D - dot(before, before)));
 }
 
+/// How far [m] a particle is from the centre of its ball, whose surface it is `depth` below; below
+/// 0 where nothing curves. The bend is that of circles `row` above the surface.
+template <int D>
+DOSEKI_DEVICE_FN double distance_from_centre(const Sym<double, D>& bend,
+                                             const Vec<double, D>& normal, double depth,
+                                             double row) {
+    double sum = 0.0;
+    for (int a = 0; a < D; ++a) sum += bend(a, a);
+    if (!(sum > 0.0)) return -1.0;
+    return std::max(0.0, (D - dot(normal, normal)) / sum - row - depth);
+}
+
 /// Normal of a curved wall at the foot of the fluid particle, Eq. (130), which leans by `turn`
 /// farther than that of the wall particle. Along the latter what slides in a hollow would run into
 /// the wall ahead and be held by the wall behind it, and so around a ball. No farther than `most`:

@@ -93,6 +93,14 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     return contact;
 }
 
+/// Of a rigid ball, the way from its centre to i, on which pressure makes no moment: the normals of
+/// its surface meet there. Of others 0.
+template <class T, int D>
+DOSEKI_FN Vec<T, D> arm_of_ball(const WallPoint<T, D>& w, const Vec<T, D>& r_iw) {
+    const T is_ball = select(w.to_centre < T(0), T(0), T(1));
+    return is_ball * (r_iw + w.to_centre * row(w.faces, 0));
+}
+
 /// Pressure and viscous stress between the two.
 template <class T, int D>
 struct WallForces {
@@ -137,7 +145,9 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     constexpr double of_body = D == 2 ? 3.5 : 4.5;
     forces.viscous_rate =
         scale * (mu_wall + mu_across) * max(T(1), number<T>(of_body) * i.rho * w.inverse_density);
-    forces.made = dot(forces.pressure, contact.v_iw) +
+    // The velocity that it works against: a ball that spins is no obstacle to pressure.
+    const Vec<T, D> v_pressed = contact.v_iw + turned_by(w.spin, arm_of_ball(w, r_iw));
+    forces.made = dot(forces.pressure, v_pressed) +
                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return forces;
 }
