@@ -250,7 +250,7 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     const T share = (T(1) - j.in_film) * j.volume * W;
     const Vec<T, D> force = T(-1) * j.volume * (forces.pressure + forces.viscous);
     const Vec<T, D> pushed = j.volume * forces.pressure;
-    const Turn<T, D> moment = moment_of(r_jw, force) + moment_of(arm_of_ball(w, r_jw), pushed);
+    const Turn<T, D> moment = moment_of(r_jw, force) + moment_of(contact.from_centre, pushed);
     for (std::size_t a = 0; a < moment.component.size(); ++a) sums.moment[a] += moment[a];
     for (int a = 0; a < D; ++a) {
         sums.force[a] += force[a];

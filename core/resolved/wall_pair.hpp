@@ -60,14 +60,23 @@ struct WallContact {
     Vec<T, D> corrected_r;  // B_i r_iw
     T pushes;               // 0: at an edge that the fluid goes off past
     T r_dot_n, corrected_r_dot_n;
-    T height;   // of i above the surface of the wall
-    T no_slip;  // share of it that holds here
+    T height;               // of i above the surface of the wall
+    T no_slip;              // share of it that holds here
+    Vec<T, D> from_centre;  // see arm_of_ball
     // Against w:
     T approach;                  // (v_i - v_w).(-n)
     Vec<T, D> v_i_w, past_edge;  // v_i - v_w, and its part along the face
     // Against the wall as its body moves where i is, Eq. (164): what turns with it is at rest.
     Vec<T, D> v_iw, sliding;
 };
+
+/// Of a rigid ball, the way from its centre to i, on which pressure makes no moment: the normals of
+/// its surface meet there. Of others 0.
+template <class T, int D>
+DOSEKI_FN Vec<T, D> arm_of_ball(const WallPoint<T, D>& w, const Vec<T, D>& r_iw) {
+    const T is_ball = select(w.to_centre < T(0), T(0), T(1));
+    return is_ball * (r_iw + w.to_centre * row(w.faces, 0));
+}
 
 template <class T, int D>
 DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const Vec<T, D>& r_iw,
@@ -87,18 +96,17 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.no_slip =
         w.no_slip * no_slip_factor(seen.depth, contact.height, number<T>(0.25 * constants.dp));
     contact.at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
+    contact.from_centre = arm_of_ball(w, r_iw);
+    const T square = dot(contact.from_centre, contact.from_centre);
+    if (any(square > T(0))) {
+        const T is_ball = select(square > T(0), T(1), T(0));
+        const T inverse = is_ball / sqrt(max(square, T(1) - is_ball));
+        contact.at_foot = (T(1) - is_ball) * contact.at_foot + inverse * contact.from_centre;
+    }
     contact.v_iw = contact.v_i_w - turned_by<T, D>(w.spin, r_iw);
     contact.sliding =
         contact.v_iw - (contact.pushes * dot(contact.v_iw, contact.at_foot)) * contact.at_foot;
     return contact;
-}
-
-/// Of a rigid ball, the way from its centre to i, on which pressure makes no moment: the normals of
-/// its surface meet there. Of others 0.
-template <class T, int D>
-DOSEKI_FN Vec<T, D> arm_of_ball(const WallPoint<T, D>& w, const Vec<T, D>& r_iw) {
-    const T is_ball = select(w.to_centre < T(0), T(0), T(1));
-    return is_ball * (r_iw + w.to_centre * row(w.faces, 0));
 }
 
 /// Pressure and viscous stress between the two.
@@ -146,7 +154,7 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     forces.viscous_rate =
         scale * (mu_wall + mu_across) * max(T(1), number<T>(of_body) * i.rho * w.inverse_density);
     // The velocity that it works against: a ball that spins is no obstacle to pressure.
-    const Vec<T, D> v_pressed = contact.v_iw + turned_by(w.spin, arm_of_ball(w, r_iw));
+    const Vec<T, D> v_pressed = contact.v_iw + turned_by(w.spin, contact.from_centre);
     forces.made = dot(forces.pressure, v_pressed) +
                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return forces;

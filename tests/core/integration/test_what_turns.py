@@ -112,6 +112,32 @@ def test_a_disc_spins_on_in_water_under_pressure(flows, centre):
     assert run.grains()["spin"][0][2] == pytest.approx(8, rel=0.03)
 
 
+@pytest.mark.parametrize("pressure", [0, 2000])
+def test_a_disc_that_spins_slowly_spins_on(flows, pressure):
+    """Eight particles across. Pressure has no moment on it, however the water lies around it."""
+    disc = SPINNING.format(centre=[0.0031, 0.0017]).replace("spin = 8", "spin = -2")
+    disc = disc.replace("radius = 0.06", "radius = 0.04").replace("5000", str(pressure))
+    run = until(flows(HEAD + disc.replace('wall = "free_slip"\n', "")), 0.2)
+    assert run.grains()["spin"][0][2] == pytest.approx(-2, rel=0.01)
+
+
+@pytest.mark.parametrize("rate", [2, -2])
+def test_a_disc_turns_with_tank_and_liquid(flows, rate):
+    """Beside the axis, and under pressure."""
+    disc = f"""
+[body.disc]
+shape = "disc"
+material = "light"
+centre = [0.04, 0]
+radius = 0.04
+velocity = [0, {0.04 * rate}]
+spin = {rate}
+"""
+    tank = TURNING.format(wall="no_slip", material="water", rate=rate)
+    run = until(flows(HEAD + tank + disc), 0.3)
+    assert run.grains()["spin"][0][2] == pytest.approx(rate, rel=0.01)
+
+
 @pytest.mark.parametrize(
     ("wall", "material"), [("free_slip", "water"), ("no_slip", "water"), ("no_slip", "oil")]
 )
