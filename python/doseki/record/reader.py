@@ -44,6 +44,7 @@ def load(directory: str | Path) -> Run:
             f"{directory}: not the folder of a run: {folder.scenario.name} or "
             f"{folder.snapshots.name}/ is missing"
         )
+    folder.refuse_links()
     return Run(folder)
 
 
