@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
+from numbers import Real
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
@@ -126,6 +127,24 @@ class MissingColumnError(UserError, KeyError):
             f"is not a column{suggestion(column, known)}" if known else "is no column: it is empty"
         )
         super().__init__(f"{path}: {column!r} {said}")
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # a KeyError quotes it
+
+
+class GaugeRecords(dict[str, G]):
+    """What gauges read, by their names."""
+
+    def __missing__(self, name: object) -> G:
+        raise MissingGaugeError(name, self)
+
+
+class MissingGaugeError(UserError, KeyError):
+    """A record has no gauge of this name."""
+
+    def __init__(self, name: object, known: Iterable[str]) -> None:
+        said = suggestion(name, known) or "; the run has none"
+        super().__init__(f"{name!r} is not a gauge of the run{said}")
 
     def __str__(self) -> str:
         return str(self.args[0])  # a KeyError quotes it
@@ -255,6 +274,9 @@ class Run(Sequence[Snapshot]):
         """
         if not self._headers:
             raise UserError(f"{self.directory}: the run has no snapshot yet")
+        given: Any = time
+        if isinstance(given, bool) or not isinstance(given, Real):
+            raise UserError(f"time = {given!r}; allowed: a number, in s")
         times = self.times
         found = int(np.argmin(np.abs(times - time)))
         rounding = ROUNDING * (times[-1] - times[0]) / len(times)
@@ -298,7 +320,7 @@ class Run(Sequence[Snapshot]):
         return self._gauges(GaugeRecord)
 
     def _gauges(self, kind: type[G]) -> dict[str, G]:
-        records = {}
+        records: GaugeRecords[G] = GaugeRecords()
         for file in sorted(self.folder.gauges.glob("*.csv")):
             with readable(file):
                 records[file.stem] = kind(*read_history(file), file)
