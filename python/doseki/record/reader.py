@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -216,9 +217,12 @@ class Run(Sequence[Snapshot]):
     @cached_property
     def _headers(self) -> list[tuple[Path, vtkhdf.Header]]:
         found = [(path, vtkhdf.read_header(path)) for path in self.folder.snapshot_files()]
+        for path, header in found:
+            if not math.isfinite(header.time):
+                raise UserError(f"{path}: its time, {header.time:g} s, is not finite; {REMEDY}")
         for (before, one), (path, other) in pairwise(found):
             # A run that fails at once leaves two of one time.
-            if not other.time >= one.time:
+            if other.time < one.time:
                 raise UserError(
                     f"{path}: its time, {other.time:.9g} s, is before that of {before.name}, "
                     f"{one.time:.9g} s: one of the two is a copy, or of another run; move it away"
