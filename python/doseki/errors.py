@@ -56,12 +56,14 @@ class DosekiWarning(UserWarning):
 
 
 class Interrupted(BaseException):
-    """Ctrl-C outside the steps of a run, which end in good order, or within one of several runs.
+    """Ctrl-C, or another signal that ends a process, outside the steps of a run, which end in good
+    order, or within one of several runs.
 
     Not for `except Exception`.
     """
 
     exit_code = 130  # as shells say
 
-    def __init__(self, message: str = "interrupted") -> None:
+    def __init__(self, message: str = "interrupted", exit_code: int = exit_code) -> None:
         super().__init__(one_line(message))
+        self.exit_code = exit_code

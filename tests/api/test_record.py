@@ -224,3 +224,21 @@ def test_a_run_says_what_it_is(recorded):
     assert "snapshots, done" in repr(recorded)
     assert isinstance(recorded[1:3], list)
     assert importlib.util.find_spec("doseki.api.record")
+
+
+def test_what_is_of_another_kind_is_told_in_a_sentence(run_folder):
+    recorded = doseki.load(run_folder)
+    for time in ("a", [0.1], True, None):
+        with pytest.raises(doseki.UserError, match=r"time = .*; allowed: a number, in s"):
+            recorded.at(time)
+    for directory in (None, 3):
+        with pytest.raises(doseki.UserError, match=r"directory = .*; allowed: a path"):
+            doseki.load(directory)
+    with pytest.raises(doseki.UserError, match="changes = 3; allowed: a dictionary"):
+        doseki.resume(recorded.directory, 3)
+    with pytest.raises(doseki.UserError, match="colour None is not something to draw"):
+        recorded.plot(None)
+    with pytest.raises(KeyError, match="3 is not a field"):
+        recorded[-1][3]
+    with pytest.raises(KeyError, match="'lev' is not a gauge of the run"):
+        recorded.gauges["lev"]

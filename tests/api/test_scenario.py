@@ -270,3 +270,26 @@ def test_check_says_what_a_run_takes():
     assert min(found.memory, found.disk, found.timestep, found.seconds) > 0
     assert "particles" in str(found)
     assert all(f"warning: {text}" in str(found) for text in found.warnings)
+
+
+def test_an_attribute_of_a_scenario_cannot_be_set():
+    with pytest.raises(AttributeError, match=r"changed\(dp=3\) makes another one"):
+        block().dp = 3
+
+
+@pytest.mark.parametrize("threads", [0, -5, "a", 1.5, True])
+def test_check_refuses_what_is_no_number_of_threads(threads):
+    with pytest.raises(doseki.UserError, match=r"threads = .*; allowed: a whole number from 1 on"):
+        block().check(threads)
+
+
+def test_what_is_of_another_kind_is_told_in_a_sentence():
+    made = block()
+    for call in (lambda: made.changed(3), lambda: made.without(3), lambda: made.save(None)):
+        with pytest.raises(doseki.UserError, match=r"a key must be a word|allowed: a "):
+            call()
+    with pytest.raises(KeyError, match="the scenario has no 3"):
+        made[3]
+    for call in (lambda: doseki.Scenario(None), lambda: doseki.run(None)):
+        with pytest.raises(doseki.UserError, match="a scenario is a name, a path or a dictionary"):
+            call()

@@ -11,7 +11,8 @@ from matplotlib.colors import LightSource
 from matplotlib.image import imread
 
 from doseki.cli.app import app
-from doseki.errors import UserError
+from doseki.cli.main import main
+from doseki.errors import ResourceError, UserError
 from doseki.figures.maps.drawing import DARKEST, draw_map, draw_profile
 from doseki.figures.maps.output import MapOptions, map_makers, write_pictures
 from doseki.figures.maps.structures import COLOUR, OVER, Structures
@@ -196,6 +197,17 @@ def test_runs_with_other_dams_share_none(dammed):
 def test_a_body_in_the_ground_is_not_on_the_map(dammed, height):
     path = dammed(0, height)
     assert (Structures.of(load(path)) is None) == (height < 0)
+
+
+def test_maps_that_cannot_be_drawn_end_the_command_with_an_error(slide, monkeypatch, capsys):
+    def full(*_):
+        raise ResourceError("no space left")
+
+    monkeypatch.setattr("doseki.figures.saving.write_whole", full)
+    with pytest.raises(SystemExit) as ended:
+        main(["maps", str(slide)])
+    assert ended.value.code == 4
+    assert "of the maps could not be drawn" in capsys.readouterr().err
 
 
 def test_a_run_without_maps_is_mapped_from_its_snapshots(slide):

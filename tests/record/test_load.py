@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 
+import h5py
 import numpy as np
 import pytest
 
@@ -165,6 +166,14 @@ def test_snapshots_that_go_back_in_time_are_refused_with_the_names_of_both(run_f
     assert str(caught.value).startswith(
         f"{files / '000003.vtkhdf'}: its time, 1 s, is before that of 000002.vtkhdf, 2 s: one of"
     )
+
+
+def test_a_snapshot_whose_time_is_no_number_is_refused(run_folder):
+    file = run_folder / "snapshots/000000.vtkhdf"
+    with h5py.File(file, "r+") as opened:
+        opened["VTKHDF/FieldData/Time"][...] = np.nan
+    with pytest.raises(UserError, match=r"000000\.vtkhdf: its time, nan s, is not finite"):
+        len(load(run_folder))
 
 
 @pytest.mark.parametrize("name", ["summary", "trust"])

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from doseki.cli.interrupts import WORDS
 from doseki.driver.checkpoint import CheckpointFolder
 from doseki.driver.schedule import StopRequests
 
@@ -129,7 +130,7 @@ def test_a_signal_after_the_last_step_costs_no_summary(tmp_path, number, moment)
     folder = tmp_path / "run"
     done = run_interrupted(number, moment, tmp_path / "load.toml", folder, "--threads", "1")
     assert done.returncode == 0, done.stderr
-    assert "interrupted" in done.stdout + done.stderr
+    assert WORDS[number] in done.stdout + done.stderr
     assert "status            done" in done.stdout
     assert (folder / "summary.txt").read_text().strip() in done.stdout
 
@@ -150,6 +151,14 @@ def test_an_interrupt_before_the_run_is_one_line(tmp_path, moment):
     done = run_interrupted(signal.SIGINT, moment, tmp_path / "load.toml", tmp_path / "run")
     assert (done.returncode, done.stderr) == (130, "doseki: interrupted\n")
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("moment", ["import:300", "scene.checks.particles:check_particles"])
+def test_so_is_another_signal_that_ends_it(tmp_path, moment, number):
+    (tmp_path / "load.toml").write_text(SETTLING)
+    done = run_interrupted(number, moment, tmp_path / "load.toml", tmp_path / "run")
+    assert (done.returncode, done.stderr) == (128 + number, f"doseki: {WORDS[number]}\n")
 
 
 @pytest.mark.parametrize("name", ["PMI_RANK", "PMIX_RANK", "SLURM_PROCID"])

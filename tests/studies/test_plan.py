@@ -39,6 +39,7 @@ REFUSED = {
         ("values = [5, 10, 20]", 'min = 0\nmax = 1\nscale = "log"'), "vary.pull.min", "0"
     ),
     "a value that cannot be": (("[5, 10, 20]", '["2 kg"]'), "vary.pull", "kg"),
+    "a value twice": (("[5, 10, 20]", '[5, "500 cm/s2"]'), "vary.pull.values", "are one value"),
     "a count of a grid": (('"grid"', '"grid"\ncount = 5'), "sample.count", "does not go"),
     "no count": (('"grid"', '"sobol"'), "sample.count", "is missing"),
     "nothing to read": ((STUDY[STUDY.index("[result") :], ""), "nothing is read", "result"),
@@ -148,6 +149,12 @@ def test_numbers_have_the_unit_that_the_scenario_declares(tmp_path, vary, label,
 
 
 AXES = [Axis("a", low=1.0, high=100.0, log=True), Axis("b", choices=("x", "y"))]
+
+
+def test_values_with_units_are_numbers_in_the_unit_of_their_column():
+    axis = Axis("depth", choices=("10 cm", "0.2 m", 0.3))
+    assert axis.label == "depth [m]"
+    assert [axis.cell(value) for value in axis.choices] == [0.1, 0.2, 0.3]
 
 
 def test_a_grid_has_every_pair():

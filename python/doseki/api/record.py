@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from ..record.reader import Run as RecordedRun
 from ..record.reader import load as recorded
 from ..record.units import unit_in
 from ..util.spelling import suggestion
+from .arguments import path_of
 from .frames import GaugeTable, HistoryTable, frame_of
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def load(directory: str | os.PathLike[str]) -> Run:
     Nothing but the names of its files is read until it is asked for.  Raises UserError where there
     is no run.
     """
-    return Run(recorded(Path(directory)).folder)
+    return Run(recorded(path_of(directory, "directory")).folder)
 
 
 class Run(RecordedRun):

@@ -20,10 +20,12 @@ from ..scenario.values.toml_source import Change, Source, TableSource, Where, do
 from ..util.files import write_whole_text
 from ..util.spelling import suggestion
 from ..util.toml_writer import to_toml
+from .arguments import path_of, thread_count
 
 if TYPE_CHECKING:
     from ..assess.preflight import Preflight
 
+KEY = "a key must be a word, such as material.water.rho0"
 FRESH = "scenario"  # the name of one that no file has
 
 
@@ -59,7 +61,7 @@ class Scenario(Mapping[str, Any]):
         self._sources: tuple[Source, ...]
         self._changes: tuple[Change, ...]
         self._name: str
-        if source is None:
+        if source is None and keywords:
             source, keywords = keywords, {}
         if isinstance(source, Scenario):
             self._sources, self._name = source._sources, source._name
@@ -76,6 +78,15 @@ class Scenario(Mapping[str, Any]):
         made._sources, made._changes, made._name = tuple(sources), tuple(changes), name
         made._checked = checked_scenario(made._sources, made._changes)
         return made
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Only what begins with an underscore is set, by the scenario itself."""
+        if not name.startswith("_"):
+            raise AttributeError(
+                f"a scenario never changes, so {name} cannot be set; changed({name}={value!r}) "
+                "makes another one"
+            )
+        super().__setattr__(name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scenario._of, (self._sources, self._changes, self._name)
@@ -99,7 +110,7 @@ class Scenario(Mapping[str, Any]):
         `changed({"body.weir": {...}})`.  Changes are made in their order and checked together.
         Raises UserError for a key that the scenario cannot have, and for what no longer fits.
         """
-        made = (*changes_of(changes or {}), *changes_of(keywords))
+        made = (*changes_of(changes), *changes_of(keywords))
         return Scenario._of(self._sources, (*self._changes, *made), self._name)
 
     def without(self, *keys: str) -> Scenario:
@@ -107,6 +118,9 @@ class Scenario(Mapping[str, Any]):
 
         Raises UserError for a key that it does not give, and for what no longer fits.
         """
+        for key in keys:
+            if not isinstance(key, str):
+                raise UserError(f"without({key!r}): {KEY}")
         gone = [Change(key, Gone.GONE, f"without({key})") for key in keys]
         return Scenario._of(self._sources, (*self._changes, *gone), self._name)
 
@@ -119,7 +133,7 @@ class Scenario(Mapping[str, Any]):
         """
         from ..assess.preflight import preflight
 
-        return preflight(self._checked, threads)
+        return preflight(self._checked, thread_count(threads))
 
     def to_toml(self, evaluated: bool = False) -> str:
         """The scenario as a TOML file, in one piece, with files named by their whole paths.
@@ -134,12 +148,14 @@ class Scenario(Mapping[str, Any]):
 
         A file that is there is replaced.  Raises UserError where it cannot be written.
         """
-        path = Path(path)
+        path = path_of(path, "path")
         write_whole_text(path, self.to_toml(evaluated))
         return path
 
     def __getitem__(self, key: str) -> Any:
         """The value of a key, or a table: a copy."""
+        if not isinstance(key, str):
+            raise KeyError(f"the scenario has no {key!r}: {KEY}")
         path = place_of(key, self._values)
         found: Any = self._values
         for step in path:
@@ -197,12 +213,16 @@ def _first_source(source: object) -> tuple[Source, str]:
     return read_toml(path.absolute()), path.stem
 
 
-def changes_of(values: Mapping[str, Any]) -> tuple[Change, ...]:
+def changes_of(values: Mapping[str, Any] | None) -> tuple[Change, ...]:
     """Values by key as changes of a scenario; raises UserError for what is no value."""
     here, found = Path.cwd(), []
+    if values is None:
+        return ()
+    if not isinstance(values, Mapping):
+        raise UserError(f"changes = {values!r}; allowed: a dictionary of values by their keys")
     for key, value in values.items():
         if not isinstance(key, str):
-            raise UserError(f"changed({key!r}): a key must be a word, such as material.water.rho0")
+            raise UserError(f"changed({key!r}): {KEY}")
         said = f"changed({key})"
         found.append(Change(key, plain_value(value, key, said), said, here, may_add=True))
     return tuple(found)

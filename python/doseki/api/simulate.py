@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from numbers import Integral, Real
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +24,9 @@ from ..running.resume import resume_run
 from ..running.runner import RunOptions, run_scenario
 from ..scenario.model import Scenario as CheckedScenario
 from ..util.files import free_directory
+from .arguments import path_of, thread_count, whole_number
 from .record import Run, load
 from .scenario import Scenario, changes_of
-
-MOST_THREADS = 4096
 
 
 def run(
@@ -65,7 +64,7 @@ def run(
     """
     made = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
     checked = made.checked
-    folder = free_directory(made.name) if directory is None else Path(directory)
+    folder = free_directory(made.name) if directory is None else path_of(directory, "directory")
     wishes = _Wishes(threads, checkpoint_every, checkpoint_minutes, progress)
     wishes.watch = _watch(callback, every, every_steps, checked.time_out)
     _warn_of_long_steps(checked, every)
@@ -102,7 +101,7 @@ def resume(
     wishes.watch = _watch(callback, every, every_steps, float(given["time_out"]))
     latest = math.inf if until is None else until
     with wishes.options(given.get("title", ""), float(given["time_max"])) as options:
-        _, notes = resume_run(Path(directory), changes_of(changes or {}), options, latest)
+        _, notes = resume_run(Path(directory), changes_of(changes), options, latest)
     for note in notes:
         _warn(note)
     wishes.hand_on()
@@ -121,7 +120,7 @@ class _Wishes:
     stops: list[StopRequests] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.threads = _count("threads", self.threads, MOST_THREADS)
+        self.threads = thread_count(self.threads)
         self.checkpoint_every = _positive("checkpoint_every", self.checkpoint_every)
         minutes: Any = self.checkpoint_minutes
         if not (isinstance(minutes, Real) and 0 <= float(minutes) < math.inf):
@@ -163,7 +162,7 @@ def _watch(
     callback: Callback | None, every: float | None, steps: int | None, time_out: float
 ) -> Watch | None:
     """Who looks on, if anyone."""
-    every, steps = _positive("every", every), _count("every_steps", steps)
+    every, steps = _positive("every", every), whole_number("every_steps", steps)
     if callback is None:
         if every is not None or steps is not None:
             raise UserError("every and every_steps say when the callback looks: give a callback")
@@ -190,16 +189,6 @@ def _positive(name: str, value: Any) -> float | None:
     if number is None or not 0 < number < math.inf:
         raise UserError(f"{name} = {value!r}; allowed: a number above 0, in s")
     return number
-
-
-def _count(name: str, value: Any, most: int = 2**62) -> int | None:
-    """A number of things, which may be one of numpy; None stays None."""
-    if value is None:
-        return None
-    count = 0 if isinstance(value, bool) or not isinstance(value, Integral) else int(value)
-    if not 1 <= count <= most:
-        raise UserError(f"{name} = {value!r}; allowed: a whole number from 1 on")
-    return count
 
 
 def _warn_of(*started: Any) -> None:

@@ -145,10 +145,12 @@ def maps(
 ) -> None:
     """Draw maps of a 3-D run into DIR/maps: largest depth, speed, pressure, arrival, deposit."""
     from ..figures.maps.output import MapOptions, write_pictures
+    from ..figures.saving import Drawn
 
     warn_of_changes(directory)
-    for line in write_pictures(directory, MapOptions(cell, extent, path)):
+    for line in write_pictures(directory, MapOptions(cell, extent, path), drawn := Drawn()):
         typer.echo(line)
+    drawn.check(f"{len(drawn.failures)} of the maps could not be drawn")
 
 
 def loads(

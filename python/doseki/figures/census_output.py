@@ -24,7 +24,6 @@ from ..measure.census.census import (
 )
 from ..measure.grading import grading_table, gradings, has_parts
 from ..measure.views import View, named_window, windows
-from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..record.units import unit_in
 from ..util.files import clear_errors, write_whole, write_whole_text
@@ -61,7 +60,6 @@ def write_census(directory: str | Path, options: CensusOptions) -> list[str]:
     Raises UserError for no run, no grains, an unknown window or an empty range of time.
     """
     run = load(directory)
-    refuse_links(run.folder)
     if options.end < options.start:
         raise UserError(f"--to = {options.end:g} s must not be before --from = {options.start:g} s")
     census = take_census(run)

@@ -13,7 +13,6 @@ from ..errors import UserError
 from ..measure.flow import measure_flow
 from ..measure.moments import moments
 from ..measure.views import tables, tilt, whole_space
-from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..scenario.tables.figure import Figure as FigureTable
 from ..util.spelling import suggestion
@@ -38,7 +37,6 @@ def draw_run(directory: str | Path) -> Drawn:
     run = load(directory)
     if not len(run):
         raise UserError(f"{directory}: the run has no snapshot to draw")
-    refuse_links(run.folder)
     drawn = Drawn()
     for name, make in _makers(run):
         drawn.add(run.folder.figures / f"{name}.png", make)

@@ -26,7 +26,7 @@ def check_free(directory: str | Path, overwrite: bool) -> None:
             raise _is_taken(folder.path)
         if not folder.is_run():
             raise UserError(f"{folder.path}: is not the folder of a run, so it is not overwritten")
-        refuse_links(folder)
+        folder.refuse_links()
 
 
 def check_vacant(directory: str | Path) -> None:
@@ -42,12 +42,6 @@ def _is_free(folder: RunFolder) -> bool:
     if folder.path.exists() and not folder.path.is_dir():
         raise UserError(f"{folder.path}: is a file, not a folder")
     return not folder.path.is_dir() or folder.is_vacant()
-
-
-def refuse_links(folder: RunFolder) -> None:
-    """Raise UserError where writing into the folder would write outside it."""
-    if links := folder.links():
-        raise UserError(f"{links[0]}: is a symbolic link; nothing is written through it")
 
 
 def begin(folder: RunFolder, scenario: str, inputs: Sequence[InputFile], overwrite: bool) -> None:
@@ -77,7 +71,7 @@ def _fill(folder: RunFolder, scenario: str, inputs: Sequence[InputFile]) -> None
 
     Before that goes what would go on from the earlier run, after it what was recorded.
     """
-    refuse_links(folder)
+    folder.refuse_links()
     with clear_errors(folder.path):
         for file in folder.endings():
             file.unlink()

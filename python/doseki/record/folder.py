@@ -132,7 +132,7 @@ class RunFolder:
         return self.path / "figures"
 
     def links(self) -> list[Path]:
-        """Symbolic links in the folder: writing to one would write somewhere else."""
+        """Symbolic links in the folder: what is read or written there would be somewhere else."""
         folders = (
             self.path,
             self.inputs,
@@ -144,6 +144,15 @@ class RunFolder:
         )
         inside = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
         return sorted(file for file in inside if file.is_symlink())
+
+    def refuse_links(self) -> None:
+        """Raise UserError where reading or writing in the folder would do so outside it."""
+        with readable(self.path):
+            links = self.links()
+        if links:
+            raise UserError(
+                f"{links[0]}: is a symbolic link; links in the folder of a run are not followed"
+            )
 
     def is_run(self) -> bool:
         """Whether a run was recorded here."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
+from numbers import Real
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
@@ -44,6 +46,7 @@ def load(directory: str | Path) -> Run:
             f"{directory}: not the folder of a run: {folder.scenario.name} or "
             f"{folder.snapshots.name}/ is missing"
         )
+    folder.refuse_links()
     return Run(folder)
 
 
@@ -130,6 +133,24 @@ class MissingColumnError(UserError, KeyError):
         return str(self.args[0])  # a KeyError quotes it
 
 
+class GaugeRecords(dict[str, G]):
+    """What gauges read, by their names."""
+
+    def __missing__(self, name: object) -> G:
+        raise MissingGaugeError(name, self)
+
+
+class MissingGaugeError(UserError, KeyError):
+    """A record has no gauge of this name."""
+
+    def __init__(self, name: object, known: Iterable[str]) -> None:
+        said = suggestion(name, known) or "; the run has none"
+        super().__init__(f"{name!r} is not a gauge of the run{said}")
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # a KeyError quotes it
+
+
 class History(Mapping[str, np.ndarray]):
     """The diagnostics of a run: a mapping from column name to the values over time."""
 
@@ -196,9 +217,12 @@ class Run(Sequence[Snapshot]):
     @cached_property
     def _headers(self) -> list[tuple[Path, vtkhdf.Header]]:
         found = [(path, vtkhdf.read_header(path)) for path in self.folder.snapshot_files()]
+        for path, header in found:
+            if not math.isfinite(header.time):
+                raise UserError(f"{path}: its time, {header.time:g} s, is not finite; {REMEDY}")
         for (before, one), (path, other) in pairwise(found):
             # A run that fails at once leaves two of one time.
-            if not other.time >= one.time:
+            if other.time < one.time:
                 raise UserError(
                     f"{path}: its time, {other.time:.9g} s, is before that of {before.name}, "
                     f"{one.time:.9g} s: one of the two is a copy, or of another run; move it away"
@@ -254,6 +278,9 @@ class Run(Sequence[Snapshot]):
         """
         if not self._headers:
             raise UserError(f"{self.directory}: the run has no snapshot yet")
+        given: Any = time
+        if isinstance(given, bool) or not isinstance(given, Real):
+            raise UserError(f"time = {given!r}; allowed: a number, in s")
         times = self.times
         found = int(np.argmin(np.abs(times - time)))
         rounding = ROUNDING * (times[-1] - times[0]) / len(times)
@@ -297,7 +324,7 @@ class Run(Sequence[Snapshot]):
         return self._gauges(GaugeRecord)
 
     def _gauges(self, kind: type[G]) -> dict[str, G]:
-        records = {}
+        records: GaugeRecords[G] = GaugeRecords()
         for file in sorted(self.folder.gauges.glob("*.csv")):
             with readable(file):
                 records[file.stem] = kind(*read_history(file), file)

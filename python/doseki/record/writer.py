@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import UserError
 from ..util.files import clear_errors, sync, write_whole, write_whole_text
 from ..util.input_file import InputFile
-from .beginning import begin, refuse_links
+from .beginning import begin
 from .folder import RunFolder, read_history
 from .snapshot_writer import SnapshotWriter
 from .vtkhdf import Header, read_header
@@ -62,7 +62,7 @@ class Recorder:
     ) -> Recorder:
         """Go on with the record of a resumed run: keep its first snapshots and rows."""
         folder = RunFolder(Path(directory))
-        refuse_links(folder)
+        folder.refuse_links()
         files = folder.snapshot_files()
         if not files:
             raise UserError(f"{directory}: holds no snapshot from which a run could go on")

@@ -12,7 +12,6 @@ from ..errors import DosekiError, UserError, one_line
 from ..figures.plot import draw_run
 from ..geodata.ground import Profile, ground_files
 from ..measure.views import tables
-from ..record.beginning import refuse_links
 from ..record.reader import Run, load
 from ..scenario.tables.figure import Figure, LoadFigure
 from ..util.files import write_whole_text
@@ -184,7 +183,6 @@ def _draw_missing(run: Run) -> list[str]:
     if not len(run) or any(run.folder.figures.glob("*.png")):
         return []
     with _of_section(run, "figures"):
-        refuse_links(run.folder)
         return [one_line(f"{text}.") for text in draw_run(run.folder.path).failures]
 
 

@@ -9,9 +9,10 @@ MAX_LISTED = 12
 ALIKE, MAX_ALIKE = 0.5, 3  # share of letters in the same order; names at most
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
+def suggestion(name: object, known: Iterable[str]) -> str:
     """`; did you mean X?`, or what is known when nothing is near: of much only what is alike."""
     known = sorted(set(known))
+    name = name if isinstance(name, str) else ""
     if near := _nearest(name, known, 1, 0.6):
         return f"; did you mean {near[0]}?"
     if len(known) <= MAX_LISTED:

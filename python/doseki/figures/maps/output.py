@@ -22,7 +22,6 @@ from ...measure.maps.profile import COLUMNS, along_path, beside_map, path_lines
 from ...measure.maps.quantities import QUANTITIES
 from ...measure.maps.runout import runout, runout_lines
 from ...measure.maps.snapshots import flowing_in, maps_from_snapshots
-from ...record.beginning import refuse_links
 from ...record.reader import Run, load
 from ...record.writer import jsonable
 from ...util.files import write_whole_text
@@ -41,8 +40,12 @@ class MapOptions:
     path: str | None = None  # of a profile: a file of a line, or "x,y x,y ..."
 
 
-def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
+def write_pictures(
+    directory: str | Path, options: MapOptions, drawn: Drawn | None = None
+) -> list[str]:
     """Draw the maps of the run in `directory`; returns lines that tell of them.
+
+    What became of each picture is put into `drawn`.
 
     A run with [maps] has kept them; those of others are made of its snapshots.
 
@@ -51,7 +54,6 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
 
     """
     run = load(directory)
-    refuse_links(run.folder)
     told_of = _told_beside(run)  # first: what is damaged is told at once
     maps, bed, said = _maps(run, options)
     profile = None
@@ -59,7 +61,7 @@ def write_pictures(directory: str | Path, options: MapOptions) -> list[str]:
         path, doubts = _path(options.path, bed.crs)
         profile = along_path(maps, bed, path)
         said += [*doubts, *beside_map(bed, path)]
-    drawn = Drawn()
+    drawn = Drawn() if drawn is None else drawn
     for name, make in _makers(run, maps, bed):
         drawn.add(run.folder.maps / f"{name}.png", make)
     if profile is not None:

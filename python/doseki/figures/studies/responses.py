@@ -19,6 +19,7 @@ COLOURS = "viridis"
 MOST_PANELS = 8  # on one side of a figure
 LOG_RATIO = 20.0  # of scores, from which their colours are by decades
 PANEL = (3.2, 2.6)  # inches
+SAME = 0.1  # of a score that all runs have, by which the scale of colours goes beyond it
 LEAST_FOR_TREND = 6  # different values; a curve through fewer says nothing
 
 
@@ -188,7 +189,8 @@ def _norm(values: np.ndarray) -> Normalize:
     low, high = float(known.min()), float(known.max())
     if low > 0 and high > LOG_RATIO * low:
         return LogNorm(low, high)
-    return Normalize(low, high if high > low else low + 1)
+    room = 0.0 if high > low else SAME * abs(low) or 1.0
+    return Normalize(low - room, high + room)
 
 
 def _worst_first(values: np.ndarray) -> np.ndarray:

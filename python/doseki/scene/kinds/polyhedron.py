@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
+import numpy as np
+
 from ...scenario.model import file_of
 from ...scenario.tables.bodies import Polyhedron
 from ..groups import Group
-from ..shapes import ShapeError, mesh_shape
+from ..shapes import Convex, ShapeError, mesh_shape
 from .lattice import Turned
 
 
@@ -16,12 +20,17 @@ class PolyhedronBody(Turned[Polyhedron]):
         """Taken as few: its file is not yet read."""
         return 0.0
 
-    def group(self) -> Group:
-        """See Body."""
+    @cached_property
+    def _shape(self) -> tuple[Convex, np.ndarray]:
+        """What is in its file, which is read but once, and its centre of mass there, m."""
         file = file_of(self.scenario.where, self.name, self.table.file)
         try:
-            shape, centre = mesh_shape(file, self.table.scale)
+            return mesh_shape(file, self.table.scale)
         except ShapeError as error:
             raise self.error(f": {error}", "file") from None
+
+    def group(self) -> Group:
+        """See Body."""
+        shape, centre = self._shape
         centre = centre if self.table.centre is None else self.table.centre
         return self.single_group(shape, self.turned(centre[None, :], centre)[0], self.orientation)

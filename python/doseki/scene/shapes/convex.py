@@ -17,6 +17,7 @@ from .surface import SurfaceVertices, on_triangles
 SAME_DEPTH = 1e-6  # dp
 LEAST_DEPTH = 0.25  # dp below its sides, of the points of a body that deforms
 LEAST = 0.3  # of a particle's volume: particles that would have less are left out
+AT_ONCE = 2**22  # distances from sides that are held at a time
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,16 @@ class Convex:
     def width(self) -> float:
         """Smallest extent across a face."""
         normal, distance = self.planes
-        return float((distance - (self.vertices @ normal.T).min(axis=0)).min())
+        blocks = _blocks(len(normal), len(self.vertices))
+        lowest = [(self.vertices @ normal[some].T).min(axis=0) for some in blocks]
+        return float((distance - np.concatenate(lowest)).min())
+
+    @property
+    def bulge(self) -> float:
+        """By how much, m, a vertex lies beyond a side: more than rounding if it is not convex."""
+        normal, distance = self.planes
+        blocks = _blocks(len(normal), len(self.vertices))
+        return float(max((self.vertices @ normal[b].T - distance[b]).max() for b in blocks))
 
     @property
     def reach(self) -> float:
@@ -82,7 +92,7 @@ class Convex:
         steps = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1)
         lattice = (low + (steps.reshape(-1, self.dim) + 0.5) * cell) @ self.axes.T
         number = self.measure / float(np.prod(cell))
-        share = _innermost(self._gaps(lattice).min(axis=1) / dp, number)
+        share = _innermost(self._depth(lattice) / dp, number)
         position, share = lattice[share > 0], share[share > 0] / share.sum()
         return position - share @ position, share
 
@@ -108,9 +118,11 @@ class Convex:
 
     def beneath(self, position: np.ndarray, share: np.ndarray, dp: float) -> Particles:
         """Particles at positions (N, dim), m, with what there is to know of their sides."""
-        gaps, normals = self._gaps(position), self.planes[0]
-        normal, depth = nearest_faces(gaps, normals, EDGE * dp)
-        plane, edges = np.zeros(len(depth)), beside_edges(gaps, normals, EDGE * dp)
+        normal, depth = self.wall(position, dp)
+        plane, edges = np.zeros(len(depth)), no_edges(*position.shape)
+        for some in self._rows(position):
+            found = beside_edges(self._gaps(position[some]), self.planes[0], EDGE * dp)
+            edges.normals[some], edges.depths[some] = found
         return Particles(position, normal, depth, plane, share, edges)
 
     def curve(self, dp: float) -> Curve:
@@ -136,11 +148,26 @@ class Convex:
 
     def wall(self, position: np.ndarray, dp: float) -> tuple[np.ndarray, np.ndarray]:
         """Outward normals (N, dim), means beside edges, and depths (N,) below the sides."""
-        return nearest_faces(self._gaps(position), self.planes[0], EDGE * dp)
+        normal, depth = np.zeros(position.shape), np.zeros(len(position))
+        for some in self._rows(position):
+            found = nearest_faces(self._gaps(position[some]), self.planes[0], EDGE * dp)
+            normal[some], depth[some] = found
+        return normal, depth
 
     def contains(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, dim) lie inside."""
-        return self._gaps(position).min(axis=1) > FLAT * self.reach
+        return self._depth(position) > FLAT * self.reach
+
+    def _depth(self, position: np.ndarray) -> np.ndarray:
+        """Distances (N,) below the nearest side."""
+        depth = np.zeros(len(position))
+        for some in self._rows(position):
+            depth[some] = self._gaps(position[some]).min(axis=1)
+        return depth
+
+    def _rows(self, position: np.ndarray) -> list[slice]:
+        """Positions (N, dim) in blocks, of which the distances from all sides are held at once."""
+        return _blocks(len(position), len(self.outline.distance))
 
     def _gaps(self, position: np.ndarray) -> np.ndarray:
         """Distances (N, m) below the planes of the sides."""
@@ -166,6 +193,12 @@ class Convex:
             "faces": np.ascontiguousarray(self.faces, np.int32),
             "samples": np.ascontiguousarray(self.samples(dp)),
         }
+
+
+def _blocks(number: int, each: int) -> list[slice]:
+    """So many rows of so many numbers in parts that are no larger than AT_ONCE."""
+    step = max(AT_ONCE // max(each, 1), 1)
+    return [slice(start, start + step) for start in range(0, number, step)]
 
 
 def _innermost(depth: np.ndarray, number: float) -> np.ndarray:

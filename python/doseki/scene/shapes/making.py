@@ -20,6 +20,7 @@ from .outline import BULGE, FLAT
 from .stl import readable_stl
 
 LARGEST_STL = 50_000_000  # bytes
+MOST_SIDES = 10_000
 
 
 class ShapeError(UserError):
@@ -80,9 +81,13 @@ def mesh_shape(file: Path, scale: float) -> tuple[Convex, np.ndarray]:
         raise ShapeError(str(error)) from None
     with quiet():
         shape, centre = _from_mesh(mesh)
-    normal, distance = shape.planes
-    beyond = float((shape.vertices @ normal.T - distance).max())
-    if beyond > BULGE * shape.reach:
+    if (sides := len(shape.outline.distance)) > MOST_SIDES:
+        raise ShapeError(
+            f"the surface in {file} has {sides} plane sides, {len(shape.faces)} triangles; at most "
+            f"{MOST_SIDES} are taken, as each particle is held against each; simplify it, or if "
+            'the body is fixed take it as shape = "mesh"'
+        )
+    if (beyond := shape.bulge) > BULGE * shape.reach:
         raise ShapeError(
             f"the surface in {file} is not convex (by {beyond:.3g} m); cut it into convex bodies"
         )

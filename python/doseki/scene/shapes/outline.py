@@ -71,14 +71,15 @@ def _areas(corners: np.ndarray) -> np.ndarray:
 def _edges(vertices: np.ndarray, faces: np.ndarray, side: np.ndarray) -> np.ndarray:
     """Ends (k, 2, dim) of the edges, of however many pieces each consists."""
     pieces, sides = (faces, side[:, None]) if faces.shape[1] == 2 else _borders(faces, side)
-    edges = []
-    for label in range(int((found := np.unique(sides, axis=0, return_inverse=True)[1]).max()) + 1):
-        of_edge = vertices[pieces[found.ravel() == label]]
-        along = of_edge[0, 1] - of_edge[0, 0]
-        ends = of_edge.reshape(-1, vertices.shape[1])
-        place = ends @ along
-        edges.append(ends[[place.argmin(), place.argmax()]])
-    return np.array(edges)
+    of = np.unique(sides, axis=0, return_inverse=True)[1].ravel()
+    order = np.argsort(of, kind="stable")
+    of_piece, corners = of[order], vertices[pieces[order]]
+    first = np.flatnonzero(np.diff(of_piece, prepend=-1))
+    along = (corners[first, 1] - corners[first, 0])[of_piece]
+    ends, of_end = corners.reshape(-1, vertices.shape[1]), np.repeat(of_piece, 2)
+    place = np.einsum("nd,nd->n", ends, np.repeat(along, 2, axis=0))
+    lowest, highest = (np.lexsort((at, of_end))[2 * first] for at in (place, -place))
+    return np.stack([ends[lowest], ends[highest]], axis=1)
 
 
 def _borders(faces: np.ndarray, side: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

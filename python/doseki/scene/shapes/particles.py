@@ -75,9 +75,9 @@ def beside_edges(gaps: np.ndarray, normals: np.ndarray, width: float) -> Edges:
     rows, dim = len(gaps), normals.shape[1]
     edges, most = no_edges(rows, dim), min(dim, len(normals))
     order = np.argsort(gaps, axis=1, kind="stable")
-    smooth = normals @ normals.T > SMOOTH
+    smooth = normals[order[:, 0]] @ normals.T > SMOOTH
     found = np.zeros((rows, most + 1, dim))
-    found[:, 0] = _mean(_nearness(gaps, width) * smooth[order[:, 0]], normals)
+    found[:, 0] = _mean(_nearness(gaps, width) * smooth, normals)
     depths = np.full((rows, most + 1), np.inf)
     depths[:, 0] = gaps.min(axis=1)
     number = np.ones(rows, int)

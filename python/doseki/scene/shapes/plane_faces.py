@@ -25,10 +25,11 @@ class PlaneFaces(NamedTuple):
         """Those of a shape with its centre of mass at a place, turned by a matrix (dim, dim)."""
         normals, distances = shape.planes
         corners = shape.outline.corners
-        beyond = np.abs(corners @ normals.T - distances).T / shape.reach
-        corners, normals = corners @ turn.T, normals @ turn.T
-        shift = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-        sides = [corners[off < BULGE] - shift for off in beyond]
+        turned, limit = corners @ turn.T, BULGE * shape.reach
+        shift = 0.5 * (turned.min(axis=0) + turned.max(axis=0))
+        planes = zip(normals, distances, strict=True)
+        sides = [turned[np.abs(corners @ n - distance) < limit] - shift for n, distance in planes]
+        normals = normals @ turn.T
         middles, low, high = (
             np.array([end(side, axis=0) for side in sides]) for end in (np.mean, np.min, np.max)
         )

@@ -71,7 +71,7 @@ class Table:
             "status": [entry.row.status for entry in self.entries],
         }
         for k, axis in enumerate(axes):
-            found[axis.label] = [entry.point[k] for entry in self.entries]
+            found[axis.label] = [axis.cell(entry.point[k]) for entry in self.entries]
         for name in self.plan.results:
             header = f"{name} [{units[name]}]" if units[name] else name
             found[header] = [_known(entry.row.results.get(name)) for entry in self.entries]

@@ -75,6 +75,18 @@ class Axis:
             return float(self.choices.index(value)) if found is None else found[0]
         return float(value)
 
+    def cell(self, value: Value) -> Value:
+        """The value as a column of a table has it: a number in the unit that `label` says."""
+        return self.number(value) if self.own_unit and isinstance(value, str) else value
+
+    def twice(self) -> tuple[Value, Value] | None:
+        """The first two choices that are one value, written in two ways."""
+        found: dict[float, Value] = {}
+        for value in self.choices if self.is_numeric else ():
+            if (first := found.setdefault(self.number(value), value)) is not value:
+                return first, value
+        return None
+
     @property
     def is_numeric(self) -> bool:
         """Whether its values are numbers, with or without a unit."""

@@ -242,7 +242,10 @@ class _Reader:
                     raise refuse(key, "does not go with values")
             if table.scale != "linear":
                 raise refuse("scale", "does not go with values")
-            return Axis(name, choices=tuple(dict.fromkeys(table.values)))
+            axis = Axis(name, choices=tuple(dict.fromkeys(table.values)))
+            if same := axis.twice():
+                raise refuse("values", f"{same[0]!r} and {same[1]!r} are one value; leave one out")
+            return axis
         low, unit = _number(table.min, "min", refuse)
         high, other = _number(table.max, "max", refuse)
         if unit is not other:
