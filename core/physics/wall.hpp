@@ -54,16 +54,13 @@ DOSEKI_DEVICE_FN Sym<double, D> turned_bend(const Sym<double, D>& bend,
     return bend_of_ball(normal, sum / (D - dot(before, before)));
 }
 
-/// How far [m] a particle is from the centre of its ball, whose surface it is `depth` below; below
-/// 0 where nothing curves. The bend is that of circles `row` above the surface.
-template <int D>
-DOSEKI_DEVICE_FN double distance_from_centre(const Sym<double, D>& bend,
-                                             const Vec<double, D>& normal, double depth,
-                                             double row) {
-    double sum = 0.0;
+/// Radius of the ball [m] to which such a bend belongs; 0 without one.
+template <class T, int D>
+DOSEKI_FN T radius_of_ball(const Sym<T, D>& bend, const Vec<T, D>& normal) {
+    T sum(0);
     for (int a = 0; a < D; ++a) sum += bend(a, a);
-    if (!(sum > 0.0)) return -1.0;
-    return std::max(0.0, (D - dot(normal, normal)) / sum - row - depth);
+    const T curves = select(sum > T(0), T(1), T(0));
+    return curves * (T(D) - dot(normal, normal)) / max(sum, T(1) - curves);
 }
 
 /// Normal of a curved wall at the foot of the fluid particle, Eq. (130), which leans by `turn`

@@ -249,8 +249,11 @@ DOSEKI_FN void add_fluid_to_wall(WallAccumulators<T, D>& sums, const FlowConstan
     const auto forces = wall_forces(constants, contact, r_jw, pair.r, F, j, w);
     const T share = (T(1) - j.in_film) * j.volume * W;
     const Vec<T, D> force = T(-1) * j.volume * (forces.pressure + forces.viscous);
-    const Vec<T, D> pushed = j.volume * forces.pressure;
-    const Turn<T, D> moment = moment_of(r_jw, force) + moment_of(contact.from_centre, pushed);
+    // About w, and of a ball about its centre, where pressure has none.
+    const T others = select(contact.from_centre > T(0), T(0), T(1));
+    const Vec<T, D> lever = contact.from_centre * contact.at_foot + others * r_jw;
+    const Vec<T, D> turning = T(-1) * j.volume * (forces.viscous + others * forces.pressure);
+    const Turn<T, D> moment = moment_of(lever, turning);
     for (std::size_t a = 0; a < moment.component.size(); ++a) sums.moment[a] += moment[a];
     for (int a = 0; a < D; ++a) {
         sums.force[a] += force[a];

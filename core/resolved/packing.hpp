@@ -112,10 +112,6 @@ private:
         record.no_slip = model.wall_condition(state.tag[p]).no_slip ? 1.0 : 0.0;
         record.inverse_density = state.is_bound(p) ? 1.0 / state.density[p] : 0.0;
         const bool deforms = state.is_point_of(p, BodyKind::deformable);
-        record.to_centre = -1.0;
-        if (state.is_bound(p) && !deforms)
-            record.to_centre = distance_from_centre(walls.bend[p], walls.normal[p], walls.depth[p],
-                                                    0.5 * model.spacing_power[1]);
         record.spin = deforms ? Turn<double, D>{} : walls.spin[p];
         record.face = walls.face[p], record.pressure = walls.pressure[p];
         record.film_density = walls.film_density[p];

@@ -52,7 +52,6 @@ struct WallFields {
     T volume;
     T no_slip;          // 1: fluid sticks to it; 0: what friction there is comes from the wall pass
     T inverse_density;  // of a body that moves, else 0
-    T to_centre;        // of a rigid ball, along the normal [m]; below 0: it is none
     Turn<T, D> spin;    // of its body [rad/s]
     // Of the film between faces, see WallState:
     T face, pressure, film_density, film_cover;
@@ -62,7 +61,7 @@ struct WallFields {
     DOSEKI_FN static constexpr void members(F&& f, Self&... self) {
         f(self.faces...), f(self.depths...), f(self.g_normal...), f(self.bend...);
         f(self.traction...), f(self.shear...), f(self.volume...), f(self.no_slip...),
-            f(self.inverse_density...), f(self.to_centre...), f(self.spin...), f(self.face...);
+            f(self.inverse_density...), f(self.spin...), f(self.face...);
         f(self.pressure...), f(self.film_density...), f(self.film_cover...),
             f(self.film_traction...), f(self.film_aside...);
     }

@@ -55,7 +55,7 @@ public:
             // What the fluid loses by friction and a bed that moves does not get.
             summary.power -= dot(drag, state_.velocity[p]);
         }
-        wall.force[p] = force, wall.moment[p] = sums.moment;
+        wall.force[p] = force, wall.moment[p] = moment_about(p, sums);
     }
 
     /// See KnowsIdleParticles: where neither fluid nor a film is, nor was a step before.
@@ -78,6 +78,16 @@ private:
     /// a shape with edges, beside one that curves; and one without, of balls and of what deforms,
     /// or beside a crack, which goes up and down by a spacing.
     static constexpr double of_edged = 0.9, of_others = 0.6;
+
+    /// Of the pairs, about the particle; the sums of a ball are about its centre.
+    DOSEKI_DEVICE_FN Turn<double, D> moment_about(std::size_t p,
+                                                  const WallAccumulators<double, D>& sums) const {
+        const WallState<D>& wall = state_.wall;
+        const double radius = radius_of_ball(wall.bend[p], wall.normal[p]);
+        if (!(radius > 0.0) || !state_.is_bound(p)) return sums.moment;
+        const double out = radius - 0.5 * model_.spacing_power[1] - wall.depth[p];
+        return sums.moment - moment_of(out * wall.normal[p], sums.force);
+    }
 
     DOSEKI_DEVICE_FN double volume(std::size_t p) const { return records_[p - first_wall_].volume; }
 

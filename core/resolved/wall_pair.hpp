@@ -60,9 +60,9 @@ struct WallContact {
     Vec<T, D> corrected_r;  // B_i r_iw
     T pushes;               // 0: at an edge that the fluid goes off past
     T r_dot_n, corrected_r_dot_n;
-    T height;               // of i above the surface of the wall
-    T no_slip;              // share of it that holds here
-    Vec<T, D> from_centre;  // see arm_of_ball
+    T height;       // of i above the surface of the wall
+    T no_slip;      // share of it that holds here
+    T from_centre;  // along n', of a ball that moves; of others 0
     // Against w:
     T approach;                  // (v_i - v_w).(-n)
     Vec<T, D> v_i_w, past_edge;  // v_i - v_w, and its part along the face
@@ -70,12 +70,20 @@ struct WallContact {
     Vec<T, D> v_iw, sliding;
 };
 
-/// Of a rigid ball, the way from its centre to i, on which pressure makes no moment: the normals of
-/// its surface meet there. Of others 0.
+/// The normals of a ball that moves meet in its centre: pressure has no moment about it. The bend
+/// of a wall particle is that of circles half a spacing above the surface.
 template <class T, int D>
-DOSEKI_FN Vec<T, D> arm_of_ball(const WallPoint<T, D>& w, const Vec<T, D>& r_iw) {
-    const T is_ball = select(w.to_centre < T(0), T(0), T(1));
-    return is_ball * (r_iw + w.to_centre * row(w.faces, 0));
+DOSEKI_FN void meet_in_centre(WallContact<T, D>& contact, const FlowConstants& constants,
+                              const Vec<T, D>& r_iw, const WallPoint<T, D>& w) {
+    const Vec<T, D> normal = row(w.faces, 0);
+    const T radius = select(w.inverse_density > T(0), radius_of_ball<T, D>(w.bend, normal), T(0));
+    if (!any(radius > T(0))) return;
+    const T is_ball = select(radius > T(0), T(1), T(0));
+    const T height = dot(normal, r_iw) - w.depths[0] - number<T>(0.5 * constants.dp);
+    const Vec<T, D> arm = (radius + height) * normal + radius * (w.bend * r_iw);
+    contact.from_centre = is_ball * sqrt(dot(arm, arm));
+    const T inverse = is_ball / max(contact.from_centre, T(1) - is_ball);
+    contact.at_foot = (T(1) - is_ball) * contact.at_foot + inverse * arm;
 }
 
 template <class T, int D>
@@ -96,13 +104,8 @@ DOSEKI_FN WallContact<T, D> wall_contact(const FlowConstants& constants, const V
     contact.no_slip =
         w.no_slip * no_slip_factor(seen.depth, contact.height, number<T>(0.25 * constants.dp));
     contact.at_foot = normal_at_foot(seen.normal, w.bend * (seen.in_front * r_iw));
-    contact.from_centre = arm_of_ball(w, r_iw);
-    const T square = dot(contact.from_centre, contact.from_centre);
-    if (any(square > T(0))) {
-        const T is_ball = select(square > T(0), T(1), T(0));
-        const T inverse = is_ball / sqrt(max(square, T(1) - is_ball));
-        contact.at_foot = (T(1) - is_ball) * contact.at_foot + inverse * contact.from_centre;
-    }
+    contact.from_centre = T(0);
+    meet_in_centre(contact, constants, r_iw, w);
     contact.v_iw = contact.v_i_w - turned_by<T, D>(w.spin, r_iw);
     contact.sliding =
         contact.v_iw - (contact.pushes * dot(contact.v_iw, contact.at_foot)) * contact.at_foot;
@@ -154,7 +157,8 @@ DOSEKI_FN WallForces<T, D> wall_forces(const FlowConstants& constants,
     forces.viscous_rate =
         scale * (mu_wall + mu_across) * max(T(1), number<T>(of_body) * i.rho * w.inverse_density);
     // The velocity that it works against: a ball that spins is no obstacle to pressure.
-    const Vec<T, D> v_pressed = contact.v_iw + turned_by(w.spin, contact.from_centre);
+    const Vec<T, D> v_pressed =
+        contact.v_iw + turned_by<T, D>(w.spin, contact.from_centre * contact.at_foot);
     forces.made = dot(forces.pressure, v_pressed) +
                   scale * i.p * contact.approach * contact.corrected_r_dot_n;
     return forces;
